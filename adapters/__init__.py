@@ -1,0 +1,1 @@
+"""One format each: files in, neutral nouns out, and back."""

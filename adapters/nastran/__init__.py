@@ -1,0 +1,1 @@
+"""Nastran decks and results."""

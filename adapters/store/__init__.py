@@ -1,0 +1,1 @@
+"""The neutral store (HDF5)."""

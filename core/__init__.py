@@ -1,0 +1,1 @@
+"""The neutral model and its mathematics; knows numpy and scipy only."""

@@ -1,0 +1,34 @@
+"""Read-only array construction shared by the neutral nouns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Numbers = npt.NDArray[Any]
+
+
+def frozen(values: npt.ArrayLike, dtype: npt.DTypeLike = None) -> Numbers:
+    """Return a read-only copy of `values`."""
+    array = np.array(values, dtype=dtype)
+    array.flags.writeable = False
+    return array
+
+
+def require_finite(values: Numbers, what: str) -> None:
+    """Raise `InputError` when an array holds NaN or infinity."""
+    bad = int(values.size - np.count_nonzero(np.isfinite(values)))
+    if bad:
+        raise InputError(f"{what} holds {bad} value(s) that are not finite numbers")
+
+
+def require_shape(values: Numbers, shape: tuple[int, ...], what: str) -> None:
+    """Raise `InputError` when an array does not have the shape its neighbours ask for."""
+    if values.shape != shape:
+        raise InputError(f"{what} has shape {values.shape}, expected {shape}")

@@ -1,0 +1,45 @@
+"""Frequency response functions of a test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import Floats, Numbers, frozen, require_finite, require_shape
+from .dofs import Dofs
+
+QUANTITIES = ("displacement", "velocity", "acceleration")
+
+
+@dataclass(frozen=True, eq=False)
+class Frfs:
+    """Frequency responses between response and reference degrees of freedom.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+        Frequency axis, increasing.
+    responses, references : Dofs
+        Length n_response and n_reference.
+    values : (n_response, n_reference, n_line) complex
+        Response over reference; NaN for a combination that was not measured.
+    quantity : {"displacement", "velocity", "acceleration"}
+        What the responses are, per unit force.
+    source : str
+        Where they came from.
+    """
+
+    frequencies_hz: Floats
+    responses: Dofs
+    references: Dofs
+    values: Numbers
+    quantity: str = "acceleration"
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frequencies_hz", frozen(self.frequencies_hz, np.float64))
+        object.__setattr__(self, "values", frozen(self.values, np.complex128))
+        shape = (len(self.responses), len(self.references), len(self.frequencies_hz))
+        require_shape(self.values, shape, "frequency responses")
+        require_finite(self.frequencies_hz, "the frequency axis")

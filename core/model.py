@@ -1,0 +1,156 @@
+"""K and M as sums of constant matrices times scalar functions of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.polynomial import chebyshev
+
+from .arrays import Floats, frozen
+from .dofs import Dofs
+from .errors import InputError
+from .geometry import Geometry
+from .parameter import Parameter
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A Chebyshev series in one parameter, on the interval `lower`..`upper`.
+
+    A modulus or a density is the linear series that equals the parameter itself; a thickness
+    takes a few terms.
+    """
+
+    parameter: int
+    coefficients: tuple[float, ...]
+    lower: float
+    upper: float
+
+    def value(self, p: Floats) -> float:
+        """Return the factor at the parameter values `p`, (n_parameter,)."""
+        return float(chebyshev.chebval(self._unit(p), self.coefficients))
+
+    def derivative(self, p: Floats) -> float:
+        """Return the derivative by the factor's own parameter at `p`."""
+        slope = chebyshev.chebder(np.asarray(self.coefficients))
+        return float(chebyshev.chebval(self._unit(p), slope)) * 2.0 / (self.upper - self.lower)
+
+    def _unit(self, p: Floats) -> float:
+        return float((2.0 * p[self.parameter] - self.lower - self.upper) / (self.upper - self.lower))
+
+
+def proportional(parameter: int, lower: float, upper: float) -> Factor:
+    """Return the factor that equals its parameter."""
+    return Factor(parameter, ((lower + upper) / 2.0, (upper - lower) / 2.0), lower, upper)
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """A constant symmetric sparse matrix times a product of factors (none: constant)."""
+
+    matrix: sp.csr_matrix
+    factors: tuple[Factor, ...] = ()
+
+    def coefficient(self, p: Floats) -> float:
+        """Return the scalar that multiplies the matrix at `p`."""
+        return float(np.prod([f.value(p) for f in self.factors])) if self.factors else 1.0
+
+    def coefficient_derivative(self, p: Floats, parameter: int) -> float:
+        """Return the derivative of the scalar by parameter number `parameter`."""
+        total = 0.0
+        for f in self.factors:
+            if f.parameter == parameter:
+                others = [g.value(p) for g in self.factors if g is not f]
+                total += f.derivative(p) * float(np.prod(others))
+        return total
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A finite-element model on its free (independent, unconstrained) degrees of freedom.
+
+    K(p) = sum_t c_t(p) K_t, and likewise M(p): equation (1) of the source paper written
+    generally.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Nodes and elements, basic frame, deck length unit.
+    dofs : Dofs
+        All structural degrees of freedom, (n_dof): six a grid in basic axes, one a scalar point.
+    expansion : (n_dof, n_free) sparse
+        Displacements of all `dofs` from the free ones: constraints, rigid elements and
+        displacement coordinate systems are in here.
+    stiffness, mass : tuple of Term
+        Matrices (n_free, n_free).
+    parameters : tuple of Parameter
+        What the factors of the terms refer to by position.
+    free_labels : tuple of str, optional
+        For messages, ``grid:component`` of each free degree of freedom, as the deck counts.
+    warnings : tuple of str
+        What the adapter left out or assumed.
+    """
+
+    geometry: Geometry
+    dofs: Dofs
+    expansion: sp.csr_matrix
+    stiffness: tuple[Term, ...]
+    mass: tuple[Term, ...]
+    parameters: tuple[Parameter, ...] = ()
+    free_labels: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = self.expansion.shape[1]
+        if self.expansion.shape[0] != len(self.dofs):
+            raise InputError(
+                f"the expansion has {self.expansion.shape[0]} rows for {len(self.dofs)} dofs"
+            )
+        for t in (*self.stiffness, *self.mass):
+            if t.matrix.shape != (n, n):
+                raise InputError(f"a matrix term has shape {t.matrix.shape}, expected {(n, n)}")
+
+    @property
+    def n_free(self) -> int:
+        """Number of free degrees of freedom."""
+        return int(self.expansion.shape[1])
+
+    @property
+    def deck_point(self) -> Floats:
+        """The parameter values of the deck as it is: ones, (n_parameter,)."""
+        return frozen(np.ones(len(self.parameters)))
+
+    def K(self, p: Floats | None = None) -> sp.csr_matrix:
+        """Stiffness at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        return _sum(self.stiffness, self.deck_point if p is None else p, self.n_free)
+
+    def M(self, p: Floats | None = None) -> sp.csr_matrix:
+        """Mass at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        return _sum(self.mass, self.deck_point if p is None else p, self.n_free)
+
+    def dK(self, parameter: int, p: Floats) -> sp.csr_matrix:
+        """Derivative of K by one parameter at `p`, (n_free, n_free)."""
+        return _sum_derivative(self.stiffness, p, parameter, self.n_free)
+
+    def dM(self, parameter: int, p: Floats) -> sp.csr_matrix:
+        """Derivative of M by one parameter at `p`, (n_free, n_free)."""
+        return _sum_derivative(self.mass, p, parameter, self.n_free)
+
+
+def _weighted(terms: Iterable[tuple[float, sp.csr_matrix]], n: int) -> sp.csr_matrix:
+    total = sp.csr_matrix((n, n))
+    for c, matrix in terms:
+        if c != 0.0:
+            total = total + c * matrix
+    return total.tocsr()
+
+
+def _sum(terms: tuple[Term, ...], p: Floats, n: int) -> sp.csr_matrix:
+    return _weighted(((t.coefficient(p), t.matrix) for t in terms), n)
+
+
+def _sum_derivative(terms: tuple[Term, ...], p: Floats, parameter: int, n: int) -> sp.csr_matrix:
+    return _weighted(((t.coefficient_derivative(p, parameter), t.matrix) for t in terms), n)

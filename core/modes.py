@@ -1,0 +1,76 @@
+"""Normal or complex modes of an analysis or a test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import Floats, Numbers, frozen, require_finite, require_shape
+from .dofs import Dofs
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Natural frequencies and mode shapes.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_mode,) float
+        Undamped natural frequencies, in the order of the source.
+    shapes : (n_dof, n_mode) float or complex
+        One column per mode, one row per degree of freedom, displacement in the length unit of
+        the geometry that the modes belong to.
+    dofs : Dofs
+        What the rows are.
+    damping : (n_mode,) float, optional
+        Fractions of critical; NaN where unknown.
+    generalized_mass : (n_mode,) float, optional
+        Modal mass for the scaling of `shapes`; NaN where unknown.
+    source : str
+        Where they came from, for messages and reports.
+
+    Raises
+    ------
+    InputError
+        Shapes that disagree, or shapes or frequencies that are not finite.
+    """
+
+    frequencies_hz: Floats
+    shapes: Numbers
+    dofs: Dofs
+    damping: Floats = None  # type: ignore[assignment]
+    generalized_mass: Floats = None  # type: ignore[assignment]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frequencies_hz", frozen(self.frequencies_hz, np.float64))
+        object.__setattr__(self, "shapes", frozen(self.shapes))
+        n = len(self.frequencies_hz)
+        require_shape(self.shapes, (len(self.dofs), n), f"mode shapes of {self.source or 'modes'}")
+        require_finite(self.frequencies_hz, f"frequencies of {self.source or 'modes'}")
+        require_finite(self.shapes, f"mode shapes of {self.source or 'modes'}")
+        for name in ("damping", "generalized_mass"):
+            value = getattr(self, name)
+            value = np.full(n, np.nan) if value is None else value
+            object.__setattr__(self, name, frozen(value, np.float64))
+            require_shape(getattr(self, name), (n,), name)
+
+    def __len__(self) -> int:
+        return len(self.frequencies_hz)
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether the shapes are complex."""
+        return bool(np.iscomplexobj(self.shapes))
+
+    def take(self, modes: Numbers) -> Modes:
+        """Return the modes of the given columns (indices or mask)."""
+        return Modes(
+            self.frequencies_hz[modes],
+            self.shapes[:, modes],
+            self.dofs,
+            self.damping[modes],
+            self.generalized_mass[modes],
+            self.source,
+        )
