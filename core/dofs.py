@@ -49,6 +49,4 @@ class Dofs:
     def labels(self) -> list[str]:
         """``node:direction`` with the direction as engineers write it, e.g. ``12:+Z``."""
         letters = ("X", "Y", "Z", "RX", "RY", "RZ")
-        return [
-            f"{n}:{letters[c - 1]}" for n, c in zip(self.node, self.component, strict=True)
-        ]
+        return [f"{n}:{letters[c - 1]}" for n, c in zip(self.node, self.component, strict=True)]

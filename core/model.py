@@ -39,7 +39,9 @@ class Factor:
         return float(chebyshev.chebval(self._unit(p), slope)) * 2.0 / (self.upper - self.lower)
 
     def _unit(self, p: Floats) -> float:
-        return float((2.0 * p[self.parameter] - self.lower - self.upper) / (self.upper - self.lower))
+        return float(
+            (2.0 * p[self.parameter] - self.lower - self.upper) / (self.upper - self.lower)
+        )
 
 
 def proportional(parameter: int, lower: float, upper: float) -> Factor:
@@ -124,19 +126,19 @@ class Model:
         return frozen(np.ones(len(self.parameters)))
 
     def K(self, p: Floats | None = None) -> sp.csr_matrix:
-        """Stiffness at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        """Return the stiffness at the parameter values `p` (default: the deck), (n_free, n_free)."""
         return _sum(self.stiffness, self.deck_point if p is None else p, self.n_free)
 
     def M(self, p: Floats | None = None) -> sp.csr_matrix:
-        """Mass at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        """Return the mass at the parameter values `p` (default: the deck), (n_free, n_free)."""
         return _sum(self.mass, self.deck_point if p is None else p, self.n_free)
 
     def dK(self, parameter: int, p: Floats) -> sp.csr_matrix:
-        """Derivative of K by one parameter at `p`, (n_free, n_free)."""
+        """Return the derivative of K by one parameter at `p`, (n_free, n_free)."""
         return _sum_derivative(self.stiffness, p, parameter, self.n_free)
 
     def dM(self, parameter: int, p: Floats) -> sp.csr_matrix:
-        """Derivative of M by one parameter at `p`, (n_free, n_free)."""
+        """Return the derivative of M by one parameter at `p`, (n_free, n_free)."""
         return _sum_derivative(self.mass, p, parameter, self.n_free)
 
 

@@ -1,0 +1,259 @@
+"""Pair test modes with analysis modes, close ones turned onto the test first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import Bools, Floats, Numbers, frozen
+from .clusters import clusters_by_bandwidth
+from .correlation import mac, realised
+from .errors import InputError
+from .pairing import assign
+from .rotation import ClusterRotation, rotate_cluster, subspace_mac
+
+SIDES = ("analysis", "test", "none")
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """When a test mode and an analysis mode may be a pair, and what counts as close.
+
+    Parameters
+    ----------
+    mac_min : float
+        Smallest MAC of a pair.
+    frequency_tolerance : float
+        Largest |analysis − test| / test.
+    cluster_width : float
+        Largest relative bandwidth of a cluster.
+    rotate : {"analysis", "test", "none"}
+        Which side's close modes are turned.
+    """
+
+    mac_min: float = 0.7
+    frequency_tolerance: float = 0.3
+    cluster_width: float = 0.03
+    rotate: str = "analysis"
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.mac_min <= 1.0:
+            raise InputError(f"mac_min is {self.mac_min}; give a value above 0 and up to 1")
+        if self.frequency_tolerance <= 0.0:
+            raise InputError(
+                f"frequency_tolerance is {self.frequency_tolerance}; give a fraction above 0"
+            )
+        if not 0.0 <= self.cluster_width < 1.0:
+            raise InputError(f"cluster_width is {self.cluster_width}; give a fraction from 0 to 1")
+        if self.rotate not in SIDES:
+            raise InputError(f"rotate is '{self.rotate}'; give one of {', '.join(SIDES)}")
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One test mode with one analysis mode (0-based columns)."""
+
+    test: int
+    analysis: int
+    test_hz: float
+    analysis_hz: float
+    mac: float
+    cluster: int | None = None
+    rotation_deg: float | None = None
+
+    @property
+    def deviation_percent(self) -> float:
+        """100·(analysis − test)/test."""
+        return 100.0 * (self.analysis_hz - self.test_hz) / self.test_hz
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Close modes of one side and the modes of the other side they were turned onto."""
+
+    analysis: tuple[int, ...]
+    test: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Correlation:
+    """What pairs with what.
+
+    `mac` (n_test, n_analysis) is as measured; `mac_rotated` after rotation. `transformation`
+    (n_turned, n_turned) is block-orthogonal on the side that was turned: the shapes used for
+    `mac_rotated` and the pairs are ``shapes @ transformation``.
+    """
+
+    pairs: tuple[Pair, ...]
+    unpaired_test: tuple[int, ...]
+    unpaired_analysis: tuple[int, ...]
+    clusters: tuple[Cluster, ...]
+    mac: Floats
+    mac_rotated: Floats
+    transformation: Floats
+    criteria: Criteria
+
+    @property
+    def mean_abs_deviation_percent(self) -> float | None:
+        """Mean of |deviation| over the pairs; None without pairs."""
+        return (
+            float(np.mean([abs(p.deviation_percent) for p in self.pairs])) if self.pairs else None
+        )
+
+    @property
+    def worst_deviation_percent(self) -> float | None:
+        """Largest |deviation| of the pairs; None without pairs."""
+        return float(np.max([abs(p.deviation_percent) for p in self.pairs])) if self.pairs else None
+
+    @property
+    def mean_mac(self) -> float | None:
+        """Mean MAC of the pairs; None without pairs."""
+        return float(np.mean([p.mac for p in self.pairs])) if self.pairs else None
+
+
+def correlate(
+    analysis_hz: Floats,
+    analysis_shapes: Floats,
+    test_hz: Floats,
+    test_shapes: Numbers,
+    criteria: Criteria | None = None,
+    rigid_body_modes: int = 0,
+) -> Correlation:
+    """Correlate modes given at the same sensors.
+
+    Parameters
+    ----------
+    analysis_hz : (n_analysis,) float
+    analysis_shapes : (n_sensor, n_analysis) float
+        Mass-normalised, so that an orthogonal transformation of a cluster stays so.
+    test_hz : (n_test,) float
+    test_shapes : (n_sensor, n_test) float or complex
+        Any scaling. Complex shapes enter the MAC as they are and rotation by their principal
+        phase.
+    criteria : Criteria
+    rigid_body_modes : int
+        The first so many analysis modes are rigid-body motions: never paired with an elastic
+        test mode.
+
+    Returns
+    -------
+    Correlation
+
+    Raises
+    ------
+    InputError
+        When shapes are not at the same sensors or no test mode has a frequency above zero.
+
+    References
+    ----------
+    Equations (7)–(10) of the source paper, see `rotation` and `pairing`.
+    """
+    criteria = criteria or Criteria()
+    measured = mac(test_shapes, analysis_shapes)
+    elastic = np.arange(len(analysis_hz)) >= rigid_body_modes
+    near = np.abs(analysis_hz[None, :] - test_hz[:, None]) <= (
+        criteria.frequency_tolerance * test_hz[:, None]
+    )
+    near &= elastic[None, :]
+    real = realised(test_shapes)
+    groups: tuple[tuple[int, ...], ...] = ()
+    if criteria.rotate == "analysis":
+        hz = np.where(elastic, analysis_hz, 0.0)
+        groups = clusters_by_bandwidth(hz, criteria.cluster_width)
+        turned = _turn(analysis_shapes, real, groups, near.T, criteria.mac_min)
+        matrix = _transformation(len(analysis_hz), groups, turned)
+        rotated = mac(test_shapes, analysis_shapes @ matrix)
+    elif criteria.rotate == "test":
+        groups = clusters_by_bandwidth(test_hz, criteria.cluster_width)
+        scaled = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
+        turned = _turn(scaled, analysis_shapes, groups, near, criteria.mac_min)
+        matrix = _transformation(len(test_hz), groups, turned)
+        rotated = mac(scaled @ matrix, analysis_shapes)
+    else:
+        turned, rotated, matrix = [], measured, np.eye(len(analysis_hz))
+    chosen = assign(rotated, (rotated >= criteria.mac_min) & near)
+    clusters = [(g, r) for g, r in zip(groups, turned, strict=True) if len(g) > 1 and r.test]
+    pairs = [
+        _pair(t, a, test_hz, analysis_hz, rotated, clusters, matrix, criteria.rotate)
+        for t, a in chosen
+    ]
+    return Correlation(
+        tuple(pairs),
+        tuple(sorted(set(range(len(test_hz))) - {p.test for p in pairs})),
+        tuple(sorted(set(np.flatnonzero(elastic).tolist()) - {p.analysis for p in pairs})),
+        tuple(
+            Cluster(g, r.test) if criteria.rotate == "analysis" else Cluster(r.test, g)
+            for g, r in clusters
+        ),
+        frozen(measured),
+        frozen(rotated),
+        frozen(matrix),
+        criteria,
+    )
+
+
+def _turn(
+    shapes: Floats,
+    targets: Floats,
+    groups: tuple[tuple[int, ...], ...],
+    near: Bools,
+    mac_min: float,
+) -> list[ClusterRotation]:
+    """Assign targets to groups, at most one per member, and turn each group onto its own."""
+    slots = [k for k, g in enumerate(groups) for _ in g]
+    if not slots:
+        return []
+    score = np.array([subspace_mac(shapes[:, g], targets) for g in groups])
+    reachable = np.array([near[list(g)].any(axis=0) for g in groups])
+    allowed = (score >= mac_min) & reachable
+    taken: list[list[int]] = [[] for _ in groups]
+    for slot, target in assign(score[slots], allowed[slots]):
+        taken[slots[slot]].append(target)
+    return [
+        rotate_cluster(shapes[:, g], targets, tuple(sorted(t)), mac_min)
+        if len(g) > 1
+        else ClusterRotation(np.eye(1), tuple(t))
+        for g, t in zip(groups, taken, strict=True)
+    ]
+
+
+def _transformation(
+    n: int, groups: tuple[tuple[int, ...], ...], turned: list[ClusterRotation]
+) -> Floats:
+    """Block-orthogonal matrix whose columns keep the numbers of the modes they resemble most."""
+    matrix = np.eye(n)
+    for g, r in zip(groups, turned, strict=True):
+        if len(g) > 1 and r.test:
+            resembles = assign(r.matrix.T**2 + 1e-9, np.ones((len(g), len(g)), bool))
+            columns = np.empty_like(r.matrix)
+            for column, member in resembles:
+                columns[:, member] = r.matrix[:, column]
+            matrix[np.ix_(g, g)] = columns * np.where(np.diag(columns) < 0.0, -1.0, 1.0)
+    return matrix
+
+
+def _pair(
+    test: int,
+    analysis: int,
+    test_hz: Floats,
+    analysis_hz: Floats,
+    mac_rotated: Floats,
+    clusters: list[tuple[tuple[int, ...], ClusterRotation]],
+    matrix: Floats,
+    side: str,
+) -> Pair:
+    member = analysis if side == "analysis" else test
+    cluster = next((k for k, (g, _) in enumerate(clusters) if member in g), None)
+    angle = None
+    if cluster is not None:
+        angle = float(np.degrees(np.arccos(np.clip(matrix[member, member], -1.0, 1.0))))
+    return Pair(
+        test,
+        analysis,
+        float(test_hz[test]),
+        float(analysis_hz[analysis]),
+        float(mac_rotated[test, analysis]),
+        cluster,
+        angle,
+    )
