@@ -2,7 +2,9 @@
 
 
 def main() -> None:
-    """Run ``trueup``."""
-    from .app import app
+    """Run ``trueup`` and leave with its exit status."""
+    import sys
 
-    app()
+    from .app import run
+
+    sys.exit(run())

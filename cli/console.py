@@ -1,0 +1,58 @@
+"""Progress on standard error, results on standard output."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from .options import Output
+
+
+def stdout() -> Console:
+    """Return a console on standard output, as wide as tables need when it is not a terminal."""
+    from rich.console import Console
+
+    return Console(file=sys.stdout, width=None if sys.stdout.isatty() else 110, highlight=False)
+
+
+def stderr() -> Console:
+    """Return a console on standard error."""
+    from rich.console import Console
+
+    return Console(stderr=True, highlight=False)
+
+
+def speaks(output: Output) -> bool:
+    """Whether tables and sentences may go to standard output."""
+    return not output.quiet and output.json != "-"
+
+
+@contextmanager
+def working(what: str, output: Output) -> Iterator[None]:
+    """Show a spinner with elapsed time on standard error while the block runs."""
+    if output.quiet or not sys.stderr.isatty():
+        yield
+        return
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    with Progress(
+        SpinnerColumn(), TextColumn(what), TimeElapsedColumn(), console=stderr(), transient=True
+    ) as progress:
+        progress.add_task(what, total=None)
+        yield
+
+
+def emit_json(result: dict[str, Any], output: Output) -> None:
+    """Write the result where ``--json`` asks for it."""
+    from .runfolder import json_text, write_json
+
+    if output.json == "-":
+        sys.stdout.write(json_text(result))
+    elif output.json:
+        write_json(Path(output.json), result)
