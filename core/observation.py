@@ -1,0 +1,272 @@
+"""What the sensors of a test would read of an analysis shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
+from .dofs import Dofs
+from .errors import InputError
+from .geometry import Geometry
+from .interpolation import interpolate
+from .placement import Placement, place
+from .surface import Surface, surface_of
+from .transform import IDENTITY, Transform
+
+FEWEST_ON_MODEL = 0.2
+"""A test with a smaller share of its sensors on the model is refused."""
+_NAMED = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """The sensor map C: sensor displacements = C @ analysis shapes.
+
+    Parameters
+    ----------
+    matrix : (n_sensor, n_dof) csr
+        For shapes on the analysis dofs (six a grid, basic axes).
+    sensors : Dofs
+        Test node, component and axis of each sensor, the axis turned into the basic frame of
+        the analysis.
+    xyz : (n_sensor, 3) float
+        Sensor positions in the frame and the length unit of the analysis.
+    nearest_grid : (n_sensor,) int
+        Number of the grid nearest to the sensor.
+    distance : (n_sensor,) float
+        From the sensor to the facet (or grid) it was placed on, deck length unit.
+    within : (n_sensor,) bool
+        Whether the distance is inside the tolerance. What a sensor outside would read is not
+        known; leave it out: ``observation.take(observation.within)`` and the same rows of the
+        test shapes.
+    tolerance : (n_sensor,) float
+        What the distance was held against.
+    warnings : tuple of str
+        Sensors beyond the tolerance.
+    """
+
+    matrix: sp.csr_matrix
+    sensors: Dofs
+    xyz: Floats
+    nearest_grid: Ints
+    distance: Floats
+    within: Bools
+    tolerance: Floats
+    warnings: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        n = len(self.sensors)
+        require_shape(np.empty(self.matrix.shape[0]), (n,), "the sensor matrix")
+        for name in ("xyz", "nearest_grid", "distance", "within", "tolerance"):
+            value = frozen(getattr(self, name))
+            object.__setattr__(self, name, value)
+            require_shape(value, (n, 3) if name == "xyz" else (n,), name)
+
+    def __len__(self) -> int:
+        return len(self.sensors)
+
+    def take(self, rows: Numbers) -> Observation:
+        """Return the sensors of the given rows (indices or mask)."""
+        return Observation(
+            self.matrix[rows],
+            self.sensors.take(rows),
+            self.xyz[rows],
+            self.nearest_grid[rows],
+            self.distance[rows],
+            self.within[rows],
+            self.tolerance[rows],
+            self.warnings,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Grids:
+    """Where the motion of each grid of a geometry stands among the analysis dofs.
+
+    Parameters
+    ----------
+    surface : Surface
+        Of the elements all of whose grids have three translations.
+    columns : (n_grid, 6) int
+        Row of the dofs for each grid and component; -1 where there is none.
+    axis : (n_dof, 3) float
+        Axis of each dof.
+    rotating : (n_grid,) bool
+        Grids whose rotations can be used.
+    ids : (n_grid,) int
+        Grid numbers.
+    """
+
+    surface: Surface
+    columns: Ints
+    axis: Floats
+    rotating: Bools
+    ids: Ints
+
+    def sensor_matrix(self, placement: Placement, axis: Floats, turns: Bools) -> sp.csr_matrix:
+        """Rows (n, n_dof) that read the placed points along `axis` (n, 3).
+
+        `turns` (n,) says which sensors read a rotation instead of a displacement.
+        """
+        by = interpolate(self.surface, placement, self.rotating)
+        choose = turns[:, None, None, None]
+        u = np.einsum("nx,ncxy->ncy", axis, np.where(choose, by.tu, by.uu))
+        theta = np.einsum("nx,ncxy->ncy", axis, np.where(choose, by.tt, by.ut))
+        columns = self.columns[placement.corners]
+        dof_axis = self.axis[columns]
+        values = np.concatenate(
+            [
+                np.einsum("ncy,ncky->nck", u, dof_axis[:, :, :3]),
+                np.einsum("ncy,ncky->nck", theta, dof_axis[:, :, 3:]),
+            ],
+            axis=2,
+        )
+        values = np.where(columns >= 0, values, 0.0).reshape(len(placement), -1)
+        rows = np.repeat(np.arange(len(placement)), values.shape[1])
+        where = columns.reshape(len(placement), -1).ravel()
+        keep = values.ravel() != 0.0
+        return sp.csr_matrix(
+            (values.ravel()[keep], (rows[keep], where[keep])),
+            shape=(len(placement), len(self.axis)),
+        )
+
+
+def grids_of(geometry: Geometry, dofs: Dofs, motion: Numbers | sp.spmatrix | None = None) -> Grids:
+    """Find the dofs of every grid and the surface that can carry sensors.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Of the analysis.
+    dofs : Dofs
+        Of the analysis, (n_dof,), six a grid or fewer.
+    motion : (n_dof, k) array or sparse, optional
+        Mode shapes, or the `expansion` of the model: a grid whose translations move and whose
+        rotations are zero in it throughout (a solid, a membrane, a truss) has no rotations of
+        its own, and a grid that moves can carry a sensor even where no element is drawn to it.
+        Default: all rotations of `dofs` are used.
+    """
+    row = geometry.index_of(dofs.node)
+    columns = np.full((len(geometry.ids), 6), -1, np.int64)
+    known = np.flatnonzero((row >= 0) & (dofs.component >= 1) & (dofs.component <= 6))
+    columns[row[known], dofs.component[known] - 1] = known
+    present = columns >= 0
+    rotating = present[:, 3:].all(axis=1)
+    alone = None
+    if motion is not None:
+        moving = _moving(motion)[columns] & present
+        alone = moving[:, :3].any(axis=1)
+        rotating &= moving[:, 3:].any(axis=1) | ~alone
+    surface = surface_of(geometry, present[:, :3].all(axis=1), alone)
+    return Grids(surface, columns, dofs.axis, rotating, geometry.ids)
+
+
+def _moving(motion: Numbers | sp.spmatrix) -> Bools:
+    """Whether each row of a matrix holds anything but zeros."""
+    if sp.issparse(motion):
+        return np.asarray(abs(motion).sum(axis=1)).ravel() > 0
+    return np.asarray(np.any(np.asarray(motion) != 0, axis=1))
+
+
+def default_tolerance(surface: Surface, placement: Placement) -> Floats:
+    """Half the local mesh size, at least 0.5 % and at most 3 % of the model's size, (n,)."""
+    local = 0.5 * surface.mesh_size(placement.facet)
+    return np.clip(local, 0.005 * surface.size, 0.03 * surface.size)
+
+
+def observe(
+    geometry: Geometry,
+    dofs: Dofs,
+    test_geometry: Geometry,
+    sensors: Dofs,
+    transform: Transform = IDENTITY,
+    tolerance: float | None = None,
+    motion: Numbers | sp.spmatrix | None = None,
+) -> Observation:
+    """Place sensors on a model and make the matrix that reads them off an analysis shape.
+
+    Every sensor is projected on the element it lies on and reads that element's interpolated
+    motion along its own axis, with the lever arm where it stands off (see
+    `interpolation.interpolate`). A sensor of component 4 to 6 reads a rotation.
+
+    Parameters
+    ----------
+    geometry, dofs : Geometry, Dofs
+        Of the analysis.
+    test_geometry, sensors : Geometry, Dofs
+        Of the test: nodes, and one row per measured direction with its axis in the test's
+        basic frame.
+    transform : Transform
+        From test to analysis coordinates, for example an `Alignment`'s.
+    tolerance : float, optional
+        Largest distance of a sensor from the model, deck length unit. Default: see
+        `default_tolerance`.
+    motion : (n_dof, k) array or sparse, optional
+        See `grids_of`.
+
+    Raises
+    ------
+    InputError
+        A sensor's node is not in the test geometry, or hardly any sensor lies on the model.
+    """
+    grids = grids_of(geometry, dofs, motion)
+    nodes = test_geometry.index_of(sensors.node)
+    if np.any(nodes < 0):
+        raise InputError(
+            f"the test measured node {sensors.node[nodes < 0][0]}, "
+            "which its geometry does not define; add the file with the test's geometry"
+        )
+    surface = grids.surface
+    xyz = transform.apply(test_geometry.xyz[nodes])
+    axis = transform.turn(sensors.axis)
+    placement = place(surface, xyz)
+    limit = default_tolerance(surface, placement)
+    limit = limit if tolerance is None else np.full(len(xyz), float(tolerance))
+    within = placement.distance <= limit
+    if len(xyz) and within.mean() < FEWEST_ON_MODEL:
+        raise InputError(_nowhere(surface, xyz, placement, within, limit))
+    return Observation(
+        grids.sensor_matrix(placement, axis, sensors.component > 3),
+        Dofs(sensors.node, sensors.component, axis),
+        xyz,
+        grids.ids[surface.nearest_grid(xyz)[0]],
+        placement.distance,
+        within,
+        limit,
+        _outside(sensors, placement, within, limit),
+    )
+
+
+def _outside(sensors: Dofs, placement: Placement, within: Bools, limit: Floats) -> tuple[str, ...]:
+    out = np.flatnonzero(~within)
+    if not len(out):
+        return ()
+    nodes, first = np.unique(sensors.node[out], return_index=True)
+    named = [
+        f"{n} ({placement.distance[out[i]]:.4g} off, {limit[out[i]]:.4g} allowed)"
+        for n, i in zip(nodes[:_NAMED], first[:_NAMED], strict=True)
+    ]
+    more = f" and {len(nodes) - _NAMED} more" if len(nodes) > _NAMED else ""
+    return (
+        f"{len(nodes)} test node(s) lie too far from the model to be used: "
+        f"{', '.join(named)}{more}",
+    )
+
+
+def _nowhere(
+    surface: Surface, xyz: Floats, placement: Placement, within: Bools, limit: Floats
+) -> str:
+    low, high = surface.extent
+    return (
+        f"only {np.count_nonzero(within)} of {len(xyz)} sensors lie on the model (median distance "
+        f"{np.median(placement.distance):.4g}, allowed {np.median(limit):.4g}; the model spans "
+        f"{_box(low, high)}, the sensors {_box(xyz.min(axis=0), xyz.max(axis=0))}): "
+        "check the length units of deck and test, and that both use the same coordinate frame"
+    )
+
+
+def _box(low: Floats, high: Floats) -> str:
+    return " x ".join(f"{a:.4g}..{b:.4g}" for a, b in zip(low, high, strict=True))

@@ -1,0 +1,79 @@
+"""Moves from test coordinates to analysis coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .arrays import Floats, frozen, require_finite, require_shape
+from .errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Transform:
+    """A rigid move with a change of unit: x_analysis = rotation @ (scale * x_test) + translation.
+
+    Parameters
+    ----------
+    rotation : (3, 3) float
+        Proper (determinant +1): mirror images are not moves.
+    translation : (3,) float
+        In the analysis length unit.
+    scale : float
+        Analysis length units in one test length unit.
+
+    Raises
+    ------
+    InputError
+        The rotation is not a rotation or the scale not positive.
+    """
+
+    rotation: Floats
+    translation: Floats
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64))
+        object.__setattr__(self, "translation", frozen(self.translation, np.float64))
+        require_shape(self.rotation, (3, 3), "the rotation of the test frame")
+        require_shape(self.translation, (3,), "the translation of the test frame")
+        require_finite(self.rotation, "the rotation of the test frame")
+        require_finite(self.translation, "the translation of the test frame")
+        R = self.rotation
+        if np.abs(R @ R.T - np.eye(3)).max() > 1e-6 or np.linalg.det(R) < 0:
+            raise InputError(
+                "the rotation of the test frame is not a proper rotation "
+                f"(its determinant is {np.linalg.det(R):.6g}); mirror images are not allowed"
+            )
+        if not self.scale > 0:
+            raise InputError(f"the scale of the test is {self.scale}; it must be positive")
+
+    def apply(self, points: Floats) -> Floats:
+        """Move points (n, 3) into the analysis frame."""
+        return np.asarray((self.scale * points) @ self.rotation.T + self.translation)
+
+    def turn(self, axes: Floats) -> Floats:
+        """Turn directions (n, 3) into the analysis frame."""
+        return np.asarray(axes @ self.rotation.T)
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether nothing moves (a change of unit apart)."""
+        return bool(np.array_equal(self.rotation, np.eye(3)) and not self.translation.any())
+
+    @property
+    def angle_deg(self) -> float:
+        """Angle of the rotation, 0..180 degrees."""
+        return float(np.degrees(Rotation.from_matrix(self.rotation).magnitude()))
+
+    @property
+    def axis(self) -> Floats:
+        """Axis of the rotation, (3,), zero where there is none."""
+        turn = Rotation.from_matrix(self.rotation).as_rotvec()
+        length = np.linalg.norm(turn)
+        return np.asarray(turn / length if length > 0 else turn)
+
+
+IDENTITY = Transform(np.eye(3), np.zeros(3))
