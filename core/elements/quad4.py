@@ -1,0 +1,241 @@
+"""Four-node shell as Nastran's CQUAD4."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Floats
+from .batch import arms, condense, congruent, in_chunks, transpose, unit
+from .section import ShellSection
+from .transverse_shear import bending_scale, finite_shear, residual_flexibility
+
+_XI = np.array([-1.0, 1.0, 1.0, -1.0])
+_ETA = np.array([-1.0, -1.0, 1.0, 1.0])
+_G = 1.0 / np.sqrt(3.0)
+_LINEAR_SHEAR = 0.025
+
+
+def _gradients(xi: Floats, eta: Floats) -> Floats:
+    """Return the derivatives of the shape functions by xi and eta at some points, (m, 2, 4)."""
+    by_xi = 0.25 * _XI * (1.0 + _ETA * eta[:, None])
+    by_eta = 0.25 * _ETA * (1.0 + _XI * xi[:, None])
+    return np.stack([by_xi, by_eta], axis=1)
+
+
+_AT_GAUSS = _gradients(_G * _XI, _G * _ETA)
+_AT_CENTRE = _gradients(np.zeros(1), np.zeros(1))[0]
+_AT_NODES = _gradients(_XI, _ETA)
+# derivatives of the incompatible modes 1 - xi**2 and 1 - eta**2
+_BUBBLES = np.zeros((4, 2, 2))
+_BUBBLES[:, 0, 0] = -2.0 * _G * _XI
+_BUBBLES[:, 1, 1] = -2.0 * _G * _ETA
+
+_EDGES = ((0, 1), (3, 2), (0, 3), (1, 2))  # two along xi, two along eta
+# covariant shear strains at the Gauss points from the four edge shears
+_SHEAR_AT_GAUSS = np.zeros((4, 2, 4))
+_SHEAR_AT_GAUSS[:, 0, 0] = 0.25 * (1.0 - _G * _ETA)
+_SHEAR_AT_GAUSS[:, 0, 1] = 0.25 * (1.0 + _G * _ETA)
+_SHEAR_AT_GAUSS[:, 1, 2] = 0.25 * (1.0 - _G * _XI)
+_SHEAR_AT_GAUSS[:, 1, 3] = 0.25 * (1.0 + _G * _XI)
+
+_NODE = 6 * np.arange(4)
+# local freedoms in the order u, two bubbles, v, two bubbles
+_PLANE = np.array([0, 1, 2, 3, 6, 7, 8, 9])
+_INNER = np.array([4, 5, 10, 11])
+_MEMBRANE = np.concatenate([_NODE, _NODE + 1])
+_BENDING = np.concatenate([_NODE + 4, _NODE + 3])  # beta_x = ry, beta_y = -rx
+_SIGN = np.repeat([1.0, -1.0], 4)
+
+
+def quad4_axes(xyz: Floats) -> Floats:
+    """Element axes as Nastran's: x bisects the angle of the diagonals, z is normal to both.
+
+    Parameters
+    ----------
+    xyz : (n, 4, 3) float
+
+    Returns
+    -------
+    (n, 3, 3) float
+        Rows are the unit vectors x, y, z in the basic frame.
+    """
+    d1, d2 = unit(xyz[:, 2] - xyz[:, 0]), unit(xyz[:, 3] - xyz[:, 1])
+    z = unit(np.cross(d1, d2))
+    x = unit(d1 - d2)
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def quad4_corner_jacobians(xyz: Floats) -> Floats:
+    """Parallelogram areas at the corners of the projected quads, (n, 4); <= 0: badly shaped."""
+    local, _ = _flat(xyz, quad4_axes(xyz))
+    J = _AT_NODES @ local[:, None]
+    return np.asarray(4.0 * np.linalg.det(J))
+
+
+def quad4_stiffness(
+    xyz: Floats,
+    section: ShellSection,
+    k6rot: float = 100.0,
+    offset: Floats | float = 0.0,
+) -> Floats:
+    """Stiffness of four-node shells.
+
+    Membrane and bending by the QM6 operator (Taylor, Beresford, Wilson 1976), transverse shear
+    assumed along the edges (Dvorkin, Bathe 1984) with MacNeal's residual bending flexibility
+    (1978), a warped quad as its projection with rigid arms to the grids: found to be what
+    NX Nastran's element matrices hold.
+
+    Parameters
+    ----------
+    xyz : (n, 4, 3) float
+        Grid positions, basic frame.
+    section : ShellSection
+        Of each element, in element axes (`quad4_axes`).
+    k6rot : float
+        Factor on the stiffness about the normal, 1e-6 G t A.
+    offset : (n,) float
+        Distance of the reference surface from the grids along the element normal.
+
+    Returns
+    -------
+    (n, 24, 24) float
+        Basic frame; u v w rx ry rz of node 1, of node 2, ...
+    """
+    n = len(xyz)
+    offset = np.broadcast_to(np.asarray(offset, float), (n,))
+
+    def matrices(part: slice) -> Floats:
+        return _stiffness(xyz[part], section.take(part), k6rot, offset[part])
+
+    return in_chunks(n, 24, matrices)
+
+
+def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
+    """Mass of four-node shells, (n, 24, 24), translations only.
+
+    Parameters
+    ----------
+    xyz : (n, 4, 3) float
+        Grid positions, basic frame.
+    areal_density : (n,) float
+        Mass per area, rho t + non-structural mass.
+    coupled : bool
+        Consistent mass of the bilinear shape functions; otherwise a quarter of the mass a grid.
+    """
+    n = len(xyz)
+    local, _ = _flat(xyz, quad4_axes(xyz))
+    detJ = np.linalg.det(_AT_GAUSS @ local[:, None])
+    shapes = 0.25 * (1.0 + _XI * _G * _XI[:, None]) * (1.0 + _ETA * _G * _ETA[:, None])
+    if coupled:
+        m = np.einsum("g...,gi,gj->...ij", (detJ * areal_density[:, None]).T, shapes, shapes)
+    else:
+        quarter = 0.25 * detJ.sum(axis=1) * areal_density
+        m = quarter[:, None, None] * np.eye(4)
+    M = np.zeros((n, 4, 6, 4, 6))
+    for k in range(3):
+        M[:, :, k, :, k] = m
+    return M.reshape(n, 24, 24)
+
+
+def _flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
+    """In-plane positions (n, 4, 2) on the mean plane and heights (n, 4) of the grids above it."""
+    local = (xyz - xyz.mean(axis=1, keepdims=True)) @ transpose(axes)
+    return local[:, :, :2], local[:, :, 2]
+
+
+def _stiffness(xyz: Floats, section: ShellSection, k6rot: float, offset: Floats) -> Floats:
+    axes = quad4_axes(xyz)
+    local, height = _flat(xyz, axes)
+    J = _AT_GAUSS @ local[:, None]
+    detJ = np.linalg.det(J)
+    inverse = np.linalg.inv(J)
+    K = np.zeros((len(xyz), 24, 24))
+    _add_plane(K, section, local, detJ, inverse)
+    _add_shear(K, section, local, detJ, inverse)
+    _add_drilling(K, section.drilling * k6rot * 1e-6, local)
+    arm = np.zeros((len(xyz), 4, 3))
+    arm[:, :, 2] = offset[:, None] - height
+    return congruent(K, arms(axes, arm))
+
+
+def _add_plane(
+    K: Floats, section: ShellSection, local: Floats, detJ: Floats, inverse: Floats
+) -> None:
+    """Membrane, bending and their coupling, with the incompatible modes condensed."""
+    n = len(K)
+    centre = _AT_CENTRE @ local
+    ratio = np.linalg.det(centre)[:, None] / detJ
+    g = np.empty((n, 4, 2, 6))
+    g[..., :4] = inverse @ _AT_GAUSS
+    g[..., 4:] = (np.linalg.inv(centre)[:, None] @ _BUBBLES) * ratio[..., None, None]
+    B = np.zeros((n, 4, 3, 12))
+    B[:, :, 0, :6] = B[:, :, 2, 6:] = g[:, :, 0]
+    B[:, :, 1, 6:] = B[:, :, 2, :6] = g[:, :, 1]
+    weighted = (B * detJ[..., None, None]).reshape(n, 12, 12)
+
+    def integral(C: Floats) -> Floats:
+        return transpose(weighted) @ (C[:, None] @ B).reshape(n, 12, 12)
+
+    Km, Kb = integral(section.A), integral(section.D)
+    if section.B.any():
+        both = np.block([[[Km, Kc := integral(section.B)]], [[transpose(Kc), Kb]]])
+        kept = np.concatenate([_PLANE, _PLANE + 12])
+        both = condense(both, kept, np.concatenate([_INNER, _INNER + 12]))
+        rows, sign = np.concatenate([_MEMBRANE, _BENDING]), np.append(np.ones(8), _SIGN)
+        K[:, rows[:, None], rows] += both * np.outer(sign, sign)
+        return
+    K[:, _MEMBRANE[:, None], _MEMBRANE] += condense(Km, _PLANE, _INNER)
+    K[:, _BENDING[:, None], _BENDING] += condense(Kb, _PLANE, _INNER) * np.outer(_SIGN, _SIGN)
+
+
+def _add_shear(
+    K: Floats, section: ShellSection, local: Floats, detJ: Floats, inverse: Floats
+) -> None:
+    """Assumed edge shears, their flexibility raised by the residual bending flexibility."""
+    scale = bending_scale(section)
+    bends = scale.all(axis=1)
+    edge = np.stack([local[:, j] - local[:, i] for i, j in _EDGES], axis=1)
+    area = detJ.sum(axis=1)
+    N = inverse @ _SHEAR_AT_GAUSS
+    S = finite_shear(section, np.sqrt(area))
+    Ks = np.einsum("ngai,ngaj->nij", N * detJ[..., None, None], S[:, None] @ N)
+    Ks[~bends] = np.eye(4)
+    span = np.stack([edge[:, 0] + edge[:, 1], edge[:, 2] + edge[:, 3]], axis=1) * 0.5
+    along = np.einsum("nki->nk", (span * scale[:, None, :]) ** 2) / 12.0
+    Z = edge @ residual_flexibility(edge, scale) @ transpose(edge)
+    length = np.linalg.norm(edge, axis=2)
+    for k, (a, b) in enumerate(((0, 1), (2, 3))):
+        linear = np.stack([-length[:, a], length[:, b]], axis=1)
+        block = (3.0 * _LINEAR_SHEAR * along[:, k])[:, None, None] * (
+            linear[:, :, None] * linear[:, None, :]
+        )
+        Z[:, a : b + 1, a : b + 1] += block
+    C = np.linalg.inv(np.linalg.inv(Ks) + Z / area[:, None, None])
+    C[~bends] = 0.0
+    V = edge_shear_operator(edge, _EDGES, 4)
+    plate = np.concatenate([_NODE + 2, _NODE + 3, _NODE + 4])
+    K[:, plate[:, None], plate] += transpose(V) @ C @ V
+
+
+def edge_shear_operator(edge: Floats, ends: tuple[tuple[int, int], ...], n_node: int) -> Floats:
+    """Shear strain along edges times their length, (n, m, 3 n_node), from w, then rx, then ry."""
+    V = np.zeros((len(edge), len(ends), 3 * n_node))
+    for k, (i, j) in enumerate(ends):
+        V[:, k, i], V[:, k, j] = -1.0, 1.0
+        for node in (i, j):
+            V[:, k, n_node + node] = -0.5 * edge[:, k, 1]
+            V[:, k, 2 * n_node + node] = 0.5 * edge[:, k, 0]
+    return V
+
+
+def _add_drilling(K: Floats, stiffness: Floats, local: Floats) -> None:
+    """Penalty on the difference of the grids' rotation and that of the plane, at each node."""
+    J = _AT_NODES @ local[:, None]
+    area = 4.0 * np.linalg.det(J)
+    g = np.linalg.inv(J) @ _AT_NODES
+    r = np.zeros((len(K), 4, 12))
+    r[:, :, :4] = 0.5 * g[:, :, 1]
+    r[:, :, 4:8] = -0.5 * g[:, :, 0]
+    r[:, np.arange(4), 8 + np.arange(4)] = 1.0
+    rows = np.concatenate([_NODE, _NODE + 1, _NODE + 5])
+    K[:, rows[:, None], rows] += transpose(r * (stiffness[:, None] * area)[..., None]) @ r
