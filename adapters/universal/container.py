@@ -1,0 +1,250 @@
+"""The container: where the datasets of a universal file begin and end.
+
+A dataset stands between two lines ``    -1`` (columns 5 and 6); the line after the first holds
+its number. Real files leave out line ends, lose or repeat a delimiter, and carry binary blocks
+(58b) in which anything may look like text. Nothing here reads what a dataset holds.
+"""
+
+from __future__ import annotations
+
+import mmap
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from .content import Skipped
+
+_NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
+_LINE_END = re.compile(rb"\r\n|\r|\n")
+_FIRST = re.compile(rb"[ \t\r\n\x00]*-1[ \t]*(?=[\r\n]|\Z)")
+_SPACES = b" \t"
+
+
+@dataclass(frozen=True)
+class Section:
+    """One dataset: its number and the bytes ``begin:end`` after the line of the number."""
+
+    number: int
+    line: int
+    begin: int
+    end: int
+    binary: bool = False
+    header: tuple[int, ...] = ()
+    closed: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """An open universal file, mapped read-only, with its datasets."""
+
+    path: Path
+    data: mmap.mmap
+    sections: tuple[Section, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """How messages call the file."""
+        return str(self.path)
+
+    def lines(self, section: Section) -> list[bytes]:
+        """All lines of a dataset, without their ends."""
+        return self.data[section.begin : section.end].splitlines()
+
+    def head(self, section: Section, n: int) -> tuple[list[bytes], int]:
+        """Return the first `n` lines of a dataset and the offset of what follows them."""
+        found: list[bytes] = []
+        at = section.begin
+        while len(found) < n and at < section.end:
+            stop = _LINE_END.search(self.data, at, section.end)
+            found.append(self.data[at : stop.start() if stop else section.end])
+            at = stop.end() if stop else section.end
+        return found, at
+
+    def error(self, line: int, what: str) -> InputError:
+        """Return the error that names this file and a line of it."""
+        return InputError(f"{self.name} line {line}: {what}")
+
+
+def open_source(path: Path) -> Source:
+    """Map a universal file and find its datasets.
+
+    Raises
+    ------
+    InputError
+        The file does not exist, is empty, holds no dataset, or ends inside one that cannot tell
+        by itself whether it is whole.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise InputError(f"{path} is empty; a universal file is expected") from error
+    scan = _Scan(path, data)
+    sections = tuple(scan.sections())
+    if not sections:
+        raise InputError(
+            f"{path} is not a universal file: no line '    -1' followed by a dataset number; "
+            "give a .unv or .uff file"
+        )
+    return Source(path, data, sections, tuple(scan.skipped), tuple(scan.warnings))
+
+
+@dataclass
+class _Scan:
+    """One pass over the delimiters of a file."""
+
+    path: Path
+    data: mmap.mmap
+    skipped: list[Skipped] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    _counted: int = 0
+    _line: int = 1
+
+    def __post_init__(self) -> None:
+        sample = self.data[: 1 << 16]
+        self._newline = 13 if b"\r" in sample and b"\n" not in sample else 10
+        first = _FIRST.match(self.data)
+        lead = sample[: first.end()].splitlines()[-1] if first else b"    -1"
+        indent = len(lead) - len(lead.lstrip(_SPACES))
+        # The delimiter is looked for as this file writes it: columns 5-6 by the book.
+        self._mark = b"    -1" if indent >= 4 else lead.rstrip(_SPACES)
+
+    def sections(self) -> Iterator[Section]:
+        """Datasets in file order; what stands outside of them goes to `skipped`."""
+        at, outside = 0, 0
+        while (mark := self._delimiter(at)) is not None:
+            start, after = mark
+            opened = _NUMBER.match(self.data, after)
+            if opened is None:
+                self._report_outside(outside, start)
+                self.warnings.append(
+                    f"{self.path} line {self._line_at(start)}: a stray -1 was passed over"
+                )
+                at = outside = after
+                continue
+            self._report_outside(outside, start)
+            section, at = self._section(opened)
+            yield section
+            outside = at
+        self._report_outside(outside, len(self.data))
+
+    def _section(self, opened: re.Match[bytes]) -> tuple[Section, int]:
+        """Return the dataset whose number line is `opened`, and where to go on."""
+        number, line = int(opened[1]), self._line_at(opened.start())
+        begin = self._after_line(opened.end())
+        binary = opened[2] is not None
+        header = _integers(opened[3]) if binary else ()
+        resume = self._past_binary(begin, header) if binary else begin
+        while True:
+            mark = self._delimiter(resume)
+            if mark is None:
+                return Section(number, line, begin, len(self.data), binary, header, False), len(
+                    self.data
+                )
+            start, after = mark
+            following = _NUMBER.match(self.data, after)
+            if following is None:
+                return Section(number, line, begin, start, binary, header), after
+            # This -1 opens the next dataset: the one that closes this dataset is glued to the
+            # last line, or was lost.
+            end = self._glued_end(begin, start)
+            if end is None:
+                self.warnings.append(
+                    f"{self.path} line {line}: the -1 that closes dataset {number} is missing"
+                )
+            return Section(number, line, begin, end or start, binary, header), start
+
+    def _past_binary(self, begin: int, header: tuple[int, ...]) -> int:
+        """Offset behind the binary block of a 58b, where its header's byte count leads."""
+        if len(header) < 4:
+            return begin
+        at = begin
+        for _ in range(header[2]):
+            at = self._after_line(at)
+        end = at + header[3]
+        if end <= len(self.data) and self._blank(end, min(len(self.data), end + 200)) is None:
+            tail = self.data[end : end + 200].lstrip(b" \t\r\n")
+            if tail.startswith(b"-1"):
+                return end
+        return at
+
+    def _delimiter(self, at: int) -> tuple[int, int] | None:
+        """Start of the next line ``-1`` at or after `at`, and the start of the line after it."""
+        data, mark = self.data, self._mark
+        while (hit := data.find(mark, at)) >= 0:
+            after = self._blank(hit + len(mark), len(data))
+            start = self._line_start(hit)
+            if after is not None and start is not None:
+                return start, after
+            at = hit + 1
+        return None
+
+    def _line_start(self, hit: int) -> int | None:
+        """Where the line of a hit starts if only a few blanks stand before it."""
+        back = hit
+        while back > 0 and hit - back < 2 and self.data[back - 1] in _SPACES:
+            back -= 1
+        return back if back == 0 or self.data[back - 1] in b"\r\n" else None
+
+    def _glued_end(self, begin: int, start: int) -> int | None:
+        """Where the data end when the closing -1 stands at the end of the last data line."""
+        tail = self.data[begin:start][-200:].rstrip(b" \t\r\n")
+        if tail.endswith(self._mark) and tail[: -len(self._mark)][-1:] not in b" \t\r\n":
+            cut = len(self.data[begin:start].rstrip(b" \t\r\n")) - len(self._mark)
+            return begin + cut
+        return None
+
+    def _blank(self, at: int, stop: int) -> int | None:
+        """Start of the next line if only blanks stand from `at` to the line end, else None."""
+        data = self.data
+        while at < stop and data[at] in b" \t\x00":
+            at += 1
+        if at >= len(data):
+            return len(data)
+        if data[at] == 13:
+            return at + 2 if data[at + 1 : at + 2] == b"\n" else at + 1
+        return at + 1 if data[at] == 10 else None
+
+    def _after_line(self, at: int) -> int:
+        stop = _LINE_END.search(self.data, at)
+        return stop.end() if stop else len(self.data)
+
+    def _report_outside(self, begin: int, end: int) -> None:
+        text = self.data[begin:end].strip(b" \t\r\n\x00\x1a")
+        if text:
+            shift = self.data[begin:end].index(text[:1])
+            self.skipped.append(
+                Skipped(
+                    "text outside any dataset",
+                    self._line_at(begin + shift),
+                    "no -1 and dataset number before it",
+                    str(self.path),
+                )
+            )
+
+    def _line_at(self, offset: int) -> int:
+        """1-based number of the line that starts at `offset`; offsets come in rising order."""
+        step = 1 << 22
+        for a in range(self._counted, offset, step):
+            piece = np.frombuffer(self.data[a : min(a + step, offset)], np.uint8)
+            self._line += int(np.count_nonzero(piece == self._newline))
+        self._counted = max(self._counted, offset)
+        return self._line
+
+
+def _integers(text: bytes) -> tuple[int, ...]:
+    """Return the leading integers of a line."""
+    found: list[int] = []
+    for token in text.split():
+        if not re.fullmatch(rb"[+-]?\d+", token):
+            break
+        found.append(int(token))
+    return tuple(found)

@@ -1,0 +1,154 @@
+"""What universal files hold, in neutral words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats, Ints, Numbers, frozen
+from ...core.frfs import Frfs
+from ...core.geometry import Geometry
+from ...core.modes import Modes
+from .systems import CoordinateSystem
+
+METRES = {"m": 1.0, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """Something in a file that was not read: what, where and why."""
+
+    what: str
+    line: int
+    why: str
+    path: str = ""
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """One dataset of a file as an inventory shows it; `count` is of nodes, points, lines, ..."""
+
+    number: int
+    line: int
+    what: str
+    count: int
+    path: str = ""
+
+
+@dataclass(frozen=True)
+class Header:
+    """Dataset 151: where the file comes from."""
+
+    name: str
+    description: str
+    program: str
+    created: str
+
+
+@dataclass(frozen=True)
+class Units:
+    """Dataset 164: a value in the file divided by its factor is in SI.
+
+    `length_unit` is "m", "mm", "in" or "ft" where the factor says so, else None.
+    """
+
+    code: int
+    name: str
+    length_factor: float
+    force_factor: float = 1.0
+    temperature_factor: float = 1.0
+    temperature_offset: float = 273.15
+    length_unit: str | None = None
+
+    @property
+    def length_to_m(self) -> float:
+        """What a length in the file is multiplied by to be in metres."""
+        return 1.0 / self.length_factor
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Dataset 82: a line drawn through nodes; 0 lifts the pen."""
+
+    number: int
+    name: str
+    color: int
+    nodes: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class Function:
+    """A function of dataset 58 that is not part of the frequency responses (or stands alone).
+
+    Parameters
+    ----------
+    kind : str
+        What dataset 58 calls it: "time response", "auto spectrum", "coherence", ...
+    abscissa, values : (n,) float; (n,) float or complex
+        Frequencies [Hz] or times [s] as `abscissa_unit` says, and the ordinates as in the file.
+    response, reference : (int, int)
+        Node and signed direction (+-1..3 translation, +-4..6 rotation, 0 unknown or scalar).
+    ids : tuple of str
+        The five text lines.
+    """
+
+    kind: str
+    abscissa: Floats
+    values: Numbers
+    response: tuple[int, int]
+    reference: tuple[int, int]
+    quantity: str = "unknown"
+    per: str = "unknown"
+    abscissa_unit: str = ""
+    ordinate_unit: str = ""
+    ids: tuple[str, ...] = ()
+    line: int = 0
+    path: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "abscissa", frozen(self.abscissa, np.float64))
+        object.__setattr__(self, "values", frozen(self.values))
+
+
+@dataclass(frozen=True, eq=False)
+class UniversalContent:
+    """Everything that one or several universal files hold, merged.
+
+    Parameters
+    ----------
+    files : tuple of str
+        The files, in the order given.
+    geometry : Geometry or None
+        Nodes (15, 2411) in the basic frame; elements from 2412, and `line` from 82 and 2412.
+    modes : Modes or None
+        Datasets 55 and 2414, one row for each value of a node, unmeasured (zero) ones included;
+        axes turned to the basic frame.
+    frfs : Frfs or None
+        Frequency responses of dataset 58 and 58b that share one frequency axis.
+    functions : tuple of Function
+        The other functions of dataset 58 and 58b: time records, coherences, spectra, ...
+    units : Units or None
+        Dataset 164.
+    headers, systems, traces, datasets, skipped, warnings
+        Datasets 151, 18 and 2420, 82; the inventory; what was not read and why.
+    """
+
+    files: tuple[str, ...] = ()
+    geometry: Geometry | None = None
+    modes: Modes | None = None
+    frfs: Frfs | None = None
+    functions: tuple[Function, ...] = ()
+    units: Units | None = None
+    headers: tuple[Header, ...] = ()
+    systems: Mapping[int, CoordinateSystem] = ()  # type: ignore[assignment]
+    traces: tuple[Trace, ...] = ()
+    datasets: tuple[Dataset, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def length_unit(self) -> str | None:
+        """Unit of positions and displacements: "m", "mm", "in", "ft" or None (not known)."""
+        return self.units.length_unit if self.units else None

@@ -1,0 +1,57 @@
+"""A modal test: where it was measured and what was found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .errors import InputError
+from .frfs import Frfs
+from .geometry import Geometry
+from .modes import Modes
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """A test with its geometry; modes, frequency responses or both.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Measured nodes in the test's own basic frame, positions in `length_unit`.
+    modes : Modes or None
+        Shapes in the measured directions only; each row's axis is a unit vector in the basic
+        frame of `geometry`.
+    frfs : Frfs or None
+        Frequency responses, axes likewise.
+    length_unit : {"m", "mm", "in", "ft"} or None
+        Unit of positions and displacements; None where the source does not say.
+    warnings : tuple of str
+        What was left out or assumed.
+
+    Raises
+    ------
+    InputError
+        Neither modes nor frequency responses, or nodes that have no position.
+    """
+
+    geometry: Geometry
+    modes: Modes | None = None
+    frfs: Frfs | None = None
+    length_unit: str | None = None
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.modes is None and self.frfs is None:
+            raise InputError("the test holds neither modes nor frequency responses")
+        for what, dofs in (
+            ("mode shapes", self.modes.dofs if self.modes else None),
+            ("frequency responses", self.frfs.responses if self.frfs else None),
+        ):
+            if dofs is None:
+                continue
+            lost = dofs.node[self.geometry.index_of(dofs.node) < 0]
+            if len(lost):
+                raise InputError(
+                    f"the {what} of the test use node {lost[0]}, which has no position; "
+                    "give the geometry that belongs to them"
+                )
