@@ -1,0 +1,221 @@
+"""Line charts over the iterations and bars over the modes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from .axes import Plot, decades, spread, ticks
+from .colour import STEPS
+from .formats import general
+from .markup import esc, short, svg_text, tag
+
+
+@dataclass(frozen=True)
+class Series:
+    """A named line; None where there is no value."""
+
+    name: str
+    values: tuple[float | None, ...]
+
+
+def lines(
+    title: str,
+    x: Sequence[float],
+    series: Sequence[Series],
+    *,
+    unit: str = "",
+    reference: float | None = None,
+    ordered: bool = False,
+    log: bool = False,
+    width: int = 510,
+    height: int = 270,
+) -> str:
+    """Return a figure of lines over `x`, each named at its end, values on hover.
+
+    Parameters
+    ----------
+    title : str
+    x : sequence of float
+        Iteration numbers.
+    series : sequence of Series
+        Lines as long as `x`.
+    unit : str
+        Written after the values.
+    reference : float, optional
+        A value that the axis includes and that stands out (1 for factors, 0 for deviations).
+    ordered : bool
+        Colour by the order of the series (modes by frequency) instead of by name.
+    log : bool
+        Logarithmic values; all must be above zero.
+    """
+    drawn = [s for s in series if any(v is not None for v in s.values)]
+    known = [v for s in drawn for v in s.values if v is not None]
+    if len(x) < 2 or not known:
+        return ""
+    known += [] if reference is None else [reference]
+    low, high = min(known), max(known)
+    y_ticks = decades(low, high) if log else ticks(low, high if high > low else low + 1.0)
+    room = min(150, 14 + 6.2 * max(len(s.name) for s in drawn)) if len(drawn) > 1 else 14
+    plot = Plot(48, 8, width - 48 - room, height - 50, min(x), max(x), tuple(y_ticks), log)
+    ends = [next(v for v in reversed(s.values) if v is not None) for s in drawn]
+    gap = min(12.5, (plot.height + 12) / len(drawn))
+    places = spread([plot.y(v) for v in ends], gap, plot.top - 6, plot.top + plot.height + 6)
+    body = plot.frame(emphasised=reference) + _iterations(plot, x)
+    for k, s in enumerate(drawn):
+        colour = _colour(k, len(drawn), ordered)
+        body += _line(plot, x, s, k, colour, len(drawn), ordered)
+        if len(drawn) > 1 and gap >= 7.5:
+            edge = plot.left + plot.width
+            d = f"M{short(edge + 2)} {short(plot.y(ends[k]))}L{short(edge + 9)} {short(places[k])}"
+            body += tag("path", class_="leader", d=d, style=f"stroke:{colour}")
+            body += svg_text(
+                edge + 11, places[k] + 3.5, _shortened(s.name), class_="name", fill=colour
+            )
+    body += tag("path", class_="cursor", d=f"M0 {plot.top}v{short(plot.height)}", hidden=True)
+    svg = tag(
+        "svg",
+        body,
+        class_="lines",
+        viewBox=f"0 0 {width} {height}",
+        width=width,
+        role="img",
+        tabindex="0",
+        aria_label=f"{title}: {len(drawn)} lines over {len(x)} iterations.",
+        data_x=" ".join(general(v) for v in x),
+        data_px=" ".join(short(plot.x(v)) for v in x),
+        data_names="|".join(s.name for s in drawn),
+        data_v="|".join(" ".join(_plain(v) for v in s.values) for s in drawn),
+        data_unit=unit,
+    )
+    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "")
+    return tag("figure", heading, svg)
+
+
+def _line(
+    plot: Plot, x: Sequence[float], s: Series, k: int, colour: str, count: int, ordered: bool
+) -> str:
+    d, pen = "", "M"
+    for at, v in zip(x, s.values, strict=False):
+        if v is None:
+            pen = "M"
+            continue
+        d += f"{pen}{short(plot.x(at))} {short(plot.y(v))}"
+        pen = "L"
+    dashes = None if ordered or k < 8 else ("5 3", "2 2", "8 3 2 3")[(k // 8 - 1) % 3]
+    dots = "".join(
+        tag("circle", cx=short(plot.x(at)), cy=short(plot.y(v)), r=2.3)
+        for at, v in zip(x, s.values, strict=False)
+        if v is not None and count <= 12
+    )
+    dot = tag("g", dots, fill=colour, stroke="none") if dots else ""
+    line = tag("path", d=d, stroke=colour, stroke_dasharray=dashes)
+    return tag("g", line, dot, class_="series", data_k=k)
+
+
+def _iterations(plot: Plot, x: Sequence[float]) -> str:
+    every = max(1, round(len(x) / 12))
+    y = plot.top + plot.height + 17
+    marks = "".join(
+        svg_text(plot.x(v), y, general(v), text_anchor="middle")
+        for k, v in enumerate(x)
+        if k % every == 0
+    )
+    middle = plot.left + plot.width / 2
+    return marks + svg_text(middle, y + 17, "iteration", class_="axis", text_anchor="middle")
+
+
+def _colour(k: int, count: int, ordered: bool) -> str:
+    if not ordered:
+        return f"var(--s{k % 8})"
+    return f"var(--c{round(6 + (STEPS - 7) * (k / (count - 1) if count > 1 else 1.0))})"
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= 22 else name[:21] + "…"
+
+
+def _plain(value: float | None) -> str:
+    return "" if value is None else f"{value:.5g}"
+
+
+def bars(
+    title: str,
+    labels: Sequence[tuple[str, str]],
+    states: Mapping[str, Sequence[float | None]],
+    *,
+    unit: str,
+    limits: tuple[float, float] | None = None,
+    mark: float | None = None,
+    width: int = 1056,
+    height: int = 240,
+) -> str:
+    """Return a figure of bars over the modes, one bar a state (``before``, ``after``).
+
+    Parameters
+    ----------
+    title : str
+    labels : sequence of (mode, frequency)
+        One a position.
+    states : mapping of str to sequence
+        Values by state; None where the mode has no partner, drawn as an open mark.
+    unit : str
+    limits : (low, high), optional
+        The axis; default: what the values need, zero included.
+    mark : float, optional
+        A value ruled across, such as the MAC that a pair needs.
+    """
+    known = [v for values in states.values() for v in values if v is not None]
+    if not known:
+        return ""
+    low, high = limits or (min(0.0, *known), max(0.0, *known))
+    y_ticks = ticks(low, high if high > low else low + 1.0, 5)
+    plot = Plot(44, 6, width - 52, height - 64, 0.0, float(len(labels)), tuple(y_ticks))
+    body = plot.frame(emphasised=0.0)
+    if mark is not None:
+        body += tag("path", class_="mark", d=f"M{plot.left} {short(plot.y(mark))}h{plot.width}")
+    wide = min(0.78 / len(states), 26 * len(labels) / plot.width)
+    for k, (name, frequency) in enumerate(labels):
+        group, told = "", []
+        for j, (state, values) in enumerate(states.items()):
+            v = values[k]
+            centre = plot.x(k + 0.5 + (j - (len(states) - 1) / 2) * wide)
+            group += _bar(plot, centre, wide * plot.width / len(labels), v, _role(state, states))
+            said = "no partner" if v is None else f"{general(v, 3)} {unit}"
+            told.append(f"{state}: {said}" if state else said)
+        where = f"test mode {name}" + (f", {frequency} Hz" if frequency else "")
+        x = plot.x(k)
+        area = tag("rect", class_="hit", x=short(x), y=plot.top, height=short(plot.height),
+                   width=short(plot.width / len(labels)))  # fmt: skip
+        note = tag("title", esc(f"{where}\n" + "\n".join(told)))
+        body += tag("g", note, area, group, class_="hot")
+        body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 15, name, text_anchor="middle",
+                         class_="n")  # fmt: skip
+        if frequency and len(labels) <= 30:
+            body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 28, frequency,
+                             text_anchor="middle")  # fmt: skip
+    body += svg_text(plot.left + plot.width / 2, height - 4, "test mode, Hz", class_="axis",
+                     text_anchor="middle")  # fmt: skip
+    svg = tag("svg", body, class_="bars", viewBox=f"0 0 {width} {height}", width=width,
+              role="img", aria_label=f"{title}, {len(labels)} test modes.")  # fmt: skip
+    key = ""
+    if len(states) > 1:
+        key = "".join(
+            tag("span", tag("i", class_=_role(s, states)), esc(s), class_="key") for s in states
+        )
+    if any(v is None for values in states.values() for v in values):
+        key += tag("span", tag("i", class_="none"), "no partner", class_="key")
+    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}", key)
+    return tag("figure", heading, svg)
+
+
+def _role(state: str, states: Mapping[str, Sequence[float | None]]) -> str:
+    return "now" if state == list(states)[-1] else "then"
+
+
+def _bar(plot: Plot, x: float, wide: float, value: float | None, role: str) -> str:
+    if value is None:
+        return tag("circle", class_="none", cx=short(x), cy=short(plot.y(0.0) - 4), r=2.2)
+    top, bottom = sorted((plot.y(value), plot.y(0.0)))
+    return tag("rect", class_=role, x=short(x - wide / 2 + 0.5), y=short(top),
+               width=short(max(wide - 1, 1)), height=short(max(bottom - top, 0.8)))  # fmt: skip

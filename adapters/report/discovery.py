@@ -1,0 +1,171 @@
+"""Tables of a discovery: what was found, what else was considered, how the gap shrank."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from . import reading
+from .formats import MISSING, fixed, general, percent
+from .reading import Result, Summary
+from .tables import Cell, Column, Table
+
+KINDS = {
+    "point_mass": "attached mass",
+    "distributed_mass": "distributed mass",
+    "local_stiffness": "local stiffness",
+    "ground_spring": "spring to ground",
+    "support_flexibility": "flexible support",
+    "joint_flexibility": "flexible joint",
+    "tuned_absorber": "tuned absorber",
+    "local_damper": "local damper",
+    "sensor_polarity": "sensor polarity",
+    "sensor_gain": "sensor gain",
+    "sensor_swap": "swapped sensors",
+    "sensor_axis": "turned sensor axis",
+}
+
+
+def kind(finding: Result) -> str:
+    """Return the kind of a finding in words; an unknown kind as it stands."""
+    word = str(finding.get("kind", ""))
+    return KINDS.get(word, word.replace("_", " "))
+
+
+def where(finding: Result) -> str:
+    """Return the place of a finding as a phrase."""
+    place = reading.part(finding, "where")
+    if place.get("region"):
+        return str(place["region"])
+    for key, noun in (("sensors", "sensor"), ("grids", "grid"), ("elements", "element")):
+        ids = [general(i) for i in place.get(key) or []]
+        if ids:
+            more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
+            return f"{noun}{'s' * (len(ids) > 1)} {', '.join(ids[:4])}{more}"
+    return MISSING
+
+
+def magnitude(finding: Result) -> str:
+    """Return the magnitudes of a finding with their 95 % intervals."""
+    sizes, intervals = reading.part(finding, "magnitude"), finding.get("interval")
+    said = []
+    for key, value in sizes.items():
+        text = _value(value)
+        if not text:
+            continue
+        bounds = intervals.get(key) if isinstance(intervals, Mapping) else None
+        if bounds is None and key == next(iter(sizes)) and not isinstance(intervals, Mapping):
+            bounds = intervals
+        low_high = reading.numbers(bounds)
+        if len(low_high) == 2:
+            text += f" ({general(low_high[0], 3)} to {general(low_high[1], 3)})"
+        said.append(f"{key.replace('_', ' ')} {text}")
+    return "; ".join(said) or MISSING
+
+
+def _value(value: object) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(general(v, 3) for v in value)
+    return "" if value is None else general(value, 3)
+
+
+def findings(result: Result) -> Table | None:
+    """Return what was found, on either side, with place, size and confidence."""
+    found = reading.records(result, "findings")
+    if not found:
+        return None
+    rows = [
+        (
+            Cell(str(f.get("side", MISSING))),
+            Cell(kind(f)),
+            Cell(where(f)),
+            Cell(magnitude(f)),
+            Cell(percent(f.get("confidence")), bar=reading.number(f.get("confidence"))),
+            Cell(_count(f.get("credible_set"))),
+        )
+        for f in found
+    ]
+    columns = (
+        Column("side", numeric=False),
+        Column("what", numeric=False),
+        Column("where", numeric=False),
+        Column("size (95 % interval)", numeric=False),
+        Column("confidence %"),
+        Column("places as good"),
+    )
+    return Table("Findings", columns, tuple(rows))
+
+
+def _count(value: object) -> str:
+    if isinstance(value, Mapping):
+        value = value.get("grids") or value.get("elements") or value.get("sensors")
+    return str(len(value)) if isinstance(value, (list, tuple)) else MISSING
+
+
+_ALTERNATIVE = ("kind", "region", "where", "sentence", "description", "what")
+
+
+def alternatives(result: Result) -> Table | None:
+    """Return what else was considered, with every figure that says how much worse it is."""
+    found = reading.records(result, "alternatives")
+    if not found:
+        return None
+    figures = [
+        key
+        for key in dict.fromkeys(k for a in found for k in a)
+        if key not in _ALTERNATIVE and any(reading.number(a.get(key)) is not None for a in found)
+    ]
+    rows = [
+        (
+            Cell(kind(a) or str(a.get("what", a.get("description", MISSING)))),
+            Cell(str(a.get("sentence") or a.get("region") or where(a))),
+            *[Cell(general(a.get(key))) for key in figures],
+        )
+        for a in found
+    ]
+    columns = (
+        Column("what", numeric=False),
+        Column("where", numeric=False),
+        *[Column(key.replace("_", " ")) for key in figures],
+    )
+    return Table("Also considered", columns, tuple(rows))
+
+
+def gap(result: Result) -> Table | None:
+    """Return the gap before and after, on the searched and on the held-out data."""
+    found = reading.part(result, "gap")
+    held = reading.part(found, "held_out")
+    states = [
+        ("searched", "before", reading.part(found, "before")),
+        ("searched", "after", reading.part(found, "after")),
+        ("held out", "before", reading.part(held, "before")),
+        ("held out", "after", reading.part(held, "after")),
+    ]
+    if held and not (states[2][2] or states[3][2]):
+        states[2:] = [("held out", "after", held)]
+    rows = [
+        (Cell(data), Cell(state), *_summary_cells(reading.summary(entry)))
+        for data, state, entry in states
+        if entry
+    ]
+    if not rows:
+        return None
+    columns = (
+        Column("data", numeric=False),
+        Column("model", numeric=False),
+        Column("pairs"),
+        Column("mean |dev.| %"),
+        Column("worst |dev.| %"),
+        Column("mean MAC %"),
+    )
+    note = "Held out: modes and sensors that the search never saw." if held else ""
+    return Table("The gap", columns, tuple(rows), note)
+
+
+def _summary_cells(s: Summary) -> list[Cell]:
+    of = f" of {s.test_modes}" if s.test_modes else ""
+    return [
+        Cell(MISSING if s.pairs is None else f"{s.pairs}{of}"),
+        Cell(fixed(s.mean_percent, 2)),
+        Cell(fixed(s.worst_percent, 2)),
+        Cell(percent(s.mean_mac, 1), bar=s.mean_mac),
+    ]

@@ -1,0 +1,224 @@
+"""MAC matrices as heat maps: one path per colour class, values for the pointer and the reader."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from ...core.arrays import Floats
+from .colour import STEPS
+from .formats import hz
+from .markup import esc, short, svg_text, tag
+from .reading import MacMatrix
+
+_DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
+_LEFT, _BOTTOM, _PAD = 84, 76, 8
+
+
+def heatmap(
+    matrix: MacMatrix,
+    title: str,
+    *,
+    test_hz: Mapping[int, float],
+    analysis_hz: Mapping[int, float],
+    pairs: Iterable[tuple[int, int]] = (),
+    clusters: Iterable[tuple[Sequence[int], Sequence[int]]] = (),
+    width: int = 1040,
+) -> str:
+    """Return a figure of one MAC matrix.
+
+    Parameters
+    ----------
+    matrix : MacMatrix
+    title : str
+        Caption, plain text.
+    test_hz, analysis_hz : mapping of int to float
+        Frequencies by mode number, for the labels; may lack modes.
+    pairs : iterable of (test, analysis)
+        Cells to be ringed.
+    clusters : iterable of (test modes, analysis modes)
+        Blocks to be framed.
+    width : int
+        Width to fill, pixels.
+    """
+    rows, cols = matrix.values.shape
+    cell = int(np.clip((width - _LEFT - _PAD) / cols, 7, 28))
+    w, h = cols * cell, rows * cell
+    rings = "".join(
+        tag("rect", x=c * cell + 0.75, y=r * cell + 0.75, width=cell - 1.5, height=cell - 1.5)
+        for t, a in pairs
+        for r, c in _position(matrix, [t], [a])
+    )
+    frames = "".join(
+        tag("path", d="".join(_block(r, c, cell) for r, c in _position(matrix, t, a)))
+        for t, a in clusters
+    )
+    body = [
+        tag("rect", class_="field", width=w, height=h),
+        *_cells(matrix.values, cell),
+        tag("path", class_="grid", d=_grid(rows, cols, cell)),
+        tag("g", _numbers(matrix.values, cell), class_="values") if cell >= 17 else "",
+        tag("g", frames, class_="clusters") if frames else "",
+        tag("g", rings, class_="rings") if rings else "",
+        *_labels(matrix, test_hz, analysis_hz, cell),
+        tag("rect", class_="cursor", width=cell, height=cell, hidden=True),
+    ]
+    labels = [
+        [_mode_label(m, f) for m in modes]
+        for modes, f in ((matrix.test, test_hz), (matrix.analysis, analysis_hz))
+    ]
+    svg = tag(
+        "svg",
+        tag("g", *body, transform=f"translate({_LEFT} {_PAD})"),
+        class_="heat",
+        viewBox=f"0 0 {w + _LEFT + _PAD} {h + _BOTTOM + _PAD}",
+        width=w + _LEFT + _PAD,
+        role="img",
+        tabindex="0",
+        aria_label=_description(matrix, title),
+        data_cell=cell,
+        data_rows="|".join(labels[0]),
+        data_cols="|".join(labels[1]),
+        data_v=_packed(matrix.values),
+    )
+    caption = tag("figcaption", tag("b", esc(title)))
+    return tag("figure", caption, svg, _values_table(matrix), class_="mac")
+
+
+def legend() -> str:
+    """Return the scale of the heat maps."""
+    step = 14
+    boxes = "".join(
+        tag("rect", class_=f"c{k}", x=k * step, width=step, height=12) for k in range(STEPS)
+    )
+    ticks = "".join(
+        svg_text(p / 100 * STEPS * step, 25, p, text_anchor="middle") for p in (0, 25, 50, 75, 100)
+    )
+    bar = tag("g", boxes, ticks, transform="translate(52 2)")
+    text = svg_text(0, 12, "MAC %")
+    return tag("svg", text, bar, class_="scale", width=STEPS * step + 80, height=30, role="img",
+               aria_label="Colour scale of the MAC, 0 to 100 percent")  # fmt: skip
+
+
+def _position(
+    matrix: MacMatrix, test: Sequence[int], analysis: Sequence[int]
+) -> list[tuple[int, int]]:
+    return [
+        (matrix.test.index(t), matrix.analysis.index(a))
+        for t in test
+        for a in analysis
+        if t in matrix.test and a in matrix.analysis
+    ]
+
+
+def _classes(values: Floats) -> Floats:
+    return np.clip(np.nan_to_num(values, nan=-1.0) * STEPS, -1, STEPS - 1).astype(int)
+
+
+def _cells(values: Floats, cell: int) -> list[str]:
+    classes = np.where(np.isnan(values), -1, _classes(values))
+    paths = []
+    for k in [-1, *range(1, STEPS)]:
+        where = np.argwhere(classes == k)
+        if len(where):
+            d = "".join(f"M{c * cell} {r * cell}h{cell}v{cell}h-{cell}z" for r, c in where)
+            paths.append(tag("path", class_=f"c{k}" if k >= 0 else "unknown", d=d))
+    return paths
+
+
+def _grid(rows: int, cols: int, cell: int) -> str:
+    across = "".join(f"M0 {r * cell}h{cols * cell}" for r in range(rows + 1))
+    return across + "".join(f"M{c * cell} 0v{rows * cell}" for c in range(cols + 1))
+
+
+def _numbers(values: Floats, cell: int) -> str:
+    drawn = {"lo": "", "hi": ""}
+    for r, c in np.argwhere(np.nan_to_num(values) >= 0.195):
+        percent = round(100 * float(values[r, c]))
+        x, y = short((c + 0.5) * cell), short((r + 0.5) * cell + 3.4)
+        drawn["hi" if values[r, c] >= 0.55 else "lo"] += f'<text x="{x}" y="{y}">{percent}</text>'
+    return "".join(tag("g", text, class_=name) for name, text in drawn.items() if text)
+
+
+def _labels(
+    matrix: MacMatrix, test_hz: Mapping[int, float], analysis_hz: Mapping[int, float], cell: int
+) -> list[str]:
+    rows, cols = len(matrix.test), len(matrix.analysis)
+    every = 1 if cell >= 11 else 2
+    left = "".join(
+        svg_text(-6, (k + 0.5) * cell + 3.5, n, text_anchor="end", class_="n")
+        + (
+            svg_text(-26, (k + 0.5) * cell + 3.5, hz(test_hz[n]), text_anchor="end")
+            if n in test_hz
+            else ""
+        )
+        for k, n in enumerate(matrix.test)
+        if k % every == 0
+    )
+    below = "".join(
+        _upright((k + 0.5) * cell + 3.5, rows * cell, n, analysis_hz.get(n))
+        for k, n in enumerate(matrix.analysis)
+        if k % every == 0
+    )
+    middle = rows * cell / 2
+    return [
+        tag("g", left, below, class_="ticks"),
+        svg_text(
+            0, 0, "test mode, Hz", class_="axis", text_anchor="middle",
+            transform=f"translate(-73 {short(middle)}) rotate(-90)",
+        ),
+        svg_text(
+            cols * cell / 2, rows * cell + 72, "analysis mode, Hz", class_="axis",
+            text_anchor="middle",
+        ),
+    ]  # fmt: skip
+
+
+def _upright(x: float, y: float, mode: int, frequency: float | None) -> str:
+    name = f'<tspan class="n">{mode}</tspan>'
+    value = "" if frequency is None else f'<tspan dx="5">{hz(frequency)}</tspan>'
+    return tag(
+        "text",
+        name,
+        value,
+        text_anchor="end",
+        transform=f"translate({short(x)} {y + 6}) rotate(-90)",
+    )
+
+
+def _block(r: int, c: int, cell: int) -> str:
+    return f"M{c * cell} {r * cell}h{cell}v{cell}h-{cell}z"
+
+
+def _mode_label(mode: int, frequency_of: Mapping[int, float]) -> str:
+    return f"{mode} ({hz(frequency_of[mode])} Hz)" if mode in frequency_of else str(mode)
+
+
+def _packed(values: Floats) -> str:
+    """Two base-36 digits a value, in thousandths; ``--`` where unknown."""
+    thousandths = np.clip(np.nan_to_num(values), 0.0, 1.2)
+    codes = np.rint(1000.0 * thousandths).astype(int)
+    return "".join(
+        "--" if unknown else _DIGITS[code // 36] + _DIGITS[code % 36]
+        for code, unknown in zip(codes.ravel(), np.isnan(values).ravel(), strict=True)
+    )
+
+
+def _description(matrix: MacMatrix, title: str) -> str:
+    high = int(np.count_nonzero(np.nan_to_num(matrix.values) >= 0.7))
+    return (
+        f"{title}: MAC of {len(matrix.test)} test modes with {len(matrix.analysis)} analysis"
+        f" modes, {high} of them at or above 70 percent. Arrow keys move through the values."
+    )
+
+
+def _values_table(matrix: MacMatrix) -> str:
+    head = "<th>test \\ analysis</th>" + "".join(f"<th>{n}</th>" for n in matrix.analysis)
+    rows = "".join(
+        f"<tr><th>{n}</th>"
+        + "".join("<td>–" if np.isnan(v) else f"<td>{round(100 * v)}" for v in row.tolist())
+        for n, row in zip(matrix.test, matrix.values, strict=True)
+    )
+    table = f'<div class="wide"><table class="dense"><tr>{head}</tr>{rows}</table></div>'
+    return tag("details", tag("summary", "values in %"), table)

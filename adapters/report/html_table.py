@@ -1,0 +1,46 @@
+"""A table of the run as HTML."""
+
+from __future__ import annotations
+
+from .markup import esc, tag
+from .tables import Cell, Table
+
+
+def html_table(table: Table) -> str:
+    """Return a table as HTML, its note under it."""
+    groups = [c.group for c in table.columns]
+    head = ""
+    if any(groups):
+        cells, k = "", 0
+        while k < len(groups):
+            n = next((j for j in range(k, len(groups)) if groups[j] != groups[k]), len(groups)) - k
+            cells += tag("th", esc(groups[k]), colspan=n, class_="group" if groups[k] else None)
+            k += n
+        head = tag("tr", cells)
+    starts = {k for k, g in enumerate(groups) if g and (k == 0 or groups[k - 1] != g)}
+    classes = [
+        " ".join([*["r"] * c.numeric, *["g"] * (k in starts)]) or None
+        for k, c in enumerate(table.columns)
+    ]
+    head += tag(
+        "tr",
+        *[
+            tag("th", esc(c.heading), class_=classes[k], scope="col")
+            for k, c in enumerate(table.columns)
+        ],
+    )
+    rows = [
+        tag("tr", *[_cell(cell, classes[k]) for k, cell in enumerate(row)]) for row in table.rows
+    ]
+    body = tag("table", tag("thead", head), tag("tbody", *rows))
+    note = tag("p", esc(table.note), class_="note") if table.note else ""
+    return tag("div", body, class_="wide") + note
+
+
+def _cell(cell: Cell, classes: str | None) -> str:
+    bar = ""
+    if cell.bar is not None:
+        width = 100 * min(max(cell.bar, 0.0), 1.0)
+        bar = tag("span", tag("i", style=f"width:{width:.0f}%"), class_="bar", aria_hidden="true")
+    joined = " ".join(c for c in (classes, cell.tone) if c)
+    return tag("td", esc(cell.text), bar, class_=joined or None)

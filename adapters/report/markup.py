@@ -1,0 +1,41 @@
+"""The few lines that turn text into safe HTML and SVG."""
+
+from __future__ import annotations
+
+from html import escape
+
+
+def esc(value: object) -> str:
+    """Return the text of `value`, safe inside an element or a quoted attribute."""
+    return escape(str(value), quote=True)
+
+
+def tag(name: str, *children: str, **attributes: object) -> str:
+    """Return an element; children are markup already, attribute values are escaped.
+
+    A trailing underscore is dropped from attribute names (``class_``), inner ones become
+    hyphens; attributes that are None or False are left out.
+    """
+    given = "".join(
+        f' {k.rstrip("_").replace("_", "-")}="{esc("" if v is True else v)}"'
+        for k, v in attributes.items()
+        if v is not None and v is not False
+    )
+    inner = "".join(children)
+    if not inner and name in _VOID:
+        return f"<{name}{given}/>"
+    return f"<{name}{given}>{inner}</{name}>"
+
+
+def svg_text(x: float, y: float, label: object, **attributes: object) -> str:
+    """Return an SVG text element."""
+    return tag("text", esc(label), x=short(x), y=short(y), **attributes)
+
+
+def short(value: float) -> str:
+    """Return a coordinate with one decimal at most."""
+    text = f"{value:.1f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+_VOID = {"path", "rect", "circle", "line", "use", "polyline", "polygon", "br", "meta"}

@@ -1,0 +1,202 @@
+"""The structure as a picture: shaded mesh, sensors on it, effects at their place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats, Ints
+from ...core.geometry import Geometry
+from .colour import STEPS
+from .markup import esc, short, tag
+from .surface import Surface, View, coarsened, depth_buffer, isometric, surface
+
+_SHADES = 6
+_LIGHT = np.array([0.35, -0.55, 0.76])
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """Something at a place: `role` is the style (``sensor``, ``effect``, ``credible``, ``fault``).
+
+    `axes` (n, 3) are directions drawn as ticks; `value` 0..1 colours the mark; `text` is written
+    beside it, `note` appears on hover.
+    """
+
+    xyz: Floats
+    role: str
+    note: str = ""
+    text: str = ""
+    axes: Floats | None = None
+    value: float | None = None
+
+
+def scene(
+    geometry: Geometry,
+    title: str,
+    *,
+    marks: Sequence[Mark] = (),
+    values: Floats | None = None,
+    width: int = 720,
+    height: int = 520,
+    most: int = 2200,
+) -> str:
+    """Return a figure of the structure in isometric view.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Drawn coarser where it has more than about `most` faces and lines.
+    title : str
+    marks : sequence of Mark
+        Drawn over it; faint where the structure hides them.
+    values : (n_node,) float, optional
+        0..1 by node of the geometry, NaN unknown: colours the faces.
+    width, height : int
+        Pixels.
+    most : int
+        Faces and lines drawn at most, about.
+    """
+    if not len(geometry.ids):
+        return ""
+    fine, view = surface(geometry), isometric()
+    buffer, seen = depth_buffer(view.project(fine.xyz), fine.faces)
+    drawn = coarsened(Surface(fine.xyz, fine.faces[seen], fine.lines, fine.node_of), most)
+    page = _Page.around(view.project(fine.xyz), marks, view, width, height)
+    slack = 0.02 * fine.size
+    body = tag("g", _mesh(drawn, view, page, values), class_="mesh")
+    hidden: list[str] = []
+    plain: list[str] = []
+    for mark in marks:
+        visible = bool(buffer.sees(view.project(mark.xyz[None, :]), slack)[0])
+        (plain if visible else hidden).append(_mark(mark, view, page, fine.size))
+    body += tag("g", *hidden, class_="hidden") if hidden else ""
+    body += "".join(plain) + _triad(view, page)
+    svg = tag(
+        "svg",
+        body,
+        class_="scene",
+        viewBox=f"0 0 {page.width} {page.height}",
+        width=page.width,
+        role="img",
+        aria_label=f"{title}: {len(geometry.ids)} nodes, {len(marks)} marks.",
+    )
+    return tag("figure", tag("figcaption", tag("b", esc(title))), svg)
+
+
+@dataclass(frozen=True, eq=False)
+class _Page:
+    scale: float
+    shift: Floats
+    width: int
+    height: int
+
+    @classmethod
+    def around(
+        cls, projected: Floats, marks: Sequence[Mark], view: View, width: int, height: int
+    ) -> _Page:
+        points = projected[:, :2]
+        if marks:
+            points = np.vstack([points, view.project(np.array([m.xyz for m in marks]))[:, :2]])
+        low, extent = points.min(axis=0), np.maximum(np.ptp(points, axis=0), 1e-30)
+        room = np.array([width - 48.0, height - 48.0])
+        scale = float((room / extent).min())
+        needed = extent * scale + 48.0
+        return cls(scale, 24.0 - low * scale, int(needed[0]), int(max(needed[1], 120)))
+
+    def at(self, projected: Floats) -> Floats:
+        return np.asarray(projected[..., :2] * self.scale + self.shift)
+
+
+def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
+    """Painter's order: the farthest first."""
+    projected = view.project(mesh.xyz)
+    pixels = np.rint(page.at(projected) * 2.0) / 2.0
+    classes = _face_classes(mesh, values)
+    nearest = [projected[e, 2].mean(axis=1) for e in (mesh.faces, mesh.lines)]
+    depth = np.concatenate([nearest[0], nearest[1] - 0.004 * mesh.size])
+    paths = []
+    for k in np.argsort(-depth):
+        if k < len(mesh.faces):
+            d = _outline(pixels[_corners(mesh.faces[k])])
+            paths.append(f'<path class="{classes[k]}" d="{d}z"/>')
+        else:
+            d = _outline(pixels[mesh.lines[k - len(mesh.faces)]])
+            paths.append(f'<path class="bar" d="{d}"/>')
+    return "".join(paths)
+
+
+def _corners(face: Ints) -> Ints:
+    return face[:3] if face[3] == face[2] else face
+
+
+def _outline(pixels: Floats) -> str:
+    steps = np.diff(pixels, axis=0)
+    start = f"m{_half(pixels[0, 0])} {_half(pixels[0, 1])}"
+    rest = "".join(
+        f"{'' if x < 0 else ' '}{_half(x)}{'' if y < 0 else ' '}{_half(y)}"
+        for x, y in steps.tolist()
+    )
+    return start + rest
+
+
+def _half(value: float) -> str:
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def _face_classes(mesh: Surface, values: Floats | None) -> list[str]:
+    corners = mesh.xyz[mesh.faces]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    flat = np.linalg.norm(normal, axis=1) == 0.0
+    normal[flat] = np.cross(
+        corners[flat, 1] - corners[flat, 0], corners[flat, 2] - corners[flat, 0]
+    )
+    length = np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+    lit = np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT))) / length
+    shade = np.minimum((lit * _SHADES).astype(int), _SHADES - 1)
+    if values is None:
+        return [f"f{s}" for s in shade]
+    coloured = _node_means(mesh, values)[mesh.faces]
+    known = np.isfinite(coloured).any(axis=1)
+    mean = np.nan_to_num(coloured).sum(axis=1) / np.maximum(np.isfinite(coloured).sum(axis=1), 1)
+    step = np.clip((mean * STEPS).astype(int), 0, STEPS - 1)
+    return [f"c{c}" if k else f"f{s}" for c, k, s in zip(step, known, shade, strict=True)]
+
+
+def _node_means(mesh: Surface, values: Floats) -> Floats:
+    known = np.isfinite(values)
+    rows, n = mesh.node_of[known], len(mesh.xyz)
+    total = np.bincount(rows, weights=values[known], minlength=n)
+    count = np.bincount(rows, minlength=n)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _mark(mark: Mark, view: View, page: _Page, size: float) -> str:
+    x, y = page.at(view.project(mark.xyz[None, :]))[0]
+    body = tag("title", esc(mark.note)) if mark.note else ""
+    if mark.axes is not None and len(mark.axes):
+        tips = page.at(view.project(mark.xyz[None, :] + 0.028 * size * mark.axes))
+        d = "".join(f"M{short(x)} {short(y)}L{short(u)} {short(v)}" for u, v in tips)
+        body += tag("path", d=d)
+    radius = {"effect": 11.0, "fault": 9.0, "credible": 3.2}.get(mark.role, 2.6)
+    colour = None
+    if mark.value is not None:
+        colour = f"c{min(int(np.clip(mark.value, 0.0, 1.0) * STEPS), STEPS - 1)}"
+        radius = 4.0
+    body += tag("circle", cx=short(x), cy=short(y), r=radius, class_=colour)
+    if mark.text:
+        body += tag("text", esc(mark.text), x=short(x), y=short(y + 4), text_anchor="middle")
+    return tag("g", body, class_=f"hot {mark.role}")
+
+
+def _triad(view: View, page: _Page) -> str:
+    origin = np.array([30.0, page.height - 30.0])
+    arrows = ""
+    for name, axis in zip("xyz", view.project(np.eye(3))[:, :2] * 22.0, strict=True):
+        tip, end = origin + axis, origin + 1.32 * axis
+        line = "L".join(f"{short(u)} {short(v)}" for u, v in (origin, tip))
+        arrows += tag("path", d=f"M{line}")
+        arrows += tag("text", name, x=short(end[0]), y=short(end[1] + 3.5), text_anchor="middle")
+    return tag("g", arrows, class_="triad")

@@ -1,0 +1,196 @@
+"""What of a mesh is seen in a picture: outer faces, made coarse enough, hidden ones left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Bools, Floats, Ints
+from ...core.geometry import Geometry
+
+_SOLID_FACES = {
+    "tetra": ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
+    "pyramid": ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "penta": ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "hexa": (
+        (0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7),
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A mesh to draw.
+
+    `xyz` (n, 3); `faces` (n_face, 4) rows of `xyz`, a triangle repeats its last corner;
+    `lines` (n_line, 2); `node_of` (n_original,) the row that each original node went to.
+    """
+
+    xyz: Floats
+    faces: Ints
+    lines: Ints
+    node_of: Ints
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the bounding box."""
+        return float(np.linalg.norm(np.ptp(self.xyz, axis=0))) if len(self.xyz) else 0.0
+
+
+def surface(geometry: Geometry) -> Surface:
+    """Return the faces of shells, the outer faces of solids, and the lines of a geometry."""
+    tables = geometry.elements
+    shells = [_four(tables[k][:, :n]) for k, n in (("tria", 3), ("quad", 4)) if k in tables]
+    solids = [
+        _four(tables[k][:, list(corners)])
+        for k, faces in _SOLID_FACES.items()
+        if k in tables
+        for corners in faces
+    ]
+    skin = _met_once(np.vstack(solids)) if solids else np.zeros((0, 4), np.int64)
+    lines = tables.get("line", np.zeros((0, 2), np.int64))[:, :2]
+    return Surface(
+        np.asarray(geometry.xyz),
+        np.vstack([*shells, skin]),
+        np.asarray(lines),
+        np.arange(len(geometry.ids)),
+    )
+
+
+def coarsened(fine: Surface, most: int) -> Surface:
+    """Return a mesh of at most about `most` faces and lines, or the mesh itself if it is small.
+
+    Nodes in one cell of a regular grid become one (the member nearest their mean, so that it
+    stays on the structure); faces that collapse or coincide go.
+
+    References
+    ----------
+    Rossignac, Borrel (1993), vertex clustering.
+    """
+    count = len(fine.faces) + len(fine.lines)
+    cells = 3.0 * np.sqrt(max(most, 1))
+    coarse = fine
+    while count > most and cells >= 2.0:
+        coarse = _clustered(fine, fine.size / cells)
+        count = len(coarse.faces) + len(coarse.lines)
+        cells *= 0.88
+    return coarse
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A parallel projection: `axes` rows are right, down and away from the eye."""
+
+    axes: Floats
+
+    def project(self, xyz: Floats) -> Floats:
+        """Return (n, 3): right, down, depth."""
+        return np.asarray(xyz @ self.axes.T)
+
+
+def isometric() -> View:
+    """Return the view from the front right above, z up."""
+    away = -np.array([0.62, -0.72, 0.50])
+    away /= np.linalg.norm(away)
+    right = np.cross(away, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    return View(np.vstack([right, np.cross(away, right), away]))
+
+
+@dataclass(frozen=True, eq=False)
+class DepthBuffer:
+    """Distance of the nearest face by picture cell; infinite where there is none."""
+
+    depth: Floats
+    origin: Floats
+    pitch: float
+
+    def sees(self, projected: Floats, slack: float) -> Bools:
+        """Return which points (n, 3) no face hides by more than `slack`."""
+        cell = self._cells(projected)
+        return np.asarray(projected[:, 2] <= self.depth[cell[:, 0], cell[:, 1]] + slack)
+
+    def _cells(self, projected: Floats) -> Ints:
+        cell = ((projected[:, :2] - self.origin) / self.pitch).astype(np.int64)
+        return np.clip(cell, 0, np.array(self.depth.shape) - 1)
+
+
+def depth_buffer(projected: Floats, faces: Ints, cells: int = 320) -> tuple[DepthBuffer, Bools]:
+    """Return the depth buffer of faces and which of the faces are seen at all.
+
+    Parameters
+    ----------
+    projected : (n, 3) float
+        Right, down, depth.
+    faces : (n_face, 4) int
+    cells : int
+        Resolution of the longer side.
+
+    References
+    ----------
+    Catmull (1974), z-buffer; here filled by sampling every face.
+    """
+    low = projected[:, :2].min(axis=0)
+    extent = np.ptp(projected[:, :2], axis=0)
+    pitch = float(max(extent.max(), 1e-30)) / cells
+    shape = np.maximum(np.ceil(extent / pitch).astype(int), 1) + 1
+    buffer = DepthBuffer(np.full(shape, np.inf), low, pitch)
+    if not len(faces):
+        return buffer, np.zeros(0, bool)
+    corners = projected[faces]
+    longest = np.linalg.norm(np.diff(corners[:, [0, 1, 2, 3, 0], :2], axis=1), axis=2).max()
+    most = max(3, int(np.sqrt(2.5e6 / len(faces))))
+    samples = int(np.clip(np.ceil(1.5 * longest / pitch), 3, most))
+    s = (np.arange(samples) + 0.5) / samples
+    u, v = (g.ravel() for g in np.meshgrid(s, s))
+    weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
+    points = np.einsum("fcx,cs->fsx", corners, weights)
+    flat = points.reshape(-1, 3)
+    index = buffer._cells(flat)
+    np.minimum.at(buffer.depth, (index[:, 0], index[:, 1]), flat[:, 2])
+    slack = 3.0 * pitch
+    seen = buffer.sees(flat, slack).reshape(len(faces), -1).any(axis=1)
+    return buffer, np.asarray(seen)
+
+
+def _four(corners: Ints) -> Ints:
+    return np.asarray(corners if corners.shape[1] == 4 else corners[:, [0, 1, 2, 2]])
+
+
+def _met_once(faces: Ints) -> Ints:
+    """Faces that belong to one solid only."""
+    _, first, counts = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    return np.asarray(faces[np.sort(first[counts == 1])])
+
+
+def _clustered(fine: Surface, pitch: float) -> Surface:
+    cell = np.floor((fine.xyz - fine.xyz.min(axis=0)) / pitch + 0.5).astype(np.int64)
+    _, group = np.unique(cell, axis=0, return_inverse=True)
+    group = np.asarray(group).ravel()
+    n = int(group.max()) + 1
+    members = np.bincount(group, minlength=n)
+    mean = np.stack(
+        [np.bincount(group, weights=fine.xyz[:, k], minlength=n) / members for k in range(3)], 1
+    )
+    order = np.lexsort((np.linalg.norm(fine.xyz - mean[group], axis=1), group))
+    first = order[np.searchsorted(group[order], np.arange(n))]
+    return Surface(
+        fine.xyz[first],
+        _distinct(group[fine.faces], 3),
+        _distinct(group[fine.lines], 2),
+        group[fine.node_of],
+    )
+
+
+def _distinct(elements: Ints, corners: int) -> Ints:
+    """Elements with at least so many different corners, each set of corners once."""
+    if not len(elements):
+        return elements
+    ordered = np.sort(elements, axis=1)
+    different = 1 + np.count_nonzero(np.diff(ordered, axis=1), axis=1)
+    kept = np.flatnonzero(different >= corners)
+    _, first = np.unique(ordered[kept], axis=0, return_index=True)
+    return np.asarray(elements[kept[np.sort(first)]])
