@@ -1,135 +1,114 @@
-"""Which directions of a test node were really measured, inferred from the rank of its data."""
+"""Which directions a test really measured."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from .arrays import Floats, Ints, Numbers, require_finite, require_shape
+from .arrays import Bools, Floats, Ints, Numbers
 from .dofs import Dofs
-from .errors import InputError
+from .modes import Modes
 
-# Files print five to seven digits, so values that a program computed from one sensor agree to
-# about 1e-5; two sensors never agree that well, because each carries noise of its own.
-_RELATIVE_RANK = 1e-3
+THRESHOLD = 1e-4
+"""Motion below this fraction of a node's largest is rounding, not measurement.
 
-
-def measured_directions(shapes: Numbers, tolerance: float = _RELATIVE_RANK) -> list[Floats]:
-    """Axes along which each node was measured.
-
-    A file gives three values for every node, measured or not. Over all modes the vectors of a
-    node that carries one sensor span only a line, with two sensors only a plane. Real and
-    imaginary parts count as separate vectors; each mode is scaled to unit size first, so that no
-    mode outweighs the others.
-
-    With so few modes that a line or plane would be no evidence (one vector always spans a line,
-    two always a plane), directions that are exactly zero throughout are taken as not measured
-    and all others as measured.
-
-    Parameters
-    ----------
-    shapes : (n_node, 3, n_mode) float or complex
-        Three orthogonal components for each node and mode.
-    tolerance : float
-        A direction was measured when its singular value is above this share of the largest of
-        the node: above what printing loses, below the noise of any sensor.
-
-    Returns
-    -------
-    list of (k, 3) float, one for each node
-        k = 0..3 orthonormal axes in the frame of the components; unit vectors of that frame
-        wherever they span the same space. Empty: all values of the node are zero.
-
-    Raises
-    ------
-    InputError
-        Shapes that are not (n_node, 3, n_mode) or not finite.
-    """
-    shapes = np.asarray(shapes)
-    if shapes.ndim != 3:
-        raise InputError(f"shapes have {shapes.ndim} axes, expected (n_node, 3, n_mode)")
-    require_shape(shapes, (shapes.shape[0], 3, shapes.shape[2]), "shapes of the nodes")
-    require_finite(shapes, "shapes of the nodes")
-    vectors = _real_columns(shapes)
-    present = np.any(vectors != 0.0, axis=2)
-    if not len(vectors):
-        return []
-    # Copies of one mode, or one mode times a complex number, are no further evidence.
-    overall = np.linalg.svd(vectors.reshape(-1, vectors.shape[2]), compute_uv=False)
-    evidence = int(np.count_nonzero(overall > tolerance * overall.max(initial=0.0)))
-    left, sigma, _ = np.linalg.svd(vectors, full_matrices=vectors.shape[2] < 3)
-    sigma = np.pad(sigma, ((0, 0), (0, 3 - sigma.shape[1])))
-    rank = np.count_nonzero(sigma > tolerance * np.maximum(sigma[:, :1], 1e-300), axis=1)
-    columns = np.minimum(np.count_nonzero(np.any(vectors != 0.0, axis=1), axis=1), evidence)
-    axes = []
-    for node, r in enumerate(rank):
-        if r == 0 or r >= 3 or r >= columns[node]:
-            axes.append(np.eye(3)[present[node]])
-        else:
-            axes.append(_tidy(left[node, :, :r].T, tolerance))
-    return axes
+Universal files carry five to six digits, so a direction that was not measured shows at most
+about 1e-5 of the others.
+"""
 
 
-def measured_dofs(
-    node: Ints, frames: Floats, shapes: Numbers, tolerance: float = _RELATIVE_RANK
-) -> tuple[Dofs, Numbers]:
-    """Keep the measured directions of shapes that list three components for each node.
+FEWEST_VECTORS = 4
+"""Fewer vectors than this cannot show that a node's motion is confined to a line or plane."""
+
+
+def measured_directions(
+    modes: Modes, threshold: float = THRESHOLD
+) -> tuple[Modes, tuple[str, ...]]:
+    """Keep the directions in which each node of a test was measured.
+
+    Files store three values a node whatever was measured. A node whose vectors over all modes
+    span only a line or a plane was measured along that line or in that plane: what is absent is
+    absent, not zero. Components that are zero in every mode are dropped; with four vectors or
+    more, the translations left become as many sensors as the rank of the node's vectors, on new
+    axes as near to the old as can be. Where the rank is full the file's axes stay. Rotations are
+    kept where they are not zero throughout.
 
     Parameters
     ----------
-    node : (n_node,) int
-        Node numbers.
-    frames : (n_node, 3, 3) float
-        Row k: direction of component k at the node, orthonormal, in the basic frame.
-    shapes : (n_node, 3, n_mode) float or complex
-        Components along `frames`.
+    modes : Modes
+        Of the test, real or complex, with one axis a row.
+    threshold : float
+        Relative to the largest singular value of the node.
 
     Returns
     -------
-    dofs : Dofs
-        One row for each measured direction with its axis in the basic frame; the component is
-        the frame direction that it is closest to.
-    shapes : (n_dof, n_mode)
-        Motion along each axis.
+    modes : Modes
+        On the measured directions; each axis belongs to its row.
+    warnings : tuple of str
+        Nodes that did not move at all, which are left out.
     """
-    node, shapes = np.asarray(node), np.asarray(shapes)
-    kept = measured_directions(shapes, tolerance)
-    rows = np.repeat(np.arange(len(node)), [len(a) for a in kept])
-    local = np.vstack([np.zeros((0, 3)), *kept])
-    axis = np.einsum("ij,ijk->ik", local, np.asarray(frames, np.float64)[rows])
-    component = np.concatenate([np.zeros(0, np.int64), *(_components(a) for a in kept)])
-    return Dofs(node[rows], component, axis), np.einsum("ij,ijm->im", local, shapes[rows])
+    dofs, shapes = modes.dofs, modes.shapes
+    vectors = np.concatenate([shapes.real, shapes.imag], axis=1) if modes.is_complex else shapes
+    size = np.abs(vectors).max(axis=1, initial=0.0)
+    translation = dofs.component <= 3
+    nodes, of_row = np.unique(dofs.node, return_inverse=True)
+    largest = np.zeros(len(nodes))
+    np.maximum.at(largest, of_row, np.where(translation, size, 0.0))
+    keep = size > np.where(translation, threshold * largest[of_row], 0.0)
+    axis, values = dofs.axis.copy(), shapes.copy()
+    if vectors.shape[1] >= FEWEST_VECTORS:
+        slots = _slots(dofs, of_row, keep & translation, len(nodes))
+        _reduce(slots, vectors, threshold, keep, axis, values)
+    silent = nodes[(largest == 0) & np.isin(nodes, dofs.node[translation])]
+    sensors = Dofs(dofs.node[keep], dofs.component[keep], axis[keep])
+    return replace(modes, shapes=values[keep], dofs=sensors), _said(silent)
 
 
-def _real_columns(shapes: Numbers) -> Floats:
-    """Real vectors (n_node, 3, n) of shapes, each mode scaled to a largest value of one."""
-    parts = [shapes.real, shapes.imag] if np.iscomplexobj(shapes) else [shapes]
-    size = np.abs(shapes).max(axis=(0, 1), initial=0.0)
-    scale = 1.0 / np.where(size > 0.0, size, 1.0)
-    return np.asarray(np.concatenate(parts, axis=2) * np.tile(scale, len(parts)))
+def _slots(dofs: Dofs, of_row: Ints, usable: Bools, n_node: int) -> Ints:
+    """Rows of each node's translations, (n, 3), -1 where absent, for nodes with a plain frame."""
+    slots = np.full((n_node, 3), -1, np.int64)
+    rows = np.flatnonzero(usable)
+    slots[of_row[rows], dofs.component[rows] - 1] = rows
+    E = np.where(slots[:, :, None] >= 0, dofs.axis[slots], 0.0)
+    present = slots >= 0
+    gram = E @ np.swapaxes(E, 1, 2) - np.eye(3) * present[:, :, None]
+    plain = np.abs(gram).max(axis=(1, 2)) < 1e-6
+    plain &= np.bincount(of_row[rows], minlength=n_node) == present.sum(axis=1)
+    return np.asarray(slots[plain])
 
 
-def _tidy(axes: Floats, tolerance: float) -> Floats:
-    """Orthonormal axes of the same space, along the frame's own directions where they can be."""
-    projector = axes.T @ axes
-    inside = np.flatnonzero(np.diag(projector) > 1.0 - tolerance**2)
-    if len(inside) == len(axes):
-        return np.eye(3)[inside]
-    found: list[Floats] = []
-    for _ in axes:
-        best = int(np.argmax(np.diag(projector)))
-        axis = projector[best] / np.sqrt(projector[best, best])
-        found.append(axis)
-        projector = projector - np.outer(axis, axis)
-    return np.array(found)
+def _reduce(
+    slots: Ints, vectors: Floats, threshold: float, keep: Bools, axis: Floats, values: Numbers
+) -> None:
+    """Replace the rows of nodes whose vectors span less than their axes, in place."""
+    present = slots >= 0
+    V = np.where(present[:, :, None], vectors[slots], 0.0)
+    power, directions = np.linalg.eigh(V @ np.swapaxes(V, 1, 2))
+    rank = np.count_nonzero(power > threshold**2 * power[:, -1:], axis=1)
+    short = (rank < present.sum(axis=1)) & (rank > 0)
+    for r in (1, 2):
+        chosen = np.flatnonzero(short & (rank == r))
+        span = directions[chosen][:, :, 3 - r :]
+        # Drop the axes farthest from the span, turn the others into it (polar decomposition).
+        closeness = np.linalg.norm(span, axis=2) * present[chosen]
+        order = np.argsort(-closeness, axis=1, kind="stable")
+        own, rest = np.sort(order[:, :r], axis=1), order[:, r:]
+        picked = np.take_along_axis(span, own[:, :, None], axis=1)
+        U, _, Vt = np.linalg.svd(np.swapaxes(picked, 1, 2))
+        turn = span @ U @ Vt  # (n, 3, r), columns near the axes that stay
+        of_node = slots[chosen]
+        new_axis = np.einsum("nar,nax->nrx", turn, axis[of_node])
+        shapes = np.where(present[chosen][:, :, None], values[of_node], 0.0)
+        new_values = np.einsum("nar,nam->nrm", turn, shapes)
+        target = np.take_along_axis(of_node, own, axis=1)
+        dropped = np.take_along_axis(of_node, rest, axis=1)
+        keep[dropped[dropped >= 0]] = False
+        axis[target], values[target] = new_axis, new_values
 
 
-def _components(axes: Floats) -> Ints:
-    """Give each axis the frame direction closest to it, none twice."""
-    share = np.abs(axes)
-    chosen = np.zeros(len(axes), np.int64)
-    for _ in range(len(axes)):
-        row, column = np.unravel_index(int(np.argmax(share)), share.shape)
-        chosen[row] = column + 1
-        share[row, :] = -1.0
-        share[:, column] = -1.0
-    return chosen
+def _said(silent: Ints) -> tuple[str, ...]:
+    if not len(silent):
+        return ()
+    named = ", ".join(str(n) for n in silent[:10]) + (", ..." if len(silent) > 10 else "")
+    return (f"{len(silent)} test node(s) do not move in any mode and were left out: {named}",)

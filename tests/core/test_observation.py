@@ -63,7 +63,7 @@ def beam():
 
 def sensors_on(geo, rng, n=40, off=0.0):
     """Random points on the elements of a geometry, pushed off by up to `off` in any direction."""
-    corners = np.concatenate([c for c in geo.elements.values()])
+    corners = np.concatenate(list(geo.elements.values()))
     weights = rng.dirichlet(np.ones(corners.shape[1]), n)
     xyz = np.einsum("nc,ncx->nx", weights, geo.xyz[rng.choice(corners, n)])
     return geometry(xyz + off * rng.uniform(-1, 1, xyz.shape))

@@ -1,0 +1,202 @@
+"""Length units of deck and test: converting, checking, inferring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .arrays import Floats
+from .errors import InputError
+from .geometry import Geometry
+from .modes import Modes
+from .placement import place
+from .surface import Surface, surface_of
+
+METRES = {"m": 1.0, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+"""Metres in each length unit."""
+
+USUAL = (0.5, 1.25)
+"""Size of a test over size of its model that needs no further reason."""
+POSSIBLE = (0.1, 1.4)
+"""A smaller test is suspect, a larger one impossible."""
+
+
+@dataclass(frozen=True)
+class Units:
+    """Length units of deck and test that were declared or found, and how one becomes the other.
+
+    Parameters
+    ----------
+    deck, test : str or None
+        ``m``, ``mm``, ``in``, ``ft``; None where nobody said and only their ratio is known.
+    factor : float
+        Deck length units in one test length unit.
+    warnings : tuple of str
+        What was inferred.
+    """
+
+    deck: str | None
+    test: str | None
+    factor: float
+    warnings: tuple[str, ...] = ()
+
+
+def length_factor(unit_from: str, unit_to: str) -> float:
+    """Return how many `unit_to` are in one `unit_from`.
+
+    Raises
+    ------
+    InputError
+        A unit that is not one of m, mm, in, ft.
+    """
+    for unit in (unit_from, unit_to):
+        if unit not in METRES:
+            raise InputError(f"the length unit '{unit}' is not known; use m, mm, in or ft")
+    return METRES[unit_from] / METRES[unit_to]
+
+
+def to_length_unit(
+    geometry: Geometry, modes: Modes | None, unit_from: str, unit_to: str
+) -> tuple[Geometry, Modes | None]:
+    """Convert positions and shapes of a test (or an analysis) to another length unit.
+
+    Displacements are multiplied by the factor, rotations (components 4 to 6) are not, so the
+    motion stays the same motion. Generalised masses take the factor squared: they belong to the
+    new numbers of the shapes in the same unit of mass.
+
+    Raises
+    ------
+    InputError
+        A unit that is not one of m, mm, in, ft.
+    """
+    factor = length_factor(unit_from, unit_to)
+    converted = replace(geometry, xyz=geometry.xyz * factor, length_unit=unit_to)
+    if modes is None:
+        return converted, None
+    by_row = np.where(modes.dofs.component > 3, 1.0, factor)
+    mass = modes.generalized_mass * factor**2
+    return converted, replace(modes, shapes=modes.shapes * by_row[:, None], generalized_mass=mass)
+
+
+def reconcile_units(analysis: Geometry, test: Geometry, deck_unit: str | None = None) -> Units:
+    """Decide how test lengths become deck lengths, and refuse what cannot be.
+
+    Parameters
+    ----------
+    analysis : Geometry
+        In deck units; `length_unit` where the deck states it.
+    test : Geometry
+        In test units; `length_unit` where the file states it (dataset 164).
+    deck_unit : str, optional
+        What the user says the deck is in; stronger than ``analysis.length_unit``.
+
+    Returns
+    -------
+    Units
+        With both sides declared, their ratio. With one side silent, the only unit that makes
+        the two sizes agree or that lays the test on the model, and a warning that says so.
+
+    Raises
+    ------
+    InputError
+        The declared units make the test far larger or smaller than the model, or nothing is
+        declared and no unit is plausible.
+    """
+    deck, measured = deck_unit or analysis.length_unit, test.length_unit
+    surface = surface_of(analysis)
+    if deck and measured:
+        return _checked(surface, test, deck, measured)
+    if not deck and not measured:
+        return _alike(surface, test)
+    choices = {
+        unit: length_factor(measured, unit) if measured else length_factor(unit, str(deck))
+        for unit in METRES
+    }
+    unit = _plausible(surface, test, choices)
+    silent, option = ("deck", " with --deck-length-unit") if measured else ("test", "")
+    sizes = _sizes(surface, test, deck, measured)
+    if unit is None:
+        raise InputError(
+            f"the {silent} does not state its length unit and none of {', '.join(METRES)} makes "
+            f"{sizes} agree; state it{option}, or check that both are the same structure"
+        )
+    share = choices[unit] * test.size / surface.size
+    warning = (
+        f"the {silent} does not state its length unit; taken as {unit}, by which the test spans "
+        f"{share:.0%} of the model ({sizes}); state it{option} if this is wrong"
+    )
+    return Units(deck or unit, measured or unit, choices[unit], (warning,))
+
+
+def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Units:
+    factor = length_factor(measured, deck)
+    units = Units(deck, measured, factor)
+    ratio = factor * test.size / surface.size if surface.size > 0 else 1.0
+    low, high = POSSIBLE
+    if test.size == 0 or USUAL[0] <= ratio <= high:
+        return units
+    if low / 100 <= ratio <= high and _lies_on(surface, factor * test.xyz):
+        return units
+    others = {unit: length_factor(measured, unit) for unit in METRES if unit != deck}
+    better = _plausible(surface, test, others)
+    sure = better is not None and _lies_on(surface, others[better] * test.xyz)
+    times = f"{_round(1 / ratio)} times smaller" if ratio < 1 else f"{_round(ratio)} times larger"
+    said = f"the test is {times} than the model ({_sizes(surface, test, deck, measured)})"
+    if low <= ratio <= high and not sure:
+        return replace(units, warnings=(f"{said}; check the length units of both",))
+    if better is None and ratio < low:
+        return replace(units, warnings=(f"{said}; check the length units of both",))
+    advice = (
+        f"if the deck is in {better}, say so with --deck-length-unit {better}; else the test's "
+        f"own unit ({measured}) is wrong"
+        if better
+        else "check the length units of both, and that they are the same structure"
+    )
+    raise InputError(f"{said}, so their length units cannot both be right: {advice}")
+
+
+def _alike(surface: Surface, test: Geometry) -> Units:
+    ratio = test.size / surface.size if surface.size > 0 else 1.0
+    if not POSSIBLE[0] <= ratio <= POSSIBLE[1]:
+        raise InputError(
+            "neither the deck nor the test states its length unit and their sizes differ "
+            f"({_sizes(surface, test, None, None)}); state the deck's with --deck-length-unit"
+        )
+    return Units(
+        None,
+        None,
+        1.0,
+        ("neither the deck nor the test states its length unit; taken to be the same",),
+    )
+
+
+def _plausible(surface: Surface, test: Geometry, choices: dict[str, float]) -> str | None:
+    """Return the unit by which the sizes agree, or else the test lies on the model as it is."""
+    if test.size == 0 or surface.size == 0:
+        return None
+    ratio = {unit: factor * test.size / surface.size for unit, factor in choices.items()}
+    usual = [unit for unit, r in ratio.items() if USUAL[0] <= r <= USUAL[1]]
+    inside = [u for u, r in ratio.items() if POSSIBLE[0] <= r <= POSSIBLE[1]]
+    lying = [u for u in inside if _lies_on(surface, choices[u] * test.xyz)]
+    for units in ([u for u in usual if u in lying], lying, usual):
+        if len(units) == 1:
+            return units[0]
+    return None
+
+
+def _lies_on(surface: Surface, points: Floats) -> bool:
+    """Whether nine in ten points are within 1 % of the model's size, as they stand."""
+    at = place(surface, points, reach=0.02 * surface.size)
+    return bool(np.mean(at.distance <= 0.01 * surface.size) >= 0.9)
+
+
+def _sizes(surface: Surface, test: Geometry, deck: str | None, measured: str | None) -> str:
+    return (
+        f"the model spans {surface.size:.4g} {deck or 'deck units'}, "
+        f"the test {test.size:.4g} {measured or 'of its own units'}"
+    )
+
+
+def _round(ratio: float) -> str:
+    return f"{ratio:.3g}" if ratio < 999.5 else f"{round(ratio, -1):.0f}"
