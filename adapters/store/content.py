@@ -1,0 +1,42 @@
+"""What a store holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from ...core.dofs import Dofs
+from ...core.frfs import Frfs
+from ...core.geometry import Geometry
+from ...core.modes import Modes
+
+FORMAT, VERSION = "trueup", 1
+
+Matrix: TypeAlias = npt.NDArray[Any] | sp.csr_matrix
+Record: TypeAlias = Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class StoreContent:
+    """Everything a store holds, by name.
+
+    `geometry` is the analysis model's, `test_geometry` the test's, each in its own frame and
+    length unit. `mac` maps a name (``mac``, ``mac_rotated``) to ``{"test", "analysis",
+    "values"}`` as in result.json. `matrices` are arrays or CSR matrices. `pairs` and `history`
+    are rows as in result.json.
+    """
+
+    geometry: Geometry | None = None
+    test_geometry: Geometry | None = None
+    modes: dict[str, Modes] = field(default_factory=dict)
+    frfs: dict[str, Frfs] = field(default_factory=dict)
+    dofs: dict[str, Dofs] = field(default_factory=dict)
+    mac: dict[str, dict[str, npt.NDArray[np.float64]]] = field(default_factory=dict)
+    matrices: dict[str, Matrix] = field(default_factory=dict)
+    pairs: Sequence[Record] = ()
+    history: Sequence[Record] = ()
