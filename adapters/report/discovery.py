@@ -96,9 +96,20 @@ def findings(result: Result) -> Table | None:
 
 
 def _count(value: object) -> str:
+    """Count places in a list of places, or of groups of them."""
     if isinstance(value, Mapping):
-        value = value.get("grids") or value.get("elements") or value.get("sensors")
-    return str(len(value)) if isinstance(value, (list, tuple)) else MISSING
+        value = [value]
+    if not isinstance(value, (list, tuple)):
+        return MISSING
+    return str(sum(_size(entry) for entry in value))
+
+
+def _size(entry: object) -> int:
+    if not isinstance(entry, Mapping):
+        return 1
+    place = reading.part(entry, "where") or entry
+    named = (place.get(key) for key in ("grids", "elements", "sensors"))
+    return max([len(n) for n in named if isinstance(n, (list, tuple))], default=1)
 
 
 _ALTERNATIVE = ("kind", "region", "where", "sentence", "description", "what")

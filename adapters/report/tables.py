@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import reading
-from .formats import MISSING, fixed, general, hz, percent, signed
+from .formats import MISSING, counted, fixed, general, hz, percent, signed
 from .reading import Result
 
 
@@ -81,7 +81,7 @@ def _used_columns(found: Sequence[Result]) -> list[int]:
 
 def _pair_cells(pair: Result | None) -> list[Cell]:
     if pair is None:
-        return [Cell("no partner", "muted")] + [Cell("")] * 5
+        return [Cell("none", "muted")] + [Cell("")] * 5
     mac = reading.number(pair.get("mac"))
     cluster = pair.get("cluster")
     return [
@@ -95,16 +95,24 @@ def _pair_cells(pair: Result | None) -> list[Cell]:
 
 
 def unpaired(result: Result) -> Table | None:
-    """Return the modes of both sides without a partner, each with its closest look-alike by MAC."""
+    """Return the modes of both sides without a partner, each with its closest look-alike by MAC.
+
+    Analysis modes above the test's range are only counted.
+    """
     found = reading.final(result)
     matrix = reading.mac_matrix(found, "mac_rotated") or reading.mac_matrix(found, "mac")
-    rows = []
+    top = max(reading.mode_hz(found, "test").values(), default=None)
+    rows, beyond = [], 0
     for side, other in (("test", "analysis"), ("analysis", "test")):
         for n, f in reading.unpaired(found, side):
+            if side == "analysis" and top is not None and f is not None and f > 1.02 * top:
+                beyond += 1
+                continue
             best, value = _closest(matrix, side, n)
             like = MISSING if best is None else f"{other} {best}"
             cells = (Cell(side), Cell(str(n)), Cell(hz(f)), Cell(like), Cell(percent(value, 1)))
             rows.append(cells)
+    note = f"Above the test's range: {counted(beyond, 'analysis mode')}." if beyond else ""
     if not rows:
         return None
     columns = (
@@ -114,7 +122,7 @@ def unpaired(result: Result) -> Table | None:
         Column("most alike"),
         Column("MAC %"),
     )
-    return Table("Modes without a partner", columns, tuple(rows))
+    return Table("Modes without a partner", columns, tuple(rows), note)
 
 
 def _closest(
