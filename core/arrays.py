@@ -16,7 +16,14 @@ Numbers = npt.NDArray[Any]
 
 
 def frozen(values: npt.ArrayLike, dtype: npt.DTypeLike = None) -> Numbers:
-    """Return a read-only copy of `values`."""
+    """Return a read-only copy of `values`, or `values` itself if it is read-only and its own."""
+    if (
+        isinstance(values, np.ndarray)
+        and values.base is None
+        and not values.flags.writeable
+        and dtype in (None, values.dtype)
+    ):
+        return values
     array = np.array(values, dtype=dtype)
     array.flags.writeable = False
     return array

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from .content import Skipped
+from .layout58 import records
 
 _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")
@@ -166,14 +167,17 @@ class _Scan:
         """Offset behind the binary block of a 58b, where its header's byte count leads."""
         if len(header) < 4:
             return begin
-        at = begin
-        for _ in range(header[2]):
-            at = self._after_line(at)
-        end = at + header[3]
-        if end <= len(self.data) and self._blank(end, min(len(self.data), end + 200)) is None:
-            tail = self.data[end : end + 200].lstrip(b" \t\r\n")
-            if tail.startswith(b"-1"):
-                return end
+        at, form = begin, tuple[int, ...]()
+        for k in range(header[2]):
+            start, at = at, self._after_line(at)
+            form = _integers(self.data[start:at][:30]) if k == 6 else form
+        sizes = [header[3]]
+        if len(form) >= 3:  # the announced size is wrong in some files: try what the points need
+            sizes += [form[1] * sum(r) for r in records(form[0], form[2] != 0)]
+        for size in sizes:
+            tail = self.data[at + size : at + size + 200].lstrip(b" \t\r\n")
+            if tail.startswith(b"-1") and at + size <= len(self.data):
+                return at + size
         return at
 
     def _delimiter(self, at: int) -> tuple[int, int] | None:

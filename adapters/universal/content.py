@@ -13,8 +13,6 @@ from ...core.geometry import Geometry
 from ...core.modes import Modes
 from .systems import CoordinateSystem
 
-METRES = {"m": 1.0, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
-
 
 @dataclass(frozen=True)
 class Skipped:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from ...core.units import METRES
 from .container import Section, Source
-from .content import METRES, Header, Units
+from .content import Header, Units
 from .fields import NotANumber, floats, integers, text
 
 # What the codes of dataset 164 mean for lengths.

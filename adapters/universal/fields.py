@@ -50,6 +50,22 @@ def floats(lines: Sequence[bytes]) -> Floats:
     return np.array(found, np.float64)
 
 
+def numbers_of(line: bytes, widths: Sequence[int], row: int = 0) -> list[float]:
+    """Numbers of one line of fields, told apart by blanks, signs and letters, else by columns."""
+    try:
+        return [float(token) for token in line.split()]
+    except ValueError:
+        pass
+    try:
+        return [value for token in line.split() for value in _repaired(token, row)]
+    except NotANumber:
+        fields, at = [], 0
+        for width in widths:
+            fields.append(line[at : at + width].strip())
+            at += width
+        return [value for f in fields if f for value in _repaired(f, row)]
+
+
 def table(lines: Sequence[bytes], widths: Sequence[int]) -> Floats:
     """Numbers of lines that all hold the same fields, (n_line, n_field).
 

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from ...core.dofs import Dofs
 from ...core.errors import InputError
-from ...core.measured import measured_dofs
+from ...core.frfs import Frfs
+from ...core.geometry import Geometry
+from ...core.measured import measured_directions
 from ...core.measurement import Measurement
 from ...core.modes import Modes
-from .content import METRES, UniversalContent
+from ...core.units import length_factor, to_length_unit
+from .content import UniversalContent
 from .reading import read_universal
 
 
@@ -51,68 +51,48 @@ def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None)
             f"{names}: a test with no geometry cannot be placed on the model; "
             "give the file with the nodes (dataset 15 or 2411) as well"
         )
-    warnings = list(content.warnings)
+    modes, silent = (None, ()) if content.modes is None else measured_directions(content.modes)
+    if modes is not None and not len(modes.dofs):
+        raise InputError(f"{names}: every mode shape is zero at every node")
+    warnings = [*content.warnings, *silent]
     if content.length_unit is None:
         warnings.append(
             f"{names}: the length unit of the test is not declared (dataset 164 is missing or "
             "unknown)"
         )
-    modes = None if content.modes is None else measured_modes(content.modes, warnings)
+    geometry = content.geometry
+    if deck_length_unit is not None and content.length_unit not in (None, deck_length_unit):
+        return _converted(geometry, modes, content, deck_length_unit, tuple(warnings))
+    return _measurement(names, geometry, modes, content.frfs, tuple(warnings))
+
+
+def _converted(
+    geometry: Geometry,
+    modes: Modes | None,
+    content: UniversalContent,
+    unit: str,
+    warnings: tuple[str, ...],
+) -> Measurement:
+    """Return the test with positions, shapes and responses in another length unit."""
+    geometry, modes = to_length_unit(geometry, modes, str(content.length_unit), unit)
+    frfs = content.frfs
+    if frfs is not None:
+        factor = length_factor(str(content.length_unit), unit)
+        frfs = replace(frfs, values=frfs.values * factor)
+    return _measurement(" and ".join(content.files), geometry, modes, frfs, warnings)
+
+
+def _measurement(
+    names: str,
+    geometry: Geometry,
+    modes: Modes | None,
+    frfs: Frfs | None,
+    warnings: tuple[str, ...],
+) -> Measurement:
     try:
-        test = Measurement(
-            content.geometry, modes, content.frfs, content.length_unit, tuple(warnings)
-        )
+        return Measurement(geometry, modes, frfs, geometry.length_unit, warnings)
     except InputError as error:
         raise InputError(f"{names}: {error}") from None
-    return test if deck_length_unit is None else in_unit(test, deck_length_unit)
-
-
-def measured_modes(modes: Modes, warnings: list[str]) -> Modes:
-    """Keep the measured directions of modes that list 3 or 6 values for every node."""
-    width = 6 if np.any(modes.dofs.component > 3) else 3
-    shapes = modes.shapes.reshape(-1, width, len(modes))
-    axes = modes.dofs.axis.reshape(-1, width, 3)
-    nodes = modes.dofs.node.reshape(-1, width)[:, 0]
-    dofs, kept = measured_dofs(nodes, axes[:, :3], shapes[:, :3])
-    if width == 6 and np.any(shapes[:, 3:] != 0.0):
-        node, turn = np.nonzero(np.any(shapes[:, 3:] != 0.0, axis=2))
-        dofs = Dofs(
-            np.concatenate([dofs.node, nodes[node]]),
-            np.concatenate([dofs.component, turn + 4]),
-            np.concatenate([dofs.axis, axes[node, 3 + turn]]),
-        )
-        kept = np.concatenate([kept, shapes[node, 3 + turn]])
-    silent = np.setdiff1d(nodes, dofs.node)
-    if not len(dofs):
-        raise InputError(f"{modes.source}: every mode shape is zero at every node")
-    if len(silent):
-        warnings.append(
-            f"{len(silent)} node(s) are zero in every mode and count as not measured: "
-            + ", ".join(str(n) for n in silent[:6])
-            + (", ..." if len(silent) > 6 else "")
-        )
-    return Modes(
-        modes.frequencies_hz, kept, dofs, modes.damping, modes.generalized_mass, modes.source
-    )
-
-
-def in_unit(test: Measurement, unit: str) -> Measurement:
-    """Convert positions and shapes of a test to another length unit, if its own is known."""
-    if unit not in METRES:
-        raise InputError(f"length unit {unit!r} is none of {', '.join(METRES)}")
-    if test.length_unit is None or test.length_unit == unit:
-        return test
-    factor = METRES[test.length_unit] / METRES[unit]
-    geometry = replace(test.geometry, xyz=test.geometry.xyz * factor, length_unit=unit)
-    modes = test.modes
-    if modes is not None:
-        modes = replace(
-            modes,
-            shapes=modes.shapes * factor,
-            generalized_mass=modes.generalized_mass * factor**2,
-        )
-    frfs = None if test.frfs is None else replace(test.frfs, values=test.frfs.values * factor)
-    return Measurement(geometry, modes, frfs, unit, test.warnings)
 
 
 def _first_skip(content: UniversalContent) -> str:

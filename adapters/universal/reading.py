@@ -16,8 +16,10 @@ from ...core.modes import Modes
 from .container import Section, Source, open_source
 from .content import Dataset, Header, Skipped, Trace, Units, UniversalContent
 from .facts import read_header, read_units
+from .functions import read_head
 from .names import name_of
 from .nodes import NodeTable, read_15, read_18, read_82, read_2411, read_2420
+from .responses import Record, Report, assemble
 from .shapes import Shape, read_55, read_2414
 from .systems import BASIC, CoordinateSystem
 
@@ -30,6 +32,7 @@ class _Gathered:
     systems: dict[int, CoordinateSystem] = field(default_factory=dict)
     traces: list[Trace] = field(default_factory=list)
     shapes: list[Shape] = field(default_factory=list)
+    functions: list[Record] = field(default_factory=list)
     units: list[tuple[Units, str]] = field(default_factory=list)
     headers: list[Header] = field(default_factory=list)
     datasets: list[Dataset] = field(default_factory=list)
@@ -69,11 +72,20 @@ def read_universal(paths: Sequence[Path] | Path) -> UniversalContent:
         for section in source.sections:
             _read(source, section, gathered)
     frames = _NodeFrames.of(gathered)
+    units = _units(gathered)
+    frfs, functions = assemble(
+        gathered.functions,
+        frames.at,
+        units.length_unit if units else None,
+        Report(gathered.skipped, gathered.warnings),
+    )
     return UniversalContent(
         files=tuple(str(p) for p in files),
         geometry=frames.geometry(gathered),
         modes=_modes(gathered, frames),
-        units=_units(gathered),
+        frfs=frfs,
+        functions=functions,
+        units=units,
         headers=tuple(gathered.headers),
         systems=gathered.systems,
         traces=tuple(gathered.traces),
@@ -113,6 +125,10 @@ def _read(source: Source, section: Section, into: _Gathered) -> None:
         else:
             into.shapes.append(shape)
             count = len(shape.nodes)
+    elif number == 58:
+        head = read_head(source, section)
+        into.functions.append(Record(source, head))
+        count = head.n_point
     elif number == 151:
         into.headers.append(read_header(source, section))
         count = 1

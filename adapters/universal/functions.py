@@ -1,0 +1,283 @@
+"""Dataset 58 and 58b: one function at a nodal degree of freedom."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from ...core.arrays import Floats, Numbers
+from .container import Section, Source
+from .fields import NotANumber, integers, numbers_of, text
+from .fixed import block
+from .layout58 import HEADER_LINES, REALS, columns, records
+from .legacy_floats import decode
+
+KINDS = {
+    0: "general",
+    1: "time response",
+    2: "auto spectrum",
+    3: "cross spectrum",
+    4: "frequency response",
+    5: "transmissibility",
+    6: "coherence",
+    7: "auto correlation",
+    8: "cross correlation",
+    9: "power spectral density",
+    10: "energy spectral density",
+    11: "probability density",
+    12: "spectrum",
+    13: "cumulative frequency distribution",
+    14: "peaks valley",
+    15: "stress/cycles",
+    16: "strain/cycles",
+    17: "orbit",
+    18: "mode indicator function",
+    19: "force pattern",
+    20: "partial power",
+    21: "partial coherence",
+    22: "eigenvalue",
+    23: "eigenvector",
+    24: "shock response spectrum",
+    25: "finite impulse response filter",
+    26: "multiple coherence",
+    27: "order function",
+    28: "phase compensation",
+}
+QUANTITIES = {
+    0: "unknown",
+    1: "general",
+    2: "stress",
+    3: "strain",
+    5: "temperature",
+    6: "heat flux",
+    8: "displacement",
+    9: "reaction force",
+    11: "velocity",
+    12: "acceleration",
+    13: "force",
+    15: "pressure",
+    16: "mass",
+    17: "time",
+    18: "frequency",
+    19: "rpm",
+    20: "order",
+    21: "sound pressure",
+    22: "sound intensity",
+    23: "sound power",
+}
+_TAIL = 3  # line end and a stray byte between a binary block and the closing -1
+_DOF = re.compile(
+    r"(?<![\w.])(\d+)\s*:?\s*([+-]?)(R?[XYZ])([+-]?)(?![A-Za-z0-9])|(?<![\w.+-])(\d+):([+-]?[1-6])(?!\w)",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What an axis of a function shows (records 8 to 11)."""
+
+    quantity: int = 0
+    label: str = ""
+    unit: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Head58:
+    """The eleven header lines of a function."""
+
+    section: Section
+    ids: tuple[str, ...]
+    function: int
+    response: tuple[int, int]
+    reference: tuple[int, int]
+    ordinate_type: int
+    n_point: int
+    even: bool
+    start: float
+    step: float
+    abscissa: Axis
+    ordinate: Axis
+    denominator: Axis
+    data_at: int
+    named: bool = field(default=False)
+
+    @property
+    def kind(self) -> str:
+        """What dataset 58 calls this type of function."""
+        return KINDS.get(self.function, f"function type {self.function}")
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether the ordinates are complex."""
+        return self.ordinate_type in (5, 6)
+
+
+def read_head(source: Source, section: Section) -> Head58:
+    """Read the header of a function.
+
+    Raises
+    ------
+    InputError
+        A header that is cut off, or whose counts are no numbers.
+    """
+    lines, data_at = source.head(section, HEADER_LINES)
+    if len(lines) < HEADER_LINES:
+        raise source.error(
+            section.line,
+            f"dataset 58 is cut off: {len(lines)} of its {HEADER_LINES} header lines are there; "
+            "export or copy the file again",
+        )
+    ids = tuple(text(line) for line in lines[:5])
+    function, response, reference, names = _dofs(source, section, lines[5])
+    if response[1] == 0 or reference[1] == 0:
+        found = _dofs_by_name(ids, names, response, reference)
+    else:
+        found = response, reference
+    form = integers(lines[6][:30])
+    if len(form) < 3:
+        raise source.error(
+            section.line + 7, "dataset 58: data type, count and spacing are expected"
+        )
+    try:
+        steps = numbers_of(lines[6][30:], (13, 13, 13))
+    except NotANumber as error:
+        raise source.error(
+            section.line + 7, f"dataset 58: {error.text!r} is not a number"
+        ) from None
+    steps = [*steps, 0.0, 0.0][: max(2, len(steps))]
+    return Head58(
+        section,
+        ids,
+        function,
+        *found,
+        ordinate_type=form[0],
+        n_point=form[1],
+        even=form[2] != 0,
+        start=steps[0],
+        step=steps[1],
+        abscissa=_axis(lines[7]),
+        ordinate=_axis(lines[8]),
+        denominator=_axis(lines[9]),
+        data_at=data_at,
+        named=found != (response, reference),
+    )
+
+
+def read_values(source: Source, head: Head58) -> tuple[Floats, Numbers]:
+    """Read the abscissa (n,) and the ordinates (n,), real or complex.
+
+    Raises
+    ------
+    NotANumber
+        A value that is no number; `row` counts lines after the header.
+    ValueError
+        Fewer or more values than the header announces, or a type that is not known.
+    """
+    if head.ordinate_type not in REALS:
+        raise ValueError(f"ordinate data type {head.ordinate_type} is none of 2, 4, 5, 6")
+    if head.n_point < 1:
+        raise ValueError(f"it announces {head.n_point} points")
+    x, parts = (_binary if head.section.binary else _text)(source, head)
+    y = parts[:, 0] + 1j * parts[:, 1] if head.is_complex else parts[:, 0]
+    if x is None:
+        x = head.start + head.step * np.arange(head.n_point)
+    return x, y
+
+
+def _text(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
+    n = REALS[head.ordinate_type]
+    per_point = n if head.even else n + 1
+    widths = columns(head.ordinate_type, head.even)
+    want = head.n_point * per_point
+    room = head.section.end - head.data_at
+    if want > room:  # not even one character for each number
+        raise ValueError(f"it announces {want} numbers in {room} bytes")
+    values, surplus = block(source.data, head.data_at, head.section.end, widths, want)
+    if len(values) < want or surplus >= len(widths):
+        raise ValueError(f"it announces {want} numbers and holds {len(values) + surplus}")
+    table = values.reshape(-1, per_point)
+    return (None, table) if head.even else (table[:, 0], table[:, 1:])
+
+
+def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
+    header = (*head.section.header, 0, 0, 0, 0)
+    big, form = header[0] == 2, header[1]
+    if header[0] not in (1, 2) or form not in (1, 2, 3):
+        raise ValueError(f"byte order {header[0]} or floating-point format {form} is not known")
+    room = head.section.end - head.data_at
+    layouts = records(head.ordinate_type, head.even)
+    fitting = [r for r in layouts if 0 <= room - head.n_point * sum(r) <= _TAIL]
+    record = fitting[0] if fitting else layouts[0]
+    want = head.n_point * sum(record)
+    if want > room:
+        raise ValueError(f"it announces {want} bytes and holds {room}")
+    raw = np.frombuffer(source.data, np.uint8, want, head.data_at).reshape(head.n_point, -1)
+    numbers, at = [], 0
+    for width in record:
+        numbers.append(decode(raw[:, at : at + width], width, big, form))
+        at += width
+    return (None if head.even else numbers[0]), np.column_stack(
+        numbers[len(numbers) - REALS[head.ordinate_type] :]
+    )
+
+
+def _dofs(
+    source: Source, section: Section, line: bytes
+) -> tuple[int, tuple[int, int], tuple[int, int], tuple[str, str]]:
+    """Return function type, response, reference and their entity names, by column else by words."""
+    padded = line.ljust(80)
+    cuts = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
+    parts = [padded[a:b].strip() for a, b in pairwise(cuts)]
+    try:
+        numbers = [int(parts[k] or 0) for k in (0, 5, 6, 8, 9)]
+        names = text(parts[4]), text(parts[7])
+    except ValueError:
+        words = line.split()
+        try:
+            numbers = [int(words[k]) for k in (0, 5, 6, 8, 9)]
+            names = text(words[4]), text(words[7])
+        except (ValueError, IndexError):
+            raise source.error(
+                section.line + 6,
+                f"dataset 58: {text(line)!r} does not name a response and a reference",
+            ) from None
+    return numbers[0], (numbers[1], numbers[2]), (numbers[3], numbers[4]), names
+
+
+def _dofs_by_name(
+    ids: tuple[str, ...],
+    names: tuple[str, str],
+    response: tuple[int, int],
+    reference: tuple[int, int],
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Fill in a direction that the numbers leave out from the names, where they tell it."""
+    by_entity = [[_dof(m) for m in _DOF.finditer(name)] for name in names]
+    if response[1] == 0 and len(by_entity[0]) == 1:
+        response = by_entity[0][0]
+    if reference[1] == 0 and len(by_entity[1]) == 1:
+        reference = by_entity[1][0]
+    for line in ids:
+        found = [_dof(m) for m in _DOF.finditer(line)]
+        if len(found) == 2:
+            response = response if response[1] else found[0]
+            reference = reference if reference[1] else found[1]
+            break
+    return response, reference
+
+
+def _dof(match: re.Match[str]) -> tuple[int, int]:
+    if match[5]:
+        return int(match[5]), int(match[6])
+    letters = match[3].upper()
+    direction = "XYZ".index(letters[-1]) + (4 if letters[0] == "R" else 1)
+    sign = -1 if "-" in (match[2], match[4]) else 1
+    return int(match[1]), sign * direction
+
+
+def _axis(line: bytes) -> Axis:
+    """Read a record that describes an axis: quantity, exponents, label, unit."""
+    quantity = integers(line[:10])
+    return Axis(quantity[0] if quantity else 0, text(line[25:46]), text(line[46:67]))

@@ -1,0 +1,346 @@
+"""Frequency responses: the functions of dataset 58 that belong together, as one array."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats, Ints, Numbers
+from ...core.dofs import Dofs
+from ...core.frfs import QUANTITIES as MOTIONS
+from ...core.frfs import Frfs
+from ...core.units import METRES
+from .container import Source
+from .content import Function, Skipped
+from .fields import NotANumber
+from .functions import QUANTITIES, Head58, read_values
+
+Frames = Callable[[Ints], Floats]
+_FREQUENCY, _FORCE = 18, (13, 9)
+_MOTION = {8: "displacement", 11: "velocity", 12: "acceleration"}
+_MOTION_UNITS = {
+    "m/s^2": ("acceleration", 1.0),
+    "mm/s^2": ("acceleration", 1e-3),
+    "in/s^2": ("acceleration", 0.0254),
+    "ft/s^2": ("acceleration", 0.3048),
+    "g": ("acceleration", 9.80665),
+    "gn": ("acceleration", 9.80665),
+    "m/s": ("velocity", 1.0),
+    "mm/s": ("velocity", 1e-3),
+    "in/s": ("velocity", 0.0254),
+    "ft/s": ("velocity", 0.3048),
+    "m": ("displacement", 1.0),
+    "mm": ("displacement", 1e-3),
+    "um": ("displacement", 1e-6),
+    "in": ("displacement", 0.0254),
+    "ft": ("displacement", 0.3048),
+}
+_FORCE_UNITS = {"n": 1.0, "kn": 1e3, "mn": 1e-3, "lbf": 4.4482216152605, "lb": 4.4482216152605}
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """The header of a function with the file it stands in."""
+
+    source: Source
+    head: Head58
+
+    @property
+    def where(self) -> str:
+        """File and line of the dataset."""
+        return f"{self.source.name} line {self.head.section.line}"
+
+
+@dataclass
+class Report:
+    """Where the assembly says what it left out."""
+
+    skipped: list[Skipped]
+    warnings: list[str]
+
+    def skip(self, record: Record, why: str, row: int = 0) -> None:
+        """List one function as not read."""
+        line = record.head.section.line + row
+        what = f"dataset 58 ({record.head.kind} {label(record.head)})"
+        self.skipped.append(Skipped(what, line, why, record.source.name))
+
+
+def label(head: Head58) -> str:
+    """Response and reference of a function for a message, such as ``12:+Z/1:-X``."""
+    return "/".join(_label(*dof) for dof in (head.response, head.reference))
+
+
+def _label(node: int, direction: int) -> str:
+    name = ("?", "X", "Y", "Z", "RX", "RY", "RZ")[abs(direction)] if abs(direction) < 7 else "?"
+    return f"{node}:{'-' if direction < 0 else '+'}{name}" if direction else f"{node}"
+
+
+def assemble(
+    records: Sequence[Record], frames: Frames, length_unit: str | None, report: Report
+) -> tuple[Frfs | None, tuple[Function, ...]]:
+    """Put the frequency responses into one array and read every other function by itself.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Functions in file order.
+    frames : callable
+        Displacement axes (n, 3, 3) of node numbers (n,), in the basic frame.
+    length_unit : str or None
+        Unit of the test's lengths; responses whose unit is labelled are converted to it.
+
+    Returns
+    -------
+    frfs : Frfs or None
+        Functions that share the most common frequency axis and quantity.
+    functions : tuple of Function
+        The rest.
+    """
+    _say_unfit(records, report)
+    chosen = _largest_group([r for r in records if is_frf(r.head)], report)
+    frfs = _frfs(chosen, frames, length_unit, report) if chosen else None
+    taken = {id(r) for r in chosen}
+    others = []
+    for record in records:
+        if id(record) not in taken and (read := _read(record, report)) is not None:
+            x, y = read
+            others.append(_function(record, x, y))
+    return frfs, tuple(others)
+
+
+def is_frf(head: Head58) -> bool:
+    """Whether a function is a complex motion per force over frequency at known dofs."""
+    general = head.function == 0 and head.ordinate.quantity in _MOTION
+    return (
+        (head.function == 4 or (general and head.denominator.quantity in _FORCE))
+        and head.is_complex
+        and head.abscissa.quantity in (_FREQUENCY, 0, 1)
+        and (head.ordinate.quantity in _MOTION or head.ordinate.quantity in (0, 1))
+        and (head.denominator.quantity in _FORCE or head.denominator.quantity in (0, 1))
+        and 1 <= abs(head.response[1]) <= 6
+        and 1 <= abs(head.reference[1]) <= 6
+    )
+
+
+def quantity_of(head: Head58) -> str | None:
+    """Return what the response is, by its type or else its unit; None where neither tells."""
+    by_unit = _MOTION_UNITS.get(_plain(_numerator(head.ordinate.unit)))
+    return _MOTION.get(head.ordinate.quantity) or (by_unit[0] if by_unit else None)
+
+
+def _largest_group(records: Sequence[Record], report: Report) -> list[Record]:
+    """Return the responses on the most common axis and quantity; report the others."""
+    groups: dict[tuple[object, ...], list[Record]] = {}
+    for r in records:
+        h = r.head
+        axis = (h.n_point, f"{h.start:.5e}", f"{h.step:.5e}") if h.even else (h.n_point, "uneven")
+        groups.setdefault((*axis, quantity_of(h)), []).append(r)
+    if not groups:
+        return []
+    best = max(groups.values(), key=len)
+    for group in groups.values():
+        if group is not best:
+            report.warnings.append(
+                f"{group[0].where}: {len(group)} frequency response(s) have another frequency "
+                f"axis or quantity than the other {len(best)} and stand apart from them"
+            )
+    return best
+
+
+def _frfs(
+    records: Sequence[Record], frames: Frames, length_unit: str | None, report: Report
+) -> Frfs | None:
+    heads = [r.head for r in records]
+    responses = list(dict.fromkeys(h.response for h in heads))
+    references = list(dict.fromkeys(h.reference for h in heads))
+    row = {dof: k for k, dof in enumerate(responses)}
+    column = {dof: k for k, dof in enumerate(references)}
+    shape = len(responses), len(references), heads[0].n_point
+    values = np.full(shape, np.nan, np.complex128)
+    axis, filled = _fill(values, records, row, column, length_unit, report)
+    if axis is None:
+        return None
+    _say_named(records, report)
+    quantity = quantity_of(heads[0])
+    if quantity is None:
+        report.warnings.append(
+            f"{records[0].where}: neither type nor unit says what the responses are; "
+            "taken as acceleration"
+        )
+    rows, columns = (sorted({place[k] for place in filled}) for k in (0, 1))
+    if (len(rows), len(columns)) != values.shape[:2]:
+        values = values[np.ix_(rows, columns)]
+    values.flags.writeable = False
+    return Frfs(
+        axis,
+        _dofs([responses[k] for k in rows], frames),
+        _dofs([references[k] for k in columns], frames),
+        values,
+        quantity or MOTIONS[2],
+        ", ".join(dict.fromkeys(r.source.name for r in records)),
+    )
+
+
+def _fill(
+    values: Numbers,
+    records: Sequence[Record],
+    row: dict[tuple[int, int], int],
+    column: dict[tuple[int, int], int],
+    length_unit: str | None,
+    report: Report,
+) -> tuple[Floats | None, set[tuple[int, int]]]:
+    """Read responses into their places; return the frequency axis and the places filled."""
+    axis: Floats | None = None
+    filled: set[tuple[int, int]] = set()
+    factors = _factors([r.head for r in records], length_unit, report, records[0].where)
+    for record, factor in zip(records, factors, strict=True):
+        place = row[record.head.response], column[record.head.reference]
+        if place in filled:
+            report.skip(record, "this response and reference were read before; the first is kept")
+            continue
+        read = _read(record, report)
+        if read is None:
+            continue
+        x, y = read
+        why = _unusable(x, y, axis)
+        if why:
+            report.skip(record, why)
+            continue
+        axis = x if axis is None else axis
+        filled.add(place)
+        np.multiply(y, factor, out=values[place])
+    return axis, filled
+
+
+def _unusable(x: Floats, y: Numbers, axis: Floats | None) -> str:
+    """Say why a response cannot join the others, or nothing."""
+    bad = np.count_nonzero(~np.isfinite(y)) + np.count_nonzero(~np.isfinite(x))
+    if bad:
+        return f"{bad} of its {len(y)} values are not finite numbers"
+    if np.any(np.diff(x) <= 0.0):
+        return "its frequencies do not increase"
+    if axis is not None and np.abs(x - axis).max() > 1e-4 * (axis[-1] - axis[0]) / len(axis):
+        return "its frequency axis differs from that of the other responses"
+    return ""
+
+
+def _dofs(dofs: Sequence[tuple[int, int]], frames: Frames) -> Dofs:
+    """Degrees of freedom with their axes; a negative direction turns the axis round."""
+    node, direction = np.array(dofs, np.int64).T
+    component = np.abs(direction)
+    axis = frames(node)[np.arange(len(node)), (component - 1) % 3]
+    return Dofs(node, component, axis * np.sign(direction)[:, None])
+
+
+def _factors(
+    heads: Sequence[Head58], length_unit: str | None, report: Report, where: str
+) -> list[float]:
+    """Return what each response is multiplied by to be in the test's length unit per newton."""
+    scale = 1.0 / METRES[length_unit] if length_unit else 1.0
+    factors, unknown, changed = [], 0, dict[str, float]()
+    for h in heads:
+        motion = _MOTION_UNITS.get(_plain(_numerator(h.ordinate.unit)))
+        per = h.denominator.unit.replace("NONE", "") or _denominator(h.ordinate.unit)
+        force = _FORCE_UNITS.get(_plain(per), 1.0)
+        if motion is None or motion[0] != (quantity_of(h) or motion[0]):
+            unknown += 1
+            factors.append(1.0)
+            continue
+        factors.append(motion[1] * scale / force)
+        if abs(factors[-1] - 1.0) > 1e-9:
+            changed[h.ordinate.unit] = factors[-1]
+    if unknown and len(changed):
+        report.warnings.append(
+            f"{where}: {unknown} of {len(heads)} responses do not say their unit and are taken in "
+            "the unit of the test"
+        )
+    for unit, factor in changed.items():
+        report.warnings.append(
+            f"{where}: responses in {unit} were multiplied by {factor:.6g} "
+            f"({length_unit or 'm'} and N)"
+        )
+    return factors
+
+
+def _numerator(unit: str) -> str:
+    return re.split(r"/\s*(?=\(?(?:N|kN|mN|lbf?)\)?\s*$)", unit.strip(), maxsplit=1)[0].strip("() ")
+
+
+def _denominator(unit: str) -> str:
+    parts = re.split(r"/\s*(?=\(?(?:N|kN|mN|lbf?)\)?\s*$)", unit.strip(), maxsplit=1)
+    return parts[1].strip("() ") if len(parts) > 1 else ""
+
+
+def _plain(unit: str) -> str:
+    """Return a unit in one spelling: ``m/s^2`` for m/s2, m/s**2, m/s/s, (m/s^2)."""
+    word = unit.strip("()[] ").lower().replace(" ", "").replace("²", "^2").replace("**", "^")
+    word = word.replace("/s/s", "/s^2").replace("sec", "s").replace("µ", "u")
+    return re.sub(r"s2$", "s^2", word)
+
+
+def _say_unfit(records: Sequence[Record], report: Report) -> None:
+    """Warn of functions that call themselves frequency responses but cannot be used as such."""
+    reasons: dict[str, list[Record]] = {}
+    for record in records:
+        h = record.head
+        if h.function != 4 or is_frf(h):
+            continue
+        if not h.is_complex:
+            why = "are real, not complex"
+        elif not h.response[1] or not h.reference[1]:
+            why = "do not say the direction of response or reference"
+        else:
+            why = "are not a motion per force"
+        reasons.setdefault(why, []).append(record)
+    for why, found in reasons.items():
+        report.warnings.append(
+            f"{found[0].where}: {len(found)} frequency response(s) {why}; they stand apart"
+        )
+
+
+def _say_named(records: Sequence[Record], report: Report) -> None:
+    named = [r for r in records if r.head.named]
+    if named:
+        report.warnings.append(
+            f"{named[0].where}: node and direction of {len(named)} function(s) stand only in their "
+            f"names and were taken from there ({label(named[0].head)} first)"
+        )
+
+
+def _read(record: Record, report: Report) -> tuple[Floats, Numbers] | None:
+    """Values of a function; None, and a line in the report, where they cannot be read."""
+    source, head = record.source, record.head
+    try:
+        return read_values(source, head)
+    except NotANumber as error:
+        report.skip(record, f"{error.text!r} is not a number", 12 + error.row)
+    except ValueError as error:
+        if not head.section.closed:
+            raise source.error(
+                head.section.line,
+                f"the file ends inside dataset 58 that starts here ({error}); it is cut off, "
+                "export or copy it again",
+            ) from None
+        report.skip(record, str(error))
+    return None
+
+
+def _function(record: Record, x: Floats, y: Numbers) -> Function:
+    h = record.head
+    return Function(
+        h.kind,
+        x,
+        y,
+        h.response,
+        h.reference,
+        QUANTITIES.get(h.ordinate.quantity, f"type {h.ordinate.quantity}"),
+        QUANTITIES.get(h.denominator.quantity, f"type {h.denominator.quantity}"),
+        h.abscissa.unit,
+        h.ordinate.unit,
+        h.ids,
+        h.section.line,
+        record.source.name,
+    )
