@@ -10,6 +10,8 @@ from .colour import STEPS
 from .formats import general
 from .markup import esc, short, svg_text, tag
 
+_NAMED = 10  # lines that are all named at their ends; more get a key above
+
 
 @dataclass(frozen=True)
 class Series:
@@ -58,20 +60,13 @@ def lines(
     y_ticks = decades(low, high) if log else ticks(low, high if high > low else low + 1.0)
     room = min(150, 14 + 6.2 * max(len(s.name) for s in drawn)) if len(drawn) > 1 else 14
     plot = Plot(48, 8, width - 48 - room, height - 50, min(x), max(x), tuple(y_ticks), log)
-    ends = [next(v for v in reversed(s.values) if v is not None) for s in drawn]
-    gap = min(12.5, (plot.height + 12) / len(drawn))
-    places = spread([plot.y(v) for v in ends], gap, plot.top - 6, plot.top + plot.height + 6)
     body = plot.frame(emphasised=reference) + _iterations(plot, x)
+    colours = [_colour(k, len(drawn), ordered) for k in range(len(drawn))]
     for k, s in enumerate(drawn):
-        colour = _colour(k, len(drawn), ordered)
-        body += _line(plot, x, s, k, colour, len(drawn), ordered)
-        if len(drawn) > 1 and gap >= 7.5:
-            edge = plot.left + plot.width
-            d = f"M{short(edge + 2)} {short(plot.y(ends[k]))}L{short(edge + 9)} {short(places[k])}"
-            body += tag("path", class_="leader", d=d, style=f"stroke:{colour}")
-            body += svg_text(
-                edge + 11, places[k] + 3.5, _shortened(s.name), class_="name", fill=colour
-            )
+        body += _line(plot, x, s, k, colours[k], len(drawn), ordered)
+    crowded = len(drawn) > _NAMED
+    if len(drawn) > 1:
+        body += _names(plot, drawn, colours, alone=crowded)
     body += tag("path", class_="cursor", d=f"M0 {plot.top}v{short(plot.height)}", hidden=True)
     svg = tag(
         "svg",
@@ -88,8 +83,38 @@ def lines(
         data_v="|".join(" ".join(_plain(v) for v in s.values) for s in drawn),
         data_unit=unit,
     )
-    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "")
+    key = ""
+    if crowded:
+        key = "".join(
+            tag(
+                "span",
+                tag("i", style=f"background:{colours[k]}"),
+                esc(_brief(s.name)),
+                class_="key",
+            )
+            for k, s in enumerate(drawn)
+        )
+    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "", key)
     return tag("figure", heading, svg)
+
+
+def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone: bool) -> str:
+    """Names at the ends of the lines; with `alone` only where no other line ends close by."""
+    at = [plot.y(next(v for v in reversed(s.values) if v is not None)) for s in drawn]
+    shown = list(range(len(drawn)))
+    if alone:
+        order = sorted(at)
+        near = [min(abs(y - o) for o in [*order, 1e9] if o != y) for y in at]
+        shown = [k for k in shown if near[k] >= 9.0 and order.count(at[k]) == 1]
+    top, bottom = plot.top - 6, plot.top + plot.height + 6
+    places = spread([at[k] for k in shown], 12.5, top, bottom)
+    edge, body = plot.left + plot.width, ""
+    for k, y in zip(shown, places, strict=True):
+        d = f"M{short(edge + 2)} {short(at[k])}L{short(edge + 9)} {short(y)}"
+        body += tag("path", class_="leader", d=d, style=f"stroke:{colours[k]}")
+        name = _shortened(drawn[k].name)
+        body += svg_text(edge + 11, y + 3.5, name, class_="name", style=f"fill:{colours[k]}")
+    return body
 
 
 def _line(
@@ -129,6 +154,10 @@ def _colour(k: int, count: int, ordered: bool) -> str:
     if not ordered:
         return f"var(--s{k % 8})"
     return f"var(--c{round(6 + (STEPS - 7) * (k / (count - 1) if count > 1 else 1.0))})"
+
+
+def _brief(name: str) -> str:
+    return name.split(" · ")[0]
 
 
 def _shortened(name: str) -> str:

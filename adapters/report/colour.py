@@ -30,9 +30,9 @@ def ramp(*, dark: bool) -> list[str]:
     colours = []
     for k in range(STEPS):
         x = k / (STEPS - 1)
-        lightness = 0.245 + 0.685 * x if dark else 0.985 - 0.665 * x
-        chroma = 0.012 + 0.118 * math.sin(math.pi * (0.12 + 0.70 * x)) if k else 0.004
-        hue = 272.0 - 87.0 * x if dark else 185.0 + 87.0 * x
+        lightness = 0.255 + 0.665 * x if dark else 0.975 - 0.665 * x
+        chroma = 0.006 + 0.125 * math.sin(math.pi * x) ** 1.1 + 0.035 * x
+        hue = 268.0 - 53.0 * x if dark else 215.0 + 53.0 * x
         colours.append(oklch(lightness, chroma, hue))
     return colours
 

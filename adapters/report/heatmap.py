@@ -13,7 +13,7 @@ from .markup import esc, short, svg_text, tag
 from .reading import MacMatrix
 
 _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
-_LEFT, _BOTTOM, _PAD = 84, 76, 8
+_LEFT, _BOTTOM, _PAD = 84, 88, 8
 
 
 def heatmap(
@@ -50,10 +50,7 @@ def heatmap(
         for t, a in pairs
         for r, c in _position(matrix, [t], [a])
     )
-    frames = "".join(
-        tag("path", d="".join(_block(r, c, cell) for r, c in _position(matrix, t, a)))
-        for t, a in clusters
-    )
+    frames = "".join(tag("path", d=_outline(_position(matrix, t, a), cell)) for t, a in clusters)
     body = [
         tag("rect", class_="field", width=w, height=h),
         *_cells(matrix.values, cell),
@@ -169,26 +166,29 @@ def _labels(
             transform=f"translate(-73 {short(middle)}) rotate(-90)",
         ),
         svg_text(
-            cols * cell / 2, rows * cell + 72, "analysis mode, Hz", class_="axis",
+            cols * cell / 2, rows * cell + 82, "analysis mode, Hz", class_="axis",
             text_anchor="middle",
         ),
     ]  # fmt: skip
 
 
 def _upright(x: float, y: float, mode: int, frequency: float | None) -> str:
-    name = f'<tspan class="n">{mode}</tspan>'
-    value = "" if frequency is None else f'<tspan dx="5">{hz(frequency)}</tspan>'
-    return tag(
-        "text",
-        name,
-        value,
-        text_anchor="end",
-        transform=f"translate({short(x)} {y + 6}) rotate(-90)",
-    )
+    value = "" if frequency is None else f"{hz(frequency)} "
+    name = tag("tspan", str(mode), class_="n")
+    turn = f"translate({short(x)} {y + 6}) rotate(-90)"
+    return tag("text", value, name, text_anchor="end", transform=turn)
 
 
-def _block(r: int, c: int, cell: int) -> str:
-    return f"M{c * cell} {r * cell}h{cell}v{cell}h-{cell}z"
+def _outline(cells: Sequence[tuple[int, int]], cell: int) -> str:
+    """Edges between cells that belong to a block and cells that do not."""
+    inside, d = set(cells), ""
+    for r, c in cells:
+        x, y = c * cell, r * cell
+        d += "" if (r - 1, c) in inside else f"M{x} {y}h{cell}"
+        d += "" if (r + 1, c) in inside else f"M{x} {y + cell}h{cell}"
+        d += "" if (r, c - 1) in inside else f"M{x} {y}v{cell}"
+        d += "" if (r, c + 1) in inside else f"M{x + cell} {y}v{cell}"
+    return d
 
 
 def _mode_label(mode: int, frequency_of: Mapping[int, float]) -> str:

@@ -32,7 +32,12 @@ def html_table(table: Table) -> str:
     rows = [
         tag("tr", *[_cell(cell, classes[k]) for k, cell in enumerate(row)]) for row in table.rows
     ]
-    body = tag("table", tag("thead", head), tag("tbody", *rows))
+    body = tag(
+        "table",
+        tag("thead", head),
+        tag("tbody", *rows),
+        class_="both" if any(groups) else None,
+    )
     note = tag("p", esc(table.note), class_="note") if table.note else ""
     return tag("div", body, class_="wide") + note
 

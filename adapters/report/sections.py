@@ -46,7 +46,9 @@ def pairs(result: Result) -> Section | None:
 
 
 def _tick_hz(value: float | None) -> str:
-    return "" if value is None else f"{value:.4g}" if value < 1e4 else hz(value)
+    if value is None:
+        return ""
+    return f"{value:.1f}" if 100.0 <= value < 10000.0 else hz(value)
 
 
 def _by_mode(correlation: Result, key: str, modes: list[int], scale: float) -> list[float | None]:
@@ -117,7 +119,12 @@ def _framed(correlation: Result) -> list[tuple[list[int], list[int]]]:
 def unpaired(result: Result) -> Section | None:
     """Return the modes of both sides without a partner."""
     table = tables.unpaired(result)
-    return None if table is None else Section(table.title, "unpaired", html_table(table))
+    if table is None:
+        return None
+    sides = [tables.only(table, side) for side in ("test", "analysis")]
+    shown = tag("div", *[html_table(t) for t in sides if t.rows], class_="row")
+    note = tag("p", esc(table.note), class_="note") if table.note else ""
+    return Section(table.title, "unpaired", shown + note)
 
 
 def parameters(result: Result) -> Section | None:
@@ -210,10 +217,11 @@ def alignment(
     if turn is not None:
         facts.append(("rotation", f"{fixed(turn, 2)}°"))
     strip = "".join(tag("div", tag("dt", esc(k)), tag("dd", esc(v))) for k, v in facts)
-    body = tag("dl", strip, class_="figures") if strip else ""
+    body = tag("dl", strip, class_="facts") if strip else ""
     if geometry is not None and not reading.records(result, "findings"):
         marks = placing.sensors(sensors, geometry, sensors_xyz)
-        body += scene(geometry, "Sensors on the model", marks=marks) if marks else ""
+        picture = scene(geometry, "Sensors on the model", marks=marks) if marks else ""
+        body = tag("div", picture, body, class_="row")
     return Section("Alignment and sensors", "alignment", body)
 
 

@@ -125,6 +125,13 @@ def unpaired(result: Result) -> Table | None:
     return Table("Modes without a partner", columns, tuple(rows), note)
 
 
+def only(table: Table, first: str) -> Table:
+    """Return the rows whose first cell reads `first`, without that column and the note."""
+    rows = tuple(r[1:] for r in table.rows if r[0].text == first)
+    name = Column(f"{first} {table.columns[1].heading}", numeric=table.columns[1].numeric)
+    return Table(f"{table.title}: {first}", (name, *table.columns[2:]), rows)
+
+
 def _closest(
     matrix: reading.MacMatrix | None, side: str, mode: int
 ) -> tuple[int | None, float | None]:
