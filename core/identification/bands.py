@@ -1,0 +1,98 @@
+"""The complex mode indicator function, and bands that hold a handful of modes each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from ..arrays import Floats, Ints, Numbers
+
+MAX_PEAKS = 10  # in one band
+_MIN_LINES = 96  # a band is not split below twice this
+_MARGIN = 0.25  # of the core's width, on either side
+_PROMINENCE_DB = 1.0
+
+
+@dataclass(frozen=True)
+class Band:
+    """A part of the measured range; modes are taken from the core, fits use the margins too.
+
+    Parameters
+    ----------
+    low, high : float
+        Core [Hz]; the cores of all bands tile the range.
+    first, last : float
+        With margins [Hz].
+    """
+
+    low: float
+    high: float
+    first: float
+    last: float
+
+
+def cmif(values: Numbers) -> Floats:
+    """Complex mode indicator function: singular values of the response matrix at every line.
+
+    Parameters
+    ----------
+    values : (n_output, n_input, n_line) complex
+
+    Returns
+    -------
+    (n_line, n_value) float
+        Largest first; n_value is the smaller of n_output and n_input.
+
+    References
+    ----------
+    Shih, Tsuei, Allemang, Brown (1988), Complex mode indication function and its applications to
+    spatial domain parameter estimation, MSSP 2, 367-377.
+    """
+    return np.asarray(np.linalg.svd(values.transpose(2, 0, 1), compute_uv=False))
+
+
+def peaks(indicator: Floats, floor: float) -> Ints:
+    """Lines at which a singular value peaks above `floor`, rising; one line may stand twice."""
+    found = []
+    for column in np.maximum(indicator.T, 1e-300):
+        lines, _ = find_peaks(20.0 * np.log10(column), prominence=_PROMINENCE_DB)
+        found.append(lines[column[lines] > floor])
+    return np.sort(np.concatenate(found)) if found else np.empty(0, np.int64)
+
+
+def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band, ...]:
+    """Split the range at valleys of the indicator until no band has many peaks.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+    indicator : (n_line, n_value) float
+        Singular values.
+    floor : float
+        What noise alone makes of the singular values.
+    """
+    lines = peaks(indicator, 2.0 * floor)
+    valley = np.log(np.maximum(indicator[:, 0], 1e-300))
+    edges = [0, *_cuts(valley, lines, 0, len(frequencies_hz) - 1), len(frequencies_hz) - 1]
+    f = frequencies_hz
+    bands = []
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
+        margin = max(_MARGIN * (f[b] - f[a]), f[min(a + 8, len(f) - 1)] - f[a])
+        first, last = max(f[a] - margin, f[0]), min(f[b] + margin, f[-1])
+        bands.append(Band(float(f[a]), float(f[b]), float(first), float(last)))
+    return tuple(bands)
+
+
+def _cuts(valley: Floats, lines: Ints, a: int, b: int) -> list[int]:
+    inside = lines[(lines > a) & (lines < b)]
+    low, high = a + _MIN_LINES, b - _MIN_LINES
+    if len(inside) <= MAX_PEAKS or low >= high:
+        return []
+    quarter = len(inside) // 4
+    low, high = max(low, int(inside[quarter])), min(high, int(inside[-quarter - 1]))
+    if low >= high:
+        low, high = (a + b) // 2, (a + b) // 2 + 1
+    cut = low + int(np.argmin(valley[low:high]))
+    return [*_cuts(valley, lines, a, cut), cut, *_cuts(valley, lines, cut, b)]

@@ -1,0 +1,142 @@
+"""Candidate roots of a band: pLSCF on complete blocks of the survey, wide and narrow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Ints, Numbers
+from .plscf import poles_by_order
+from .stabilisation import Candidate, Chart, stabilise
+from .survey import Survey
+
+_ENOUGH = 8  # complete responses that speak for a band
+_MAX_COLUMNS = 180  # of the denominator, order times inputs
+_SAME = 1.5  # half bandwidths within which candidates of two runs are the same root
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """What the stabilisation of a band proposes.
+
+    Parameters
+    ----------
+    firm : tuple of Candidate
+        From the whole band.
+    spare : tuple of Candidate
+        Seen only in a narrower band or in another block of the survey; to be tested.
+    chart : Chart
+        Of the whole band.
+    """
+
+    firm: tuple[Candidate, ...]
+    spare: tuple[Candidate, ...]
+    chart: Chart
+
+
+def propose(
+    survey: Survey, first: float, last: float, n_peaks: int, max_order: int | None
+) -> Candidates:
+    """Propose roots of a band.
+
+    Parameters
+    ----------
+    survey : Survey
+    first, last : float
+        Band [Hz].
+    n_peaks : int
+        Peaks that the mode indicator shows, from which the highest order follows.
+    max_order : int, optional
+        Highest order of the denominator polynomial instead.
+    """
+    blocks = complete_blocks(survey.measured)
+    firm, chart = _run(survey, blocks[0], first, last, n_peaks, max_order)
+    spare: list[Candidate] = []
+    for block in blocks[1:]:
+        spare += _new(_run(survey, block, first, last, n_peaks, max_order)[0], [*firm, *spare])
+    third = (last - first) / 3.0
+    for low in (first, first + 0.5 * third, first + third, first + 1.5 * third, first + 2.0 * third):
+        found, _ = _run(survey, blocks[0], low, low + third, max(3, n_peaks // 2), max_order)
+        spare += _new(found, [*firm, *spare])
+    return Candidates(firm, tuple(spare), chart)
+
+
+def complete_blocks(measured: Numbers) -> list[tuple[Ints, Ints]]:
+    """Sets of outputs and inputs with every combination measured, the most telling first.
+
+    Parameters
+    ----------
+    measured : (n_output, n_input) bool
+
+    Returns
+    -------
+    list of (rows, columns)
+        The first block has all inputs when enough outputs were measured with all of them;
+        otherwise blocks of fewer inputs follow until every input and nearly every output took
+        part.
+    """
+    n_output = len(measured)
+    patterns = np.unique(measured, axis=0)
+    blocks = []
+    for pattern in patterns:
+        rows = np.flatnonzero(measured[:, pattern].all(axis=1))
+        blocks.append((rows, np.flatnonzero(pattern)))
+    blocks.sort(key=lambda b: (-len(b[1]) * min(len(b[0]), _ENOUGH), -len(b[0])))
+    chosen = [blocks[0]]
+    seen = np.zeros_like(measured)
+    seen[np.ix_(*blocks[0])] = True
+    for rows, columns in blocks[1:]:
+        inputs_done = seen.any(axis=0).all()
+        outputs_done = np.count_nonzero(seen.any(axis=1)) >= min(n_output, 2 * _ENOUGH)
+        if inputs_done and outputs_done:
+            break
+        if not seen[np.ix_(rows, columns)].all():
+            chosen.append((rows, columns))
+            seen[np.ix_(rows, columns)] = True
+    return chosen
+
+
+def _run(
+    survey: Survey,
+    block: tuple[Ints, Ints],
+    first: float,
+    last: float,
+    n_peaks: int,
+    max_order: int | None,
+) -> tuple[tuple[Candidate, ...], Chart]:
+    rows, columns = block
+    lines = survey.lines(first, last)
+    f = survey.frequencies_hz[lines]
+    n_input = len(columns)
+    top = max_order or int(np.ceil((4 * n_peaks + 20) * 1.5 / n_input)) + 4
+    top = max(2, min(top, _MAX_COLUMNS // n_input, len(f) // 3))
+    if len(f) < 12:
+        return (), stabilise([], first, last)[1]
+    values = survey.values[:, :, lines][rows][:, columns]
+    scale = np.sqrt(np.mean(np.abs(values) ** 2, axis=(0, 2)))
+    scale = 1.0 / np.where(scale > 0.0, scale, 1.0)
+    sets = poles_by_order(f, values * scale[:, None], range(1, top + 1))
+    found, chart = stabilise(sets, first, last)
+    return tuple(_spread(c, scale, columns, survey.measured.shape[1]) for c in found), chart
+
+
+def _spread(c: Candidate, scale: Numbers, columns: Ints, n_input: int) -> Candidate:
+    participation = np.full(n_input, np.nan + 0j)
+    participation[columns] = c.participation / scale
+    return Candidate(c.pole, participation, c.length)
+
+
+def _new(found: tuple[Candidate, ...], known: list[Candidate]) -> list[Candidate]:
+    """Return those of `found` that `known` does not hold; one known root excuses one found."""
+    free = list(known)
+    fresh = []
+    for c in found:
+        gaps = [abs(c.pole - k.pole) for k in free]
+        if gaps:
+            best = int(np.argmin(gaps))
+            if gaps[best] < _SAME * max(abs(c.pole.real), abs(free[best].pole.real)):
+                del free[best]
+                continue
+        fresh.append(c)
+    return fresh

@@ -1,0 +1,151 @@
+"""Which poles stay where they are while the model order rises."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ..arrays import Floats, Ints, Numbers
+from .plscf import PoleSet
+
+MAX_DAMPING = 0.25  # of critical; above it a pole is taken for a description of the background
+_REACH = 1.0  # largest distance between the poles of one track, see `_distance`
+_PATIENCE = 2  # orders that a track may miss
+_MEMBERS = 9  # last members of a track that speak for it
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A root that was found again and again over the model orders.
+
+    Parameters
+    ----------
+    pole : complex
+        In rad/s.
+    participation : (n_input,) complex
+        NaN at inputs that took no part.
+    length : int
+        Number of orders it was found at.
+    """
+
+    pole: complex
+    participation: Numbers
+    length: int
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """The stabilisation diagram: one row per pole of any order.
+
+    Parameters
+    ----------
+    order : (n_point,) int
+    frequency_hz : (n_point,) float
+    damping : (n_point,) float
+    stable : (n_point,) bool
+        Whether the pole continues one of the next lower orders.
+    """
+
+    order: Ints
+    frequency_hz: Floats
+    damping: Floats
+    stable: Numbers
+
+
+def stabilise(
+    sets: Sequence[PoleSet], low: float, high: float
+) -> tuple[tuple[Candidate, ...], Chart]:
+    """Follow poles over rising orders, one to one, and keep those that stabilise.
+
+    Parameters
+    ----------
+    sets : sequence of PoleSet
+        By rising order.
+    low, high : float
+        Poles outside this band [Hz] are left out.
+
+    Returns
+    -------
+    candidates : tuple of Candidate
+        By rising frequency; a track that lived for at least a quarter of the orders (and four).
+    chart : Chart
+    """
+    tracks: list[_Track] = []
+    rows: list[tuple[int, float, float, bool]] = []
+    for s in sets:
+        s = _plausible(s, low, high)
+        joined = _extend(tracks, s)
+        magnitude = np.abs(s.values)
+        for k in range(len(magnitude)):
+            hz, zeta = magnitude[k] / (2.0 * np.pi), -s.values[k].real / magnitude[k]
+            rows.append((s.order, float(hz), float(zeta), bool(joined[k])))
+    enough = max(4, len(sets) // 4)
+    found = [t.candidate() for t in tracks if len(t.poles) >= enough]
+    found.sort(key=lambda c: abs(c.pole))
+    table = np.array(rows, dtype=float).reshape(-1, 4)
+    order, stable = table[:, 0].astype(np.int64), table[:, 3].astype(bool)
+    return tuple(found), Chart(order, table[:, 1], table[:, 2], stable)
+
+
+class _Track:
+    """Poles of successive orders taken for the same root; grows while orders are read."""
+
+    def __init__(self, order: int, pole: complex, participation: Numbers) -> None:
+        self.order = order
+        self.poles = [pole]
+        self.participations = [participation]
+
+    def add(self, order: int, pole: complex, participation: Numbers) -> None:
+        self.order = order
+        self.poles.append(pole)
+        self.participations.append(participation)
+
+    def candidate(self) -> Candidate:
+        poles = np.array(self.poles[-_MEMBERS:])
+        pole = complex(np.median(poles.real), np.median(poles.imag))
+        w = np.array(self.participations[-_MEMBERS:])
+        u, _, _ = np.linalg.svd(w.T, full_matrices=False)
+        return Candidate(pole, u[:, 0], len(self.poles))
+
+
+def _plausible(s: PoleSet, low: float, high: float) -> PoleSet:
+    magnitude = np.abs(s.values)
+    damping = -s.values.real / magnitude
+    hz = magnitude / (2.0 * np.pi)
+    keep = (damping > 0.0) & (damping < MAX_DAMPING) & (hz >= low) & (hz <= high)
+    return PoleSet(s.order, s.values[keep], s.participation[keep])
+
+
+def _extend(tracks: list[_Track], s: PoleSet) -> Numbers:
+    """Join the poles of one order to the tracks; return which of them continued one."""
+    joined = np.zeros(len(s.values), dtype=bool)
+    alive = [t for t in tracks if s.order - t.order <= _PATIENCE]
+    if alive and len(s.values):
+        distance = _distance(
+            np.array([t.poles[-1] for t in alive]),
+            np.array([t.participations[-1] for t in alive]),
+            s.values,
+            s.participation,
+        )
+        for a, b in zip(*linear_sum_assignment(np.minimum(distance, _REACH)), strict=True):
+            if distance[a, b] < _REACH:
+                alive[a].add(s.order, complex(s.values[b]), s.participation[b])
+                joined[b] = True
+    for k in np.flatnonzero(~joined):
+        tracks.append(_Track(s.order, complex(s.values[k]), s.participation[k]))
+    return joined
+
+
+def _distance(a: Numbers, wa: Numbers, b: Numbers, wb: Numbers) -> Floats:
+    """Distance of poles in half bandwidths, plus half of what their participations differ.
+
+    A change of the damping by 30 % or of the frequency by 0.3 half bandwidths alone stays within
+    0.3; participations may turn within a pair of equal poles, so they count less.
+    """
+    width = np.minimum(np.abs(a.real)[:, None], np.abs(b.real)[None, :])
+    apart = np.abs(a[:, None] - b[None, :]) / np.maximum(width, 1e-12)
+    mac = np.abs(wa.conj() @ wb.T) ** 2
+    return np.asarray(2.0 * apart + 0.5 * (1.0 - mac))

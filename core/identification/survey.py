@@ -1,0 +1,243 @@
+"""What a set of frequency responses is worth: checked, cleaned, weighted, oriented."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from ..dofs import Dofs
+from ..errors import InputError
+from ..frfs import Frfs
+from .synthesis import derivative_order
+
+MIN_LINES = 16
+_MODEL_ERROR = 0.01  # relative error that a response is assumed to have besides its noise
+_NOISE_ONLY = 0.7  # noise over rms above which a response holds nothing else
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """Frequency responses ready to be fitted.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+    values : (n_output, n_input, n_line) complex
+        Weighted by `output_weight` and `input_weight`; 0 where not `measured`.
+    measured : (n_output, n_input) bool
+    output_weight, input_weight : float
+        (n_output,), (n_input,): one over the noise, as a product.
+    outputs, inputs : Dofs
+        Shapes are found at the outputs. They are the responses, or the references of a survey
+        with more references than responses (a roving hammer), by reciprocity.
+    roving_hammer : bool
+        Whether outputs and inputs are exchanged.
+    quantity : str
+    source : str
+    warnings : tuple of str
+    """
+
+    frequencies_hz: Floats
+    values: Numbers
+    measured: Numbers
+    output_weight: Floats
+    input_weight: Floats
+    outputs: Dofs
+    inputs: Dofs
+    roving_hammer: bool
+    quantity: str
+    source: str
+    warnings: tuple[str, ...]
+
+    @property
+    def order(self) -> int:
+        """How often displacement is differentiated to give the quantity."""
+        return derivative_order(self.quantity)
+
+    def lines(self, low: float, high: float) -> slice:
+        """Lines from `low` to `high` [Hz], both included."""
+        first, last = np.searchsorted(self.frequencies_hz, [low, np.nextafter(high, np.inf)])
+        return slice(int(first), int(last))
+
+
+def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) -> Survey:
+    """Check, clean, weight and orient frequency responses.
+
+    Functions that are no frequency responses (constant, real, with gaps) are left out and named
+    in the warnings.
+
+    Raises
+    ------
+    InputError
+        A frequency axis that does not rise, too few lines, or nothing that can be fitted.
+    """
+    name = frfs.source or "the frequency responses"
+    warnings: list[str] = []
+    derivative_order(frfs.quantity)
+    f, keep = _axis(frfs, fmin, fmax, name)
+    values = np.ascontiguousarray(frfs.values[:, :, keep])
+    responses, references = frfs.responses, frfs.references
+    measured = _measured(values, responses, references, name, warnings)
+    if not measured.any():
+        reason = f": {warnings[-1]}" if warnings else ""
+        raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
+    rows, columns = measured.any(axis=1), measured.any(axis=0)
+    rows, columns = _one_component(measured, rows, columns, responses, references, warnings)
+    values, measured = values[rows][:, columns], measured[rows][:, columns]
+    responses, references = responses.take(rows), references.take(columns)
+    roving = len(references) > len(responses)
+    if roving:
+        values, measured = np.ascontiguousarray(values.transpose(1, 0, 2)), measured.T
+        responses, references = references, responses
+        warnings.append(
+            f"{name} has more references than responses ({len(responses)} and {len(references)}):"
+            " taken as a roving-hammer survey, shapes are given at the references by reciprocity"
+        )
+    values[~measured] = 0.0
+    output_weight, input_weight = _weights(values, measured, responses, warnings)
+    values *= output_weight[:, None, None]
+    values *= input_weight[None, :, None]
+    return Survey(
+        f, values, measured, output_weight, input_weight, responses, references, roving,
+        frfs.quantity, frfs.source, tuple(warnings),
+    )  # fmt: skip
+
+
+def noise_levels(values: Numbers) -> Floats:
+    """Estimate the noise of each function from its roughness from line to line.
+
+    Parameters
+    ----------
+    values : (n_output, n_input, n_line) complex
+
+    Returns
+    -------
+    (n_output, n_input) float
+        Standard deviation (real and imaginary part together): the median modulus of the fourth
+        difference, which white complex noise σ makes √70·√ln 2·σ. Resonances are smooth at this
+        scale but for a few lines, which a median does not see.
+    """
+    levels = np.empty(values.shape[:2])
+    for o, function in enumerate(values):
+        rough = np.abs(np.diff(function, n=4, axis=1))
+        levels[o] = np.median(rough, axis=1) / np.sqrt(70.0 * np.log(2.0))
+    return levels
+
+
+def _axis(
+    frfs: Frfs, fmin: float | None, fmax: float | None, name: str
+) -> tuple[Floats, Numbers]:
+    f = frfs.frequencies_hz
+    if len(f) > 1 and np.any(np.diff(f) <= 0.0):
+        line = int(np.flatnonzero(np.diff(f) <= 0.0)[0]) + 1
+        raise InputError(f"the frequency axis of {name} does not rise at line {line + 1}")
+    low = 0.0 if fmin is None else fmin
+    high = np.inf if fmax is None else fmax
+    if low >= high:
+        raise InputError(f"the band asked for, {low:g} to {high:g} Hz, is empty")
+    keep = (f >= low) & (f <= high) & (f > 0.0)
+    if np.count_nonzero(keep) < MIN_LINES:
+        where = f" between {low:g} and {high:g} Hz" if fmin is not None or fmax is not None else ""
+        raise InputError(
+            f"{name} has {np.count_nonzero(keep)} frequency line(s){where}; "
+            f"identification needs {MIN_LINES}"
+        )
+    return np.asarray(f[keep]), keep
+
+
+def _measured(
+    values: Numbers, responses: Dofs, references: Dofs, name: str, warnings: list[str]
+) -> Numbers:
+    """Which combinations are frequency responses, (n_response, n_reference); names the others."""
+    nan = np.isnan(values)
+    missing = nan.all(axis=2)
+    measured = ~missing
+    gaps = measured & ~np.isfinite(values).all(axis=2)
+    with np.errstate(invalid="ignore"):
+        constant = measured & ~gaps & (np.abs(values - values[:, :, :1]).max(axis=2) == 0.0)
+        real = measured & ~gaps & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
+        unit = real & (values.real.min(axis=2) >= 0.0) & (values.real.max(axis=2) <= 1.0 + 1e-6)
+    for bad, what in (
+        (gaps, "has lines without a finite value"),
+        (constant, "is the same at every line (a dead channel)"),
+        (unit, "is real and between 0 and 1 (a coherence, not a frequency response)"),
+        (real & ~unit, "is real (a spectrum or a time record, not a frequency response)"),
+    ):
+        _name_functions(bad, what, responses, references, name, warnings)
+    return np.asarray(measured & ~gaps & ~constant & ~real)
+
+
+def _name_functions(
+    bad: Numbers, what: str, responses: Dofs, references: Dofs, name: str, warnings: list[str]
+) -> None:
+    rows, columns = np.nonzero(bad)
+    if not len(rows):
+        return
+    o, i = responses.labels, references.labels
+    shown = ", ".join(f"{o[a]}/{i[b]}" for a, b in list(zip(rows, columns, strict=True))[:5])
+    more = f" and {len(rows) - 5} more" if len(rows) > 5 else ""
+    warnings.append(f"{name}: {shown}{more} {what}: left out")
+
+
+def _one_component(
+    measured: Numbers,
+    rows: Numbers,
+    columns: Numbers,
+    responses: Dofs,
+    references: Dofs,
+    warnings: list[str],
+) -> tuple[Numbers, Numbers]:
+    """Keep the largest set of responses and references that measured combinations connect.
+
+    Between two sets without a common function the relative scale of the shapes is unknown.
+    """
+    best = np.zeros_like(rows), np.zeros_like(columns)
+    left = columns.copy()
+    while left.any():
+        in_set = np.zeros_like(columns)
+        in_set[np.flatnonzero(left)[0]] = True
+        while True:
+            out_set = measured[:, in_set].any(axis=1)
+            grown = measured[out_set].any(axis=0)
+            if (grown == in_set).all():
+                break
+            in_set = grown
+        left &= ~in_set
+        if measured[out_set][:, in_set].sum() > measured[best[0]][:, best[1]].sum():
+            best = out_set, in_set
+    lost = rows & ~best[0]
+    if lost.any():
+        labels = ", ".join(responses.take(lost).labels[:5])
+        warnings.append(
+            f"{np.count_nonzero(lost)} response(s) ({labels}{', ...' if lost.sum() > 5 else ''}) "
+            f"share no reference with the others ({', '.join(references.take(best[1]).labels)}): "
+            "their scale is unknown, left out"
+        )
+    return best
+
+
+def _weights(
+    values: Numbers, measured: Numbers, outputs: Dofs, warnings: list[str]
+) -> tuple[Floats, Floats]:
+    """One over the noise of each function, as a product of output and input weights."""
+    noise = noise_levels(values)
+    rms = np.sqrt(np.mean(np.abs(values) ** 2, axis=2))
+    empty = np.where(measured, noise, 0.0) > _NOISE_ONLY * rms
+    quiet = np.flatnonzero((empty | ~measured).all(axis=1))
+    if len(quiet):
+        labels = ", ".join(outputs.take(quiet[:5]).labels)
+        warnings.append(
+            f"{len(quiet)} response(s) ({labels}{', ...' if len(quiet) > 5 else ''}) hold little "
+            "but noise: kept, their shape values are uncertain"
+        )
+    with np.errstate(divide="ignore"):
+        level = np.log(np.hypot(noise, _MODEL_ERROR * rms))
+    level[~measured] = np.nan
+    of_input = np.zeros(level.shape[1])
+    of_output = np.zeros(level.shape[0])
+    for _ in range(5):
+        of_output = np.nanmedian(level - of_input, axis=1)
+        of_input = np.nanmedian(level - of_output[:, None], axis=0)
+    return np.exp(-of_output), np.exp(-of_input)

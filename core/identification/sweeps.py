@@ -1,0 +1,149 @@
+"""All bands together: each fitted with what the modes of the others contribute taken away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from .bands import Band
+from .candidates import Candidates
+from .moments import BandData, band_data
+from .refinement import Fit, refine
+from .selection import prune, select, significance, start_from
+from .survey import Survey
+from .synthesis import modal_response
+
+_FINAL_SWEEPS = 2
+_SAME = 0.5  # half bandwidths within which roots of two bands are one
+
+
+@dataclass(frozen=True, eq=False)
+class Roots:
+    """Modes of the whole range, by rising frequency, in the weighting of the survey.
+
+    Parameters
+    ----------
+    poles : (n_mode,) complex
+    participation : (n_input, n_mode) complex
+    shapes : (n_output, n_mode) complex
+    """
+
+    poles: Numbers
+    participation: Numbers
+    shapes: Numbers
+
+    @property
+    def hz(self) -> Floats:
+        """Undamped natural frequencies."""
+        return np.asarray(np.abs(self.poles) / (2.0 * np.pi))
+
+
+@dataclass(frozen=True, eq=False)
+class BandFit:
+    """A band explained by its modes.
+
+    Parameters
+    ----------
+    band : Band
+    frequencies_hz : (n_line,) float
+    data : BandData
+        With the modes beyond the band taken away.
+    fit : Fit
+    significance : (n_mode,) float
+    core : (n_mode,) bool
+        The modes that this band answers for.
+    """
+
+    band: Band
+    frequencies_hz: Floats
+    data: BandData
+    fit: Fit
+    significance: Floats
+    core: Numbers
+
+
+def fit_range(
+    survey: Survey, bands: tuple[Band, ...], proposals: tuple[Candidates, ...]
+) -> tuple[BandFit, ...]:
+    """Fit all bands, first each for itself, then with the contributions of all others removed."""
+    owned: list[Roots] = []
+    for band, proposed in zip(bands, proposals, strict=True):
+        f, data = _data(survey, band, None)
+        owned.append(_core(prune(data, f, start_from(data, proposed.firm)), band))
+    owned = _without_doubles(owned)
+    for band_number, (band, proposed) in enumerate(zip(bands, proposals, strict=True)):
+        near, far = _near_and_far(_joined(owned), band)
+        f, data = _data(survey, band, far)
+        start = Fit(near.poles, near.participation, near.shapes, np.inf)
+        fit = select(data, f, start, proposed.spare, band.low, band.high)
+        owned[band_number] = _core(fit, band)
+        owned = _without_doubles(owned)
+    for sweep in range(_FINAL_SWEEPS):
+        done = []
+        for band_number, band in enumerate(bands):
+            near, far = _near_and_far(_joined(owned), band)
+            f, data = _data(survey, band, far)
+            fit = refine(data, near.poles, near.participation)
+            mine = np.isin(near.poles, owned[band_number].poles)
+            owned[band_number] = Roots(
+                fit.poles[mine], fit.participation[:, mine], fit.shapes[:, mine]
+            )
+            if sweep == _FINAL_SWEEPS - 1:
+                value = significance(data, f, fit)
+                done.append(BandFit(band, f, data, fit, value, mine))
+    return tuple(done)
+
+
+def _data(survey: Survey, band: Band, far: Roots | None) -> tuple[Floats, BandData]:
+    lines = survey.lines(band.first, band.last)
+    f = survey.frequencies_hz[lines]
+    values = survey.values[:, :, lines]
+    if far is not None and len(far.poles):
+        values = values - modal_response(
+            f, far.poles, far.shapes, far.participation, survey.quantity
+        )
+    return f, band_data(f, values, survey.measured, survey.order)
+
+
+def _core(fit: Fit, band: Band) -> Roots:
+    hz = np.abs(fit.poles) / (2.0 * np.pi)
+    reach = np.abs(fit.poles.real) / (2.0 * np.pi) * _SAME
+    keep = (hz >= band.low - reach) & (hz <= band.high + reach)
+    return Roots(fit.poles[keep], fit.participation[:, keep], fit.shapes[:, keep])
+
+
+def _joined(owned: list[Roots]) -> Roots:
+    poles = np.concatenate([r.poles for r in owned])
+    order = np.argsort(np.abs(poles), kind="stable")
+    return Roots(
+        poles[order],
+        np.concatenate([r.participation for r in owned], axis=1)[:, order],
+        np.concatenate([r.shapes for r in owned], axis=1)[:, order],
+    )
+
+
+def _without_doubles(owned: list[Roots]) -> list[Roots]:
+    """Drop from a band the roots at its edges that the band below found as well."""
+    cleaned = owned[:1]
+    for roots in owned[1:]:
+        below = cleaned[-1]
+        keep = np.ones(len(roots.poles), bool)
+        for pole in below.poles:
+            gap = np.abs(roots.poles - pole)
+            if len(gap) and gap.min() < _SAME * abs(pole.real):
+                keep[int(np.argmin(gap))] = False
+        cleaned.append(
+            Roots(roots.poles[keep], roots.participation[:, keep], roots.shapes[:, keep])
+        )
+    return cleaned
+
+
+def _near_and_far(roots: Roots, band: Band) -> tuple[Roots, Roots]:
+    near = (roots.hz >= band.first) & (roots.hz <= band.last)
+    return _take(roots, near), _take(roots, ~near)
+
+
+def _take(roots: Roots, keep: Numbers) -> Roots:
+    return Roots(roots.poles[keep], roots.participation[:, keep], roots.shapes[:, keep])
