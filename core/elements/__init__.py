@@ -10,6 +10,8 @@ from .bar import (
 )
 from .shell import (
     ShellSection,
+    corner_normals,
+    grid_normals,
     isotropic_section,
     quad4_axes,
     quad4_corner_jacobians,
@@ -27,6 +29,8 @@ __all__ = [
     "bar_axes",
     "bar_mass",
     "bar_stiffness",
+    "corner_normals",
+    "grid_normals",
     "isotropic_section",
     "offset_transform",
     "quad4_axes",

@@ -6,13 +6,15 @@ import numpy as np
 
 from ..arrays import Floats
 from .batch import arms, condense, congruent, in_chunks, transpose, unit
+from .normals import director_slopes, is_warped, normal_map, warp_map
 from .section import ShellSection
 from .transverse_shear import bending_scale, finite_shear, residual_flexibility
 
 _XI = np.array([-1.0, 1.0, 1.0, -1.0])
 _ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _G = 1.0 / np.sqrt(3.0)
-_LINEAR_SHEAR = 0.025
+# share of the residual flexibility that a linear shear force sees, MacNeal (1978)
+_EPSILON = 0.025
 
 
 def _gradients(xi: Floats, eta: Floats) -> Floats:
@@ -77,13 +79,14 @@ def quad4_stiffness(
     section: ShellSection,
     k6rot: float = 100.0,
     offset: Floats | float = 0.0,
+    normals: Floats | None = None,
 ) -> Floats:
     """Stiffness of four-node shells.
 
     Membrane and bending by the QM6 operator (Taylor, Beresford, Wilson 1976), transverse shear
     assumed along the edges (Dvorkin, Bathe 1984) with MacNeal's residual bending flexibility
-    (1978), a warped quad as its projection with rigid arms to the grids: found to be what
-    NX Nastran's element matrices hold.
+    (1978): found to be what NX and MSC Nastran's element matrices hold. A warped quad is its
+    projection on the mean plane, see `warp_map`.
 
     Parameters
     ----------
@@ -95,6 +98,8 @@ def quad4_stiffness(
         Factor on the stiffness about the normal, 1e-6 G t A.
     offset : (n,) float
         Distance of the reference surface from the grids along the element normal.
+    normals : (n, 4, 3) float, optional
+        Grid normals at the corners, basic frame, NaN where a grid has none (`grid_normals`).
 
     Returns
     -------
@@ -105,7 +110,8 @@ def quad4_stiffness(
     offset = np.broadcast_to(np.asarray(offset, float), (n,))
 
     def matrices(part: slice) -> Floats:
-        return _stiffness(xyz[part], section.take(part), k6rot, offset[part])
+        at = None if normals is None else normals[part]
+        return _stiffness(xyz[part], section.take(part), k6rot, offset[part], at)
 
     return in_chunks(n, 24, matrices)
 
@@ -143,7 +149,9 @@ def _flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
     return local[:, :, :2], local[:, :, 2]
 
 
-def _stiffness(xyz: Floats, section: ShellSection, k6rot: float, offset: Floats) -> Floats:
+def _stiffness(
+    xyz: Floats, section: ShellSection, k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
     axes = quad4_axes(xyz)
     local, height = _flat(xyz, axes)
     J = _AT_GAUSS @ local[:, None]
@@ -153,9 +161,30 @@ def _stiffness(xyz: Floats, section: ShellSection, k6rot: float, offset: Floats)
     _add_plane(K, section, local, detJ, inverse)
     _add_shear(K, section, local, detJ, inverse)
     _add_drilling(K, section.drilling * k6rot * 1e-6, local)
-    arm = np.zeros((len(xyz), 4, 3))
-    arm[:, :, 2] = offset[:, None] - height
-    return congruent(K, arms(axes, arm))
+    return congruent(K, _corner_motions(axes, local, height, offset, normals))
+
+
+def _corner_motions(
+    axes: Floats, local: Floats, height: Floats, offset: Floats, normals: Floats | None
+) -> Floats:
+    """Motions that the flat element uses from those of the grids, (n, 24, 24)."""
+    arm = np.zeros((len(axes), 4, 3))
+    arm[:, :, 2] = offset[:, None]
+    T = arms(axes, arm)
+    warped = is_warped(local, height)
+    if not warped and normals is None:
+        return T
+    gradients = np.linalg.inv(_AT_NODES @ local[:, None]) @ _AT_NODES
+    tilt: Floats | float = 0.0
+    if warped:
+        W, tilt = warp_map(local, height, gradients)
+        T = W @ T
+    if normals is not None:
+        slopes = director_slopes(normals, axes)
+        if slopes.any():
+            active = slopes.any(axis=2, keepdims=True)
+            T = normal_map(np.where(active, slopes + tilt, 0.0), gradients) @ T
+    return T
 
 
 def _add_plane(
@@ -202,11 +231,13 @@ def _add_shear(
     Ks[~bends] = np.eye(4)
     span = np.stack([edge[:, 0] + edge[:, 1], edge[:, 2] + edge[:, 3]], axis=1) * 0.5
     along = np.einsum("nki->nk", (span * scale[:, None, :]) ** 2) / 12.0
+    squared = np.einsum("nki,nki->nk", span, span)
+    part = _EPSILON / (_EPSILON + (1.0 - _EPSILON) * squared / squared[:, ::-1])
     Z = edge @ residual_flexibility(edge, scale) @ transpose(edge)
     length = np.linalg.norm(edge, axis=2)
     for k, (a, b) in enumerate(((0, 1), (2, 3))):
         linear = np.stack([-length[:, a], length[:, b]], axis=1)
-        block = (3.0 * _LINEAR_SHEAR * along[:, k])[:, None, None] * (
+        block = (3.0 * part[:, k] * along[:, k])[:, None, None] * (
             linear[:, :, None] * linear[:, None, :]
         )
         Z[:, a : b + 1, a : b + 1] += block

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Floats
 from .batch import arms, congruent, in_chunks, transpose, unit
+from .normals import director_slopes, normal_map
 from .quad4 import edge_shear_operator
 from .section import ShellSection
 from .transverse_shear import bending_scale, finite_shear, residual_flexibility
@@ -46,6 +47,7 @@ def tria3_stiffness(
     section: ShellSection,
     k6rot: float = 100.0,
     offset: Floats | float = 0.0,
+    normals: Floats | None = None,
 ) -> Floats:
     """Stiffness of three-node shells.
 
@@ -65,6 +67,8 @@ def tria3_stiffness(
         Factor on the stiffness about the normal, 1e-6 G t 2A.
     offset : (n,) float
         Distance of the reference surface from the grids along the element normal.
+    normals : (n, 3, 3) float, optional
+        Grid normals at the corners, basic frame, NaN where a grid has none (`grid_normals`).
 
     Returns
     -------
@@ -75,7 +79,8 @@ def tria3_stiffness(
     offset = np.broadcast_to(np.asarray(offset, float), (n,))
 
     def matrices(part: slice) -> Floats:
-        return _stiffness(xyz[part], section.take(part), k6rot, offset[part])
+        at = None if normals is None else normals[part]
+        return _stiffness(xyz[part], section.take(part), k6rot, offset[part], at)
 
     return in_chunks(n, 18, matrices)
 
@@ -100,7 +105,9 @@ def tria3_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
     return M.reshape(-1, 18, 18)
 
 
-def _stiffness(xyz: Floats, section: ShellSection, k6rot: float, offset: Floats) -> Floats:
+def _stiffness(
+    xyz: Floats, section: ShellSection, k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
     n = len(xyz)
     axes = tria3_axes(xyz)
     local = ((xyz - xyz[:, :1]) @ transpose(axes))[:, :, :2]
@@ -115,7 +122,12 @@ def _stiffness(xyz: Floats, section: ShellSection, k6rot: float, offset: Floats)
     _add_drilling(K, section.drilling * k6rot * 1e-6 * 2.0 * area, g)
     arm = np.zeros((n, 3, 3))
     arm[:, :, 2] = offset[:, None]
-    return congruent(K, arms(axes, arm))
+    T = arms(axes, arm)
+    if normals is not None:
+        slopes = director_slopes(normals, axes)
+        if slopes.any():
+            T = normal_map(slopes, np.broadcast_to(g[:, None], (n, 3, 2, 3))) @ T
+    return congruent(K, T)
 
 
 def _add_plane(K: Floats, section: ShellSection, g: Floats, area: Floats) -> None:
