@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ...core.errors import InputError
+from .editing.numbers import parse_real
 
 Read = Callable[[int], str]
 """Text of the field at a position of one card, stripped and in capitals; "" where blank."""
@@ -65,7 +66,7 @@ _LAYOUTS = {
 }
 
 # Cards that hold several properties, each with its own number, by how many fields apart.
-STRIDES = {"PDAMP": 2, "PELAS": 4, "PMASS": 2, "PVISC": 4}
+STRIDES = {"CDAMP4": 4, "CMASS4": 4, "PDAMP": 2, "PELAS": 4, "PMASS": 2, "PVISC": 4}
 
 # Dimensions of the section library, and where a station repeats.
 _SECTION_DIMENSIONS = {
@@ -183,7 +184,7 @@ def field_position(card: str, name: str, read: Read) -> int | None:
     if fixed is not None:
         return fixed
     if card in ("PCOMP", "PCOMPG"):
-        return _ply_position(card, name)
+        return _ply_position(card, name, read)
     if card in ("PBARL", "PBEAML"):
         return _section_position(card, name, read)
     if card == "PBUSH":
@@ -247,13 +248,16 @@ def after(position: int, steps: int) -> int:
     return 10 * (data // 8) + data % 8 + 2
 
 
-def _ply_position(card: str, name: str) -> int | None:
+def _ply_position(card: str, name: str, read: Read) -> int | None:
+    """Each ply has four fields on PCOMP, a line on PCOMPG; a ply that is not there has none."""
     match = _PLY_NAME.fullmatch(name)
     if not match:
         return None
     column = {"T": 1, "THETA": 2}[match["what"]]
-    ply = int(match["ply"]) - 1
-    return after(12, 4 * ply + column) if card == "PCOMP" else after(12, 8 * ply + 1 + column)
+    fields, number = (4, 0) if card == "PCOMP" else (8, 1)
+    start = after(12, fields * (int(match["ply"]) - 1))
+    there = any(read(after(start, k)) for k in range(number + 4))
+    return after(start, number + column) if there else None
 
 
 def _section_position(card: str, name: str, read: Read) -> int | None:
@@ -281,11 +285,17 @@ def _find_station(position: int, stride: int, at: str, read: Read) -> int | None
     """Position of the SO field of the station at X/XB `at` ("B" is 1.0)."""
     wanted = 1.0 if at == "B" else float(at)
     while read(position) in ("YES", "YESA", "NO"):
-        ratio = read(after(position, 1))
-        if ratio and abs(float(ratio.replace("D", "E")) - wanted) < 1e-6:
+        if _is_near(read(after(position, 1)), wanted):
             return position
         position = after(position, stride)
     return None
+
+
+def _is_near(text: str, wanted: float) -> bool:
+    try:
+        return abs(parse_real(text) - wanted) < 1e-6
+    except ValueError:
+        return False
 
 
 def _pbush_position(name: str, read: Read) -> int | None:
@@ -310,7 +320,7 @@ def _pbeam_position(name: str, read: Read) -> int | None:
         return None
     wanted = 1.0 if match["at"] == "B" else float(match["at"])
     for station in stations:
-        if abs(float(read(10 * station + 3) or "nan") - wanted) < 1e-6:
+        if _is_near(read(10 * station + 3), wanted):
             if match["what"] in _STATION:
                 return 10 * station + 4 + _STATION.index(match["what"])
             if read(10 * station + 2) == "YES":

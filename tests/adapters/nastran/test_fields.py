@@ -29,11 +29,6 @@ def reader(card: str):
         ("MAT9", "RHO", 28),
         ("CONM2", "I33", 17),
         ("CONM1", "M66", 29),
-        ("PCOMP", "T1", 13),
-        ("PCOMP", "THETA2", 18),
-        ("PCOMP", "T3", 23),
-        ("PCOMPG", "T1", 14),
-        ("PCOMPG", "T2", 24),
         ("PFAST", "MASS", 14),
     ],
 )
@@ -44,6 +39,18 @@ def test_positions_of_the_guide(card, field, position):
 def test_after_counts_over_line_ends():
     assert [after(9, n) for n in range(3)] == [9, 12, 13]
     assert after(12, 16) == 32
+
+
+def test_plies_have_four_fields_or_a_line():
+    comp = reader("PCOMP,1\n,1,.1,45.,,1,.2\n,1,.3")
+    compg = reader("PCOMPG,1\n,1,1,.1\n,2,1,.2")
+    assert field_position("PCOMP", "T1", comp) == 13
+    assert field_position("PCOMP", "THETA2", comp) == 18
+    assert field_position("PCOMP", "T3", comp) == 23
+    assert field_position("PCOMP", "T4", comp) is None
+    assert field_position("PCOMPG", "T1", compg) == 14
+    assert field_position("PCOMPG", "T2", compg) == 24
+    assert field_position("PCOMPG", "T3", compg) is None
 
 
 def test_section_library_nsm_follows_the_dimensions():

@@ -1,0 +1,219 @@
+"""A deck as the text of all its files: nothing is lost, and every line knows its section."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ....core.errors import InputError
+from ..parameters import FieldRef
+from .includes import locate_include, parse_include
+from .source import TextFile, key_of
+
+_MARKS = {name: key_of(name) for name in ("CEND", "BEGIN", "ENDDATA", "INCLUDE")}
+
+
+class Include(NamedTuple):
+    """One INCLUDE statement: which file, which lines, what it says, which file it means."""
+
+    parent: int
+    row: int
+    rows: int
+    written: str
+    child: int
+
+
+class Segment(NamedTuple):
+    """Consecutive bulk data lines of one file; `part` names a superelement, "" the residual."""
+
+    file: int
+    first: int
+    stop: int
+    part: str
+
+
+@dataclass(frozen=True, eq=False)
+class DeckText:
+    """The text of a deck and of all files it includes.
+
+    Parameters
+    ----------
+    files : tuple of TextFile
+        The top deck first, then included files in the order met, each once.
+    children : mapping of (int, str) to int
+        Which file an INCLUDE of a file means, by what is written.
+    """
+
+    files: tuple[TextFile, ...]
+    children: Mapping[tuple[int, str], int]
+
+    @cached_property
+    def _walked(self) -> tuple[tuple[Segment, ...], tuple[Include, ...]]:
+        def follow(parent: int, written: str, where: str) -> int:
+            child = self.children.get((parent, written))
+            if child is None:
+                raise InputError(
+                    f"{where}: INCLUDE {written!r} was not there when the deck was read"
+                )
+            return child
+
+        walk = _Walk(lambda k: self.files[k], follow)
+        walk.through(0, ())
+        return walk.result()
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """The bulk data in the order Nastran reads it."""
+        return self._walked[0]
+
+    @property
+    def includes(self) -> tuple[Include, ...]:
+        """The INCLUDE statements in the order met."""
+        return self._walked[1]
+
+    def value(self, ref: FieldRef) -> float | None:
+        """Return a value of the deck, None where its field is blank (`edit.read_value`)."""
+        from .edit import read_value
+
+        return read_value(self, ref)
+
+    def place(self, file: int, row: int) -> str:
+        """``wing.bdf line 40``, for messages."""
+        return f"{self.files[file].path.name} line {row + 1}"
+
+    def with_file_data(self, changes: Mapping[int, bytes]) -> DeckText:
+        """Return the deck with other text in some of its files."""
+        files = tuple(
+            f.with_data(changes[k]) if k in changes else f for k, f in enumerate(self.files)
+        )
+        return DeckText(files, self.children)
+
+    def rows_in(self, segment: Segment, name: str) -> Iterator[tuple[int, int]]:
+        """Yield line and number (-1: none) of each card of a name in a segment."""
+        rows, ids = self.files[segment.file].rows_named(name)
+        a, b = np.searchsorted(rows, (segment.first, segment.stop))
+        yield from zip(rows[a:b].tolist(), ids[a:b].tolist(), strict=True)
+
+
+def read_deck_text(path: Path | str) -> DeckText:
+    """Read a deck and all its INCLUDE files as text, byte for byte.
+
+    A deck with neither CEND nor BEGIN BULK is bulk data throughout. What follows ENDDATA is kept
+    and never looked at.
+
+    Parameters
+    ----------
+    path : path
+        The top deck.
+
+    Raises
+    ------
+    InputError
+        A file that is missing or is no text, an INCLUDE that cannot be followed or includes
+        itself.
+    """
+    top = Path(path).absolute()
+    files: list[TextFile] = [_load(top, "")]
+    by_path = {top.resolve(): 0}
+    children: dict[tuple[int, str], int] = {}
+
+    def follow(parent: int, written: str, where: str) -> int:
+        if (parent, written) not in children:
+            found = locate_include(written, files[parent].path, top, where)
+            real = found.resolve()
+            if real not in by_path:
+                by_path[real] = len(files)
+                files.append(_load(found, f"{where}: "))
+            children[parent, written] = by_path[real]
+        return children[parent, written]
+
+    walk = _Walk(lambda k: files[k], follow)
+    walk.through(0, ())
+    return DeckText(tuple(files), children)
+
+
+def _load(path: Path, asked: str) -> TextFile:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{asked}cannot read {path}: {error.strerror}") from None
+    if b"\0" in data[:4096]:
+        raise InputError(f"{asked}{path} is not a text file: a Nastran deck is expected")
+    return TextFile(path, data, data)
+
+
+class _Walk:
+    """Goes through a deck as Nastran does, and notes the bulk data and the INCLUDE statements."""
+
+    def __init__(
+        self, file: Callable[[int], TextFile], follow: Callable[[int, str, str], int]
+    ) -> None:
+        self._file = file
+        self._follow = follow
+        self._segments: list[Segment] = []
+        self._all: list[Segment] = []
+        self._includes: list[Include] = []
+        self._in_bulk = False
+        self._has_control = False
+        self._part = ""
+        self._ended = False
+
+    def result(self) -> tuple[tuple[Segment, ...], tuple[Include, ...]]:
+        segments = self._segments if self._has_control else self._all
+        return tuple(s for s in segments if s.stop > s.first), tuple(self._includes)
+
+    def through(self, k: int, parents: tuple[int, ...]) -> None:
+        file = self._file(k)
+        keys = file.lines.keys
+        marked = np.flatnonzero(np.isin(keys, np.array([*_MARKS.values()], np.uint64)))
+        done = 0
+        for row in marked.tolist():
+            if row < done:
+                continue
+            mark = int(keys[row])
+            if mark == _MARKS["INCLUDE"]:
+                done = self._include(k, row, done, (*parents, k))
+            elif mark == _MARKS["ENDDATA"]:
+                self._take(k, done, row)
+                self._ended = True
+            elif mark == _MARKS["BEGIN"]:
+                self._take(k, done, row)
+                self._begin(file.line(row))
+                done = row + 1
+            elif not self._in_bulk:
+                self._has_control = True
+            if self._ended:
+                return
+        self._take(k, done, len(file.lines))
+
+    def _take(self, k: int, first: int, stop: int) -> None:
+        self._all.append(Segment(k, first, stop, self._part))
+        if self._in_bulk:
+            self._segments.append(self._all[-1])
+
+    def _begin(self, line: bytes) -> None:
+        words = line.split(b"$", 1)[0].decode("latin-1").upper().split()
+        rest = [w for w in words[1:] if w != "BULK"]
+        self._has_control = self._in_bulk = True
+        self._part = " ".join(rest)
+
+    def _include(self, k: int, row: int, done: int, parents: tuple[int, ...]) -> int:
+        file = self._file(k)
+        where = f"{file.path} line {row + 1}"
+        stop = min(row + 60, len(file.lines))
+        texts = [file.line(r).decode("latin-1") for r in range(row, stop)]
+        if file.encoding == "utf-8":
+            texts = [t.encode("latin-1").decode("utf-8") for t in texts]
+        written, used = parse_include(texts, where)
+        child = self._follow(k, written, where)
+        if child in parents:
+            raise InputError(f"{where}: INCLUDE {written!r} includes itself")
+        self._take(k, done, row)
+        self._includes.append(Include(k, row, used, written, child))
+        self.through(child, parents)
+        return row + used

@@ -1,0 +1,266 @@
+"""Cards found by name and number over all files of a deck."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....core.errors import InputError
+from ..fields import STRIDES
+from .cells import CardLine
+from .decktext import DeckText, Segment
+from .source import CONTINUATION, REPLICATION, name_of
+
+MOST_DIGITS = 99_999_999
+
+_KINDS = {
+    "element": re.compile(r"C(?!ORD)[A-Z]|R[A-Z]|PLOTEL|GENEL"),
+    "property": re.compile(r"P(?!ARAM|LOTEL)[A-Z]"),
+    "material": re.compile(r"MAT"),
+    "grid": re.compile(r"GRID$|SPOINT|EPOINT"),
+    "coordinate": re.compile(r"CORD"),
+    "set": re.compile(r"SPC|MPC|SUPORT1|EIG|LOAD|NSM|SET|METHOD"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Card:
+    """A card in the text.
+
+    Parameters
+    ----------
+    name : str
+        In capitals.
+    file : int
+        Index of its file.
+    rows : tuple of int
+        Its lines, comments between them left out.
+    lines : tuple of CardLine
+        The text of those lines.
+    shift : int
+        Data fields before the number that was asked for, where a card holds several properties.
+    part : str
+        Name of the superelement part it belongs to, "" for the residual structure.
+    """
+
+    name: str
+    file: int
+    rows: tuple[int, ...]
+    lines: tuple[CardLine, ...]
+    shift: int = 0
+    part: str = ""
+
+    def index(self, position: int) -> int:
+        """Return the data field (from 0 after the name) of a position of the guide."""
+        return 8 * (position // 10) + position % 10 - 2 + self.shift
+
+    def text(self, index: int) -> str:
+        """Return data field `index` (from 0), stripped, in capitals, "" where blank."""
+        for line in self.lines:
+            if index < line.capacity:
+                return line.text(index).upper()
+            index -= line.capacity
+        return ""
+
+    def read(self, position: int) -> str:
+        """Return the text of the field at a position of the guide."""
+        return self.text(self.index(position))
+
+    @property
+    def size(self) -> int:
+        """Number of data fields up to the last that is not blank."""
+        total = sum(line.capacity for line in self.lines)
+        return next((k + 1 for k in reversed(range(total)) if self.text(k)), 0)
+
+
+def card_at(deck: DeckText, segment: Segment, row: int, name: str) -> Card:
+    """Return the card that starts at a line.
+
+    Raises
+    ------
+    InputError
+        Its continuations are out of order (their tags do not match), or it is replicated by
+        the lines after it.
+    """
+    file = deck.files[segment.file]
+    keys = file.lines.keys
+    rows = [row]
+    for k in range(row + 1, segment.stop):
+        if keys[k] == REPLICATION:
+            raise InputError(
+                f"{deck.place(segment.file, k)}: the {name} above is replicated by '='; "
+                "write the cards out"
+            )
+        if keys[k] > CONTINUATION:
+            break
+        if keys[k] == CONTINUATION:
+            rows.append(k)
+    lines = tuple(CardLine(file.line(r)) for r in rows)
+    _require_matching_tags(deck, segment.file, rows, lines)
+    return Card(name, segment.file, tuple(rows), lines, part=segment.part)
+
+
+def find_card(deck: DeckText, name: str, number: int) -> Card:
+    """Return the one card of a name and number.
+
+    Raises
+    ------
+    InputError
+        No such card (its nearest numbers are named), or several.
+    """
+    name = name.upper()
+    found = [*_matches(deck, name, number)]
+    if not found:
+        raise InputError(_missing(deck, name, number))
+    if len(found) > 1:
+        places = [
+            deck.place(c.file, c.rows[0]) + (f" ({c.part})" if c.part else "") for c in found[:3]
+        ]
+        raise InputError(
+            f"{name} {number} stands {len(found)} times in the deck ({', '.join(places)}): "
+            "it is not clear which one is meant, give the copies their own numbers"
+        )
+    return found[0]
+
+
+def has_card(deck: DeckText, name: str, number: int) -> bool:
+    """Whether the deck has such a card."""
+    return next(_matches(deck, name.upper(), number), None) is not None
+
+
+def names_in(deck: DeckText) -> list[str]:
+    """Return the names of all cards of the bulk data."""
+    names: set[int] = set()
+    for segment in deck.segments:
+        keys = deck.files[segment.file].lines.keys[segment.first : segment.stop]
+        names.update(np.unique(keys).tolist())
+    return sorted(name_of(k) for k in names if k > REPLICATION)
+
+
+def free_id(deck: DeckText, kind: str) -> int:
+    """Return a number that no card of a kind has, in any file of the deck.
+
+    Parameters
+    ----------
+    deck : DeckText
+        The deck.
+    kind : {"element", "property", "material", "grid", "coordinate", "set"}
+        Cards that share one range of numbers: rigid and mass elements are elements, scalar points
+        are grids.
+
+    Returns
+    -------
+    int
+        One above the highest; where that has more than eight digits, the lowest that is free.
+
+    Raises
+    ------
+    InputError
+        Replicated cards, whose numbers are not written out.
+    """
+    used = _used(deck, _KINDS[kind])
+    top = max(used, default=0)
+    if top < MOST_DIGITS:
+        return top + 1
+    return next(n for n in range(1, MOST_DIGITS) if n not in used)
+
+
+def _used(deck: DeckText, kind: re.Pattern[str]) -> set[int]:
+    used: set[int] = set()
+    _require_written_out(deck)
+    for name in names_in(deck):
+        if not kind.match(name):
+            continue
+        for segment in deck.segments:
+            rows, ids = deck.files[segment.file].rows_named(name)
+            a, b = np.searchsorted(rows, (segment.first, segment.stop))
+            if name in STRIDES or name in ("SPOINT", "EPOINT"):
+                for row in rows[a:b].tolist():
+                    used |= _all_ids(card_at(deck, segment, row, name))
+            else:
+                used.update(np.unique(ids[a:b]).tolist())
+    return {n for n in used if 0 < n <= MOST_DIGITS}
+
+
+def _require_written_out(deck: DeckText) -> None:
+    for segment in deck.segments:
+        keys = deck.files[segment.file].lines.keys[segment.first : segment.stop]
+        rows = np.flatnonzero(keys == REPLICATION)
+        if len(rows):
+            raise InputError(
+                f"{deck.place(segment.file, segment.first + int(rows[0]))}: cards are replicated "
+                "by '=', so free numbers are not known; write the cards out"
+            )
+
+
+def _all_ids(card: Card) -> set[int]:
+    words = [card.text(k) for k in range(card.size)]
+    stride = STRIDES.get(card.name, 1)
+    numbers = {int(w) for w in words[::stride] if w.isdigit()}
+    if "THRU" in words and len(numbers) >= 2:
+        numbers |= set(range(min(numbers), max(numbers) + 1))
+    return numbers
+
+
+def _matches(deck: DeckText, name: str, number: int) -> Iterator[Card]:
+    stride = STRIDES.get(name)
+    for segment in deck.segments:
+        rows, ids = deck.files[segment.file].rows_named(name)
+        a, b = np.searchsorted(rows, (segment.first, segment.stop))
+        if stride is None:
+            for row in rows[a:b][ids[a:b] == number].tolist():
+                yield card_at(deck, segment, row, name)
+            continue
+        for row in rows[a:b].tolist():
+            card = card_at(deck, segment, row, name)
+            for shift in range(0, card.size, stride):
+                if card.text(shift) == str(number):
+                    yield Card(name, card.file, card.rows, card.lines, shift, card.part)
+
+
+def _missing(deck: DeckText, name: str, number: int) -> str:
+    top = deck.files[0].path.name
+    numbers: set[int] = set()
+    for segment in deck.segments:
+        for row, first in deck.rows_in(segment, name):
+            more = _all_ids(card_at(deck, segment, row, name)) if name in STRIDES else {first}
+            numbers |= more
+    numbers.discard(-1)
+    if not numbers:
+        return f"{top} has no {name} {number}: there is no {name} card in the deck"
+    near = sorted(sorted(numbers, key=lambda n: (abs(n - number), n))[:5])
+    listed = ", ".join(str(n) for n in near) + (", ..." if len(numbers) > len(near) else "")
+    return f"{top} has no {name} {number}: its {name} cards are {listed}"
+
+
+def _require_matching_tags(
+    deck: DeckText, file: int, rows: Sequence[int], lines: Sequence[CardLine]
+) -> None:
+    for k, line in enumerate(lines):
+        tag = _tag(line.tail[:8])
+        if not tag:
+            continue
+        if k + 1 < len(lines):
+            wrong = _tag(lines[k + 1].head) not in ("", tag)
+        else:
+            wrong = _stands_elsewhere(deck, tag)
+        if wrong:
+            raise InputError(
+                f"{deck.place(file, rows[k])}: the continuation '+{tag}' does not follow its card; "
+                "put the lines of the card in order"
+            )
+
+
+def _tag(text: bytes) -> str:
+    word = text.strip()
+    return word[1:].strip().decode("latin-1").upper() if word[:1] in (b"+", b"*") else ""
+
+
+def _stands_elsewhere(deck: DeckText, tag: str) -> bool:
+    pattern = re.compile(
+        rb"(?:^|[\r\n])[+*]" + re.escape(tag.encode("latin-1")) + rb"[ \t,]", re.IGNORECASE
+    )
+    return any(pattern.search(f.data) for f in deck.files)
