@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
-from . import discovery, placing, reading
+from . import discovery, heatmap, placing, reading
 from .html_table import html_table
 from .markup import esc, tag
 from .reading import Result
@@ -39,10 +39,11 @@ def findings(
             reading.part(reading.final(result), "alignment") or reading.part(result, "alignment"),
             "sensors",
         )
-        marks = placing.sensors(rows, geometry, sensors_xyz, misfit_of=result)
+        marks = placing.sensors(rows, geometry, sensors_xyz, result, directions=False)
         marks += placing.findings(found, geometry, marks)
-        picture = scene(geometry, "Where", marks=marks, values=misfit, width=900, height=600)
-        picture += tag(
+        picture = scene(geometry, "Where", marks=marks, values=misfit)
+        scale = heatmap.legend("misfit, % of its largest") if misfit is not None else ""
+        picture += scale + tag(
             "p",
             *[
                 tag("span", tag("i", class_=role), text, class_="key")

@@ -29,19 +29,24 @@ def headline(result: Result) -> str:
     str
         Plain text, ending with a full stop.
     """
+    return " ".join(story(result))
+
+
+def story(result: Result) -> list[str]:
+    """Return the sentences of the headline, the most important first."""
     said = {"update": _update, "discover": _discover}.get(reading.verb(result), _correlate)
     return said(result)
 
 
-def _correlate(result: Result) -> str:
+def _correlate(result: Result) -> list[str]:
     found = reading.final(result)
     if not found:
-        return "The run holds no correlation of test and analysis."
+        return ["The run holds no correlation of test and analysis."]
     now = reading.summary(found)
     if not now.test_modes:
-        return "The test holds no modes to pair."
+        return ["The test holds no modes to pair."]
     if not now.pairs:
-        return f"None of the {counted(now.test_modes, 'test mode')} pairs with the model."
+        return [f"None of the {counted(now.test_modes, 'test mode')} pairs with the model."]
     text = f"{_of(now)} with the model"
     deviations = {
         n: reading.number(p.get("deviation_percent"))
@@ -55,46 +60,50 @@ def _correlate(result: Result) -> str:
         if len(known) > 1:
             text += f", {fixed(known[worst], 1)} % at worst (test mode {worst})"
     alone = [n for n, _ in reading.unpaired(found, "test")]
-    if alone:
-        noun = "mode" if len(alone) == 1 else "modes"
-        text += f"; test {noun} {listed(alone)} {'has' if len(alone) == 1 else 'have'} no partner"
-    return text + "."
+    if not alone:
+        return [text + "."]
+    noun, has = ("mode", "has") if len(alone) == 1 else ("modes", "have")
+    return [text + ".", f"Test {noun} {listed(alone)} {has} no partner."]
 
 
-def _update(result: Result) -> str:
+def _update(result: Result) -> list[str]:
     before, after = reading.initial(result), reading.part(result, "after")
     if not before:
         return _correlate(result)
     old, new = reading.summary(before), reading.summary(after)
     parameters = reading.records(result, "parameters")
     text = f"After updating {counted(len(parameters), 'parameter')}, " if parameters else ""
-    text += _change(old, new, "model")
+    told = [_sentence(text + _change(old, new, "model"))]
     at_bound = [str(p.get("name", "?")) for p in parameters if p.get("at_bound")]
     if at_bound:
-        text += f"; at a bound: {listed(at_bound)}"
-    return text[0].upper() + text[1:] + "."
+        noun = "One parameter" if len(at_bound) == 1 else f"{len(at_bound)} parameters"
+        told.append(f"{noun} stopped at a bound: {listed(at_bound)}.")
+    return told
 
 
-def _discover(result: Result) -> str:
+def _discover(result: Result) -> list[str]:
     verdict = str(result.get("verdict", ""))
     findings = reading.records(result, "findings")
     said = [str(f["sentence"]).strip() for f in findings if f.get("sentence")]
-    first = said[0] if said else _verdict_sentence(verdict)
-    if first and not first.endswith((".", "!", "?")):
-        first += "."
-    more = len(findings) - 1
-    if said and more > 0:
-        first += f" {counted(more, 'further finding')} below."
+    told = [_sentence(said[0] if said else _verdict_sentence(verdict))]
+    if said and len(findings) > 1:
+        told.append(f"{counted(len(findings) - 1, 'further finding')} below.")
     gap = reading.part(result, "gap")
     old = reading.summary(reading.part(gap, "before"))
     new = reading.summary(reading.part(gap, "after"))
     if old.pairs is not None and new.pairs is not None:
         if verdict in ("no_gap", "undecided") or old == new:
-            change = _of(new) + " with the model" if new.test_modes else ""
+            told.append(_sentence(_of(new) + " with the model"))
         else:
-            change = "with that adopted, " + _change(old, new, "completed model")
-        first += f" {change[:1].upper()}{change[1:]}." if change else ""
-    return first.strip() or _correlate(result)
+            told.append(_sentence("with that adopted, " + _change(old, new, "completed model")))
+    told = [t for t in told if t]
+    return told or _correlate(result)
+
+
+def _sentence(text: str) -> str:
+    if not text:
+        return ""
+    return text[0].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
 
 
 def _verdict_sentence(verdict: str) -> str:

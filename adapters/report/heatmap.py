@@ -83,19 +83,26 @@ def heatmap(
     return tag("figure", caption, svg, _values_table(matrix), class_="mac")
 
 
-def legend() -> str:
-    """Return the scale of the heat maps."""
-    step = 14
+def legend(what: str = "MAC %") -> str:
+    """Return the scale of the ramp, 0 to 100."""
+    step, left = 14, 12 + 6.6 * len(what)
     boxes = "".join(
         tag("rect", class_=f"c{k}", x=k * step, width=step, height=12) for k in range(STEPS)
     )
     ticks = "".join(
         svg_text(p / 100 * STEPS * step, 25, p, text_anchor="middle") for p in (0, 25, 50, 75, 100)
     )
-    bar = tag("g", boxes, ticks, transform="translate(52 2)")
-    text = svg_text(0, 12, "MAC %")
-    return tag("svg", text, bar, class_="scale", width=STEPS * step + 80, height=30, role="img",
-               aria_label="Colour scale of the MAC, 0 to 100 percent")  # fmt: skip
+    bar = tag("g", boxes, ticks, transform=f"translate({short(left)} 2)")
+    return tag(
+        "svg",
+        svg_text(0, 12, what),
+        bar,
+        class_="scale",
+        width=short(left + STEPS * step + 14),
+        height=30,
+        role="img",
+        aria_label=f"Colour scale: {what}, 0 to 100",
+    )
 
 
 def _position(

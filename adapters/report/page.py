@@ -8,7 +8,7 @@ from importlib.resources import files
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
 from . import colour, discovery_sections, reading, sections
-from .headline import VERDICTS, figures, headline
+from .headline import VERDICTS, figures, story
 from .markup import esc, tag
 from .reading import Result
 from .section import Section
@@ -55,12 +55,14 @@ def make_report(
     kicker = tag(
         "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(result), class_="kicker"
     )
+    first, *rest = story(result)
     links = tag("nav", *[tag("a", esc(s.heading), href=f"#{s.anchor}") for s in shown],
                 aria_label="Sections")  # fmt: skip
     body = tag(
         "main",
         kicker,
-        tag("h1", esc(headline(result))),
+        tag("h1", esc(first)),
+        tag("p", esc(" ".join(rest)), class_="lede") if rest else "",
         _strip(result),
         _warnings(reading.texts(result, "warnings") + _nested_warnings(result)),
         links if len(shown) > 2 else "",

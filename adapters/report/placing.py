@@ -21,6 +21,8 @@ def sensors(
     geometry: Geometry,
     xyz: Floats | None,
     misfit_of: Result | None = None,
+    *,
+    directions: bool = True,
 ) -> list[Mark]:
     """One mark a test node, with its measured directions.
 
@@ -33,6 +35,8 @@ def sensors(
         Positions row by row (or one a node, in order of appearance); default: nearest grids.
     misfit_of : mapping, optional
         A result whose ``misfit.sensors`` colours the marks.
+    directions : bool
+        Draw the measured directions.
     """
     nodes = list(dict.fromkeys(s.get("node") for s in rows))
     places = _places(rows, nodes, geometry, xyz)
@@ -55,7 +59,7 @@ def sensors(
                 places[node],
                 "sensor",
                 note,
-                axes=np.array(axes) if axes else None,
+                axes=np.array(axes) if axes and directions else None,
                 value=amount.get(str(node)),
             )
         )

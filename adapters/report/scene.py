@@ -10,10 +10,11 @@ import numpy as np
 from ...core.arrays import Floats, Ints
 from ...core.geometry import Geometry
 from .colour import STEPS
-from .markup import esc, short, tag
+from .markup import esc, short, svg_text, tag
 from .surface import Surface, View, coarsened, depth_buffer, isometric, surface
 
 _SHADES = 6
+_SLICES = 48
 _LIGHT = np.array([0.35, -0.55, 0.76])
 
 
@@ -39,11 +40,11 @@ def scene(
     *,
     marks: Sequence[Mark] = (),
     values: Floats | None = None,
-    width: int = 720,
-    height: int = 520,
-    most: int = 2200,
+    width: int = 540,
+    height: int = 480,
+    most: int = 1600,
 ) -> str:
-    """Return a figure of the structure in isometric view.
+    """Return a figure of the structure from the front, and from behind where that shows more.
 
     Parameters
     ----------
@@ -55,35 +56,61 @@ def scene(
     values : (n_node,) float, optional
         0..1 by node of the geometry, NaN unknown: colours the faces.
     width, height : int
-        Pixels.
+        Pixels of one view.
     most : int
-        Faces and lines drawn at most, about.
+        Faces and lines drawn at most in one view, about.
     """
     if not len(geometry.ids):
         return ""
-    fine, view = surface(geometry), isometric()
-    buffer, seen = depth_buffer(view.project(fine.xyz), fine.faces)
+    fine = surface(geometry)
+    front, hidden = _view(fine, isometric(), marks, values, width, height, most)
+    views = [("", front)]
+    if hidden:
+        behind, _ = _view(fine, isometric(behind=True), marks, values, width, height, most)
+        views = [("front", front), ("behind", behind)]
+    told = f"{title}: {len(geometry.ids)} nodes, {len(marks)} marks"
+    pictures = [
+        tag(
+            "svg",
+            body,
+            svg_text(4, 12, f"from the {name}" if name == "front" else f"from {name}")
+            if name
+            else "",
+            class_="scene",
+            viewBox=f"0 0 {page.width} {page.height}",
+            width=page.width,
+            role="img",
+            aria_label=", ".join(t for t in (told, name) if t),
+        )
+        for name, (body, page) in views
+    ]
+    caption = tag("figcaption", tag("b", esc(title)))
+    return tag("figure", caption, tag("div", *pictures, class_="row"))
+
+
+def _view(
+    fine: Surface,
+    view: View,
+    marks: Sequence[Mark],
+    values: Floats | None,
+    width: int,
+    height: int,
+    most: int,
+) -> tuple[tuple[str, _Page], int]:
+    """Return one view with its page and how many marks the structure hides in it."""
+    projected = view.project(fine.xyz)
+    buffer, seen = depth_buffer(projected, fine.faces)
     drawn = coarsened(Surface(fine.xyz, fine.faces[seen], fine.lines, fine.node_of), most)
-    page = _Page.around(view.project(fine.xyz), marks, view, width, height)
+    page = _Page.around(projected, marks, view, width, height)
     slack = 0.02 * fine.size
-    body = tag("g", _mesh(drawn, view, page, values), class_="mesh")
     hidden: list[str] = []
     plain: list[str] = []
     for mark in marks:
         visible = bool(buffer.sees(view.project(mark.xyz[None, :]), slack)[0])
         (plain if visible else hidden).append(_mark(mark, view, page, fine.size))
+    body = tag("g", _mesh(drawn, view, page, values), class_="mesh")
     body += tag("g", *hidden, class_="hidden") if hidden else ""
-    body += "".join(plain) + _triad(view, page)
-    svg = tag(
-        "svg",
-        body,
-        class_="scene",
-        viewBox=f"0 0 {page.width} {page.height}",
-        width=page.width,
-        role="img",
-        aria_label=f"{title}: {len(geometry.ids)} nodes, {len(marks)} marks.",
-    )
-    return tag("figure", tag("figcaption", tag("b", esc(title))), svg)
+    return (body + "".join(plain) + _triad(view, page), page), len(hidden)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,39 +138,34 @@ class _Page:
 
 
 def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
-    """Painter's order: the farthest first."""
+    """Painter's order by slices of depth, one path a slice and colour; units of half a pixel."""
     projected = view.project(mesh.xyz)
-    pixels = np.rint(page.at(projected) * 2.0) / 2.0
-    classes = _face_classes(mesh, values)
-    nearest = [projected[e, 2].mean(axis=1) for e in (mesh.faces, mesh.lines)]
-    depth = np.concatenate([nearest[0], nearest[1] - 0.004 * mesh.size])
-    paths = []
-    for k in np.argsort(-depth):
-        if k < len(mesh.faces):
-            d = _outline(pixels[_corners(mesh.faces[k])])
-            paths.append(f'<path class="{classes[k]}" d="{d}z"/>')
-        else:
-            d = _outline(pixels[mesh.lines[k - len(mesh.faces)]])
-            paths.append(f'<path class="bar" d="{d}"/>')
-    return "".join(paths)
+    pixels = np.rint(page.at(projected) * 2.0).astype(np.int64)
+    shapes = [pixels[_corners(face)] for face in mesh.faces] + [pixels[line] for line in mesh.lines]
+    classes = [*_face_classes(mesh, values), *["~bar"] * len(mesh.lines)]
+    depth = np.concatenate([projected[e, 2].mean(axis=1) for e in (mesh.faces, mesh.lines)])
+    depth[len(mesh.faces) :] -= 0.004 * mesh.size
+    order = np.argsort(-depth)
+    slices = np.floor((depth.max(initial=0.0) - depth) / max(np.ptp(depth), 1e-300) * _SLICES)
+    painted: dict[tuple[float, str], str] = {}
+    for k in order:
+        key = (slices[k], classes[k])
+        end = "" if classes[k] == "~bar" else "z"
+        painted[key] = painted.get(key, "") + _outline(shapes[k]) + end
+    paths = "".join(
+        f'<path class="{name.lstrip("~")}" d="{d}"/>' for (_, name), d in sorted(painted.items())
+    )
+    return f'<g transform="scale(.5)">{paths}</g>'
 
 
 def _corners(face: Ints) -> Ints:
     return face[:3] if face[3] == face[2] else face
 
 
-def _outline(pixels: Floats) -> str:
-    steps = np.diff(pixels, axis=0)
-    start = f"m{_half(pixels[0, 0])} {_half(pixels[0, 1])}"
-    rest = "".join(
-        f"{'' if x < 0 else ' '}{_half(x)}{'' if y < 0 else ' '}{_half(y)}"
-        for x, y in steps.tolist()
-    )
-    return start + rest
-
-
-def _half(value: float) -> str:
-    return f"{value:.1f}".removesuffix(".0")
+def _outline(pixels: Ints) -> str:
+    steps = np.diff(pixels, axis=0).tolist()
+    rest = "".join(f"{'' if x < 0 else ' '}{x}{'' if y < 0 else ' '}{y}" for x, y in steps)
+    return f"M{pixels[0, 0]} {pixels[0, 1]}l{rest.strip()}"
 
 
 def _face_classes(mesh: Surface, values: Floats | None) -> list[str]:

@@ -89,9 +89,9 @@ class View:
         return np.asarray(xyz @ self.axes.T)
 
 
-def isometric() -> View:
-    """Return the view from the front right above, z up."""
-    away = -np.array([0.62, -0.72, 0.50])
+def isometric(*, behind: bool = False) -> View:
+    """Return the view from the front right above, z up; or from the opposite side."""
+    away = np.array([-0.62, 0.72, -0.50]) * np.where([behind, behind, False], -1.0, 1.0)
     away /= np.linalg.norm(away)
     right = np.cross(away, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
