@@ -1,0 +1,278 @@
+"""Normal modes: K x = lambda M x, lowest first, every solution checked."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Floats, frozen
+from .dense import dense_modes
+from .errors import CheckError, InputError
+from .factor import Backend, Factorisation, best_backend, factorise
+from .mechanism import mechanism, strain_free
+from .model import Model
+from .modes import Modes
+from .pencil import Pencil
+from .rigid import rigid_body_modes
+from .sparse_modes import Request, sparse_modes
+from .spectrum import Spectrum
+
+_DENSE = 600
+_DEFAULT_MODES = 10
+_RESIDUAL = 1e-5
+_ORTHONORMAL = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Eigensolution:
+    """The lowest modes of K x = lambda M x, checked.
+
+    Parameters
+    ----------
+    eigenvalues : (n_mode,) float
+        Ascending, (rad/s)^2 in a consistent system of units; those of rigid-body modes are the
+        rounding that is left of zero.
+    vectors : (n_free, n_mode) float
+        Mass-normalised: X^T M X = 1. The largest entry of each is positive.
+    rigid_body_modes : int
+        The first so many modes are rigid-body modes, by rank.
+    checks : dict
+        ``residual``: largest ||x - (lambda - sigma) A^-1 M x||_M over the elastic modes, with
+        A = K - sigma M, which bounds the relative error of lambda - sigma; ``orthonormality``:
+        largest entry of X^T M X - 1; ``missed``: eigenvalues that the inertia of K - s M
+        (Sturm count) shows below s but the solution does not have (0, or `solve` raises; None
+        where the count was not asked for).
+    backend : str
+        ``pardiso``, ``superlu`` or ``lapack``.
+    seconds : float
+        Wall time.
+    sigma : float
+        The shift, negative.
+    warnings : tuple of str
+        For instance fewer modes than asked for.
+    factor : Factorisation or None
+        Of K - sigma M, kept on request: sensitivities use it again.
+    """
+
+    eigenvalues: Floats
+    vectors: Floats
+    rigid_body_modes: int
+    checks: dict[str, Any]
+    backend: str
+    seconds: float
+    sigma: float
+    warnings: tuple[str, ...] = ()
+    factor: Factorisation | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("eigenvalues", "vectors"):
+            array = getattr(self, name).view()
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    @property
+    def frequencies_hz(self) -> Floats:
+        """Natural frequencies, (n_mode,) Hz; a negative rounding of zero gives zero."""
+        return frozen(np.sqrt(np.maximum(self.eigenvalues, 0.0)) / (2.0 * np.pi))
+
+
+def solve(
+    model: Model | tuple[sp.spmatrix, sp.spmatrix],
+    n_modes: int | None = None,
+    fmax: float | None = None,
+    p: Floats | None = None,
+    *,
+    backend: Backend | None = None,
+    tolerance: float = 1e-8,
+    keep_factor: bool = False,
+    count: bool = True,
+    seed: int = 0,
+) -> Eigensolution:
+    """Find the lowest normal modes of a free or supported structure.
+
+    Parameters
+    ----------
+    model : Model, or (K, M)
+        With matrices alone, each (n, n) sparse, every mode without strain energy counts as a
+        rigid-body mode, since mechanisms cannot be told apart without a geometry.
+    n_modes : int, optional
+        How many, rigid-body modes included. Default 10, or all up to `fmax`.
+    fmax : float, optional
+        Highest frequency, Hz.
+    p : (n_parameter,) float, optional
+        Parameter values; default the deck's.
+    backend : {"pardiso", "superlu"}, optional
+        Default: the best present.
+    tolerance : float
+        Of the residual of each Ritz pair beside its eigenvalue, both of (K - sigma M)^-1 M;
+        the relative error of the eigenvalues is of the order of its square.
+    keep_factor : bool
+        Keep the factorisation of K - sigma M in the solution.
+    count : bool
+        Prove by an inertia count that no mode was missed (about a quarter of the time).
+    seed : int
+        Of the start vectors.
+
+    Returns
+    -------
+    Eigensolution
+        With fewer modes than asked for, and a warning, where the mass matrix has no more.
+
+    Raises
+    ------
+    InputError
+        Matrices that are not finite or symmetric, no mass or negative mass, a stiffness that is
+        not positive semi-definite, or a mechanism; the message names where.
+    CheckError
+        A residual, the orthonormality or the inertia count is not met.
+
+    Notes
+    -----
+    Block Lanczos on (K - sigma M)^-1 M (Ericsson and Ruhe 1980; Grimes, Lewis and Simon 1994);
+    up to 600 degrees of freedom, or when a large part of the spectrum is wanted, LAPACK. The
+    rigid-body modes of a `Model` come from its geometry and are kept out of the iteration.
+    """
+    began = time.perf_counter()
+    if n_modes is not None and n_modes < 1:
+        raise InputError(f"{n_modes} modes were asked for; ask for at least one")
+    if fmax is not None and not fmax > 0.0:
+        raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
+    pencil = Pencil.of(model, p)
+    owner = model if isinstance(model, Model) else None
+    rigid, pieces = rigid_body_modes(owner, pencil) if owner else (np.zeros((pencil.n, 0)), 0)
+    limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
+    wanted = n_modes if n_modes is not None or fmax is not None else _DEFAULT_MODES
+    chosen = backend or best_backend()
+    small = pencil.n <= _DENSE or ((wanted or 0) > pencil.n // 4 and pencil.n <= 4 * _DENSE)
+    if small:
+        spectrum = dense_modes(owner, pencil, rigid)
+    else:
+        request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed)
+        spectrum = sparse_modes(owner, pencil, rigid, request)
+    zero = _without_strain(pencil, spectrum)
+    if zero and owner is not None:
+        raise mechanism(owner, pencil, spectrum.vectors[:, :zero], massless=False)
+    values, vectors = _joined(pencil, rigid, spectrum)
+    n_zero = rigid.shape[1] + zero
+    keep = len(values) if wanted is None else min(wanted, len(values))
+    if limit is not None:
+        keep = min(keep, int(np.count_nonzero(values <= limit)))
+    notes = _notes(pencil, pieces, n_zero, wanted, limit, len(values), spectrum.complete)
+    X = vectors[:, :keep]
+    gram = X.T @ (pencil.M @ X)
+    checks = {
+        "residual": float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0)),
+        "orthonormality": float(np.abs(gram - np.eye(keep)).max(initial=0.0)),
+        "missed": spectrum.missed,
+    }
+    _verify(checks)
+    factor = None
+    if keep_factor:
+        factor = spectrum.factor or factorise(pencil.shifted(spectrum.sigma), True, chosen)
+    return Eigensolution(
+        values[:keep],
+        X,
+        min(n_zero, keep),
+        checks,
+        "lapack" if small else chosen,
+        time.perf_counter() - began,
+        spectrum.sigma,
+        notes,
+        factor,
+    )
+
+
+def modes_of(model: Model, solution: Eigensolution, source: str = "analysis") -> Modes:
+    """Expand an eigensolution to all degrees of freedom of the model.
+
+    Parameters
+    ----------
+    model : Model
+    solution : Eigensolution
+    source : str
+        Where the modes came from.
+
+    Returns
+    -------
+    Modes
+        Shapes (n_dof, n_mode) in basic axes, modal mass 1.
+    """
+    return Modes(
+        solution.frequencies_hz,
+        np.asarray(model.expansion @ solution.vectors),
+        model.dofs,
+        generalized_mass=np.ones(len(solution.eigenvalues)),
+        source=source,
+    )
+
+
+def _without_strain(pencil: Pencil, spectrum: Spectrum) -> int:
+    """Count the leading modes, rigid-body ones apart, whose strain energy is rounding."""
+    values = spectrum.values
+    count = min(len(values), 100)
+    if not count:
+        return 0
+    zero = strain_free(pencil, spectrum.vectors[:, :count], values[:count])
+    elastic = values[:count][~zero]
+    first = int(np.argmin(zero)) if len(elastic) else count
+    if values[0] < 0.0 and not zero[0]:
+        raise InputError(
+            "the stiffness has a negative eigenvalue, the structure is unstable: "
+            "look for negative springs or moduli"
+        )
+    if first and len(elastic) and abs(values[first - 1]) > 1e-4 * elastic[0]:
+        return 0
+    return first
+
+
+def _joined(pencil: Pencil, rigid: Floats, spectrum: Spectrum) -> tuple[Floats, Floats]:
+    values = np.concatenate([np.einsum("ij,ij->j", rigid, pencil.K @ rigid), spectrum.values])
+    vectors = np.hstack([rigid, spectrum.vectors]) if rigid.shape[1] else spectrum.vectors
+    if len(values):
+        peak = np.abs(vectors).argmax(axis=0)
+        sign = np.sign(vectors[peak, np.arange(len(values))])
+        vectors = vectors * np.where(sign == 0.0, 1.0, sign)
+    return values, vectors
+
+
+def _notes(
+    pencil: Pencil,
+    pieces: int,
+    n_zero: int,
+    wanted: int | None,
+    limit: float | None,
+    found: int,
+    complete: bool,
+) -> tuple[str, ...]:
+    notes = []
+    if pieces > 1:
+        notes.append(
+            f"the model is {pieces} separate free pieces with {n_zero} rigid-body modes in all: "
+            "check that nothing is disconnected by mistake"
+        )
+    if complete and limit is None and wanted is not None and found < wanted:
+        notes.append(
+            f"{wanted} modes were asked for but the mass matrix allows only {found}: all are given"
+        )
+    return tuple(notes)
+
+
+def _verify(checks: dict[str, Any]) -> None:
+    if not checks["residual"] <= _RESIDUAL:
+        raise CheckError(
+            f"the eigensolution has a residual of {checks['residual']:.1e} "
+            f"(limit {_RESIDUAL:g}): the matrices are too badly conditioned"
+        )
+    if not checks["orthonormality"] <= _ORTHONORMAL:
+        raise CheckError(
+            f"the modes are orthonormal to {checks['orthonormality']:.1e} only "
+            f"(limit {_ORTHONORMAL:g})"
+        )
+    if checks["missed"]:
+        raise CheckError(
+            f"the inertia count shows {checks['missed']} mode(s) that the eigensolution missed"
+        )

@@ -1,0 +1,237 @@
+"""Sparse symmetric factorisation by the best direct solver present.
+
+MKL PARDISO where the optional ``mkl`` wheel is installed, else scipy's SuperLU without pivoting
+on a symmetric ordering. Which one is used is an argument, never a global setting.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Literal, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from .arrays import Floats, Numbers, require_finite
+from .errors import CheckError, InputError
+from .pardiso import NotDefinite, Pardiso, library
+
+Backend = Literal["pardiso", "superlu"]
+
+__all__ = ["Backend", "Factorisation", "NotDefinite", "best_backend", "factorise"]
+
+_PROBE_TOLERANCE = 1e-6
+"""Largest relative residual of a probe solve at which the signs of the pivots are believed."""
+
+
+class Factorisation(Protocol):
+    """A factorised symmetric matrix."""
+
+    backend: Backend
+    n: int
+
+    @property
+    def negative(self) -> int:
+        """Number of negative pivots: by Sylvester's law the number of negative eigenvalues.
+
+        Raises
+        ------
+        CheckError
+            Some pivots vanished, so that the count cannot be trusted.
+        """
+        ...
+
+    def solve(self, b: Numbers) -> Floats:
+        """Return x of A x = b, for b of shape (n,) or (n, n_rhs); same shape, Fortran order."""
+        ...
+
+    def refactorise(self, a: sp.spmatrix) -> None:
+        """Replace the factor, in place, by that of another matrix of the same type.
+
+        Where the stored pattern is the same the ordering and symbolic analysis are reused.
+        """
+        ...
+
+
+def best_backend() -> Backend:
+    """Return the fastest backend that is installed."""
+    return "pardiso" if library() is not None else "superlu"
+
+
+def factorise(
+    a: sp.spmatrix, definite: bool | None = None, backend: Backend | None = None
+) -> Factorisation:
+    """Factorise a sparse symmetric matrix.
+
+    Parameters
+    ----------
+    a : (n, n) sparse
+        Only the upper triangle is read. Explicit zeros are kept, so that matrices of one fixed
+        pattern can share the analysis.
+    definite : bool, optional
+        True: positive definite (Cholesky). False: indefinite. Default: Cholesky if that
+        succeeds, else indefinite.
+    backend : {"pardiso", "superlu"}, optional
+        Default: `best_backend`.
+
+    Returns
+    -------
+    Factorisation
+
+    Raises
+    ------
+    InputError
+        The matrix is not square or not finite, or there is not enough memory.
+    NotDefinite
+        `definite` is True and the matrix is not positive definite. (SuperLU notices only an
+        exactly singular one; `Factorisation.negative` tells.)
+    CheckError
+        An indefinite matrix is exactly singular.
+
+    Notes
+    -----
+    The matrix is first scaled symmetrically to a unit diagonal by powers of two, which is exact
+    and leaves the inertia as it is, so that pivots of dofs with small stiffness (rotations in
+    millimetre models, drilling) are not taken for zeros.
+    """
+    if a.ndim != 2 or a.shape[0] != a.shape[1]:
+        raise InputError(f"only a square matrix can be factorised, this one has shape {a.shape}")
+    chosen = backend or best_backend()
+    make = {"pardiso": _PardisoFactorisation, "superlu": _SuperluFactorisation}.get(chosen)
+    if make is None:
+        raise InputError(f"unknown backend {chosen!r}: use 'pardiso' or 'superlu'")
+    if definite is None:
+        try:
+            return make(a, True)
+        except NotDefinite:
+            return make(a, False)
+    return make(a, definite)
+
+
+class _PardisoFactorisation:
+    backend: Backend = "pardiso"
+
+    def __init__(self, a: sp.spmatrix, definite: bool) -> None:
+        self.n = int(a.shape[0])
+        self._definite = definite
+        self._factorise(upper_triangle(a))
+
+    def _factorise(self, upper: sp.csr_matrix) -> None:
+        self._scale = _scale(upper)
+        self._pattern = (upper.indptr, upper.indices)
+        self._pardiso = Pardiso(_scaled(upper, self._scale), self._definite)
+
+    def refactorise(self, a: sp.spmatrix) -> None:
+        upper = upper_triangle(a)
+        old_indptr, old_indices = self._pattern
+        if np.array_equal(upper.indptr, old_indptr) and np.array_equal(upper.indices, old_indices):
+            self._scale = _scale(upper)
+            self._pardiso.refactorise(_scaled(upper, self._scale).data)
+        else:
+            self._factorise(upper)
+
+    def solve(self, b: Numbers) -> Floats:
+        d = self._scale[:, None]
+        columns = np.asarray(b, np.float64).reshape(self.n, -1)
+        x = self._pardiso.solve(np.multiply(columns, d, order="F"))
+        x *= d
+        return x.reshape(np.shape(b), order="F")
+
+    @property
+    def negative(self) -> int:
+        if self._definite:
+            return 0
+        if self._pardiso.perturbed:
+            raise CheckError(f"{self._pardiso.perturbed} pivots vanished: no count of signs")
+        return self._pardiso.negative
+
+
+class _SuperluFactorisation:
+    backend: Backend = "superlu"
+
+    def __init__(self, a: sp.spmatrix, definite: bool) -> None:
+        self.n = int(a.shape[0])
+        self._definite = definite
+        self.refactorise(a)
+
+    def refactorise(self, a: sp.spmatrix) -> None:
+        upper = upper_triangle(a)
+        self._scale = _scale(upper)
+        scaled = _scaled(upper, self._scale)
+        self._full = (scaled + sp.triu(scaled, 1).T).tocsc()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", spla.MatrixRankWarning)
+                self._lu = spla.splu(
+                    self._full,
+                    permc_spec="MMD_AT_PLUS_A",
+                    diag_pivot_thresh=0.0,
+                    options={"SymmetricMode": True},
+                )
+        except RuntimeError as error:
+            if self._definite:
+                raise NotDefinite from error
+            raise CheckError("the matrix to factorise is exactly singular") from error
+        except MemoryError as error:
+            raise InputError(
+                f"not enough memory to factorise {self.n} degrees of freedom: "
+                "use a machine with more memory, a smaller model, or install mkl"
+            ) from error
+
+    def solve(self, b: Numbers) -> Floats:
+        d = self._scale[:, None]
+        columns = np.asarray(b, np.float64).reshape(self.n, -1)
+        x = np.asarray(self._lu.solve(np.multiply(columns, d, order="F")), order="F")
+        x *= d
+        return x.reshape(np.shape(b), order="F")
+
+    @property
+    def negative(self) -> int:
+        if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
+            raise CheckError("SuperLU left the diagonal: no count of signs")
+        probe = np.random.default_rng(0).standard_normal(self.n)
+        residual = np.linalg.norm(self._full @ self._lu.solve(probe) - probe)
+        if not residual <= _PROBE_TOLERANCE * np.linalg.norm(probe):
+            raise CheckError("the factorisation without pivoting lost its accuracy")
+        return int(np.count_nonzero(self._lu.U.diagonal() < 0.0))
+
+
+def upper_triangle(a: sp.spmatrix) -> sp.csr_matrix:
+    """Upper triangle, (n, n) csr, sorted, with every diagonal entry stored."""
+    upper = sp.triu(a, format="csr")
+    upper.sum_duplicates()
+    require_finite(upper.data, "the matrix to factorise")
+    rows = np.arange(upper.shape[0])
+    first = upper.indptr[:-1]
+    stored = np.diff(upper.indptr) > 0
+    stored[stored] = upper.indices[first[stored]] == rows[stored]
+    if stored.all():
+        return upper
+    missing = rows[~stored]
+    entries = upper.tocoo()
+    return sp.csr_matrix(
+        (
+            np.concatenate([entries.data, np.zeros(len(missing))]),
+            (
+                np.concatenate([entries.row, missing]),
+                np.concatenate([entries.col, missing]),
+            ),
+        ),
+        shape=upper.shape,
+    )
+
+
+def _scale(upper: sp.csr_matrix) -> Floats:
+    """Power of two nearest 1/sqrt(|a_ii|), (n,); the largest entry of the row where a_ii = 0."""
+    size = np.abs(upper.diagonal())
+    if not size.all():
+        largest = abs(upper).maximum(abs(upper).T).max(axis=1).toarray().ravel()
+        size = np.where(size > 0.0, size, largest)
+    size = np.where(size > 0.0, size, 1.0)
+    return np.asarray(np.exp2(np.round(-0.5 * np.log2(size))))
+
+
+def _scaled(upper: sp.csr_matrix, scale: Floats) -> sp.csr_matrix:
+    data = upper.data * np.repeat(scale, np.diff(upper.indptr)) * scale[upper.indices]
+    return sp.csr_matrix((data, upper.indices, upper.indptr), shape=upper.shape)

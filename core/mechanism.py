@@ -1,0 +1,123 @@
+"""Motions that nothing resists: found from a singular factorisation, named for the user."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from .arrays import Floats, Numbers
+from .errors import InputError
+from .factor import Backend, Factorisation, factorise
+from .model import Model
+from .pencil import Pencil
+
+_SINGULAR = 1e-13
+"""Energy of A = K - sigma M beside that of its diagonal below which a motion is unresisted."""
+
+_SMALL = 600
+_NAMED = 6
+
+_NEGATIVE = (
+    "the stiffness is not positive semi-definite: "
+    "look for negative springs, moduli or section values near {}"
+)
+
+
+def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
+    """Which vectors have a strain energy that is rounding of the stiffness, (n_mode,) bool.
+
+    Parameters
+    ----------
+    X : (n, n_mode) float
+    energy : (n_mode,) float
+        x^T K x of each.
+    """
+    rounding = 2e-15 * np.einsum("ij,ij,i->j", X, X, pencil.k_diagonal)
+    return np.asarray(np.abs(energy) <= rounding)
+
+
+def refuse_unresisted(
+    model: Model | None, pencil: Pencil, sigma: float, factor: Factorisation
+) -> None:
+    """Raise `InputError` when A = K - sigma M is singular: a motion with no stiffness or mass.
+
+    One solve with the factor at hand; only when its answer is suspicious is more work done.
+    """
+    A = (pencil.K - sigma * pencil.M).tocsr()
+    D = A.diagonal()
+    b = np.sqrt(D) * np.random.default_rng(3).standard_normal(pencil.n)
+    y = factor.solve(b)
+    if not np.isfinite(y).all() or not float(b @ y) > _SINGULAR * float(y @ (D * y)):
+        diagnose(model, pencil, sigma, factor.backend)
+
+
+def diagnose(
+    model: Model | None, pencil: Pencil, sigma: float, backend: Backend | None = None
+) -> None:
+    """Raise `InputError` that says why A = K - sigma M is not positive definite, if it is not.
+
+    The question is put to the pencil of A and its diagonal D, which has no units.
+    """
+    A = (pencil.K - sigma * pencil.M).tocsr()
+    D = A.diagonal()
+    if not (D > 0.0).all():
+        rows = np.flatnonzero(~(D > 0.0))
+        raise InputError(_NEGATIVE.format(", ".join(pencil.name(int(r)) for r in rows[:_NAMED])))
+    scale = sp.diags(1.0 / np.sqrt(D))
+    scaled = (scale @ A @ scale).tocsr()
+    dense = pencil.n <= _SMALL
+    mu, Y = np.linalg.eigh(scaled.toarray()) if dense else _smallest(scaled, backend)
+    X = scale @ Y
+    if mu[0] < -_SINGULAR:
+        raise InputError(_NEGATIVE.format(where(model, pencil, X[:, :1])))
+    free = np.abs(mu) <= _SINGULAR
+    if free.any():
+        raise mechanism(model, pencil, X[:, free], massless=True)
+
+
+def _smallest(scaled: sp.csr_matrix, backend: Backend | None) -> tuple[Floats, Floats]:
+    """Lowest eigenpairs of a scaled matrix: a negative one, or else those next to zero."""
+    n = scaled.shape[0]
+    rng = np.random.default_rng(4)
+    factor = factorise(scaled + 100.0 * _SINGULAR * sp.eye(n), False, backend)
+    if factor.negative:
+        mu, Y = spla.eigsh(scaled, k=1, which="SA", tol=1e-3, v0=rng.standard_normal(n))
+        return mu, Y
+    Y = rng.standard_normal((n, 2 * _NAMED))
+    for _ in range(4):
+        Y = np.linalg.qr(factor.solve(Y))[0]
+    mu, turn = np.linalg.eigh(Y.T @ (scaled @ Y))
+    return mu, Y @ turn
+
+
+def mechanism(model: Model | None, pencil: Pencil, X: Floats, massless: bool) -> InputError:
+    """Return the error that names where motions without resistance are, X of (n, n_motion)."""
+    count = X.shape[1]
+    motions = "a motion" if count == 1 else f"{count} motions"
+    without = "neither stiffness nor mass" if massless else "no stiffness"
+    return InputError(
+        f"the model is a mechanism: {motions} with {without} besides the rigid-body modes, at "
+        f"{where(model, pencil, X)}; constrain these directions or give them stiffness"
+    )
+
+
+def where(model: Model | None, pencil: Pencil, X: Floats) -> str:
+    """Name the degrees of freedom that move most in any of the vectors X, (n, n_vector)."""
+    motion = np.abs(X) * _lengths(model, pencil.n)[:, None]
+    motion = (motion / motion.max(axis=0)).max(axis=1)
+    rows = np.flatnonzero(motion > 0.3)
+    rows = rows[np.argsort(-motion[rows], kind="stable")]
+    names = ", ".join(pencil.name(int(r)) for r in rows[:_NAMED])
+    return names + (f" and {len(rows) - _NAMED} more" if len(rows) > _NAMED else "")
+
+
+def _lengths(model: Model | None, n: int) -> Floats:
+    """Displacement that a unit of each free degree of freedom makes, (n,): 1, or a lever arm."""
+    if model is None:
+        return np.ones(n)
+    arm = 0.1 * (model.geometry.size or 1.0)
+    row = np.where((model.dofs.component > 3) & (model.dofs.component <= 6), arm, 1.0)
+    moved = abs(sp.csr_matrix(model.expansion)).T @ sp.diags(row)
+    length = moved.max(axis=1).toarray().ravel()
+    return np.where(length > 0.0, length, 1.0)

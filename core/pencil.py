@@ -1,0 +1,106 @@
+"""The matrices of K x = lambda M x, aligned so that K - sigma M keeps one sparsity pattern."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Floats, require_finite
+from .errors import InputError
+from .model import Model
+
+
+class Pencil:
+    """K and M of one model at one parameter point.
+
+    Parameters
+    ----------
+    K, M : (n, n) sparse
+        Symmetric.
+    labels : tuple of str, optional
+        Name of each degree of freedom, for messages.
+
+    Raises
+    ------
+    InputError
+        Shapes that disagree, entries that are not finite, a matrix that is not symmetric, no
+        mass, a negative mass on the diagonal, or a degree of freedom with neither stiffness nor
+        mass.
+    """
+
+    def __init__(self, K: sp.spmatrix, M: sp.spmatrix, labels: tuple[str, ...] = ()) -> None:
+        self.K, self.M = sp.csr_matrix(K), sp.csr_matrix(M)
+        self.n = int(self.K.shape[0])
+        self.labels = labels
+        self._check()
+        upper_k, upper_m = sp.triu(self.K, format="csr"), sp.triu(self.M, format="csr")
+        both = (upper_k + 1j * upper_m).tocsr()  # keeps an entry unless it is zero in both
+        both.sort_indices()
+        self._indptr, self._indices = both.indptr, both.indices
+        self._k, self._m = both.data.real.copy(), both.data.imag.copy()
+        self.k_diagonal: Floats = np.asarray(self.K.diagonal(), np.float64)
+        self.m_diagonal: Floats = np.asarray(self.M.diagonal(), np.float64)
+
+    @classmethod
+    def of(cls, model: Model | tuple[sp.spmatrix, sp.spmatrix], p: Floats | None = None) -> Pencil:
+        """Return the pencil of a model at `p`, or of a pair (K, M)."""
+        if isinstance(model, Model):
+            return cls(model.K(p), model.M(p), model.free_labels)
+        return cls(*model)
+
+    def shifted(self, sigma: float) -> sp.csr_matrix:
+        """Upper triangle of K - sigma M, (n, n) csr on a pattern that does not depend on sigma."""
+        data = self._k - sigma * self._m
+        return sp.csr_matrix((data, self._indices, self._indptr), shape=(self.n, self.n))
+
+    @property
+    def safe_shift(self) -> float:
+        """A negative shift far above the rounding of K, whatever the units."""
+        both = (self.k_diagonal > 0.0) & (self.m_diagonal > 0.0)
+        ratio = self.k_diagonal[both] / self.m_diagonal[both]
+        return -1e-6 * float(np.median(ratio)) if both.any() else -1.0
+
+    @property
+    def pattern(self) -> sp.csr_matrix:
+        """Upper triangle of ones where K or M has an entry, (n, n)."""
+        ones = np.ones(len(self._indices), np.int8)
+        return sp.csr_matrix((ones, self._indices, self._indptr), shape=(self.n, self.n))
+
+    def name(self, row: int) -> str:
+        """Return what the user calls a degree of freedom."""
+        return self.labels[row] if len(self.labels) == self.n else f"degree of freedom {row + 1}"
+
+    def _check(self) -> None:
+        for matrix, what in ((self.K, "stiffness"), (self.M, "mass")):
+            if matrix.shape != (self.n, self.n):
+                raise InputError(f"the {what} matrix has shape {matrix.shape}, expected square")
+            require_finite(matrix.data, f"the {what} matrix")
+            probe = np.random.default_rng(1).standard_normal(self.n)
+            size = sp.csr_matrix((np.abs(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
+            skew = np.abs(matrix @ probe - matrix.T @ probe) > 1e-6 * (size @ np.abs(probe)).max(
+                initial=0.0
+            )
+            if skew.any():
+                raise InputError(f"the {what} matrix is not symmetric")
+        if self.n == 0:
+            raise InputError("the model has no free degree of freedom: nothing can move")
+        if self.M.nnz == 0 or not np.any(self.M.data):
+            raise InputError("the model has no mass: give densities, masses or NSM")
+        mass = self.M.diagonal()
+        if (mass < 0.0).any():
+            row = int(np.argmin(mass))
+            raise InputError(
+                f"the mass at {self.name(row)} is negative ({mass[row]:g}): "
+                "look for a negative density, NSM or point mass"
+            )
+        used = np.zeros(self.n, bool)
+        for matrix in (self.K, self.M):
+            rows = np.repeat(np.arange(self.n), np.diff(matrix.indptr))
+            used[rows[matrix.data != 0.0]] = True
+        if not used.all():
+            rows = np.flatnonzero(~used)
+            names = ", ".join(self.name(int(r)) for r in rows[:5])
+            more = f" and {len(rows) - 5} more" if len(rows) > 5 else ""
+            raise InputError(
+                f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
+            )

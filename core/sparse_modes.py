@@ -1,0 +1,251 @@
+"""The lowest modes of a large model: shift, block Lanczos iteration, inertia count."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as sl
+
+from .arrays import Floats
+from .errors import CheckError
+from .factor import Backend, Factorisation, NotDefinite, factorise
+from .lanczos import BlockLanczos
+from .mechanism import diagnose, refuse_unresisted
+from .model import Model
+from .pencil import Pencil
+from .spectrum import Spectrum
+
+_FIRST_SHIFT_HZ = 20.0
+_WIDTH = 8
+_GUARD = 4
+_GUARD_TOLERANCE = 1e-3
+_GAP = 1e-4
+_ATTEMPTS = 4
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of the iteration.
+
+    Parameters
+    ----------
+    wanted : int or None
+        Modes asked for, rigid-body modes included; None: all below `limit`.
+    limit : float or None
+        Largest eigenvalue of interest.
+    backend : {"pardiso", "superlu"}
+    tolerance : float
+        Of the Ritz residuals beside the Ritz values.
+    count : bool
+        Whether to prove by the inertia that none is missing.
+    keep_factor : bool
+        Whether the factor of K - sigma M stays in the spectrum.
+    seed : int
+        Of the start vectors.
+    """
+
+    wanted: int | None
+    limit: float | None
+    backend: Backend
+    tolerance: float
+    count: bool
+    keep_factor: bool
+    seed: int
+
+
+def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Request) -> Spectrum:
+    """Find the lowest modes that are M-orthogonal to `rigid`, (n, n_rigid).
+
+    Raises
+    ------
+    InputError
+        K - sigma M is singular or indefinite; the message names where.
+    CheckError
+        Modes stay missing by the inertia count (Sylvester's law: the negative pivots of K - s M
+        are the eigenvalues below s).
+    """
+    n_rigid = rigid.shape[1]
+    below = None
+    if request.limit is not None:
+        below = _inertia(pencil, (request.limit, request.limit * 1.0001), request.backend)
+        if below <= n_rigid:
+            none = np.zeros(0)
+            sigma = pencil.safe_shift
+            return Spectrum(none, rigid[:, :0], none, sigma, complete=False, missed=0)
+    asked = min(x for x in (request.wanted, below) if x is not None)
+    elastic = max(asked - n_rigid, 1)
+    sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
+    found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
+    del factor, lanczos  # two factors at a time only where the caller keeps one
+    for attempt in range(1, _ATTEMPTS + 1):
+        if not request.keep_factor:
+            found = replace(found, factor=None)
+        if not request.count:
+            return found
+        gap = _gap(found, elastic)
+        have = int(np.count_nonzero(found.values < gap[0]))
+        missed = _inertia(pencil, gap, request.backend) - n_rigid - have
+        if missed == 0:
+            return replace(found, missed=0)
+        if missed < 0 or attempt == _ATTEMPTS:
+            break
+        found = _with_missed(pencil, rigid, found, missed, request, attempt)
+    hertz = np.sqrt(gap[0]) / (2.0 * np.pi)
+    raise CheckError(
+        f"{n_rigid + have} modes were found below {hertz:.6g} Hz but the inertia count shows "
+        f"{n_rigid + have + missed}"
+    )
+
+
+def _started(
+    model: Model | None, pencil: Pencil, rigid: Floats, elastic: int, request: Request
+) -> tuple[float, Factorisation, BlockLanczos]:
+    """Choose a shift that suits the spectrum, with its factor and the first Krylov vectors."""
+    safe = -pencil.safe_shift
+    hertz = _FIRST_SHIFT_HZ
+    first = (2.0 * np.pi * hertz) ** 2 if request.limit is None else 0.05 * request.limit
+    sigma = -float(np.clip(first, 1e-5 * safe, 1e5 * safe))
+    try:
+        factor = factorise(pencil.shifted(sigma), True, request.backend)
+    except NotDefinite:
+        diagnose(model, pencil, sigma, request.backend)
+        raise CheckError("the stiffness is too badly conditioned to factorise") from None
+    refuse_unresisted(model, pencil, sigma, factor)
+    rng = np.random.default_rng(request.seed)
+    for _ in range(6):
+        start = rng.standard_normal((pencil.n, min(_WIDTH, pencil.n)))
+        room = _room(elastic)
+        lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, room)
+        lanczos.step()
+        for _ in range(2):
+            if lanczos.exhausted:
+                break
+            lanczos.advance()
+            lanczos.step()
+        better = _better_shift(sigma, lanczos.ritz()[0], elastic)
+        if better is None:
+            break
+        sigma = better
+        factor.refactorise(pencil.shifted(sigma))
+    return sigma, factor, lanczos
+
+
+def _room(elastic: int) -> int:
+    return 3 * (elastic + _GUARD) + 6 * _WIDTH
+
+
+def _better_shift(sigma: float, theta: Floats, elastic: int) -> float | None:
+    """Another shift where this one is far from the first modes, by their first estimates."""
+    values = sigma + 1.0 / theta[theta > 1e-12 * theta[0]]
+    pivot = values[min(elastic, _WIDTH, len(values)) - 1]
+    lowest = float(values[values > 1e-6 * pivot][0])
+    if -sigma > 10.0 * lowest and -sigma > pivot:
+        return -0.5 * lowest
+    if lowest > -1e8 * sigma:
+        return -1e-3 * lowest
+    return None
+
+
+def _converged(
+    pencil: Pencil,
+    rigid: Floats,
+    sigma: float,
+    factor: Factorisation,
+    lanczos: BlockLanczos,
+    elastic: int,
+    request: Request,
+) -> Spectrum:
+    """Iterate until `elastic` modes have converged and a gap above them is in sight."""
+    check_at = elastic
+    while True:
+        if lanczos.exhausted or lanczos.size >= check_at or lanczos.full:
+            theta, residual = lanczos.ritz()
+            loose = int(np.argmin(np.append(residual <= _GUARD_TOLERANCE * theta, False)))
+            tight = bool((residual <= request.tolerance * theta)[:elastic].all())
+            if lanczos.exhausted:
+                count = int(np.count_nonzero(theta > 1e-12 * theta[0]))
+                break
+            values = sigma + 1.0 / theta[:loose]
+            if tight and loose > elastic and _largest_gap(values, elastic)[1] > _GAP:
+                count = loose
+                break
+            if lanczos.full:
+                lanczos.restart(max(elastic, loose) + _GUARD + _WIDTH)
+            check_at = lanczos.size + max(_WIDTH, lanczos.size // 16)
+        lanczos.advance()
+        lanczos.step()
+    found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(count), theta[:count])
+    return replace(found, complete=lanczos.exhausted)
+
+
+def _polished(
+    pencil: Pencil, rigid: Floats, sigma: float, factor: Factorisation, X: Floats, theta: Floats
+) -> Spectrum:
+    """Residuals of Ritz vectors by one further inverse iteration, which also betters them.
+
+    With Y = A^-1 M X the Ritz problem of (A, M) on Y needs no product with K.
+    """
+    MX = pencil.M @ X
+    Y = factor.solve(MX) / theta
+    Y -= rigid @ (rigid.T @ (pencil.M @ Y))
+    error = X - Y
+    residual = np.sqrt(np.maximum(np.einsum("ij,ij->j", error, pencil.M @ error), 0.0))
+    stiff = (Y.T @ MX) / theta
+    mass = Y.T @ (pencil.M @ Y)
+    alpha, C = sl.eigh((stiff + stiff.T) / 2.0, (mass + mass.T) / 2.0)
+    return Spectrum(sigma + alpha, Y @ C, residual, sigma, False, None, factor)
+
+
+def _largest_gap(values: Floats, first: int) -> tuple[int, float]:
+    """Where from `first` on two neighbours lie furthest apart, and how far relatively."""
+    ahead = np.diff(values[first - 1 : first + 2 * _GUARD]) / np.abs(
+        values[first : first + 2 * _GUARD]
+    )
+    k = int(np.argmax(ahead))
+    return first + k, float(ahead[k])
+
+
+def _gap(found: Spectrum, elastic: int) -> tuple[float, float]:
+    """Bounds of an interval without modes, above the first `elastic`."""
+    values = found.values
+    if found.complete or len(values) <= elastic:
+        top = abs(values[-1]) - found.sigma
+        return 2.0 * top, 4.0 * top
+    k, _ = _largest_gap(values, elastic)
+    wide = values[k] - values[k - 1]
+    return float(values[k - 1] + 0.4 * wide), float(values[k - 1] + 0.6 * wide)
+
+
+def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> int:
+    """Return the number of eigenvalues below a point of an interval without modes."""
+    low, high = between
+    try:
+        return factorise(pencil.shifted(low), False, backend).negative
+    except CheckError:
+        return factorise(pencil.shifted(0.7 * low + 0.3 * high), False, backend).negative
+
+
+def _with_missed(
+    pencil: Pencil,
+    rigid: Floats,
+    found: Spectrum,
+    missed: int,
+    request: Request,
+    attempt: int,
+) -> Spectrum:
+    """Search again, M-orthogonally to all that was found, with another start."""
+    factor = found.factor or factorise(pencil.shifted(found.sigma), True, request.backend)
+    locked = np.hstack([rigid, found.vectors])
+    rng = np.random.default_rng(request.seed + 1000 * attempt)
+    start = rng.standard_normal((pencil.n, _WIDTH))
+    lanczos = BlockLanczos(factor.solve, pencil.M, start, locked, _room(missed))
+    lanczos.step()
+    further = _converged(pencil, locked, found.sigma, factor, lanczos, missed, request)
+    X = np.hstack([found.vectors, further.vectors])
+    values = np.concatenate([found.values, further.values])
+    order = np.argsort(values)
+    joined = _polished(
+        pencil, rigid, found.sigma, factor, X[:, order], 1.0 / (values[order] - found.sigma)
+    )
+    return replace(joined, complete=found.complete and further.complete)

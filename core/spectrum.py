@@ -1,0 +1,39 @@
+"""What an eigenvalue iteration hands back, before it is checked and joined."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .arrays import Floats
+from .factor import Factorisation
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Modes besides the rigid-body modes that were known beforehand.
+
+    Parameters
+    ----------
+    values : (n_mode,) float
+        Ascending.
+    vectors : (n, n_mode) float
+        M-orthonormal, and M-orthogonal to the known ones.
+    residual : (n_mode,) float
+        ||x - (lambda - sigma) A^-1 M x||_M with A = K - sigma M.
+    sigma : float
+        The shift.
+    complete : bool
+        Whether these are all modes that the mass matrix allows.
+    missed : int or None
+        Eigenvalues that the inertia count shows but that are not here; None without a count.
+    factor : Factorisation or None
+        Of K - sigma M.
+    """
+
+    values: Floats
+    vectors: Floats
+    residual: Floats
+    sigma: float
+    complete: bool
+    missed: int | None
+    factor: Factorisation | None = None
