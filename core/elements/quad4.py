@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats
-from .batch import arms, condense, congruent, in_chunks, transpose, unit
+from .batch import arms, condense, congruent, in_chunks, symmetric, transpose, unit
 from .normals import director_slopes, is_warped, normal_map, warp_map
 from .section import ShellSection
-from .transverse_shear import bending_scale, finite_shear, residual_flexibility
+from .transverse_shear import finite_shear, strip_stiffness
 
 _XI = np.array([-1.0, 1.0, 1.0, -1.0])
 _ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _G = 1.0 / np.sqrt(3.0)
 # share of the residual flexibility that a linear shear force sees, MacNeal (1978)
 _EPSILON = 0.025
+_RECIPROCAL = ((1.0 - _EPSILON) / _EPSILON) ** 2
 
 
 def _gradients(xi: Floats, eta: Floats) -> Floats:
@@ -33,12 +34,11 @@ _BUBBLES[:, 0, 0] = -2.0 * _G * _XI
 _BUBBLES[:, 1, 1] = -2.0 * _G * _ETA
 
 _EDGES = ((0, 1), (3, 2), (0, 3), (1, 2))  # two along xi, two along eta
-# covariant shear strains at the Gauss points from the four edge shears
-_SHEAR_AT_GAUSS = np.zeros((4, 2, 4))
-_SHEAR_AT_GAUSS[:, 0, 0] = 0.25 * (1.0 - _G * _ETA)
-_SHEAR_AT_GAUSS[:, 0, 1] = 0.25 * (1.0 + _G * _ETA)
-_SHEAR_AT_GAUSS[:, 1, 2] = 0.25 * (1.0 - _G * _XI)
-_SHEAR_AT_GAUSS[:, 1, 3] = 0.25 * (1.0 + _G * _XI)
+# shear strains at the Gauss points from the four coefficients of the assumed field
+_SHEAR_FIELD = np.zeros((4, 2, 4))
+_SHEAR_FIELD[:, 0, 0] = _SHEAR_FIELD[:, 1, 2] = 1.0
+_SHEAR_FIELD[:, 0, 1] = _G * _ETA
+_SHEAR_FIELD[:, 1, 3] = _G * _XI
 
 _NODE = 6 * np.arange(4)
 # local freedoms in the order u, two bubbles, v, two bubbles
@@ -159,7 +159,7 @@ def _stiffness(
     inverse = np.linalg.inv(J)
     K = np.zeros((len(xyz), 24, 24))
     _add_plane(K, section, local, detJ, inverse)
-    _add_shear(K, section, local, detJ, inverse)
+    _add_shear(K, section, local, detJ)
     _add_drilling(K, section.drilling * k6rot * 1e-6, local)
     return congruent(K, _corner_motions(axes, local, height, offset, normals))
 
@@ -217,35 +217,48 @@ def _add_plane(
     K[:, _BENDING[:, None], _BENDING] += condense(Kb, _PLANE, _INNER) * np.outer(_SIGN, _SIGN)
 
 
-def _add_shear(
-    K: Floats, section: ShellSection, local: Floats, detJ: Floats, inverse: Floats
-) -> None:
-    """Assumed edge shears, their flexibility raised by the residual bending flexibility."""
-    scale = bending_scale(section)
-    bends = scale.all(axis=1)
-    edge = np.stack([local[:, j] - local[:, i] for i, j in _EDGES], axis=1)
+def _add_shear(K: Floats, section: ShellSection, local: Floats, detJ: Floats) -> None:
+    """Edge shears as a linear field, its flexibility raised by the residual bending flexibility.
+
+    The field is gamma_x = a0 + a1 eta, gamma_y = a2 + a3 xi in element axes, fixed by the shears
+    along the four edges. The residual flexibility belongs to strips along xi and eta whose
+    lengths are the projections dx, dy of the mid-side vectors (MacNeal 1978, equations 26, 27).
+    """
     area = detJ.sum(axis=1)
-    N = inverse @ _SHEAR_AT_GAUSS
+    along, across = _strips(local)
+    dx, dy = along[:, 0], across[:, 1]
+    D1, D2 = strip_stiffness(section.D, along)
+    bends = (D1 > 0.0) & (D2 > 0.0)
+    D1, D2 = np.where(bends, D1, 1.0), np.where(bends, D2, 1.0)
+
     S = finite_shear(section, np.sqrt(area))
-    Ks = np.einsum("ngai,ngaj->nij", N * detJ[..., None, None], S[:, None] @ N)
-    Ks[~bends] = np.eye(4)
-    span = np.stack([edge[:, 0] + edge[:, 1], edge[:, 2] + edge[:, 3]], axis=1) * 0.5
-    along = np.einsum("nki->nk", (span * scale[:, None, :]) ** 2) / 12.0
-    squared = np.einsum("nki,nki->nk", span, span)
-    part = _EPSILON / (_EPSILON + (1.0 - _EPSILON) * squared / squared[:, ::-1])
-    Z = edge @ residual_flexibility(edge, scale) @ transpose(edge)
-    length = np.linalg.norm(edge, axis=2)
-    for k, (a, b) in enumerate(((0, 1), (2, 3))):
-        linear = np.stack([-length[:, a], length[:, b]], axis=1)
-        block = (3.0 * part[:, k] * along[:, k])[:, None, None] * (
-            linear[:, :, None] * linear[:, None, :]
-        )
-        Z[:, a : b + 1, a : b + 1] += block
-    C = np.linalg.inv(np.linalg.inv(Ks) + Z / area[:, None, None])
+    P = _SHEAR_FIELD
+    H = transpose(P).reshape(1, 4, 4, 2) @ (S[:, None] @ P)
+    H = np.einsum("ng,ngij->nij", detJ, H)
+    H[~bends] = np.eye(4)
+    ratio = (1.0 - _EPSILON) / _EPSILON * (dx / dy) ** 2
+    x, y = dx**2 / (12.0 * D1), dy**2 / (12.0 * D2)
+    shares = (x, 3.0 * x / (1.0 + ratio), y, 3.0 * y * ratio / (ratio + _RECIPROCAL))
+    Zb = np.stack(shares, axis=1) / area[:, None]
+    C = symmetric(np.linalg.solve(np.eye(4) + H * Zb[:, None, :], H))
     C[~bends] = 0.0
-    V = edge_shear_operator(edge, _EDGES, 4)
+
+    edge = np.stack([local[:, j] - local[:, i] for i, j in _EDGES], axis=1)
+    ends = np.array([-1.0, 1.0, -1.0, 1.0])
+    G = np.repeat(edge, 2, axis=2)
+    G[:, :2, 1] *= ends[:2]
+    G[:, :2, 3] = 0.0
+    G[:, 2:, 1] = 0.0
+    G[:, 2:, 3] *= ends[2:]
+    V = np.linalg.solve(G, edge_shear_operator(edge, _EDGES, 4))
     plate = np.concatenate([_NODE + 2, _NODE + 3, _NODE + 4])
     K[:, plate[:, None], plate] += transpose(V) @ C @ V
+
+
+def _strips(local: Floats) -> tuple[Floats, Floats]:
+    """Vectors between the middles of opposite sides, along xi and along eta, each (n, 2)."""
+    middle = 2.0 * _AT_CENTRE @ local
+    return middle[:, 0], middle[:, 1]
 
 
 def edge_shear_operator(edge: Floats, ends: tuple[tuple[int, int], ...], n_node: int) -> Floats:

@@ -3,8 +3,7 @@
 A plate element with assumed edge shears is too stiff where the moment varies along it. MacNeal
 (1978), *A simple quadrilateral shell element*, Computers & Structures 8, 175-183, adds what is
 missing to the shear flexibility: l**2 / (12 D) for a shear force that is constant over the
-element. Written with the edge vectors e of the element, Z_b = sum(e e^T) / (24 D), which holds
-for the NX Nastran matrices of both the square and the triangle.
+element, D being the bending stiffness of the strip of length l with every other curvature held.
 """
 
 from __future__ import annotations
@@ -18,25 +17,33 @@ from .section import ShellSection
 _RIGID = 1e9
 
 
-def bending_scale(section: ShellSection) -> Floats:
-    """1 / sqrt of the bending stiffness along element x and y, (n, 2); 0 without bending.
+def strip_stiffness(D: Floats, direction: Floats) -> tuple[Floats, Floats]:
+    """Bending stiffness along and across a direction, each (n,).
 
-    The coupling to the membrane is taken out first, D - B A^-1 B, so that the reference
-    surface does not matter.
+    Parameters
+    ----------
+    D : (n, 3, 3) float
+        Bending stiffness in element axes.
+    direction : (n, 2) float
+        In element axes, any length.
     """
-    D = section.D
-    if section.B.any():
-        coupled = section.B.any(axis=(1, 2))
-        A, B = section.A[coupled], section.B[coupled]
-        D = D.copy()
-        D[coupled] -= B @ np.linalg.solve(A, B)
+    c, s = (direction / np.linalg.norm(direction, axis=1, keepdims=True)).T
+    along = np.stack([c * c, s * s, 2.0 * s * c], axis=1)
+    across = np.stack([s * s, c * c, -2.0 * s * c], axis=1)
+    D1 = np.einsum("ni,nij,nj->n", along, D, along)
+    D2 = np.einsum("ni,nij,nj->n", across, D, across)
+    return D1, D2
+
+
+def bending_scale(D: Floats) -> Floats:
+    """1 / sqrt of the bending stiffness along element x and y, (n, 2); 0 without bending."""
     diagonal = np.stack([D[:, 0, 0], D[:, 1, 1]], axis=1)
     positive = diagonal > 0.0
     return np.where(positive, 1.0 / np.sqrt(np.where(positive, diagonal, 1.0)), 0.0)
 
 
 def residual_flexibility(edges: Floats, scale: Floats) -> Floats:
-    """Z_b for constant shear, (n, 2, 2), from the edges (n, m, 2) and `bending_scale`."""
+    """Z_b = sum(e e^T) / (24 D), (n, 2, 2), of triangles, from edges and `bending_scale`."""
     e = edges * scale[:, None, :]
     return np.asarray(transpose(e) @ e / 24.0)
 

@@ -144,7 +144,7 @@ def _add_plane(K: Floats, section: ShellSection, g: Floats, area: Floats) -> Non
 
 
 def _add_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats) -> None:
-    scale = bending_scale(section)
+    scale = bending_scale(section.D)
     bends = scale.all(axis=1)
     S = finite_shear(section, np.sqrt(area))
     S = np.where(bends[:, None, None], S, np.eye(2))
