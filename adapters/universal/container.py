@@ -17,7 +17,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from .content import Skipped
-from .layout58 import records
+from .layout58 import HEADER_LINES, REALS, columns, records
 
 _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")
@@ -72,8 +72,15 @@ class Source:
         return InputError(f"{self.name} line {line}: {what}")
 
 
-def open_source(path: Path) -> Source:
+def open_source(path: Path, exact_lines: bool = True) -> Source:
     """Map a universal file and find its datasets.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    exact_lines : bool
+        Count line ends within binary blocks too, as an editor does; that reads the whole file.
 
     Raises
     ------
@@ -88,7 +95,7 @@ def open_source(path: Path) -> Source:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
     except ValueError as error:
         raise InputError(f"{path} is empty; a universal file is expected") from error
-    scan = _Scan(path, data)
+    scan = _Scan(path, data, exact_lines)
     sections = tuple(scan.sections())
     if not sections:
         raise InputError(
@@ -104,6 +111,7 @@ class _Scan:
 
     path: Path
     data: mmap.mmap
+    exact_lines: bool = True
     skipped: list[Skipped] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     _counted: int = 0
@@ -143,42 +151,85 @@ class _Scan:
         begin = self._after_line(opened.end())
         binary = opened[2] is not None
         header = _integers(opened[3]) if binary else ()
-        resume = self._past_binary(begin, header) if binary else begin
-        while True:
-            mark = self._delimiter(resume)
-            if mark is None:
-                return Section(number, line, begin, len(self.data), binary, header, False), len(
-                    self.data
-                )
-            start, after = mark
-            following = _NUMBER.match(self.data, after)
-            if following is None:
-                return Section(number, line, begin, start, binary, header), after
-            # This -1 opens the next dataset: the one that closes this dataset is glued to the
-            # last line, or was lost.
-            end = self._glued_end(begin, start)
-            if end is None:
-                self.warnings.append(
-                    f"{self.path} line {line}: the -1 that closes dataset {number} is missing"
-                )
-            return Section(number, line, begin, end or start, binary, header), start
+        whole = self._past_binary(begin, header) if binary else None
+        if number == 58 and not binary:
+            whole = self._past_text(begin)
+        if whole is not None:
+            return Section(number, line, begin, whole[0], binary, header), whole[1]
+        mark = self._delimiter(begin)
+        if mark is None:
+            end = self._glued_end(begin, len(self.data))
+            last = len(self.data) if end is None else end
+            closed = end is not None
+            return Section(number, line, begin, last, binary, header, closed), len(self.data)
+        start, after = mark
+        if _NUMBER.match(self.data, after) is None:
+            return Section(number, line, begin, start, binary, header), after
+        # This -1 opens the next dataset: the one that closes this dataset is glued to the last
+        # line, or was lost.
+        end = self._glued_end(begin, start)
+        if end is None:
+            self.warnings.append(
+                f"{self.path} line {line}: the -1 that closes dataset {number} is missing"
+            )
+        return Section(number, line, begin, start if end is None else end, binary, header), start
 
-    def _past_binary(self, begin: int, header: tuple[int, ...]) -> int:
-        """Offset behind the binary block of a 58b, where its header's byte count leads."""
+    def _past_binary(self, begin: int, header: tuple[int, ...]) -> tuple[int, int] | None:
+        """End of a 58b and start of what follows, where the size of its block leads to a -1."""
         if len(header) < 4:
-            return begin
-        at, form = begin, tuple[int, ...]()
-        for k in range(header[2]):
-            start, at = at, self._after_line(at)
-            form = _integers(self.data[start:at][:30]) if k == 6 else form
+            return None
+        at, form = self._form(begin, header[2])
         sizes = [header[3]]
         if len(form) >= 3:  # the announced size is wrong in some files: try what the points need
             sizes += [form[1] * sum(r) for r in records(form[0], form[2] != 0)]
         for size in sizes:
-            tail = self.data[at + size : at + size + 200].lstrip(b" \t\r\n")
-            if tail.startswith(b"-1") and at + size <= len(self.data):
-                return at + size
-        return at
+            closing = self._closing(at + size)
+            if closing is not None:
+                if not self.exact_lines:
+                    self._line_at(at)
+                    self._counted = at + size
+                return closing
+        return None
+
+    def _past_text(self, begin: int) -> tuple[int, int] | None:
+        """End of an ASCII 58 and start of what follows, where its lines have all one length."""
+        at, form = self._form(begin, HEADER_LINES)
+        if len(form) < 3 or form[0] not in REALS or form[1] < 1:
+            return None
+        width = columns(form[0], form[2] != 0)
+        n_value = form[1] * (REALS[form[0]] + (form[2] == 0))
+        pitch = self._after_line(at) - at
+        full, rest = divmod(n_value, len(width))
+        end = at + full * pitch
+        if full < 2 or end + rest > len(self.data) or self._after_line(end - pitch) != end:
+            return None
+        last = self._after_line(end) if rest else end
+        closing = self._closing(last)
+        if closing is None or self.data[last - 1] not in b"\r\n":
+            return None
+        self._line_at(at)
+        self._line += full + (1 if rest else 0)
+        self._counted = last
+        return closing
+
+    def _form(self, begin: int, n_line: int) -> tuple[int, tuple[int, ...]]:
+        """Offset behind the header of a function, and the integers of its seventh line."""
+        at, form = begin, tuple[int, ...]()
+        for k in range(min(n_line, HEADER_LINES)):
+            start, at = at, self._after_line(at)
+            form = _integers(self.data[start:at][:30]) if k == 6 else form
+        return at, form
+
+    def _closing(self, at: int) -> tuple[int, int] | None:
+        """Start of a -1 that follows `at` at once or on the next line, and of the line after."""
+        if at > len(self.data):
+            return None
+        tail = self.data[at : at + 200]
+        blanks = len(tail) - len(tail.lstrip(b" \t\r\n"))
+        if not tail[blanks:].startswith(b"-1"):
+            return None
+        after = self._blank(at + blanks + 2, len(self.data))
+        return None if after is None else (at, after)
 
     def _delimiter(self, at: int) -> tuple[int, int] | None:
         """Start of the next line ``-1`` at or after `at`, and the start of the line after it."""
@@ -200,10 +251,10 @@ class _Scan:
 
     def _glued_end(self, begin: int, start: int) -> int | None:
         """Where the data end when the closing -1 stands at the end of the last data line."""
-        tail = self.data[begin:start][-200:].rstrip(b" \t\r\n")
-        if tail.endswith(self._mark) and tail[: -len(self._mark)][-1:] not in b" \t\r\n":
-            cut = len(self.data[begin:start].rstrip(b" \t\r\n")) - len(self._mark)
-            return begin + cut
+        tail = self.data[max(begin, start - 300) : start]
+        kept = tail.rstrip(b" \t\r\n\x1a")
+        if kept.endswith(self._mark) and kept[: -len(self._mark)][-1:] not in b" \t\r\n":
+            return start - len(tail) + len(kept) - len(self._mark)
         return None
 
     def _blank(self, at: int, stop: int) -> int | None:

@@ -102,16 +102,28 @@ def _fast(
         if np.any(rows[:, -1] != head[-1]) or np.any(rows[:, total:-1] > 32):
             return start * per_line, begin + start * pitch, start
         out = values[start * per_line : stop * per_line].reshape(-1, per_line)
-        offset = 0
-        for j, width in enumerate(widths):
-            if not _column(rows[:, offset : offset + width], out[:, j], start):
-                return start * per_line, begin + start * pitch, start
-            offset += width
+        if not _lines(rows[:, :total], widths, out, start):
+            return start * per_line, begin + start * pitch, start
     return n_line * per_line, begin + n_line * pitch, n_line
 
 
-def _column(field: Bytes, out: Floats, first_row: int) -> bool:
-    """Read one column of fields into `out`; False when they do not share a layout."""
+def _lines(rows: Bytes, widths: Sequence[int], out: Floats, first_row: int) -> bool:
+    """Read lines of fields into `out`, (n_line, n_field); False when a layout does not hold."""
+    n = len(widths)
+    if len(set(widths)) == 1:
+        return _column(rows.reshape(-1, widths[0]), out.reshape(-1), first_row, n)
+    at = 0
+    for j, width in enumerate(widths):
+        column = np.empty(len(out))
+        if not _column(rows[:, at : at + width], column, first_row, 1):
+            return False
+        out[:, j] = column
+        at += width
+    return True
+
+
+def _column(field: Bytes, out: Floats, first_row: int, per_row: int) -> bool:
+    """Read fields (n, width) into `out`, (n,); False when they do not share a layout."""
     layout = _Layout.of(field[0].tobytes())
     if layout is None:
         return False
@@ -151,7 +163,7 @@ def _column(field: Bytes, out: Floats, first_row: int) -> bool:
     np.multiply(out, scale, out=out, where=power > 0)
     np.negative(out, out=out, where=(sign == 45) | (lead == 45))
     for row in np.flatnonzero(odd):
-        found = numbers_of(field[row].tobytes(), (field.shape[1],), first_row + int(row))
+        found = numbers_of(field[row].tobytes(), (field.shape[1],), first_row + int(row) // per_row)
         if len(found) != 1:
             return False
         out[row] = found[0]

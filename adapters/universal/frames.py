@@ -1,0 +1,124 @@
+"""Nodes of one or several files with positions and displacement axes in the basic frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats, Ints
+from ...core.errors import InputError
+from .nodes import NodeTable
+from .systems import BASIC, CoordinateSystem
+
+
+@dataclass(frozen=True, eq=False)
+class NodeFrames:
+    """Nodes: numbers (n,), basic positions (n, 3), displacement axes (n, 3, 3) as rows."""
+
+    ids: Ints
+    xyz: Floats
+    frames: Floats
+
+    def at(self, nodes: Ints) -> Floats:
+        """Displacement axes (n, 3, 3) of nodes; the basic ones where a node is not known."""
+        frames = np.broadcast_to(np.eye(3), (len(nodes), 3, 3)).copy()
+        if len(self.ids):
+            order = np.argsort(self.ids, kind="stable")
+            found = order[np.minimum(np.searchsorted(self.ids[order], nodes), len(order) - 1)]
+            known = self.ids[found] == nodes
+            frames[known] = self.frames[found[known]]
+        return frames
+
+
+def node_frames(
+    tables: Sequence[NodeTable], systems: Mapping[int, CoordinateSystem], warnings: list[str]
+) -> NodeFrames:
+    """Merge node tables; a node given twice must stand in the same place.
+
+    Raises
+    ------
+    InputError
+        The same node at different positions.
+    """
+    undefined: dict[int, int] = {}
+    parts = [_placed(table, systems, undefined, warnings) for table in tables]
+    for number, count in undefined.items():
+        warnings.append(
+            f"coordinate system {number}, used by {count} node(s), is not defined (dataset 18 or "
+            "2420); the basic frame is used in its place"
+        )
+    if not parts:
+        return NodeFrames(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3)))
+    ids, xyz, frames = (np.concatenate(p) for p in zip(*parts, strict=True))
+    keep = _first_of_each(ids, xyz, [t.where for t in tables], warnings)
+    return NodeFrames(ids[keep], xyz[keep], frames[keep])
+
+
+def _placed(
+    table: NodeTable,
+    systems: Mapping[int, CoordinateSystem],
+    undefined: dict[int, int],
+    warnings: list[str],
+) -> tuple[Ints, Floats, Floats]:
+    xyz = table.coordinates.copy()
+    for number in np.unique(table.definition):
+        rows = table.definition == number
+        system = _system(int(number), systems, undefined, int(rows.sum()))
+        if system is not BASIC:
+            xyz[rows] = system.positions(xyz[rows])
+        if system.kind != "cartesian":
+            warnings.append(
+                f"{table.where}: {rows.sum()} node(s) have {system.kind} coordinates; "
+                "their angles are taken in degrees"
+            )
+    frames = np.broadcast_to(np.eye(3), (len(xyz), 3, 3)).copy()
+    for number in np.unique(table.displacement):
+        rows = table.displacement == number
+        system = _system(int(number), systems, undefined, int(rows.sum()))
+        frames[rows] = system.frames(xyz[rows])
+        on_axis = table.ids[rows][system.on_axis(xyz[rows])]
+        if len(on_axis):
+            warnings.append(
+                f"{table.where}: node(s) {some(on_axis)} lie on the axis of their {system.kind} "
+                "displacement system, where radial and tangential are not defined; x is taken as "
+                "radial"
+            )
+    return table.ids, xyz, frames
+
+
+def _first_of_each(ids: Ints, xyz: Floats, places: Sequence[str], warnings: list[str]) -> Ints:
+    """Rows of the first mention of each node."""
+    unique, first, inverse = np.unique(ids, return_index=True, return_inverse=True)
+    if len(unique) == len(ids):
+        return np.arange(len(ids))
+    size = max(float(np.ptp(xyz, axis=0).max()), 1e-30)
+    apart = np.abs(xyz - xyz[first[inverse]]).max(axis=1) > 1e-4 * size
+    if apart.any():
+        raise InputError(
+            f"{' and '.join(dict.fromkeys(places))}: node {ids[apart][0]} is given twice at "
+            "different positions; remove one, or give files of one test only"
+        )
+    warnings.append(
+        f"{' and '.join(dict.fromkeys(places))}: {len(ids) - len(unique)} node(s) are given more "
+        "than once at the same position"
+    )
+    return np.sort(first)
+
+
+def _system(
+    number: int, systems: Mapping[int, CoordinateSystem], undefined: dict[int, int], count: int
+) -> CoordinateSystem:
+    """Return a system by its number; 0 and an undefined 1 are the basic frame."""
+    if number in systems:
+        return systems[number]
+    if number not in (0, 1):
+        undefined[number] = max(count, undefined.get(number, 0))
+    return BASIC
+
+
+def some(numbers: Sequence[int] | Ints) -> str:
+    """Return the first few of many numbers, for a message."""
+    listed = [str(int(n)) for n in numbers]
+    return ", ".join(listed[:6]) + (f" and {len(listed) - 6} more" if len(listed) > 6 else "")

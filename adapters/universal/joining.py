@@ -1,0 +1,76 @@
+"""Mode shapes of several datasets as one set of modes; units of several files as one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...core.arrays import Numbers
+from ...core.dofs import Dofs
+from ...core.errors import InputError
+from ...core.modes import Modes
+from .content import Units
+from .frames import NodeFrames, some
+from .shapes import Shape
+
+
+def join_modes(shapes: Sequence[Shape], frames: NodeFrames, warnings: list[str]) -> Modes | None:
+    """Join mode shapes: rows of the nodes that every mode has, columns in file order.
+
+    Rows are the 3 or 6 values of each node as written, along the axes of the node's displacement
+    system.
+    """
+    if not shapes:
+        return None
+    nodes = shapes[0].nodes
+    if any(not np.array_equal(s.nodes, nodes) for s in shapes):
+        everywhere = nodes
+        for s in shapes[1:]:
+            everywhere = np.intersect1d(everywhere, s.nodes)
+        dropped = np.setdiff1d(np.unique(np.concatenate([s.nodes for s in shapes])), everywhere)
+        if len(dropped):
+            warnings.append(
+                f"node(s) {some(dropped)} are missing in some modes and are left out of all"
+            )
+        nodes = nodes[np.isin(nodes, everywhere)]
+    if not len(nodes):
+        raise InputError(
+            f"{shapes[0].path} line {shapes[0].line}: no node has values in every mode; "
+            "give modes of one test only"
+        )
+    widths = {s.values.shape[1] for s in shapes}
+    width = min(widths)
+    if len(widths) > 1:
+        warnings.append("some modes have 3 values a node, others 6; rotations are left out")
+    columns: list[Numbers] = []
+    for s in shapes:
+        order = np.argsort(s.nodes, kind="stable")
+        rows = order[np.searchsorted(s.nodes[order], nodes)]
+        columns.append(s.values[rows, :width].ravel())
+    axes = frames.at(nodes)
+    axis = np.concatenate([axes, axes], axis=1)[:, :width].reshape(-1, 3)
+    component = np.tile(np.arange(1, width + 1), len(nodes))
+    return Modes(
+        np.array([s.frequency_hz for s in shapes]),
+        np.column_stack(columns),
+        Dofs(np.repeat(nodes, width), component, axis),
+        np.array([s.damping for s in shapes]),
+        np.array([s.generalized_mass for s in shapes]),
+        ", ".join(dict.fromkeys(s.path for s in shapes)),
+    )
+
+
+def agreed_units(units: Sequence[tuple[Units, str]]) -> Units | None:
+    """Return the units on which all files agree; each comes with the place it stands at."""
+    if not units:
+        return None
+    first, where = units[0]
+    for other, elsewhere in units[1:]:
+        if abs(other.length_factor / first.length_factor - 1.0) > 1e-6:
+            raise InputError(
+                f"{where} and {elsewhere}: dataset 164 declares different length units "
+                f"(factors {first.length_factor:g} and {other.length_factor:g}); "
+                "export all files in one unit"
+            )
+    return first

@@ -1,0 +1,58 @@
+"""Numbers and lines as universal files print them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...core.arrays import Numbers
+
+DELIMITER = b"    -1\n"
+_LINES = 1 << 12
+
+
+def dataset(number: int, *parts: bytes) -> bytes:
+    """Frame the lines of a dataset."""
+    return b"".join([DELIMITER, b"%6d\n" % number, *parts, DELIMITER])
+
+
+def text_line(said: str) -> bytes:
+    """Return a text line: printable, at most 80 columns, NONE where there is nothing to say."""
+    kept = " ".join("".join(c if c.isprintable() else " " for c in said).split())[:80]
+    return (kept or "NONE").encode("latin-1", "replace") + b"\n"
+
+
+def name_field(said: str, width: int) -> bytes:
+    """Return a name padded to its columns."""
+    return text_line(said)[:-1][:width].ljust(width)
+
+
+def tight(value: float) -> bytes:
+    """Return a number in 13 columns, a blank first, with all the digits that 12 columns hold.
+
+    A field of format E13.5 may hold any number with a decimal point; this keeps ten digits
+    where E13.5 itself would keep six.
+    """
+    for digits in range(17, 0, -1):
+        mantissa, letter, power = f"{float(value):.{digits}g}".partition("e")
+        printed = (mantissa if "." in mantissa else mantissa + ".") + letter.upper() + power
+        if len(printed) <= 12:
+            break
+    return b"%13s" % printed.encode()
+
+
+def blocks(values: Numbers, formats: tuple[str, ...]) -> Iterator[bytes]:
+    """Print real numbers line by line, each line in `formats`; the last may be shorter."""
+    per_line = len(formats)
+    line = "".join(formats) + "\n"
+    full = len(values) // per_line
+    for start in range(0, full, _LINES):
+        stop = min(start + _LINES, full)
+        piece = values[start * per_line : stop * per_line]
+        yield (line * (stop - start) % tuple(piece.tolist())).encode("ascii")
+    rest = values[full * per_line :]
+    if len(rest):
+        yield ("".join(formats[: len(rest)]) + "\n").encode("ascii") % tuple(
+            np.asarray(rest).tolist()
+        )
