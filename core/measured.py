@@ -19,7 +19,7 @@ about 1e-5 of the others.
 
 
 FEWEST_VECTORS = 4
-"""Fewer vectors than this cannot show that a node's motion is confined to a line or plane."""
+"""Fewer independent vectors than this cannot show that a node's motion is confined to a line or plane."""
 
 
 def measured_directions(
@@ -57,12 +57,19 @@ def measured_directions(
     np.maximum.at(largest, of_row, np.where(translation, size, 0.0))
     keep = size > np.where(translation, threshold * largest[of_row], 0.0)
     axis, values = dofs.axis.copy(), shapes.copy()
-    if vectors.shape[1] >= FEWEST_VECTORS:
+    if _independent(vectors, threshold) >= FEWEST_VECTORS:
         slots = _slots(dofs, of_row, keep & translation, len(nodes))
         _reduce(slots, vectors, threshold, keep, axis, values)
     silent = nodes[(largest == 0) & np.isin(nodes, dofs.node[translation])]
     sensors = Dofs(dofs.node[keep], dofs.component[keep], axis[keep])
     return replace(modes, shapes=values[keep], dofs=sensors), _said(silent)
+
+
+def _independent(vectors: Floats, threshold: float) -> int:
+    """How many of the vectors differ: one mode twice, or times i, shows nothing new."""
+    size = np.abs(vectors).max(axis=0, initial=0.0)
+    sigma = np.linalg.svd(vectors[:, size > 0.0] / size[size > 0.0], compute_uv=False)
+    return int(np.count_nonzero(sigma > threshold * sigma.max(initial=0.0)))
 
 
 def _slots(dofs: Dofs, of_row: Ints, usable: Bools, n_node: int) -> Ints:

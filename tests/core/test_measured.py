@@ -94,6 +94,16 @@ def test_few_modes_cannot_show_that_a_node_is_confined():
     assert len(measured_directions(modes_of(vectors))[0].dofs) == 12
 
 
+def test_one_phase_for_all_shows_no_more_than_real_modes():
+    vectors = np.random.default_rng(5).normal(size=(4, 3, 2)) * np.array([1 + 1j, 1 - 0.3j])
+    assert len(measured_directions(modes_of(vectors))[0].dofs) == 12
+
+
+def test_the_same_mode_again_shows_nothing_new():
+    vectors = np.tile(np.random.default_rng(5).normal(size=(4, 3, 2)), (1, 1, 3))
+    assert len(measured_directions(modes_of(vectors))[0].dofs) == 12
+
+
 def test_axes_of_local_frames_are_honoured():
     turn = Rotation.random(5, random_state=1).as_matrix()
     along = np.zeros((5, 3, 6))
