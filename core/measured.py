@@ -19,7 +19,7 @@ about 1e-5 of the others.
 
 
 FEWEST_VECTORS = 4
-"""Fewer independent vectors than this cannot show that a node's motion is confined to a line or plane."""
+"""Fewer independent vectors than this cannot show that a node moves in a line or plane only."""
 
 
 def measured_directions(
