@@ -124,7 +124,7 @@ def _put_fixed(line: CardLine, texts: Mapping[int, bytes]) -> bytes:
     was = len(line.content)
     if comment and b"\t" not in data:
         data = data.ljust(line.indent + was)
-    if comment and len(data) > line.indent + was and data[-1:] not in b" \t":
+    if comment and line.content[-1:] in b" \t" and data[-1:] not in b" \t":
         data += b" "
     return data + comment
 

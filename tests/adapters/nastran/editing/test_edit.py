@@ -1,0 +1,445 @@
+"""One value changed: only its field's characters change, and it reads back exactly.
+
+The decks are written every way Nastran reads: small, large and free fields and mixtures of them,
+tabs, tags, comments between and behind the lines, all line ends.
+"""
+
+import math
+import tempfile
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trueup.adapters.nastran.cards import cut, fields_of
+from trueup.adapters.nastran.editing.decktext import DeckText, read_deck_text
+from trueup.adapters.nastran.editing.edit import read_value, set_values
+from trueup.adapters.nastran.editing.find import find_card
+from trueup.adapters.nastran.editing.numbers import parse_real, writable
+from trueup.adapters.nastran.fields import LAYOUTS, STRIDES
+from trueup.adapters.nastran.lines import read_sections
+from trueup.adapters.nastran.parameters import FieldRef
+from trueup.core.errors import InputError
+
+# Cards with at least two lines of fields: name, then data fields ("" blank).
+CARDS = [
+    ["PSHELL", "3", "1", "2.5", "1", "", "1", "", "1.5-3", "-1.25", "1.25", "1"],
+    ["PBAR", "11", "1", "200.", "9000.", "9000.", "3000.", "", "", "10.", "10.", "-10.", "10."],
+    ["MAT1", "1", "70000.", "", ".33", "2.7-9", "1.E-6", "20.", ".02", "", "", "", "5"],
+    ["CONM2", "900", "1", "", "1.2345-3", "0.", "1.", "2.", "", "1.", "0.", "1.", "", "0.", "2.D0"],
+    ["PELAS", "4", "1000.", "", "", "5", "2000.", ".01", "1."],
+    ["MAT1", "2", "2.1+5", "", ".3", "7.85-9"],
+    ["PROD", "7", "1", "100."],
+]
+
+FORMATS = ("small", "right", "large", "free", "free large", "tabs")
+COMMENTS = [b"", b"", b"", b"  $ skin", b"$ f\xfcr Pr\xfcfung"]
+BETWEEN = [b"$ a comment, with commas", b"", b"   ", b"$ PSHELL  3       1       9."]
+
+
+def fields_of_line(words: list[str], form: str, head: str, tag: str) -> list[bytes]:
+    """One line of eight fields in a format; two lines for the large ones."""
+    words = (words + [""] * 8)[:8]
+    if form in ("large", "free large"):
+        star = f"{head}*" if head[:1].isalpha() else "*" + head[1:]
+        halves = [(star, words[:4], ""), ("*", words[4:], tag)]
+    else:
+        halves = [(head, words, tag)]
+    lines = []
+    for name, part, end in halves:
+        if form.startswith("free"):
+            text = ",".join([name, *part, *([end] if end else [])])
+        elif form == "tabs":
+            cells = [w if len(w) == 8 else w + "\t" for w in (name, *part)]
+            text = "".join(cells) + end
+        else:
+            width = 16 if form == "large" else 8
+            cells = [w.rjust(width) if form == "right" else w.ljust(width) for w in part]
+            text = name.ljust(8) + "".join(cells) + end
+        lines.append(text.encode("latin-1"))
+    return lines
+
+
+@st.composite
+def card_lines(draw: st.DrawFn, card: list[str]) -> list[bytes]:
+    """The lines of one card: each continuation in its own format, comments between them."""
+    name, data = card[0], card[1:]
+    lines: list[bytes] = []
+    tag = ""
+    for start in range(0, len(data), 8):
+        form = draw(st.sampled_from(FORMATS))
+        more = start + 8 < len(data)
+        next_tag = draw(st.sampled_from(["", "+", f"+{name[:3]}{start}"])) if more else ""
+        head = name if start == 0 else tag or "+"
+        words = fields_of_line(data[start : start + 8], form, head, next_tag)
+        tag = next_tag
+        comment = draw(st.sampled_from(COMMENTS))
+        blanks = draw(st.sampled_from([b"", b"", b"   "]))
+        stripped = [w.rstrip() if draw(st.booleans()) else w for w in words]
+        if form.startswith("free") and not next_tag:
+            stripped = [w.rstrip(b",") if b"," in w.rstrip(b",") else w for w in stripped]
+        if not next_tag:
+            stripped[-1] += blanks + comment
+        for word in stripped:
+            if start and draw(st.integers(0, 4)) == 0:
+                lines.append(draw(st.sampled_from(BETWEEN)))
+            lines.append(word)
+    return lines
+
+
+@st.composite
+def decks(draw: st.DrawFn) -> tuple[bytes, list[list[str]]]:
+    """A deck in one file and the cards it holds."""
+    cards = draw(st.permutations(CARDS))
+    newline = draw(st.sampled_from([b"\n", b"\r\n", b"\r"]))
+    mixed = draw(st.booleans()) and newline == b"\n"
+    lines = [b"$ units: mm, t, N, s", b"SOL 103", b"CEND", b"TITLE = PSHELL 3", b"BEGIN BULK"]
+    for card in cards:
+        lines += draw(card_lines(card))
+    ended = draw(st.booleans())
+    if ended:
+        lines += [b"ENDDATA", b"PSHELL  3       text after the end, \xff\xfe"]
+    ends = [b"\r\n" if mixed and draw(st.booleans()) else newline for _ in lines]
+    if draw(st.booleans()):
+        ends[-1] = b""
+    return b"".join(a + b for a, b in zip(lines, ends, strict=True)), cards
+
+
+def as_read(data: bytes) -> DeckText:
+    """The deck as a file read back."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "deck.bdf"
+        path.write_bytes(data)
+        return read_deck_text(path)
+
+
+def by_our_reader(data: bytes) -> list[list[str | None]]:
+    """Fields of all cards as the reader that assembles decks sees them."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "deck.bdf"
+        path.write_bytes(data)
+        sections = read_sections(path)
+        return [fields_of(raw.lines) for raw in cut(sections.bulk, sections.files)]
+
+
+def by_pynastran(deck: DeckText, name: str, number: int) -> list[str]:
+    """Fields of one card as pyNastran cuts its lines."""
+    from pyNastran.bdf.bdf_interface.utils import to_fields
+
+    lines = [
+        line.data.decode("latin-1").split("$")[0] for line in find_card(deck, name, number).lines
+    ]
+    return [f.strip() for f in to_fields(lines, name)]
+
+
+def references(card: list[str]) -> list[tuple[FieldRef, int]]:
+    """All values of a card, with the place of each in the card's list of fields."""
+    name, stride = card[0], STRIDES.get(card[0], 0)
+    found = []
+    for shift in range(0, len(card) - 1, stride or len(card)):
+        for field, position in LAYOUTS[name].values.items():
+            at = 8 * (position // 10) + position % 10 - 1 + shift
+            found.append((FieldRef(name, int(card[1 + shift]), field), at))
+    return found
+
+
+VALUES = st.one_of(
+    st.sampled_from([1.0, 0.5, 70000.0, 2.7e-9, 123456.0, -1.5]),
+    st.floats(1e-12, 1e12),
+    st.floats(-1e12, -1e-12),
+)
+
+
+@given(decks())
+def test_what_is_written_in_any_format_is_read(deck):
+    data, cards = deck
+    text = as_read(data)
+    for card in cards:
+        for ref, at in references(card):
+            word = card[at] if at < len(card) else ""
+            assert read_value(text, ref) == (parse_real(word) if word else None)
+
+
+@given(decks(), st.data())
+def test_one_value_changes_and_nothing_else(deck, data):
+    before, cards = deck
+    card = data.draw(st.sampled_from(cards))
+    ref, at = data.draw(st.sampled_from(references(card)))
+    value = data.draw(VALUES)
+    text = as_read(before)
+    edited = set_values(text, {ref: value})
+    after = edited.files[0].data
+
+    reread = as_read(after)
+    assert read_value(reread, ref) == writable(value) == read_value(edited, ref)
+
+    expected = [c if c is not card else [*c, *[""] * (at + 1 - len(c))] for c in cards]
+    ours = by_our_reader(after)
+    assert len(ours) == len(cards)
+    for old, new in zip(expected, ours, strict=True):
+        words = ["" if w is None else w for w in new] + [""] * (len(old) - len(new))
+        theirs = by_pynastran(reread, old[0], int(old[1]))
+        theirs += [""] * (len(old) - len(theirs))
+        for k, word in enumerate(old):
+            if old[0] == ref.card and int(old[1]) == int(card[1]) and k == at:
+                assert parse_real(words[k]) == parse_real(theirs[k]) == writable(value)
+            elif k:
+                assert words[k] == theirs[k] == word
+
+    place = find_card(text, ref.card, ref.id)
+    start = text.files[0].lines.starts[place.rows[0]]
+    stop = text.files[0].lines.ends[place.rows[-1]]
+    assert after.startswith(before[:start])
+    assert after.endswith(before[stop:])
+    for line in before[start:stop].replace(b"\r", b"\n").split(b"\n"):
+        if line.lstrip()[:1] in (b"$", b""):
+            assert line in after[start:]
+
+
+@given(decks(), st.data())
+def test_the_value_that_is_there_changes_no_byte(deck, data):
+    before, cards = deck
+    text = as_read(before)
+    refs = [r for c in cards for r, _ in references(c) if read_value(text, r) is not None]
+    chosen = data.draw(st.lists(st.sampled_from(refs), min_size=1, unique=True))
+    edited = set_values(text, {r: read_value(text, r) for r in chosen})
+    assert edited.files[0].data == before
+
+
+@given(decks(), st.data())
+def test_many_values_at_once_and_back_again(deck, data):
+    before, cards = deck
+    text = as_read(before)
+    refs = [r for c in cards for r, _ in references(c)]
+    values = data.draw(st.dictionaries(st.sampled_from(refs), VALUES, min_size=2))
+    edited = as_read(set_values(text, values).files[0].data)
+    for ref in refs:
+        expected = writable(values[ref]) if ref in values else read_value(text, ref)
+        assert read_value(edited, ref) == expected
+    assert edited.files[0].data.count(b"$") == before.count(b"$")
+
+
+def edit(line: str, ref: tuple[str, int, str], value: float) -> str:
+    """Change one value of a deck that is bulk data alone."""
+    deck = as_read(line.encode("latin-1"))
+    return set_values(deck, {FieldRef(*ref): value}).files[0].data.decode("latin-1")
+
+
+# One case a row: the card, what changes, the card afterwards.
+CASES = {
+    "small field, exact": (
+        "PSHELL  3       1       2.5     1\n", ("PSHELL", 3, "T"), 3.25,
+        "PSHELL  3       1       3.25    1\n",
+    ),
+    "small field to the right": (
+        "PSHELL         3       1     2.5       1\n", ("PSHELL", 3, "T"), 3.25,
+        "PSHELL         3       1    3.25       1\n",
+    ),
+    "small field at the line's end": (
+        "PSHELL  3       1       2.5\n", ("PSHELL", 3, "T"), 3.125,
+        "PSHELL  3       1       3.125\n",
+    ),
+    "trailing blanks stay": (
+        "PSHELL  3       1       2.5     \n", ("PSHELL", 3, "T"), 3.125,
+        "PSHELL  3       1       3.125   \n",
+    ),
+    "comment stays in its column": (
+        "PSHELL  3       1       2.5       $ skin\n", ("PSHELL", 3, "T"), 3.125,
+        "PSHELL  3       1       3.125     $ skin\n",
+    ),
+    "comment moves where it must": (
+        "PSHELL  3       1       2.5 $ skin\n", ("PSHELL", 3, "T"), 3.1234567e-4,
+        "PSHELL* 3               1               3.1234567E-4 $ skin\n",
+    ),
+    "comment stands where the field goes": (
+        "PSHELL  3       1       2.5 $ skin\n", ("PSHELL", 3, "NSM"), 1.5,
+        "PSHELL  3       1       2.5                                     1.5 $ skin\n",
+    ),
+    "short line is extended": (
+        "PSHELL  3       1       2.5\n", ("PSHELL", 3, "12I/T**3"), 1.5,
+        "PSHELL  3       1       2.5             1.5\n",
+    ),
+    "continuation is appended": (
+        "PSHELL  3       1       2.5\n", ("PSHELL", 3, "Z2"), 1.5,
+        "PSHELL  3       1       2.5\n+               1.5\n",
+    ),
+    "two continuations are appended": (
+        "PBAR    3       1       2.5\n", ("PBAR", 3, "I12"), 1.5,
+        "PBAR    3       1       2.5\n+\n+                       1.5\n",
+    ),
+    "continuation takes the waiting tag": (
+        "PSHELL  3       1       2.5" + " " * 45 + "+S3\n", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL  3       1       2.5" + " " * 45 + "+S3\n+S3     1.5\n",
+    ),
+    "continuation in large fields after large fields": (
+        "PSHELL* 3               1               2.5\n", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL* 3               1               2.5\n*\n*       1.5\n",
+    ),
+    "continuation in large fields where eight columns round": (
+        "PSHELL  3       1       2.5\n", ("PSHELL", 3, "Z1"), 1.23456789,
+        "PSHELL  3       1       2.5\n*       1.23456789\n",
+    ),
+    "no line end at the end of the file": (
+        "PSHELL  3       1       2.5", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL  3       1       2.5\n+       1.5",
+    ),
+    "eight columns would round": (
+        "MAT1    1       70000.          0.33    2.7-9\n", ("MAT1", 1, "E"), 70864.1975230864,
+        "MAT1*   1               70864.1975230864                0.33\n*       2.7-9\n",
+    ),
+    "one line of large fields is enough": (
+        "PROD    7       1       100.\n", ("PROD", 7, "A"), 100.123456789,
+        "PROD*   7               1               100.123456789\n",
+    ),
+    "large field": (
+        "PROD*   7               1               100.            2.\n", ("PROD", 7, "A"),
+        100.123456789,
+        "PROD*   7               1               100.123456789   2.\n",
+    ),
+    "second large line is missing": (
+        "MAT1*   1               70000.                          0.33\n", ("MAT1", 1, "RHO"),
+        2.7e-9,
+        "MAT1*   1               70000.                          0.33\n*       2.7E-9\n",
+    ),
+    "only the line that holds the field becomes large": (
+        "PBAR,1,1,2.,3.,4.,5.\n+,1.,1.\n", ("PBAR", 1, "C2"), 1.23456789,
+        "PBAR,1,1,2.,3.,4.,5.\n*,1.,1.23456789\n",
+    ),
+    "free field": (
+        "PROD, 7 , 1 , 100. , 2.\n", ("PROD", 7, "A"), 50.5,
+        "PROD, 7 , 1 , 50.5 , 2.\n",
+    ),
+    "free field, short": (
+        "PROD,7,1,100.  $ rod\n", ("PROD", 7, "NSM"), 50.5,
+        "PROD,7,1,100.,,,50.5  $ rod\n",
+    ),
+    "free field that eight characters would round": (
+        "PROD,7,1,100.,2.,,3.\n", ("PROD", 7, "A"), 100.123456789,
+        "PROD*,7,1,100.123456789,2.\n*,,3.\n",
+    ),
+    "free field, large": (
+        "PROD*,7,1,100.,2.\n*,,3.\n", ("PROD", 7, "A"), 100.123456789,
+        "PROD*,7,1,100.123456789,2.\n*,,3.\n",
+    ),
+    "free field with a tag": (
+        "PSHELL,3,1,2.5,1,,1,,,+A\n+A,1.\n", ("PSHELL", 3, "T"), 2.123456789,
+        "PSHELL*,3,1,2.123456789,1\n*,,1,,,+A\n+A,1.\n",
+    ),
+    "free field is extended by a continuation": (
+        "PSHELL,3,1,2.5\n", ("PSHELL", 3, "Z2"), 1.5,
+        "PSHELL,3,1,2.5\n+,,1.5\n",
+    ),
+    "tag and what stands behind it stay": (
+        "PSHELL  3       1       2.5     1               1                       +A      x\n"
+        "+A      1.\n", ("PSHELL", 3, "T"), 2.123456789,
+        "PSHELL* 3               1               2.123456789     1\n"
+        "*                       1                                               +A      x\n"
+        "+A      1.\n",
+    ),
+    "comment between continuations": (
+        "PSHELL  3       1       2.5\n$ offsets\n        1.      2.\n", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL  3       1       2.5\n$ offsets\n        1.5     2.\n",
+    ),
+    "tabs": (
+        "PSHELL\t3\t1\t2.5\t1\n", ("PSHELL", 3, "T"), 3.25,
+        "PSHELL\t3\t1\t3.25    1\n",
+    ),
+    "lower case": (
+        "pshell  3       1       2.5\n", ("PSHELL", 3, "T"), 3.25,
+        "pshell  3       1       3.25\n",
+    ),
+    "second property of the card": (
+        "PELAS   4       1000.   0.      0.      5       2000.\n", ("PELAS", 5, "K"), 2500.0,
+        "PELAS   4       1000.   0.      0.      5       2500.\n",
+    ),
+    "blank field": (
+        "MAT1    1       70000.          0.33\n", ("MAT1", 1, "G"), 26000.0,
+        "MAT1    1       70000.  26000.  0.33\n",
+    ),
+    "carriage returns": (
+        "PSHELL  3       1       2.5\rPSHELL  4       1       2.5\r", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL  3       1       2.5\r+       1.5\rPSHELL  4       1       2.5\r",
+    ),
+    "a line end of its own kind": (
+        "PSHELL  3       1       2.5\r\nPROD,1,1,2.\nPROD,2,1,2.\n", ("PSHELL", 3, "Z1"), 1.5,
+        "PSHELL  3       1       2.5\r\n+       1.5\r\nPROD,1,1,2.\nPROD,2,1,2.\n",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_one_change(case):
+    before, ref, value, after = CASES[case]
+    assert edit(before, ref, value) == after
+
+
+# One fault a row: the deck, the value asked for, what the message must say.
+FAULTS = {
+    "no such number": (
+        "PSHELL,3,1,2.5\nPSHELL,14,1,2.5\n", ("PSHELL", 13, "T"), "PSHELL cards are 3, 14",
+    ),
+    "no such card": (
+        "PROD,3,1,2.5\n", ("PSHELL", 3, "T"), "no PSHELL card in the deck",
+    ),
+    "twice": (
+        "PSHELL,3,1,2.5\nPSHELL,3,1,2.5\n", ("PSHELL", 3, "T"), "line 1, deck.bdf line 2",
+    ),
+    "in two superelements": (
+        "CEND\nBEGIN BULK\nPROD,3,1,1.\nBEGIN SUPER=5\nPROD,3,1,1.\n", ("PROD", 3, "A"),
+        "SUPER=5",
+    ),
+    "after the end": (
+        "PROD,3,1,2.5\nENDDATA\nPROD,4,1,2.5\n", ("PROD", 4, "A"), "no PROD 4",
+    ),
+    "in case control": (
+        "CEND\nPROD,3,1,1.\nBEGIN BULK\n", ("PROD", 3, "A"), "no PROD 3",
+    ),
+    "commented out": (
+        "$PROD,3,1,2.5\nPROD,4,1,1.\n", ("PROD", 3, "A"), "no PROD 3",
+    ),
+    "no number": (
+        "PROD,3,1,thick\n", ("PROD", 3, "A"), "'THICK', which is not a number",
+    ),
+    "ply that is not there": (
+        "PCOMP,3\n,1,.1,0.\n", ("PCOMP", 3, "T2"), "has no T2",
+    ),
+    "section without that dimension": (
+        "PBARL,3,1,,TUBE\n,5.,4.\n", ("PBARL", 3, "DIM3"), "line 1: this PBARL 3 has no DIM3",
+    ),
+    "replicated": (
+        "PROD,3,1,1.\n=,*(1),==\n", ("PROD", 3, "A"), "line 2: the PROD above is replicated",
+    ),
+    "half a pair": (
+        "PSHELL* 3               1               2.\n+       1.\n", ("PSHELL", 3, "T"),
+        "second half",
+    ),
+    "tags do not match": (
+        "PSHELL,3,1,2.5,,,,,,+A\n+B,1.\n", ("PSHELL", 3, "T"), "'+A' does not follow",
+    ),
+    "continuation elsewhere": (
+        "PSHELL,3,1,2.5,,,,,,+A\nPROD,1,1,1.,,,,,,+B\n+B\n+A,1.\n", ("PSHELL", 3, "T"),
+        "'+A' does not follow",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_one_fault_is_one_clear_sentence(fault):
+    before, ref, says = FAULTS[fault]
+    with pytest.raises(InputError) as error:
+        edit(before, ref, 1.5)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_value_that_is_not_finite_is_refused():
+    with pytest.raises(InputError, match="not a finite number"):
+        edit("PROD,3,1,1.\n", ("PROD", 3, "A"), math.nan)
+
+
+def test_the_text_that_was_read_is_not_changed():
+    deck = as_read(b"PROD,3,1,1.\n")
+    set_values(deck, {FieldRef("PROD", 3, "A"): 2.0})
+    assert deck.files[0].data == b"PROD,3,1,1.\n"
+    assert deck.value(FieldRef("PROD", 3, "A")) == 1.0
