@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, frozen, require_shape
+from ..arrays import Floats, Numbers, frozen, require_shape
 from .batch import symmetric, transpose
 
 
@@ -46,7 +46,7 @@ class ShellSection:
     def __len__(self) -> int:
         return len(self.drilling)
 
-    def take(self, rows: slice | Floats) -> ShellSection:
+    def take(self, rows: slice | Numbers) -> ShellSection:
         """Return the sections of the given elements (slice, indices or mask)."""
         return ShellSection(
             self.A[rows], self.B[rows], self.D[rows], self.S[rows], self.drilling[rows]

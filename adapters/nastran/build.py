@@ -1,0 +1,283 @@
+"""Make a neutral model of a deck: element matrices, constraints, parameters put together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...core.arrays import Floats, Ints
+from ...core.assembly import ElementBlock, Evaluate, Matrices
+from ...core.assembly_parameters import parametric_terms
+from ...core.constraints import Reduction, reduction, unsupported
+from ...core.dofs import Dofs
+from ...core.errors import CheckError, InputError
+from ...core.geometry import Geometry
+from ...core.model import Model, Term
+from ...core.parameter import Parameter
+from .constraints import read_constraints
+from .families import FAMILIES, Context, Group, Settings
+from .grids import Points, read_points
+from .parameters import ParameterSpec
+from .read import Deck
+from .support import refuse_unsupported
+from .variation import Variation, read_variation
+
+_SINGULAR = 1e-8
+"""EPZERO: smallest stiffness of a grid's direction, relative to its largest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """The elements of a deck over the g-set, before constraints.
+
+    Parameters
+    ----------
+    points : Points
+        Grids and the numbering.
+    groups : tuple of Group
+        Elements.
+    blocks : tuple of ElementBlock
+        The same for assembly: in displacement systems, scaled by WTMASS.
+    """
+
+    points: Points
+    groups: tuple[Group, ...]
+    blocks: tuple[ElementBlock, ...]
+
+
+def read_structure(deck: Deck, variation: Variation) -> Structure:
+    """Collect the elements of a deck.
+
+    Raises
+    ------
+    InputError
+        A card that carries stiffness, mass or constraint and is not supported; numbers that refer
+        to nothing; elements without shape.
+    """
+    refuse_unsupported(deck)
+    points = read_points(deck.bulk)
+    settings = Settings(
+        k6rot=deck.param("K6ROT", 100.0), coupled=deck.param("COUPMASS", -1.0) > 0.0
+    )
+    context = Context(deck.bulk, points, settings)
+    groups = tuple(g for family in FAMILIES.values() for g in family(context))
+    wtmass = deck.param("WTMASS", 1.0)
+    blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
+    return Structure(points, groups, blocks)
+
+
+def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
+    """Assemble a deck.
+
+    Parameters
+    ----------
+    deck : Deck
+        As read.
+    parameters : sequence of ParameterSpec
+        Values of the deck that shall be free to move.
+
+    Returns
+    -------
+    Model
+        Stiffness and mass on the free degrees of freedom as terms in the parameters.
+
+    Raises
+    ------
+    InputError
+        What the deck or the parameters lack: card, file and line.
+    """
+    variation = read_variation(deck.bulk, parameters)
+    structure = read_structure(deck, variation)
+    points = structure.points
+    constraints = read_constraints(deck, points)
+    lower = np.array([p.lower for p in variation.parameters])
+    upper = np.array([p.upper for p in variation.parameters])
+    try:
+        stiffness, mass = parametric_terms(structure.blocks, points.n_dof, lower, upper)
+    except CheckError as error:
+        raise InputError(str(error)) from None
+    _check_influence(variation.parameters, (*stiffness, *mass))
+    reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
+    stiffness, mass, reduced, warnings = _remove_singular(deck, points, stiffness, mass, reduced)
+    return Model(
+        geometry=_geometry(deck, structure),
+        dofs=_dofs(points),
+        expansion=(_to_basic(points) @ reduced.expansion).tocsr(),
+        stiffness=stiffness,
+        mass=mass,
+        parameters=variation.parameters,
+        free_labels=tuple(points.label(d) for d in reduced.kept),
+        warnings=(*deck.warnings, *warnings),
+    )
+
+
+def _block(group: Group, points: Points, variation: Variation, wtmass: float) -> ElementBlock:
+    sets = [
+        tuple(sorted({p for key in source for p in variation.acting_on(key)}))
+        for source in group.sources
+    ]
+    distinct = tuple(dict.fromkeys(sets))
+    of_source = np.array([distinct.index(s) for s in sets], dtype=np.int64)
+    return ElementBlock(
+        places=group.places,
+        width=group.width,
+        evaluate=_evaluation(group, points, variation, wtmass),
+        depends=distinct,
+        depends_of=of_source[group.source_of],
+        name=group.card,
+    )
+
+
+def _evaluation(group: Group, points: Points, variation: Variation, wtmass: float) -> Evaluate:
+    per_grid = {6: 1, 3: 2}.get(group.width)
+    rotated = None
+    if per_grid is not None:
+        grid = group.places // per_grid
+        rotated = points.rotated[grid].any(axis=1)
+
+    def evaluate(rows: Ints, p: Floats, wanted: tuple[bool, bool]) -> Matrices:
+        K, M = group.matrices(variation.at(p), rows, wanted)
+        for X in (K, M):
+            if X is not None and not np.isfinite(X).all():
+                bad = int(group.ids[rows[np.flatnonzero(~np.isfinite(X).all(axis=(1, 2)))[0]]])
+                raise InputError(
+                    f"{variation.bulk.place(group.card, bad)}: its matrix is not finite; check its "
+                    "shape, its property and its material"
+                )
+        M = M * wtmass if M is not None and wtmass != 1.0 else M
+        if rotated is not None and rotated[rows].any():
+            turned = np.flatnonzero(rotated[rows])
+            R = points.directions[group.places[rows[turned]] // (per_grid or 1)]
+            K, M = (None if X is None else _turn(X, turned, R) for X in (K, M))
+        return K, M
+
+    return evaluate
+
+
+def _turn(X: Floats, which: Ints, R: Floats) -> Floats:
+    """Turn the matrices of some elements to the displacement systems of their grids.
+
+    `R` is (len(which), w, 3, 3), one rotation a place; a place holds one or two triples.
+    """
+    n, w = R.shape[:2]
+    triples = X.shape[1] // (3 * w)
+    T = np.repeat(R, triples, axis=1)
+    blocks = X[which].reshape(n, w * triples, 3, w * triples, 3)
+    blocks = np.einsum("naij,najbk->naibk", T, blocks, optimize=True)
+    blocks = np.einsum("naibk,nblk->naibl", blocks, T, optimize=True)
+    out = X.copy()
+    out[which] = blocks.reshape(n, X.shape[1], X.shape[1])
+    return out
+
+
+def _check_influence(parameters: tuple[Parameter, ...], terms: Sequence[Term]) -> None:
+    moved = {f.parameter for t in terms for f in t.factors}
+    for number, parameter in enumerate(parameters):
+        if number not in moved:
+            raise InputError(
+                f"parameter {parameter.name!r} ({', '.join(parameter.handle)}) changes neither "
+                "stiffness nor mass: no element uses it, or Nastran takes the value from elsewhere"
+            )
+
+
+def _total(terms: tuple[Term, ...], parameters: int) -> sp.csr_matrix:
+    ones = np.ones(parameters)
+    total = terms[0].matrix
+    for term in terms[1:]:
+        total = total + term.coefficient(ones) * term.matrix
+    return total.tocsr()
+
+
+def _remove_singular(
+    deck: Deck,
+    points: Points,
+    stiffness: tuple[Term, ...],
+    mass: tuple[Term, ...],
+    reduced: Reduction,
+) -> tuple[tuple[Term, ...], tuple[Term, ...], Reduction, tuple[str, ...]]:
+    """Reduce all terms; fix what has no stiffness (AUTOSPC), or neither stiffness nor mass."""
+    n_parameter = 1 + max((f.parameter for t in (*stiffness, *mass) for f in t.factors), default=-1)
+    stiffness, mass = (
+        tuple(Term(reduced.apply(t.matrix), t.factors) for t in terms)
+        for terms in (stiffness, mass)
+    )
+    K, M = _total(stiffness, n_parameter), _total(mass, n_parameter)
+    if not K.nnz:
+        raise InputError(f"{deck.path}: the deck has no element that carries stiffness")
+    n_grid = 6 * len(points.ids)
+    in_grid = reduced.kept < n_grid
+    triple = np.where(in_grid, reduced.kept // 3, -1)
+    automatic = deck.params.get("AUTOSPC", "YES") not in ("NO", "NOPRINT,NO")
+    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, _SINGULAR)
+    if not len(loose):
+        return stiffness, mass, reduced, ()
+    left = np.setdiff1d(np.arange(K.shape[0]), loose)
+    stiffness, mass = (
+        tuple(Term(t.matrix[left][:, left].tocsr(), t.factors) for t in terms)
+        for terms in (stiffness, mass)
+    )
+    return (
+        stiffness,
+        mass,
+        reduced.drop(loose),
+        _loose_warning(points, reduced.kept[loose], automatic),
+    )
+
+
+def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ...]:
+    """Say which degrees of freedom were removed, by component."""
+    n_grid = 6 * len(points.ids)
+    parts = []
+    for component in range(6):
+        grids = points.ids[dofs[(dofs < n_grid) & (dofs % 6 == component)] // 6]
+        if len(grids):
+            shown = ", ".join(map(str, grids[:5])) + (", ..." if len(grids) > 5 else "")
+            parts.append(f"component {component + 1} of {len(grids)} grids ({shown})")
+    scalar = points.scalar_ids[dofs[dofs >= n_grid] - n_grid]
+    if len(scalar):
+        parts.append(f"{len(scalar)} scalar points ({', '.join(map(str, scalar[:5]))})")
+    why = "without stiffness were fixed (AUTOSPC)" if automatic else "without stiffness and mass"
+    what = why if automatic else f"{why} were fixed"
+    return (f"{len(dofs)} degrees of freedom {what}: {'; '.join(parts)}",)
+
+
+def _to_basic(points: Points) -> sp.csr_matrix:
+    """Return basic displacements from those in the displacement systems."""
+    n = points.n_dof
+    turned = np.flatnonzero(points.rotated)
+    diagonal = np.ones(n)
+    start = (6 * turned[:, None] + np.array([0, 3])).reshape(-1)
+    triples = start[:, None] + np.arange(3)
+    diagonal[triples] = 0.0
+    R = np.repeat(points.directions[turned], 2, axis=0)
+    rows = np.repeat(triples, 3, axis=1).reshape(-1)
+    columns = np.tile(triples, (1, 3)).reshape(-1)
+    values = R.swapaxes(1, 2).reshape(-1)
+    return (sp.diags(diagonal) + sp.coo_matrix((values, (rows, columns)), shape=(n, n))).tocsr()
+
+
+def _dofs(points: Points) -> Dofs:
+    node = np.concatenate([np.repeat(points.ids, 6), points.scalar_ids])
+    component = np.concatenate(
+        [np.tile(np.arange(1, 7), len(points.ids)), np.ones(len(points.scalar_ids), np.int64)]
+    )
+    return Dofs(node, component)
+
+
+def _geometry(deck: Deck, structure: Structure) -> Geometry:
+    corners: dict[str, list[Ints]] = {}
+    ids: dict[str, list[Ints]] = {}
+    for group in structure.groups:
+        if group.shape:
+            corners.setdefault(group.shape, []).append(group.corners)
+            ids.setdefault(group.shape, []).append(group.ids)
+    return Geometry(
+        structure.points.ids,
+        structure.points.xyz,
+        deck.length_unit,
+        {k: np.concatenate(v) for k, v in corners.items()},
+        {k: np.concatenate(v) for k, v in ids.items()},
+    )

@@ -1,0 +1,98 @@
+"""What the case control section asks of normal modes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from .lines import Line
+
+_COMMAND = re.compile(
+    r"^\s*(?P<key>[A-Za-z]\w*)\s*(?:\((?P<option>[^)]*)\))?\s*(?:=\s*|\s+)(?P<value>\S.*)$"
+)
+_SETS = {"SPC": "spc", "MPC": "mpc", "NSM": "nsm", "SUPORT1": "suport1"}
+_MATRICES = {"K2GG": "k2gg", "M2GG": "m2gg", "K2PP": "k2pp", "M2PP": "m2pp"}
+_WEIGHTED = re.compile(r"(?:\(?\s*(?P<factor>[-+.\dEeDd]+)\s*\)?\s*\*\s*)?(?P<name>[A-Za-z]\w*)")
+
+
+@dataclass(frozen=True)
+class CaseControl:
+    """Sets and matrices that the normal modes subcase selects; None or empty where it does not.
+
+    Parameters
+    ----------
+    subcase : int
+        Number of the subcase, 0 when the deck has none.
+    spc, mpc, method, nsm, suport1, temperature : int or None
+        Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (BOTH) or (MATERIAL).
+    k2gg, m2gg, k2pp, m2pp : tuple of (name, factor)
+        Names of DMIG matrices to be added.
+    """
+
+    subcase: int = 0
+    spc: int | None = None
+    mpc: int | None = None
+    method: int | None = None
+    nsm: int | None = None
+    suport1: int | None = None
+    temperature: int | None = None
+    k2gg: tuple[tuple[str, float], ...] = ()
+    m2gg: tuple[tuple[str, float], ...] = ()
+    k2pp: tuple[tuple[str, float], ...] = ()
+    m2pp: tuple[tuple[str, float], ...] = ()
+    analysis: str = field(default="", compare=False)
+
+
+def read_case_control(lines: Iterable[Line]) -> tuple[CaseControl, tuple[str, ...]]:
+    """Return the facts of the first normal modes subcase, and warnings.
+
+    A subcase that asks for modes is the first with METHOD (its own or the one above all
+    subcases) and no other ANALYSIS; subcases that select other constraints are named in a warning.
+    """
+    above = CaseControl()
+    subcases: list[CaseControl] = []
+    for line in lines:
+        match = _COMMAND.match(line.text.split("$", 1)[0])
+        if not match:
+            continue
+        key, value = match["key"].upper(), match["value"].strip()
+        if key.startswith("SUBC") and value.split()[0].isdigit():
+            subcases.append(replace(above, subcase=int(value.split()[0])))
+        elif subcases:
+            subcases[-1] = _apply(subcases[-1], key, match["option"], value)
+        else:
+            above = _apply(above, key, match["option"], value)
+    if not subcases:
+        return above, ()
+    modal = [c for c in subcases if c.method is not None and c.analysis in ("", "MODES")]
+    chosen = modal[0] if modal else subcases[0]
+    others = [c.subcase for c in modal[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
+    if not others:
+        return chosen, ()
+    return chosen, (
+        f"subcase {chosen.subcase} is used; subcases {', '.join(map(str, others))} select other "
+        "constraints and are left out",
+    )
+
+
+def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseControl:
+    option = (option or "").upper()
+    number = int(value.split()[0]) if value.split()[0].isdigit() else None
+    if key in _SETS:
+        return replace(case, **{_SETS[key]: number})  # type: ignore[arg-type]
+    if key.startswith("METH") and not option.startswith("FLU"):
+        return replace(case, method=number)
+    if key.startswith("TEMP") and option[:4] in ("INIT", "BOTH", "MATE", ""):
+        if option[:4] in ("BOTH", "MATE", "") and case.temperature is not None:
+            return case
+        return replace(case, temperature=number) if option else case
+    if key.startswith("ANAL"):
+        return replace(case, analysis=value.upper())
+    if key in _MATRICES:
+        names = tuple(
+            (m["name"].upper(), float((m["factor"] or "1").upper().replace("D", "E")))
+            for m in _WEIGHTED.finditer(value)
+        )
+        return replace(case, **{_MATRICES[key]: names})  # type: ignore[arg-type]
+    return case

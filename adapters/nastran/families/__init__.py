@@ -1,0 +1,31 @@
+"""Element families: one module each, from cards to element matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .bars import bars, rods
+from .common import Context, Group, Key, Settings
+from .masses import masses
+from .shells import shells
+from .springs import springs
+
+FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
+    "shells": shells,
+    "bars": bars,
+    "rods": rods,
+    "springs": springs,
+    "masses": masses,
+}
+"""Everything that makes element matrices, by name."""
+
+SUPPORTED = frozenset(
+    (
+        *("CQUAD4", "CTRIA3", "CBAR", "CROD", "CONROD", "CTUBE"),
+        *("CELAS1", "CELAS2", "CELAS3", "CELAS4"),
+        *("CMASS1", "CMASS2", "CMASS3", "CMASS4", "CONM1", "CONM2"),
+    )
+)
+"""Element cards that some family reads."""
+
+__all__ = ["FAMILIES", "SUPPORTED", "Context", "Group", "Key", "Settings"]

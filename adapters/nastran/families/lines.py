@@ -1,0 +1,139 @@
+"""Ends, orientation, offsets and pins of CBAR and CBEAM."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ....core.arrays import Floats, Ints
+from ....core.errors import InputError
+from ..cards import Card
+from .common import Context
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Geometry of bars or beams in the basic frame.
+
+    Parameters
+    ----------
+    xa, xb : (n, 3) float
+        Ends, offsets included.
+    v : (n, 3) float
+        Orientation vectors.
+    wa, wb : (n, 3) float
+        Offsets from the grids to the ends.
+    pins : (n, 12) bool
+        Released motions of end A, then of end B, element axes.
+    offset : bool
+        Whether any element has an offset.
+    """
+
+    xa: Floats
+    xb: Floats
+    v: Floats
+    wa: Floats
+    wb: Floats
+    pins: Any
+    offset: bool
+
+
+def line_axes(context: Context, name: str, cards: Sequence[Card], ids: Ints, ends: Ints) -> Lines:
+    """Read the geometry of CBAR or CBEAM cards.
+
+    Raises
+    ------
+    InputError
+        An end on the other, an orientation along the bar, an OFFT that is not known.
+    """
+    points = context.points
+    xa, xb = points.xyz[ends[:, 0]], points.xyz[ends[:, 1]]
+    offt = np.array([_offt(context, name, c) for c in cards])
+    v = _orientation(context, name, cards, ids, ends, offt)
+    wa, wb = (np.array([getattr(c, w) for c in cards], dtype=np.float64) for w in ("wa", "wb"))
+    offset = bool(wa.any() or wb.any())
+    if offset:
+        along = _element_axes(xa, xb, v)
+        wa = _offset(points.directions[ends[:, 0]], along, wa, offt[:, 1])
+        wb = _offset(points.directions[ends[:, 1]], along, wb, offt[:, 2])
+    lines = Lines(xa + wa, xb + wb, v, wa, wb, _pins(context, name, cards), offset)
+    _check(context, name, ids, lines)
+    return lines
+
+
+def _offt(context: Context, name: str, card: Card) -> tuple[str, str, str]:
+    offt = str(card.offt or "GGG").upper()
+    if len(offt) != 3 or offt[0] not in "GB" or any(c not in "GOEB" for c in offt[1:]):
+        raise InputError(
+            f"{context.bulk.place(name, card.eid)}: OFFT {offt!r} is not one of GGG, BGG, GGO, ..."
+        )
+    return offt[0], offt[1], offt[2]
+
+
+def _orientation(
+    context: Context, name: str, cards: Sequence[Card], ids: Ints, ends: Ints, offt: Any
+) -> Floats:
+    """Vector to the plane 1 side: towards G0, or given in the displacement system of end A."""
+    points = context.points
+    v = np.array([(0.0, 0.0, 0.0) if c.g0 else c.x for c in cards], dtype=np.float64)
+    turned = np.flatnonzero((offt[:, 0] == "G") & points.rotated[ends[:, 0]])
+    v[turned] = np.einsum("nki,nk->ni", points.directions[ends[turned, 0]], v[turned])
+    by_grid = np.flatnonzero([bool(c.g0) for c in cards])
+    if len(by_grid):
+        g0 = points.rows([cards[k].g0 for k in by_grid], name, ids[by_grid])
+        v[by_grid] = points.xyz[g0] - points.xyz[ends[by_grid, 0]]
+    return v
+
+
+def _element_axes(xa: Floats, xb: Floats, v: Floats) -> Floats:
+    """Axes of the line between the grids, for offsets given along the element (OFFT O)."""
+    x = xb - xa
+    z = np.cross(x, v)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        x, z = (a / np.linalg.norm(a, axis=1, keepdims=True) for a in (x, z))
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def _offset(directions: Floats, along: Floats, w: Floats, kind: Any) -> Floats:
+    out = np.einsum("nki,nk->ni", directions, w)
+    element = np.isin(kind, ("O", "E"))
+    out[element] = np.einsum("nki,nk->ni", along[element], w[element])
+    out[kind == "B"] = w[kind == "B"]
+    return np.asarray(out)
+
+
+def _pins(context: Context, name: str, cards: Sequence[Card]) -> Any:
+    pins = np.zeros((len(cards), 12), dtype=bool)
+    for k, card in enumerate(cards):
+        for first, text in ((0, card.pa), (6, card.pb)):
+            for digit in str(text or "").strip():
+                if digit == "0":
+                    continue
+                if digit not in "123456":
+                    raise InputError(
+                        f"{context.bulk.place(name, card.eid)}: the pin flags {text} are not "
+                        "numbers from 1 to 6"
+                    )
+                pins[k, first + int(digit) - 1] = True
+    return pins
+
+
+def _check(context: Context, name: str, ids: Ints, lines: Lines) -> None:
+    x = lines.xb - lines.xa
+    length = np.linalg.norm(x, axis=1)
+    size = np.ptp(context.points.xyz, axis=0).max(initial=0.0)
+    short = length <= 1e-12 * size
+    if short.any():
+        bad = int(ids[np.flatnonzero(short)[0]])
+        raise InputError(f"{context.bulk.place(name, bad)} has no length: its ends coincide")
+    across = np.linalg.norm(np.cross(x, lines.v), axis=1)
+    along = across <= 1e-9 * length * np.linalg.norm(lines.v, axis=1)
+    if along.any():
+        bad = int(ids[np.flatnonzero(along)[0]])
+        raise InputError(
+            f"{context.bulk.place(name, bad)}: its orientation vector is zero or runs along the "
+            "element: give another X1, X2, X3 or G0"
+        )

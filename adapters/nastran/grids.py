@@ -1,0 +1,218 @@
+"""Grid and scalar points: positions, displacement systems, numbering of the g-set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...core.arrays import Floats, Ints
+from ...core.errors import InputError
+from .cards import Bulk, fields_of
+from .coords import Frames
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Grids and scalar points of a deck, and the numbering of their degrees of freedom.
+
+    Grid row i has degrees of freedom 6i ... 6i+5 in its displacement system (CD); scalar point k
+    follows at ``6 * n_grid + k``.
+
+    Parameters
+    ----------
+    bulk : Bulk
+        The deck's cards, for messages.
+    ids : (n_grid,) int
+        Increasing.
+    xyz : (n_grid, 3) float
+        Basic frame.
+    rotated : (n_grid,) bool
+        Whether the displacement system differs from the basic one at this grid.
+    directions : (n_grid, 3, 3) float
+        Rows are the displacement directions in the basic frame.
+    permanent : (n_grid, 6) bool
+        Degrees of freedom constrained on the GRID card (PS).
+    scalar_ids : (n_scalar,) int
+        Increasing.
+    frames : Frames
+        Coordinate systems, for cards that refer to them.
+    """
+
+    bulk: Bulk
+    ids: Ints
+    xyz: Floats
+    rotated: Any
+    directions: Floats
+    permanent: Any
+    scalar_ids: Ints
+    frames: Frames
+
+    @property
+    def n_dof(self) -> int:
+        """Size of the g-set."""
+        return 6 * len(self.ids) + len(self.scalar_ids)
+
+    def rows(self, ids: Any, name: str, owners: Any) -> Ints:
+        """Rows of grids, any shape.
+
+        Parameters
+        ----------
+        ids : array of int
+            Grid numbers.
+        name : str
+            Card that asks, for the message.
+        owners : array of int
+            Number of the card that asks, same first dimension as `ids`.
+
+        Raises
+        ------
+        InputError
+            A grid that does not exist: the card, its file and line.
+        """
+        ids = np.asarray(ids, dtype=np.int64)
+        found = np.minimum(np.searchsorted(self.ids, ids), max(len(self.ids) - 1, 0))
+        missing = (self.ids[found] != ids) if len(self.ids) else np.ones(ids.shape, bool)
+        if missing.any():
+            where = np.argwhere(missing)[0]
+            owner = int(np.asarray(owners).reshape(-1)[where[0]]) if ids.ndim else int(owners)
+            bad = int(ids[tuple(where)])
+            what = "is a scalar point" if bad in self.scalar_ids else "does not exist"
+            raise InputError(f"{self.bulk.place(name, owner)} refers to grid {bad}, which {what}")
+        return np.asarray(found, dtype=np.int64)
+
+    def dof(self, point: int, component: int, place: str) -> int:
+        """Return the g-set number of one component of a grid (1..6) or scalar point (0 or 1)."""
+        k = int(np.searchsorted(self.ids, point))
+        if k < len(self.ids) and self.ids[k] == point:
+            if not 1 <= component <= 6:
+                raise InputError(f"{place}: component {component} of grid {point} must be 1 to 6")
+            return 6 * k + component - 1
+        k = int(np.searchsorted(self.scalar_ids, point))
+        if k < len(self.scalar_ids) and self.scalar_ids[k] == point:
+            if component > 1:
+                raise InputError(f"{place}: scalar point {point} has no component {component}")
+            return 6 * len(self.ids) + k
+        raise InputError(f"{place} refers to grid {point}, which does not exist")
+
+    def exists(self, point: int) -> bool:
+        """Whether there is a grid or scalar point of this number."""
+        for ids in (self.ids, self.scalar_ids):
+            k = int(np.searchsorted(ids, point))
+            if k < len(ids) and ids[k] == point:
+                return True
+        return False
+
+    def row(self, grid: int, place: str) -> int:
+        """Return the row of one grid."""
+        k = int(np.searchsorted(self.ids, grid))
+        if k == len(self.ids) or self.ids[k] != grid:
+            raise InputError(f"{place} refers to grid {grid}, which does not exist")
+        return k
+
+    def label(self, dof: int) -> str:
+        """``grid:component`` of a degree of freedom of the g-set."""
+        grid, component = divmod(int(dof), 6)
+        if grid < len(self.ids):
+            return f"{self.ids[grid]}:{component + 1}"
+        return f"{self.scalar_ids[dof - 6 * len(self.ids)]}:0"
+
+
+def read_points(bulk: Bulk) -> Points:
+    """Place all grids and scalar points of a deck.
+
+    Raises
+    ------
+    InputError
+        No grids at all; a coordinate system that does not exist.
+    """
+    table = bulk.table("GRID")
+    cards = [table[k] for k in sorted(table)]
+    scalar = _scalar_ids(bulk)
+    if not cards and not len(scalar):
+        raise InputError(f"{bulk.files[0]}: the deck has no GRID")
+    ids = np.array([c.nid for c in cards], dtype=np.int64)
+    both = np.intersect1d(ids, scalar)
+    if len(both):
+        raise InputError(f"{bulk.place('GRID', int(both[0]))} is a scalar point (SPOINT) as well")
+    cp, cd, ps = _systems(bulk, cards)
+    given = np.array([c.xyz for c in cards], dtype=np.float64).reshape(-1, 3)
+    if not np.isfinite(given).all():
+        bad = int(ids[np.argwhere(~np.isfinite(given))[0, 0]])
+        raise InputError(f"{bulk.place('GRID', bad)}: its position is not a finite number")
+    index = {int(k): i for i, k in enumerate(ids)}
+
+    def grid_system(grid: int) -> tuple[int, Floats] | None:
+        i = index.get(grid)
+        return None if i is None else (int(cp[i]), given[i : i + 1])
+
+    frames = Frames(bulk, grid_system)
+    xyz = _positions(bulk, ids, given, cp, frames)
+    rotated, directions = _directions(bulk, ids, xyz, cd, frames)
+    permanent = np.zeros((len(ids), 6), dtype=bool)
+    for i, components in enumerate(ps):
+        if components:
+            permanent[i, [int(c) - 1 for c in components]] = True
+    return Points(bulk, ids, xyz, rotated, directions, permanent, scalar, frames)
+
+
+def _positions(bulk: Bulk, ids: Ints, given: Floats, cp: Ints, frames: Frames) -> Floats:
+    xyz = given.copy()
+    for system in np.unique(cp[cp != 0]):
+        rows = np.flatnonzero(cp == system)
+        frame = frames.get(int(system), bulk.place("GRID", int(ids[rows[0]])))
+        xyz[rows] = frame.positions(given[rows])
+    return xyz
+
+
+def _directions(bulk: Bulk, ids: Ints, xyz: Floats, cd: Ints, frames: Frames) -> tuple[Any, Floats]:
+    """Which grids have displacement directions other than the basic ones, and all directions."""
+    directions = np.broadcast_to(np.eye(3), (len(ids), 3, 3)).copy()
+    rotated = np.zeros(len(ids), dtype=bool)
+    for system in np.unique(cd[cd != 0]):
+        rows = np.flatnonzero(cd == system)
+        place = bulk.place("GRID", int(ids[rows[0]]))
+        if system < 0:
+            raise InputError(f"{place}: fluid points (CD = -1) are not supported")
+        frame = frames.get(int(system), place)
+        if not frame.is_basic:
+            rotated[rows] = True
+            directions[rows] = frame.directions(xyz[rows])
+    return rotated, directions
+
+
+def _scalar_ids(bulk: Bulk) -> Ints:
+    """Scalar points named on SPOINT, or used by CELAS3/4 and CMASS3/4 without one."""
+    ids: set[int] = set()
+    for card in bulk.listed("SPOINT"):
+        ids.update(int(k) for k in card.points)
+    for name in ("CELAS3", "CELAS4", "CMASS3", "CMASS4", "CDAMP3", "CDAMP4"):
+        for card in bulk.table(name).values():
+            ids.update(int(k) for k in card.nodes if k)
+    return np.array(sorted(ids), dtype=np.int64)
+
+
+def _systems(bulk: Bulk, cards: list[Any]) -> tuple[Ints, Ints, list[str]]:
+    """CP, CD and PS of each grid, blanks filled from GRDSET."""
+    cp = np.array([c.cp for c in cards], dtype=np.int64)
+    cd = np.array([c.cd for c in cards], dtype=np.int64)
+    ps = [str(c.ps or "") for c in cards]
+    defaults = bulk.listed("GRDSET")
+    if not defaults:
+        return cp, cd, ps
+    default = [*defaults[0], *[None] * 9]
+    blank = {
+        int(f[1] or 0): [len(f) <= k or f[k] is None for k in (2, 6, 7)]
+        for f in (fields_of(raw.lines) for raw in bulk.raw["GRID"])
+    }
+    try:
+        default_cp, default_cd = (int(default[k] or 0) for k in (2, 6))
+    except ValueError:
+        raise InputError(f"{bulk.place_listed('GRDSET', 0)}: CP and CD must be integers") from None
+    for i, card in enumerate(cards):
+        no_cp, no_cd, no_ps = blank[int(card.nid)]
+        cp[i] = default_cp if no_cp else cp[i]
+        cd[i] = default_cd if no_cd else cd[i]
+        ps[i] = str(default[7] or "") if no_ps else ps[i]
+    return cp, cd, ps

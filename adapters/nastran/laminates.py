@@ -1,0 +1,230 @@
+"""Sections of shells from PSHELL, PCOMP and PCOMPG, in material axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats
+from ...core.errors import InputError
+from .cards import Bulk, Card
+from .materials import Plane, plane
+
+
+@dataclass(frozen=True, eq=False)
+class Layup:
+    """Stiffness and mass of a shell property.
+
+    Parameters
+    ----------
+    A, B, D : (3, 3) float
+        See `core.elements.section.ShellSection`.
+    S : (2, 2) float
+        Transverse shear stiffness.
+    drilling : float
+        G t.
+    density : float
+        Mass per area, NSM included.
+    offset : float
+        Of the reference surface from the element's plane, along the normal.
+    isotropic : bool
+        Whether turning it changes nothing.
+    materials : tuple of (card, number)
+        Materials used.
+    """
+
+    A: Floats
+    B: Floats
+    D: Floats
+    S: Floats
+    drilling: float
+    density: float
+    offset: float
+    isotropic: bool
+    materials: tuple[tuple[str, int], ...]
+
+
+def layup(
+    bulk: Bulk,
+    key: tuple[str, int],
+    place: str,
+    own: float = 0.0,
+    share: float = 1.0,
+) -> Layup:
+    """Return the section of a shell property.
+
+    Parameters
+    ----------
+    bulk : Bulk
+        Cards.
+    key : (str, int)
+        Card name and number of the property.
+    place : str
+        The same with file and line, for messages.
+    own, share : float
+        The thickness is ``own + share * T`` (PSHELL only): corners may have their own.
+
+    Raises
+    ------
+    InputError
+        No thickness, no material, values that are not possible.
+    """
+    card = bulk.table(key[0])[key[1]]
+    if key[0] == "PSHELL":
+        return _pshell(bulk, card, place, own, share)
+    return _pcomp(bulk, card, place)
+
+
+def _pshell(bulk: Bulk, card: Card, place: str, own: float, share: float) -> Layup:
+    t = own + share * float(card.t or 0.0)
+    if not t > 0.0:
+        raise InputError(f"{place}: the thickness T is {t:g}; it must be positive")
+    mid1, mid2, mid3, mid4 = (_mid(m) for m in (card.mid1, card.mid2, card.mid3, card.mid4))
+    zero = np.zeros((3, 3))
+    used: dict[int, Plane] = {}
+    strain = mid2 == -1  # plane strain
+    mid2 = None if strain else mid2
+    for mid in (mid1, mid2, mid3, mid4):
+        if mid is not None:
+            used[mid] = plane(bulk, mid, place)
+    if not used:
+        raise InputError(f"{place} names no material")
+    if strain and mid1 is not None:
+        used[mid1] = _plane_strain(bulk, mid1, used[mid1], place)
+    A = used[mid1].Q * t if mid1 is not None else zero
+    inertia = float(card.twelveIt3 if card.twelveIt3 is not None else 1.0) * t**3 / 12.0
+    D = used[mid2].Q * inertia if mid2 is not None else zero
+    B = used[mid4].Q * t**2 if mid4 is not None else zero
+    S = np.diag([np.inf, np.inf])
+    if mid3 is not None and mid2 is not None:
+        S = used[mid3].shear * (float(card.tst if card.tst is not None else 0.833333) * t)
+    drilling = float(A[2, 2] if mid1 is not None else D[2, 2] * 12.0 / t**2)
+    first = used[mid1 if mid1 is not None else next(iter(used))]
+    density = first.rho * t + float(card.nsm or 0.0)
+    keys = tuple(_key(bulk, mid) for mid in used)
+    same = all(m.isotropic for m in used.values())
+    return Layup(A, B, D, S, drilling, density, 0.0, same, keys)
+
+
+def _mid(value: int | None) -> int | None:
+    return None if value is None or int(value) == 0 else int(value)
+
+
+def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
+    found = bulk.find(("MAT1", "MAT2", "MAT8"), mid)
+    return (found[0] if found else "MAT1"), mid
+
+
+def _plane_strain(bulk: Bulk, mid: int, material: Plane, place: str) -> Plane:
+    card = bulk.table("MAT1").get(mid)
+    if card is None:
+        raise InputError(f"{place}: plane strain (MID2 -1) needs a MAT1 as MID1")
+    E, nu = float(card.e), float(card.nu)
+    if not nu < 0.5:
+        raise InputError(f"{place}: plane strain needs a Poisson's ratio below 0.5")
+    c = E / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    Q = c * np.array([[1.0 - nu, nu, 0.0], [nu, 1.0 - nu, 0.0], [0.0, 0.0, 0.5 - nu]])
+    return Plane(Q, material.shear, material.rho, True)
+
+
+def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
+    """Classical laminate theory; transverse shear as Nastran finds it for the whole laminate."""
+    t, theta, mids = _plies(card, place)
+    lam = str(card.lam or "").upper()
+    if lam not in ("", "BEND", "MEM", "SYM", "SMEAR", "SMCORE"):
+        raise InputError(f"{place}: LAM {lam!r} is not one of SYM, MEM, BEND, SMEAR, SMCORE")
+    materials = {mid: plane(bulk, mid, place) for mid in dict.fromkeys(mids)}
+    Q = np.array([_turned(materials[m].Q, a) for m, a in zip(mids, theta, strict=True)])
+    G = np.array([_turned_shear(materials[m].shear, a) for m, a in zip(mids, theta, strict=True)])
+    rho = np.array([materials[m].rho for m in mids])
+    total = float(t.sum())
+    z0 = card.z0
+    bottom = -0.5 * total if z0 is None else float(z0)
+    low = bottom + np.concatenate([[0.0], np.cumsum(t)[:-1]])
+    high = low + t
+    middle = bottom + 0.5 * total
+    # about the laminate's middle: its distance from the element's plane is handed on as offset
+    low, high = low - middle, high - middle
+    A = np.einsum("p,pij->ij", high - low, Q)
+    B = np.einsum("p,pij->ij", 0.5 * (high**2 - low**2), Q)
+    D = np.einsum("p,pij->ij", (high**3 - low**3) / 3.0, Q)
+    S = _transverse_shear(Q, G, low, high)
+    if lam == "SMEAR":
+        B, D = np.zeros((3, 3)), A * total**2 / 12.0
+    elif lam == "SMCORE":
+        raise InputError(f"{place}: LAM SMCORE is not supported")
+    elif lam == "MEM":
+        B, D = np.zeros((3, 3)), np.zeros((3, 3))
+    elif lam == "BEND":
+        A, B = np.zeros((3, 3)), np.zeros((3, 3))
+    small = 1e-12 * np.abs(A).max(initial=0.0) * total
+    if np.abs(B).max(initial=0.0) <= small:
+        B = np.zeros((3, 3))
+    density = float(rho @ t) + float(card.nsm or 0.0)
+    same = all(m.isotropic for m in materials.values())
+    keys = tuple(_key(bulk, mid) for mid in materials)
+    drilling = float(A[2, 2]) if A.any() else float(D[2, 2]) * 12.0 / total**2
+    return Layup(A, B, D, S, drilling, density, middle, same, keys)
+
+
+def _plies(card: Card, place: str) -> tuple[Floats, Floats, list[int]]:
+    t = np.array(card.thicknesses, dtype=np.float64)
+    theta = np.radians(np.array([a or 0.0 for a in card.thetas], dtype=np.float64))
+    mids = [int(m) for m in card.mids]
+    if not len(t) or not (t > 0.0).all():
+        raise InputError(f"{place}: every ply needs a positive thickness")
+    if str(card.lam or "").upper() == "SYM":  # the plies listed are the lower half
+        t, theta, mids = (
+            np.concatenate([t, t[::-1]]),
+            np.concatenate([theta, theta[::-1]]),
+            [*mids, *mids[::-1]],
+        )
+    return t, theta, mids
+
+
+def _turned(Q: Floats, angle: float) -> Floats:
+    """Plane stress stiffness of a ply at an angle, in laminate axes."""
+    c, s = np.cos(angle), np.sin(angle)
+    T = np.array(
+        [[c * c, s * s, s * c], [s * s, c * c, -s * c], [-2 * s * c, 2 * s * c, c * c - s * s]]
+    )
+    return np.asarray(T.T @ Q @ T)
+
+
+def _turned_shear(G: Floats, angle: float) -> Floats:
+    if not np.isfinite(G).all():
+        return G
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.array([[c, s], [-s, c]])
+    return np.asarray(R.T @ G @ R)
+
+
+def _transverse_shear(Q: Floats, G: Floats, low: Floats, high: Floats) -> Floats:
+    """Shear stiffness of a laminate from equilibrium, in x and in y separately.
+
+    The shear stress that equilibrium asks for, tau = -V F(z) / R with F the integral of
+    Q (z - z_neutral) from the bottom and R the bending stiffness about the neutral axis, gives the
+    strain energy V**2 / (2 S) (MSC Nastran Theoretical Manual, laminates; for one isotropic ply
+    S = 5/6 G t).
+    """
+    S = np.zeros((2, 2))
+    for k in (0, 1):
+        if not np.isfinite(G[:, k, k]).all():
+            return np.diag([np.inf, np.inf])
+        E = Q[:, k, k]
+        neutral = float((E * 0.5 * (high**2 - low**2)).sum() / (E * (high - low)).sum())
+        a, b = low - neutral, high - neutral
+        R = float((E * (b**3 - a**3) / 3.0).sum())
+        below, energy = 0.0, 0.0
+        for e, g, za, zb in zip(E, G[:, k, k], a, b, strict=True):
+            # F(z) = below + e (z**2 - za**2) / 2, squared and integrated over the ply
+            c = below - 0.5 * e * za**2
+            energy += (
+                c**2 * (zb - za)
+                + c * e * (zb**3 - za**3) / 3.0
+                + 0.25 * e**2 * (zb**5 - za**5) / 5.0
+            ) / g
+            below += 0.5 * e * (zb**2 - za**2)
+        S[k, k] = R**2 / energy
+    return S

@@ -1,0 +1,168 @@
+"""Parameters of a deck: which fields they move, and the cards at other values of them.
+
+A card at other parameter values is its own text with the numbers multiplied, read again: what the
+deck leaves blank and Nastran derives follows, just as it would in the rewritten deck.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...core.arrays import Floats
+from ...core.errors import InputError
+from ...core.parameter import Parameter
+from .cards import Bulk, Card, CardReader, Fields, fields_of, to_float
+from .fields import STRIDES, after, field_position
+from .parameters import FieldRef, ParameterSpec
+
+Key = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class _Move:
+    """One field that a parameter multiplies."""
+
+    parameter: int
+    index: int
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Variation:
+    """The parameters of a model and the cards they act on.
+
+    Parameters
+    ----------
+    bulk : Bulk
+        The deck as it is.
+    parameters : tuple of Parameter
+        In the order asked for.
+    moves : mapping of Key to list
+        Fields moved, by card.
+    """
+
+    bulk: Bulk
+    parameters: tuple[Parameter, ...]
+    moves: dict[Key, tuple[_Move, ...]]
+    _known: dict[bytes, Bulk] = field(default_factory=dict, repr=False)
+
+    def acting_on(self, key: Key) -> frozenset[int]:
+        """Return the numbers of the parameters that move a field of this card."""
+        return frozenset(m.parameter for m in self.moves.get(key, ()))
+
+    def at(self, p: Floats) -> Bulk:
+        """Return the cards at the parameter values `p`, (n_parameter,), factors on the deck's."""
+        if not self.moves or not np.any(p != 1.0):
+            return self.bulk
+        tag = np.asarray(p, dtype=np.float64).tobytes()
+        if tag not in self._known:
+            if len(self._known) > 64:
+                self._known.clear()
+            self._known[tag] = self._make(p)
+        return self._known[tag]
+
+    def _make(self, p: Floats) -> Bulk:
+        reader = CardReader(self.bulk.files)
+        changed: dict[Key, Card] = {}
+        for key, moves in self.moves.items():
+            factors = {m.index: float(p[m.parameter]) for m in moves}
+            if all(f == 1.0 for f in factors.values()):
+                continue
+            raw = self.bulk.numbered[key[0]][key[1]]
+            fields = list(fields_of(raw.lines))
+            for m in moves:
+                fields[m.index] = repr(m.value * factors[m.index])
+            changed[key] = reader.read(raw, fields)
+        return self.bulk.replaced(changed)
+
+
+def read_variation(bulk: Bulk, specs: Sequence[ParameterSpec]) -> Variation:
+    """Find the fields that parameters move.
+
+    Raises
+    ------
+    InputError
+        A card or field that does not exist, is blank or zero, or that two parameters move.
+    """
+    moves: dict[Key, list[_Move]] = {}
+    parameters = []
+    taken: dict[tuple[Key, int], str] = {}
+    for number, spec in enumerate(specs):
+        values = []
+        for ref in spec.fields:
+            key = (ref.card, ref.id)
+            index, value = _locate(bulk, ref, spec.name)
+            if (key, index) in taken:
+                raise InputError(
+                    f"{ref} is moved by the parameter {taken[key, index]!r} and by {spec.name!r}: "
+                    "one field can belong to one parameter only"
+                )
+            taken[key, index] = spec.name
+            moves.setdefault(key, []).append(_Move(number, index, value))
+            values.append(value)
+        parameters.append(
+            Parameter(
+                spec.name,
+                tuple(str(f) for f in spec.fields),
+                tuple(values),
+                spec.lower,
+                spec.upper,
+                getattr(spec, "weight", 1.0),
+            )
+        )
+    return Variation(bulk, tuple(parameters), {k: tuple(v) for k, v in moves.items()})
+
+
+def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
+    """Index among the card's fields, and value, of the field a parameter names."""
+    raw = bulk.numbered.get(ref.card, {}).get(ref.id)
+    if raw is None:
+        known = sorted(bulk.numbered.get(ref.card, {}))
+        there = f"; the deck has {ref.card} {_list(known)}" if known else ""
+        raise InputError(f"parameter {name!r}: there is no {ref.card} {ref.id} in the deck{there}")
+    fields = fields_of(raw.lines)
+    shift = STRIDES.get(ref.card, 0) * raw.part
+
+    def read(position: int) -> str:
+        return str(_at(fields, _index(position)) or "").upper()
+
+    position = field_position(ref.card, ref.field, read)
+    place = bulk.place(ref.card, ref.id)
+    if position is None:
+        raise InputError(f"parameter {name!r}: {place} has no value {ref.field}")
+    index = _index(after(position, shift))
+    text = _at(fields, index)
+    if text is None:
+        raise InputError(
+            f"parameter {name!r}: {ref.field} is blank on {place}, so there is no value to move: "
+            "give it one, or move the values it follows from"
+        )
+    try:
+        value = to_float(text)
+    except ValueError:
+        raise InputError(
+            f"parameter {name!r}: {ref.field} on {place} is {text!r}, no number"
+        ) from None
+    if value == 0.0:
+        raise InputError(
+            f"parameter {name!r}: {ref.field} is zero on {place}, and a factor cannot move it"
+        )
+    return index, value
+
+
+def _index(position: int) -> int:
+    """Index in `fields_of` of a position as the Quick Reference Guide counts."""
+    line, column = divmod(position, 10)
+    return 8 * line + column - 1
+
+
+def _at(fields: Fields, index: int) -> str | None:
+    return fields[index] if index < len(fields) else None
+
+
+def _list(numbers: list[int]) -> str:
+    shown = ", ".join(map(str, numbers[:8]))
+    return f"{shown}, ..." if len(numbers) > 8 else shown

@@ -1,0 +1,79 @@
+"""Mass and centre of gravity of a deck, as Nastran's grid point weight generator finds them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.arrays import Floats
+from ...core.assembly import Members, Recipe, assemble
+from .build import read_structure
+from .read import Deck
+from .variation import read_variation
+
+
+@dataclass(frozen=True, eq=False)
+class Weight:
+    """Rigid-body mass of a whole deck, constrained grids included.
+
+    Parameters
+    ----------
+    mass : float
+        Mean of the masses that translations along the three axes move (WTMASS applied).
+    masses : (3,) float
+        One for each axis; they differ where scalar masses act along one axis only.
+    centre_of_gravity : (3,) float
+        Basic frame, deck length unit.
+    matrix : (6, 6) float
+        Rigid-body mass about `reference`.
+    reference : (3,) float
+        The grid of PARAM GRDPNT, or the origin.
+    """
+
+    mass: float
+    masses: Floats
+    centre_of_gravity: Floats
+    matrix: Floats
+    reference: Floats
+
+
+def weight(deck: Deck) -> Weight:
+    """Weigh a deck by the rigid-body motions of its mass matrix before constraints.
+
+    Raises
+    ------
+    InputError
+        As `build_model`.
+    """
+    structure = read_structure(deck, read_variation(deck.bulk, ()))
+    points = structure.points
+    members = [Members(b, np.arange(len(b))) for b in structure.blocks]
+    recipe = Recipe(np.ones((1, 0)), np.zeros((0, 1)), np.ones((1, 1)))
+    M = assemble(members, points.n_dof, recipe)[1][0]
+    grid = int(deck.param("GRDPNT", -1.0))
+    k = int(np.searchsorted(points.ids, grid))
+    known = k < len(points.ids) and points.ids[k] == grid
+    reference = points.xyz[k] if known else np.zeros(3)
+    R = np.zeros((points.n_dof, 6))
+    arm = points.xyz - reference
+    motion = np.zeros((len(points.ids), 6, 6))
+    motion[:, :3, :3] = motion[:, 3:, 3:] = points.directions
+    cross = np.zeros((len(points.ids), 3, 3))
+    cross[:, 0, 1], cross[:, 0, 2] = arm[:, 2], -arm[:, 1]
+    cross[:, 1, 0], cross[:, 1, 2] = -arm[:, 2], arm[:, 0]
+    cross[:, 2, 0], cross[:, 2, 1] = arm[:, 1], -arm[:, 0]
+    motion[:, :3, 3:] = points.directions @ cross
+    R[: 6 * len(points.ids)] = motion.reshape(-1, 6)
+    matrix = R.T @ (M @ R)
+    masses = np.diag(matrix)[:3].copy()
+    total = float(masses.mean())
+    if not total > 0.0:
+        return Weight(total, masses, reference, matrix, reference)
+    S = matrix[:3, 3:]
+    m = np.where(masses > 0.0, masses, np.inf)
+    # M[0, 4] = m_x z, M[0, 5] = -m_x y, M[1, 3] = -m_y z, ...: each coordinate from two axes
+    x = 0.5 * (S[1, 2] / m[1] - S[2, 1] / m[2])
+    y = 0.5 * (S[2, 0] / m[2] - S[0, 2] / m[0])
+    z = 0.5 * (S[0, 1] / m[0] - S[1, 0] / m[1])
+    return Weight(total, masses, reference + np.array([x, y, z]), matrix, reference)
