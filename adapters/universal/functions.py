@@ -181,7 +181,7 @@ def read_values(source: Source, head: Head58) -> tuple[Floats, Numbers]:
     if head.n_point < 1:
         raise ValueError(f"it announces {head.n_point} points")
     x, parts = (_binary if head.section.binary else _text)(source, head)
-    y = parts[:, 0] + 1j * parts[:, 1] if head.is_complex else parts[:, 0]
+    y = np.ascontiguousarray(parts).view(np.complex128)[:, 0] if head.is_complex else parts[:, 0]
     if x is None:
         x = head.start + head.step * np.arange(head.n_point)
     return x, y
@@ -207,17 +207,22 @@ def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     big, form = header[0] == 2, header[1]
     if header[0] not in (1, 2) or form not in (1, 2, 3):
         raise ValueError(f"byte order {header[0]} or floating-point format {form} is not known")
+    tail = source.data[max(head.data_at, head.section.end - _TAIL) : head.section.end]
     room = head.section.end - head.data_at
+    ends = range(room - len(tail) + len(tail.rstrip(b" \r\n")), room + 1)
     layouts = records(head.ordinate_type, head.even)
-    fitting = [r for r in layouts if 0 <= room - head.n_point * sum(r) <= _TAIL]
+    fitting = [r for r in layouts if head.n_point * sum(r) in ends]
     record = fitting[0] if fitting else layouts[0]
     want = head.n_point * sum(record)
-    if want > room:
-        raise ValueError(f"it announces {want} bytes and holds {room}")
+    padded = want < room and header[3] in ends
+    if not fitting and not padded:
+        raise ValueError(f"its {head.n_point} points take {want} bytes and it holds {room}")
     raw = np.frombuffer(source.data, np.uint8, want, head.data_at).reshape(head.n_point, -1)
+    if head.even:
+        return None, decode(raw.reshape(-1, record[0]), big, form).reshape(head.n_point, -1)
     numbers, at = [], 0
     for width in record:
-        numbers.append(decode(raw[:, at : at + width], width, big, form))
+        numbers.append(decode(raw[:, at : at + width], big, form))
         at += width
     return (None if head.even else numbers[0]), np.column_stack(
         numbers[len(numbers) - REALS[head.ordinate_type] :]

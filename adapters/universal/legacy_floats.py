@@ -10,21 +10,23 @@ from ...core.arrays import Floats
 VAX, IEEE, IBM = 1, 2, 3
 
 
-def decode(raw: npt.NDArray[np.uint8], width: int, big: bool, form: int) -> Floats:
-    """Decode numbers of 4 or 8 bytes, (n, width), to binary64.
+def decode(raw: npt.NDArray[np.uint8], big: bool, form: int) -> Floats:
+    """Decode numbers of 4 or 8 bytes to binary64, (n,).
 
     Parameters
     ----------
-    raw : (n, width) uint8
+    raw : (n, 4 or 8) uint8
         Bytes as in the file.
-    width : {4, 8}
     big : bool
         Most significant byte first; VAX numbers have an order of their own.
     form : {1, 2, 3}
         VAX (F and D floating), IEEE 754, IBM System/370 hexadecimal.
     """
+    width = raw.shape[1]
     if form == IEEE:
-        return np.ascontiguousarray(raw).view(f"{'>' if big else '<'}f{width}")[:, 0].astype(float)
+        numbers = np.ascontiguousarray(raw).view(f"{'>' if big else '<'}f{width}")[:, 0]
+        with np.errstate(invalid="ignore"):  # a signalling NaN stays a NaN
+            return numbers.astype(np.float64)
     if form == VAX:
         # 16-bit words, most significant word first, each least significant byte first.
         raw = raw.reshape(len(raw), -1, 2)[:, :, ::-1].reshape(len(raw), width)

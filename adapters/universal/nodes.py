@@ -107,11 +107,10 @@ def read_18(
                 line, f"dataset 18: system {head[0]} refers to {head[2]}, not defined"
             )
         points = np.array(values[:9]).reshape(3, 3)
-        found[head[0]] = from_points(KINDS[head[1]], reference, points, name)
-        if not np.all(np.isfinite(found[head[0]].axes)):
-            raise source.error(
-                line, f"dataset 18: the three points of system {head[0]} lie on one line"
-            )
+        try:
+            found[head[0]] = from_points(KINDS[head[1]], reference, points, name)
+        except ValueError as error:
+            raise source.error(line, f"dataset 18, system {head[0]}: {error}") from None
     return found
 
 

@@ -80,10 +80,23 @@ BASIC = CoordinateSystem("cartesian", np.eye(3), np.zeros(3), "basic")
 def from_points(
     kind: str, reference: CoordinateSystem, points: Floats, name: str
 ) -> CoordinateSystem:
-    """Return the system of dataset 18: origin, a point on +x, a point in the +xz plane, (3, 3)."""
+    """Return the system of dataset 18.
+
+    Parameters
+    ----------
+    points : (3, 3) float
+        Origin, a point on +x and a point in the +xz plane, in the reference system.
+
+    Raises
+    ------
+    ValueError
+        Points that lie on one line.
+    """
     origin, on_x, in_xz = reference.positions(points)
     x = on_x - origin
-    x = x / np.linalg.norm(x)
     y = np.cross(in_xz - origin, x)
+    if not np.linalg.norm(y) > 1e-9 * np.linalg.norm(x) * np.linalg.norm(in_xz - origin):
+        raise ValueError("the three points lie on one line")
+    x = x / np.linalg.norm(x)
     y = y / np.linalg.norm(y)
     return CoordinateSystem(kind, np.array([x, y, np.cross(x, y)]), origin, name)
