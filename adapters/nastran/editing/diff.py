@@ -12,9 +12,10 @@ import numpy as np
 
 from ....core.errors import InputError
 from .decktext import DeckText
-from .source import TextFile
+from .source import Bytes, TextFile
 from .write import names_in_tree
 
+_CHUNK = 1 << 22
 _SMALL = 200_000  # products of line counts that difflib handles at once
 
 Change = tuple[int, int, int, int]
@@ -84,16 +85,23 @@ def _grouped(changes: list[Change], context: int) -> Iterator[list[Change]]:
 def _changes_of_files(old: TextFile, new: TextFile) -> Iterator[Change]:
     """Yield the changed stretches of lines; what is equal at both ends is cut off by the bytes."""
     a, b = np.frombuffer(old.data, np.uint8), np.frombuffer(new.data, np.uint8)
-    n = min(len(a), len(b))
-    differ = np.flatnonzero(a[:n] != b[:n])
-    front = int(differ[0]) if len(differ) else n
-    differ = np.flatnonzero(a[len(a) - n :][::-1] != b[len(b) - n :][::-1])
-    back = min(int(differ[0]) if len(differ) else n, n - front)
+    front = _common(a, b)
+    back = min(_common(a[::-1], b[::-1]), min(len(a), len(b)) - front)
     first = max(int(np.searchsorted(old.lines.starts, front, "right")) - 2, 0)
     i2 = min(_row_after(old, len(a) - back), len(old.lines))
     j2 = min(_row_after(new, len(b) - back), len(new.lines))
     for i, k, j, m in _changes(_texts(old, first, i2), _texts(new, first, j2)):
         yield i + first, k + first, j + first, m + first
+
+
+def _common(a: Bytes, b: Bytes) -> int:
+    """Return how many bytes are equal from the start on."""
+    n = min(len(a), len(b))
+    for k in range(0, n, _CHUNK):
+        differ = np.flatnonzero(a[k : min(k + _CHUNK, n)] != b[k : min(k + _CHUNK, n)])
+        if len(differ):
+            return k + int(differ[0])
+    return n
 
 
 def _row_after(file: TextFile, offset: int) -> int:
