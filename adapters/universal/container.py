@@ -67,6 +67,10 @@ class Source:
             at = stop.end() if stop else section.end
         return found, at
 
+    def release(self, section: Section) -> None:
+        """Let the system take back the memory that the bytes of a dataset occupy."""
+        _release(self.data, section.begin, section.end)
+
     def error(self, line: int, what: str) -> InputError:
         """Return the error that names this file and a line of it."""
         return InputError(f"{self.name} line {line}: {what}")
@@ -291,8 +295,15 @@ class _Scan:
         for a in range(self._counted, offset, step):
             piece = np.frombuffer(self.data[a : min(a + step, offset)], np.uint8)
             self._line += int(np.count_nonzero(piece == self._newline))
+            _release(self.data, a, min(a + step, offset))
         self._counted = max(self._counted, offset)
         return self._line
+
+
+def _release(data: mmap.mmap, begin: int, end: int) -> None:
+    start = -(-begin // mmap.PAGESIZE) * mmap.PAGESIZE
+    if end - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
+        data.madvise(mmap.MADV_DONTNEED, start, end - start)
 
 
 def _integers(text: bytes) -> tuple[int, ...]:

@@ -224,9 +224,7 @@ def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     for width in record:
         numbers.append(decode(raw[:, at : at + width], big, form))
         at += width
-    return (None if head.even else numbers[0]), np.column_stack(
-        numbers[len(numbers) - REALS[head.ordinate_type] :]
-    )
+    return numbers[0], np.column_stack(numbers[1:])
 
 
 def _dofs(

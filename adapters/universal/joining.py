@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ...core.arrays import Numbers
 from ...core.dofs import Dofs
 from ...core.errors import InputError
 from ...core.modes import Modes
@@ -15,11 +15,11 @@ from .frames import NodeFrames, some
 from .shapes import Shape
 
 
-def join_modes(shapes: Sequence[Shape], frames: NodeFrames, warnings: list[str]) -> Modes | None:
+def join_modes(shapes: list[Shape], frames: NodeFrames, warnings: list[str]) -> Modes | None:
     """Join mode shapes: rows of the nodes that every mode has, columns in file order.
 
     Rows are the 3 or 6 values of each node as written, along the axes of the node's displacement
-    system.
+    system. The values of `shapes` are given up one by one, so that they are never there twice.
     """
     if not shapes:
         return None
@@ -43,17 +43,20 @@ def join_modes(shapes: Sequence[Shape], frames: NodeFrames, warnings: list[str])
     width = min(widths)
     if len(widths) > 1:
         warnings.append("some modes have 3 values a node, others 6; rotations are left out")
-    columns: list[Numbers] = []
-    for s in shapes:
+    kind = np.result_type(*(s.values.dtype for s in shapes))
+    values = np.empty((len(nodes) * width, len(shapes)), kind, order="F")
+    for k, s in enumerate(shapes):
         order = np.argsort(s.nodes, kind="stable")
         rows = order[np.searchsorted(s.nodes[order], nodes)]
-        columns.append(s.values[rows, :width].ravel())
+        values[:, k] = s.values[rows, :width].ravel()
+        shapes[k] = replace(s, values=s.values[:0])
+    values.flags.writeable = False
     axes = frames.at(nodes)
     axis = np.concatenate([axes, axes], axis=1)[:, :width].reshape(-1, 3)
     component = np.tile(np.arange(1, width + 1), len(nodes))
     return Modes(
         np.array([s.frequency_hz for s in shapes]),
-        np.column_stack(columns),
+        values,
         Dofs(np.repeat(nodes, width), component, axis),
         np.array([s.damping for s in shapes]),
         np.array([s.generalized_mass for s in shapes]),

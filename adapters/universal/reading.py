@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,10 +21,20 @@ from .shapes import Shape, read_55, read_2414
 from .systems import CoordinateSystem
 
 
+@dataclass(frozen=True)
+class Selection:
+    """Which mode shapes (counted from 1) and reference nodes are wanted; None: all."""
+
+    modes: Collection[int] | None = None
+    references: Collection[int] | None = None
+
+
 @dataclass
 class _Gathered:
     """What has been read so far, file by file."""
 
+    wanted: Selection
+    n_shape: int = 0
     nodes: list[NodeTable] = field(default_factory=list)
     elements: list[Element] = field(default_factory=list)
     systems: dict[int, CoordinateSystem] = field(default_factory=dict)
@@ -38,7 +48,13 @@ class _Gathered:
     warnings: list[str] = field(default_factory=list)
 
 
-def read_universal(paths: Sequence[Path] | Path) -> UniversalContent:
+def read_universal(
+    paths: Sequence[Path] | Path,
+    *,
+    modes: Collection[int] | None = None,
+    references: Collection[int] | None = None,
+    values: bool = True,
+) -> UniversalContent:
     """Read universal files (.unv, .uff) and merge what they hold.
 
     Modes or frequency responses, geometry, coordinate systems and units may stand in different
@@ -48,10 +64,18 @@ def read_universal(paths: Sequence[Path] | Path) -> UniversalContent:
     ----------
     paths : sequence of Path, or Path
         Files that make up one test.
+    modes : collection of int, optional
+        Read only these mode shapes, counted from 1 over all files. Default: all.
+    references : collection of int, optional
+        Read only the functions with these reference nodes. Default: all.
+    values : bool
+        False: neither mode shapes nor functions are read, only what surrounds them; the
+        inventory `datasets` still lists them.
 
     Returns
     -------
     UniversalContent
+        What was not asked for is not in `skipped`.
 
     Raises
     ------
@@ -63,9 +87,23 @@ def read_universal(paths: Sequence[Path] | Path) -> UniversalContent:
     files = [Path(paths)] if isinstance(paths, str | Path) else [Path(p) for p in paths]
     if not files:
         raise InputError("no universal file was given")
-    gathered = _Gathered()
+    wanted = Selection(modes, references) if values else Selection((), ())
+    if wanted == Selection():
+        return _content(files, wanted, exact_lines=True)
+    # Line numbers behind binary blocks cost reading the blocks: worth it only if one is quoted.
+    try:
+        content = _content(files, wanted, exact_lines=False)
+    except InputError:
+        return _content(files, wanted, exact_lines=True)
+    if content.skipped or content.warnings:
+        return _content(files, wanted, exact_lines=True)
+    return content
+
+
+def _content(files: Sequence[Path], wanted: Selection, exact_lines: bool) -> UniversalContent:
+    gathered = _Gathered(wanted)
     for path in files:
-        source = open_source(path)
+        source = open_source(path, exact_lines)
         gathered.skipped += source.skipped
         gathered.warnings += source.warnings
         for section in source.sections:
@@ -119,14 +157,21 @@ def _nodes(reader: Callable[[Source, Section], NodeTable]) -> _Reader:
     return read
 
 
-def _shape(reader: Callable[[Source, Section], Shape | Skipped]) -> _Reader:
+def _shape(
+    reader: Callable[[Source, Section, Callable[[], bool]], Shape | Skipped | None],
+) -> _Reader:
     def read(source: Source, section: Section, into: _Gathered) -> int:
-        shape = reader(source, section)
+        def wanted() -> bool:
+            into.n_shape += 1
+            return into.wanted.modes is None or into.n_shape in into.wanted.modes
+
+        shape = reader(source, section, wanted)
         if isinstance(shape, Skipped):
             into.skipped.append(shape)
-            return 0
-        into.shapes.append(shape)
-        return len(shape.nodes)
+        elif shape is not None:
+            into.shapes.append(shape)
+            return len(shape.nodes)
+        return 0
 
     return read
 
@@ -157,7 +202,8 @@ def _systems_2420(source: Source, section: Section, into: _Gathered) -> int:
 
 def _function(source: Source, section: Section, into: _Gathered) -> int:
     head = read_head(source, section)
-    into.functions.append(Record(source, head))
+    if into.wanted.references is None or head.reference[0] in into.wanted.references:
+        into.functions.append(Record(source, head))
     if not section.closed:
         into.warnings.append(
             f"{source.name} line {section.line}: the file ends without the -1 that closes the "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -10,35 +9,15 @@ import numpy as np
 
 from ...core.arrays import Floats, Ints, Numbers
 from ...core.dofs import Dofs
-from ...core.frfs import QUANTITIES as MOTIONS
 from ...core.frfs import Frfs
-from ...core.units import METRES
 from .container import Source
 from .content import Function, Skipped
 from .fields import NotANumber
 from .functions import QUANTITIES, Head58, read_values
+from .response_units import DERIVATIVE, MOTION, factors, highest_quantity, quantity_of
 
 Frames = Callable[[Ints], Floats]
 _FREQUENCY, _FORCE = 18, (13, 9)
-_MOTION = {8: "displacement", 11: "velocity", 12: "acceleration"}
-_MOTION_UNITS = {
-    "m/s^2": ("acceleration", 1.0),
-    "mm/s^2": ("acceleration", 1e-3),
-    "in/s^2": ("acceleration", 0.0254),
-    "ft/s^2": ("acceleration", 0.3048),
-    "g": ("acceleration", 9.80665),
-    "gn": ("acceleration", 9.80665),
-    "m/s": ("velocity", 1.0),
-    "mm/s": ("velocity", 1e-3),
-    "in/s": ("velocity", 0.0254),
-    "ft/s": ("velocity", 0.3048),
-    "m": ("displacement", 1.0),
-    "mm": ("displacement", 1e-3),
-    "um": ("displacement", 1e-6),
-    "in": ("displacement", 0.0254),
-    "ft": ("displacement", 0.3048),
-}
-_FORCE_UNITS = {"n": 1.0, "kn": 1e3, "mn": 1e-3, "lbf": 4.4482216152605, "lb": 4.4482216152605}
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,31 +92,25 @@ def assemble(
 
 def is_frf(head: Head58) -> bool:
     """Whether a function is a complex motion per force over frequency at known dofs."""
-    general = head.function == 0 and head.ordinate.quantity in _MOTION
+    general = head.function == 0 and head.ordinate.quantity in MOTION
     return (
         (head.function == 4 or (general and head.denominator.quantity in _FORCE))
         and head.is_complex
         and head.abscissa.quantity in (_FREQUENCY, 0, 1)
-        and (head.ordinate.quantity in _MOTION or head.ordinate.quantity in (0, 1))
+        and (head.ordinate.quantity in MOTION or head.ordinate.quantity in (0, 1))
         and (head.denominator.quantity in _FORCE or head.denominator.quantity in (0, 1))
         and 1 <= abs(head.response[1]) <= 6
         and 1 <= abs(head.reference[1]) <= 6
     )
 
 
-def quantity_of(head: Head58) -> str | None:
-    """Return what the response is, by its type or else its unit; None where neither tells."""
-    by_unit = _MOTION_UNITS.get(_plain(_numerator(head.ordinate.unit)))
-    return _MOTION.get(head.ordinate.quantity) or (by_unit[0] if by_unit else None)
-
-
 def _largest_group(records: Sequence[Record], report: Report) -> list[Record]:
-    """Return the responses on the most common axis and quantity; report the others."""
+    """Return the responses on the most common frequency axis; report the others."""
     groups: dict[tuple[object, ...], list[Record]] = {}
     for r in records:
         h = r.head
         axis = (h.n_point, f"{h.start:.5e}", f"{h.step:.5e}") if h.even else (h.n_point, "uneven")
-        groups.setdefault((*axis, quantity_of(h)), []).append(r)
+        groups.setdefault(axis, []).append(r)
     if not groups:
         return []
     best = max(groups.values(), key=len)
@@ -145,7 +118,7 @@ def _largest_group(records: Sequence[Record], report: Report) -> list[Record]:
         if group is not best:
             report.warnings.append(
                 f"{group[0].where}: {len(group)} frequency response(s) have another frequency "
-                f"axis or quantity than the other {len(best)} and stand apart from them"
+                f"axis than the other {len(best)} and stand apart from them"
             )
     return best
 
@@ -160,16 +133,18 @@ def _frfs(
     column = {dof: k for k, dof in enumerate(references)}
     shape = len(responses), len(references), heads[0].n_point
     values = np.full(shape, np.nan, np.complex128)
-    axis, filled = _fill(values, records, row, column, length_unit, report)
-    if axis is None:
-        return None
-    _say_named(records, report)
-    quantity = quantity_of(heads[0])
+    quantity = highest_quantity(heads)
     if quantity is None:
         report.warnings.append(
             f"{records[0].where}: neither type nor unit says what the responses are; "
             "taken as acceleration"
         )
+        quantity = "acceleration"
+    scale = factors(heads, length_unit, records[0].where, report.warnings)
+    axis, filled = _fill(values, records, (row, column), quantity, scale, report)
+    if axis is None:
+        return None
+    _say_changed(records, quantity, report)
     rows, columns = (sorted({place[k] for place in filled}) for k in (0, 1))
     if (len(rows), len(columns)) != values.shape[:2]:
         values = values[np.ix_(rows, columns)]
@@ -179,7 +154,7 @@ def _frfs(
         _dofs([responses[k] for k in rows], frames),
         _dofs([references[k] for k in columns], frames),
         values,
-        quantity or MOTIONS[2],
+        quantity,
         ", ".join(dict.fromkeys(r.source.name for r in records)),
     )
 
@@ -187,17 +162,16 @@ def _frfs(
 def _fill(
     values: Numbers,
     records: Sequence[Record],
-    row: dict[tuple[int, int], int],
-    column: dict[tuple[int, int], int],
-    length_unit: str | None,
+    places: tuple[dict[tuple[int, int], int], dict[tuple[int, int], int]],
+    quantity: str,
+    scale: Sequence[float],
     report: Report,
 ) -> tuple[Floats | None, set[tuple[int, int]]]:
     """Read responses into their places; return the frequency axis and the places filled."""
     axis: Floats | None = None
     filled: set[tuple[int, int]] = set()
-    factors = _factors([r.head for r in records], length_unit, report, records[0].where)
-    for record, factor in zip(records, factors, strict=True):
-        place = row[record.head.response], column[record.head.reference]
+    for record, factor in zip(records, scale, strict=True):
+        place = places[0][record.head.response], places[1][record.head.reference]
         if place in filled:
             report.skip(record, "this response and reference were read before; the first is kept")
             continue
@@ -212,6 +186,10 @@ def _fill(
         axis = x if axis is None else axis
         filled.add(place)
         np.multiply(y, factor, out=values[place])
+        order = DERIVATIVE[quantity] - DERIVATIVE[quantity_of(record.head) or quantity]
+        if order:
+            values[place] *= (2j * np.pi * axis) ** order
+        record.source.release(record.head.section)
     return axis, filled
 
 
@@ -235,52 +213,6 @@ def _dofs(dofs: Sequence[tuple[int, int]], frames: Frames) -> Dofs:
     return Dofs(node, component, axis * np.sign(direction)[:, None])
 
 
-def _factors(
-    heads: Sequence[Head58], length_unit: str | None, report: Report, where: str
-) -> list[float]:
-    """Return what each response is multiplied by to be in the test's length unit per newton."""
-    scale = 1.0 / METRES[length_unit] if length_unit else 1.0
-    factors, unknown, changed = [], 0, dict[str, float]()
-    for h in heads:
-        motion = _MOTION_UNITS.get(_plain(_numerator(h.ordinate.unit)))
-        per = h.denominator.unit.replace("NONE", "") or _denominator(h.ordinate.unit)
-        force = _FORCE_UNITS.get(_plain(per), 1.0)
-        if motion is None or motion[0] != (quantity_of(h) or motion[0]):
-            unknown += 1
-            factors.append(1.0)
-            continue
-        factors.append(motion[1] * scale / force)
-        if abs(factors[-1] - 1.0) > 1e-9:
-            changed[h.ordinate.unit] = factors[-1]
-    if unknown and len(changed):
-        report.warnings.append(
-            f"{where}: {unknown} of {len(heads)} responses do not say their unit and are taken in "
-            "the unit of the test"
-        )
-    for unit, factor in changed.items():
-        report.warnings.append(
-            f"{where}: responses in {unit} were multiplied by {factor:.6g} "
-            f"({length_unit or 'm'} and N)"
-        )
-    return factors
-
-
-def _numerator(unit: str) -> str:
-    return re.split(r"/\s*(?=\(?(?:N|kN|mN|lbf?)\)?\s*$)", unit.strip(), maxsplit=1)[0].strip("() ")
-
-
-def _denominator(unit: str) -> str:
-    parts = re.split(r"/\s*(?=\(?(?:N|kN|mN|lbf?)\)?\s*$)", unit.strip(), maxsplit=1)
-    return parts[1].strip("() ") if len(parts) > 1 else ""
-
-
-def _plain(unit: str) -> str:
-    """Return a unit in one spelling: ``m/s^2`` for m/s2, m/s**2, m/s/s, (m/s^2)."""
-    word = unit.strip("()[] ").lower().replace(" ", "").replace("²", "^2").replace("**", "^")
-    word = word.replace("/s/s", "/s^2").replace("sec", "s").replace("µ", "u")
-    return re.sub(r"s2$", "s^2", word)
-
-
 def _say_unfit(records: Sequence[Record], report: Report) -> None:
     """Warn of functions that call themselves frequency responses but cannot be used as such."""
     reasons: dict[str, list[Record]] = {}
@@ -301,7 +233,14 @@ def _say_unfit(records: Sequence[Record], report: Report) -> None:
         )
 
 
-def _say_named(records: Sequence[Record], report: Report) -> None:
+def _say_changed(records: Sequence[Record], quantity: str, report: Report) -> None:
+    """Tell which dofs came from names, and which responses were differentiated."""
+    others = [r for r in records if quantity_of(r.head) not in (quantity, None)]
+    if others:
+        report.warnings.append(
+            f"{others[0].where}: {len(others)} response(s) are not {quantity} as the others and "
+            "were multiplied by i omega"
+        )
     named = [r for r in records if r.head.named]
     if named:
         report.warnings.append(

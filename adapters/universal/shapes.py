@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,7 @@ _ANALYSES = {
     9: "static non-linear",
 }
 _COMPLEX_MODES = (3, 7)
+_HEADER = 16  # more lines than any header has
 _HUGE = 1e300  # some programs print the largest number there is where they know none
 
 
@@ -58,9 +59,15 @@ class _Head:
     n_line: int
 
 
-def read_55(source: Source, section: Section) -> Shape | Skipped:
-    """Read dataset 55; anything but a mode shape with 3 or 6 values a node is skipped."""
-    lines = source.lines(section)
+def read_55(
+    source: Source, section: Section, wanted: Callable[[], bool] = lambda: True
+) -> Shape | Skipped | None:
+    """Read dataset 55; anything but a mode shape with 3 or 6 values a node is skipped.
+
+    `wanted` is asked once the header shows a mode shape; where it says no, the values are not
+    read and the answer is None.
+    """
+    lines, _ = source.head(section, _HEADER)
     if len(lines) < 8:
         raise source.error(section.line, "dataset 55 is cut off within its header")
     kind = _integers(source, section, lines, 5, 6)
@@ -70,12 +77,14 @@ def read_55(source: Source, section: Section) -> Shape | Skipped:
     reals = _header_floats(source, section, lines, 7, 7 + rows)
     ids = tuple(text(line) for line in lines[:5])
     head = _Head(kind[1], kind[3], kind[4], kind[5], reals, ids, 7 + rows)
-    return _shape(source, section, lines, head, _modal_55(head))
+    return _shape(source, section, head, _modal_55(head), wanted)
 
 
-def read_2414(source: Source, section: Section) -> Shape | Skipped:
-    """Read dataset 2414; anything but a mode shape at nodes is skipped."""
-    lines = source.lines(section)
+def read_2414(
+    source: Source, section: Section, wanted: Callable[[], bool] = lambda: True
+) -> Shape | Skipped | None:
+    """Read dataset 2414; as `read_55`."""
+    lines, _ = source.head(section, _HEADER)
     if len(lines) < 13:
         raise source.error(section.line, "dataset 2414 is cut off within its header")
     place = _integers(source, section, lines, 2, 1)[0]
@@ -85,7 +94,7 @@ def read_2414(source: Source, section: Section) -> Shape | Skipped:
     reals = _header_floats(source, section, lines, 11, 13)
     ids = tuple(text(line) for line in (lines[1], *lines[3:8]))
     head = _Head(kind[1], kind[3], kind[4], kind[5], reals, ids, 13)
-    return _shape(source, section, lines, head, _modal_2414(head))
+    return _shape(source, section, head, _modal_2414(head), wanted)
 
 
 def _modal_55(head: _Head) -> tuple[float, float, float]:
@@ -128,10 +137,10 @@ def _known(value: float) -> float:
 def _shape(
     source: Source,
     section: Section,
-    lines: list[bytes],
     head: _Head,
     modal: tuple[float, float, float],
-) -> Shape | Skipped:
+    wanted: Callable[[], bool],
+) -> Shape | Skipped | None:
     if head.analysis != 2 and head.analysis not in _COMPLEX_MODES:
         kind = _ANALYSES.get(head.analysis, f"analysis type {head.analysis}")
         return _skip(source, section, f"{kind} results are no modes")
@@ -146,10 +155,13 @@ def _shape(
         )
     if not math.isfinite(modal[0]):
         raise source.error(section.line, f"dataset {section.number}: the frequency is not a number")
+    if not wanted():
+        return None
     width = head.n_value * (2 if head.data_type in (5, 6) else 1)
-    nodes, values = _values(source, section, lines, head.n_line, width)
+    nodes, values = _values(source, section, source.lines(section), head.n_line, width)
+    source.release(section)
     if head.data_type in (5, 6):
-        values = values[:, 0::2] + 1j * values[:, 1::2]
+        values = np.ascontiguousarray(values).view(np.complex128)
     return Shape(*modal, nodes, values, head.ids, section.line, source.name)
 
 
