@@ -59,21 +59,12 @@ def run() -> int:
 
     0 done; 1 the input is at fault; 2 wrong usage; 3 the work did not meet its own check.
     """
-    from click.exceptions import Abort, ClickException
-    from click.exceptions import Exit as ClickExit
-
     from ..core.errors import CheckError, TrueupError
 
     try:
-        status = app(standalone_mode=False)
-    except ClickExit as stop:
-        return stop.exit_code
-    except Abort:
-        sys.stderr.write("trueup: stopped\n")
-        return 1
-    except ClickException as wrong:
-        wrong.show()
-        return 2
+        app()
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else 0
     except CheckError as failed:
         sys.stderr.write(f"trueup: {failed}\n")
         return 3
@@ -86,4 +77,4 @@ def run() -> int:
     except MemoryError:
         sys.stderr.write("trueup: the machine's memory does not suffice for this model\n")
         return 1
-    return status if isinstance(status, int) else 0
+    return 0

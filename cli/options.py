@@ -55,7 +55,7 @@ _STUDY: dict[str, Any] = {
         float | None,
         typer.Option(
             "--cluster-width",
-            help="Relative bandwidth within which modes count as close. [default: 0.03]",
+            help="Relative bandwidth within which modes count as close. [default: 0.02]",
         ),
     ],
     "rotate": Annotated[

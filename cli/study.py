@@ -38,7 +38,7 @@ class Study:
     deck_length_unit: str | None = None
     mac_min: float = 0.7
     frequency_tolerance: float = 0.3
-    cluster_width: float = 0.03
+    cluster_width: float = 0.02
     rotate: str = "analysis"
     parameters: tuple[str, ...] = ()
     residuals: str = "both"

@@ -34,7 +34,7 @@ class Criteria:
 
     mac_min: float = 0.7
     frequency_tolerance: float = 0.3
-    cluster_width: float = 0.03
+    cluster_width: float = 0.02
     rotate: str = "analysis"
 
     def __post_init__(self) -> None:

@@ -28,18 +28,18 @@ def solve(
     """Find the normal modes with the embedded solver."""
     from ...adapters.nastran import build_model, read_deck
     from ...core import eigen
-    from ...core.weight import weight
+    from ...adapters.nastran import weight
 
     output = Output(json=json, quiet=quiet, verbose=verbose)
     _check(number, fmax, out)
     with working(f"reading {deck.name}", output):
         read = read_deck(deck)
         model = build_model(read)
-    wanted = number if number or fmax else (read.eigenvalue_request.nd or 10)
+    wanted = number if number or fmax else ((read.eigen.nd if read.eigen else None) or 10)
     with working("solving", output):
         solution = eigen.solve(model, n_modes=wanted, fmax=fmax)
     modes = eigen.modes_of(model, solution)
-    mass = weight(model)
+    mass = weight(read)
     result: dict[str, Any] = {
         "schema": "trueup/solve/1",
         "deck": str(deck),

@@ -1,0 +1,185 @@
+"""Bring a test onto a model and correlate the two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from .alignment import Alignment, align
+from .arrays import Numbers
+from .correlate import Correlation, Criteria, correlate
+from .errors import InputError
+from .geometry import Geometry
+from .measurement import Measurement
+from .modes import Modes
+from .observation import Observation, observe
+from .units import reconcile_units, to_length_unit
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A test laid onto a model.
+
+    Parameters
+    ----------
+    alignment : Alignment
+        From test to analysis coordinates.
+    observation : Observation
+        Sensors that lie on the model.
+    test : Modes
+        At those sensors, in their order, deck length unit.
+    test_geometry : Geometry
+        In the analysis frame and the deck length unit.
+    warnings : tuple of str
+    """
+
+    alignment: Alignment
+    observation: Observation
+    test: Modes
+    test_geometry: Geometry
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A model and a test, correlated.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Of the analysis.
+    analysis : Modes
+        Mass-normalised where their generalized mass is known, on all analysis dofs.
+    placed : Placed
+    correlation : Correlation
+    warnings : tuple of str
+    """
+
+    geometry: Geometry
+    analysis: Modes
+    placed: Placed
+    correlation: Correlation
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def test(self) -> Modes:
+        """Test modes at the sensors that lie on the model."""
+        return self.placed.test
+
+    @property
+    def alignment(self) -> Alignment:
+        """From test to analysis coordinates."""
+        return self.placed.alignment
+
+    @property
+    def observation(self) -> Observation:
+        """Sensors that lie on the model."""
+        return self.placed.observation
+
+
+def place_test(
+    geometry: Geometry,
+    analysis: Modes,
+    measurement: Measurement,
+    deck_length_unit: str | None = None,
+    motion: Numbers | sp.spmatrix | None = None,
+    seed: int = 0,
+) -> Placed:
+    """Convert a test to deck units, align it and find its sensors on the model.
+
+    Parameters
+    ----------
+    geometry, analysis : Geometry, Modes
+        Of the analysis; the modes decide where the geometry is too symmetric to.
+    measurement : Measurement
+        With modes.
+    deck_length_unit : {"m", "mm", "in", "ft"}, optional
+        What the user says; stronger than what the deck says.
+    motion : optional
+        See `observation.grids_of`.
+    seed : int
+        Of the alignment's random starts.
+
+    Raises
+    ------
+    InputError
+        Units that cannot both be right, a test that does not lie on the model, no test modes.
+    """
+    if measurement.modes is None or not len(measurement.modes):
+        raise InputError("the test holds no modes")
+    declared = replace(
+        measurement.geometry,
+        length_unit=measurement.geometry.length_unit or measurement.length_unit,
+    )
+    units = reconcile_units(geometry, declared, deck_length_unit)
+    unit = units.deck
+    own = replace(geometry, length_unit=unit)
+    if unit and units.test:
+        moved, test = to_length_unit(declared, measurement.modes, units.test, unit)
+    else:
+        moved, test = declared, measurement.modes
+    if test is None:
+        raise InputError("the test holds no modes")
+    alignment = align(own, moved, analysis, test, seed=seed)
+    seen = observe(own, analysis.dofs, moved, test.dofs, alignment, motion=motion)
+    rows = np.flatnonzero(seen.within)
+    kept = seen.take(rows)
+    at_sensors = Modes(
+        test.frequencies_hz,
+        test.shapes[rows],
+        kept.sensors,
+        test.damping,
+        test.generalized_mass,
+        test.source,
+    )
+    in_frame = replace(moved, xyz=alignment.apply(moved.xyz))
+    ambiguity = (alignment.ambiguity,) if alignment.ambiguity else ()
+    warnings = (*measurement.warnings, *units.warnings, *alignment.warnings, *ambiguity)
+    scaled = replace(alignment, scale=units.factor)
+    return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings))
+
+
+def compare(
+    geometry: Geometry,
+    analysis: Modes,
+    placed: Placed,
+    criteria: Criteria | None = None,
+    rigid_body_modes: int = 0,
+) -> Comparison:
+    """Correlate analysis modes with a placed test.
+
+    Parameters
+    ----------
+    geometry, analysis : Geometry, Modes
+    placed : Placed
+    criteria : Criteria
+    rigid_body_modes : int
+        The first so many analysis modes are rigid-body modes.
+    """
+    normalised = mass_normalised(analysis)
+    found = correlate(
+        analysis.frequencies_hz,
+        np.asarray(placed.observation.matrix @ normalised.shapes),
+        placed.test.frequencies_hz,
+        placed.test.shapes,
+        criteria,
+        rigid_body_modes,
+    )
+    return Comparison(geometry, normalised, placed, found, placed.warnings)
+
+
+def mass_normalised(modes: Modes) -> Modes:
+    """Return modes scaled to unit generalized mass; unknown masses are left as they are."""
+    mass = modes.generalized_mass
+    known = np.isfinite(mass) & (mass > 0.0)
+    scale = np.where(known, 1.0 / np.sqrt(np.where(known, mass, 1.0)), 1.0)
+    return Modes(
+        modes.frequencies_hz,
+        modes.shapes * scale,
+        modes.dofs,
+        modes.damping,
+        np.where(known, 1.0, mass),
+        modes.source,
+    )
