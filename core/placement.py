@@ -169,9 +169,12 @@ def _on_warped_quads(
     then along t (the surface is ruled both ways); a step is taken only where it comes nearer.
     """
     quads = np.flatnonzero(surface.kind[facets] == QUAD)
+    a, b, c, d = np.moveaxis(surface.xyz[surface.corners[facets[quads]]], 1, 0)
+    skew = a - b + c - d  # zero for a parallelogram, which is its two trias: nothing to do
+    warped = _dot(skew, skew) > 1e-24 * _dot(c - a, c - a)
+    quads, a, b, c, d = quads[warped], a[warped], b[warped], c[warped], d[warped]
     if not len(quads):
         return s, t
-    a, b, c, d = np.moveaxis(surface.xyz[surface.corners[facets[quads]]], 1, 0)
     p = points[quads]
     x, y = s[quads], t[quads]
     away = np.linalg.norm(p - _bilinear(a, b, c, d, x, y), axis=1)

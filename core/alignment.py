@@ -1,0 +1,218 @@
+"""Put the test into the frame of the analysis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .arrays import Floats
+from .errors import InputError
+from .frame_choice import Choice, choose
+from .frame_score import scorer_of
+from .geometry import Geometry
+from .measured import measured_directions
+from .modes import Modes
+from .observation import default_tolerance
+from .placement import place
+from .rigid_fit import Poses, cloud_of, polish, rms_of
+from .surface import Surface, surface_of
+from .transform import Transform
+from .units import length_factor
+
+ON_MODEL = 0.9
+"""Share of the test nodes that must lie on the model for the frames to agree as they are."""
+FEWEST = 0.5
+"""Share of the test nodes that must lie on the model in the best position found."""
+POOR, GOOD, AHEAD = 0.5, 0.7, 0.25
+"""A frame that fits is still doubted when it correlates below POOR while another position
+correlates above GOOD and by AHEAD better."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A position that the geometry allows.
+
+    Parameters
+    ----------
+    transform : Transform
+    rms : float
+        Root mean square distance of the test nodes from the model, deck length unit.
+    score : float or None
+        Share of the test shapes that the analysis explains there (`frame_score.Scorer`).
+    """
+
+    transform: Transform
+    rms: float
+    score: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment(Transform):
+    """The move from test to analysis coordinates and how it was decided.
+
+    Parameters
+    ----------
+    rotation, translation, scale
+        See `Transform`; `scale` comes from the declared length units only.
+    rms : float
+        Root mean square distance of the test nodes from the model, deck length unit.
+    method : {"as it is", "fitted"}
+        Whether the frames agreed or were fitted.
+    score : float or None
+        Share of the test shapes that the analysis explains (1 perfect, 0 chance).
+    candidates : tuple of Candidate
+        Positions the geometry allows, best first; the first is the one taken.
+    ambiguity : str
+        In words what the geometry left open and what decided; empty where nothing was open.
+    decided : bool
+        False where something stayed open that neither geometry nor correlation could tell.
+    warnings : tuple of str
+    """
+
+    rms: float = 0.0
+    method: str = "as it is"
+    score: float | None = None
+    candidates: tuple[Candidate, ...] = ()
+    ambiguity: str = ""
+    decided: bool = True
+    warnings: tuple[str, ...] = ()
+
+
+def align(
+    geometry: Geometry,
+    test_geometry: Geometry,
+    modes: Modes | None = None,
+    test_modes: Modes | None = None,
+    *,
+    tolerance: float | None = None,
+    seed: int = 0,
+) -> Alignment:
+    """Find the rigid move that puts the test onto the model.
+
+    Frames that agree are left exactly as they are. Otherwise the test nodes are laid on the
+    model's surface from many starts (`rigid_fit.search`). What the geometry leaves open (half
+    turns of a panel, any turn of a duct, sliding along a beam) is decided by correlation: the
+    position is taken in which the analysis explains most of the test shapes. Mirror images are
+    not considered, and the scale is that of the declared units.
+
+    Parameters
+    ----------
+    geometry, test_geometry : Geometry
+        With their length units; where one is unknown the two are taken to be in the same unit
+        (see `units.reconcile_units`).
+    modes : Modes, optional
+        Of the analysis; without them and `test_modes`, symmetric geometry stays undecided.
+    test_modes : Modes, optional
+        Only the nodes it measured are laid on the model.
+    tolerance : float, optional
+        Distance from the model, deck length unit, at which a test node still lies on it.
+        Default: `observation.default_tolerance`.
+    seed : int
+        Of the random starts.
+
+    Raises
+    ------
+    InputError
+        Fewer than half of the test nodes can be brought onto the model.
+    """
+    scale = 1.0
+    if geometry.length_unit and test_geometry.length_unit:
+        scale = length_factor(test_geometry.length_unit, geometry.length_unit)
+    if test_modes is not None:
+        test_modes = measured_directions(test_modes)[0]
+    points = scale * _measured_points(test_geometry, test_modes)
+    scorer = None
+    if modes is not None and test_modes is not None and len(modes) and len(test_modes):
+        scorer = scorer_of(geometry, modes, test_geometry, test_modes, scale)
+    surface = surface_of(geometry) if scorer is None else scorer.grids.surface
+    here = Poses(np.eye(3)[None], np.zeros((1, 3)), np.zeros(1))
+    here = replace(here, rms=rms_of(surface, points, here))
+    score = None if scorer is None else float(scorer.score(here)[0])
+    lies = _share_on(surface, points, here, tolerance) >= ON_MODEL
+    if lies and (score is None or score >= POOR):
+        return _as_it_is(surface, points, here, score, scale)
+    choice = choose(cloud_of(surface), points, scorer, seed)
+    best = choice.candidates[0]
+    if lies and (score is None or best.score is None or best.score < max(GOOD, score + AHEAD)):
+        return _as_it_is(surface, points, here, score, scale)
+    warnings = choice.warnings
+    if lies:
+        warnings += (
+            f"the test lies on the model as it is, but its shapes fit poorly there (score "
+            f"{score:.2f}) and well in another position ({best.score:.2f}), which was taken; "
+            "check the coordinate frame of the test",
+        )
+    else:
+        _require_on_model(surface, points, best, tolerance)
+    return Alignment(
+        best.pose.rotation[0],
+        best.pose.translation[0],
+        scale,
+        best.rms,
+        "fitted",
+        best.score,
+        tuple(
+            Candidate(Transform(c.pose.rotation[0], c.pose.translation[0], scale), c.rms, c.score)
+            for c in choice.candidates
+        ),
+        choice.ambiguity,
+        choice.decided,
+        warnings,
+    )
+
+
+def _measured_points(test_geometry: Geometry, test_modes: Modes | None) -> Floats:
+    """Different positions of the nodes that were measured, (n, 3)."""
+    xyz = test_geometry.xyz
+    if test_modes is not None and len(test_modes.dofs):
+        rows = test_geometry.index_of(np.unique(test_modes.dofs.node))
+        if np.any(rows < 0):
+            lost = np.unique(test_modes.dofs.node)[rows < 0][0]
+            raise InputError(
+                f"the test measured node {lost}, which its geometry does not define; "
+                "add the file with the test's geometry"
+            )
+        xyz = xyz[rows]
+    if not len(xyz):
+        raise InputError("the test has no nodes with positions; add the file with its geometry")
+    return np.asarray(np.unique(xyz, axis=0))
+
+
+def _share_on(surface: Surface, points: Floats, pose: Poses, tolerance: float | None) -> float:
+    at = place(surface, pose.apply(points)[0])
+    limit = default_tolerance(surface, at) if tolerance is None else tolerance
+    return float(np.mean(at.distance <= limit))
+
+
+def _as_it_is(
+    surface: Surface, points: Floats, here: Poses, score: float | None, scale: float
+) -> Alignment:
+    """Keep the frame exactly; say so where a small move would lay the test much closer."""
+    warnings: tuple[str, ...] = ()
+    rms = float(here.rms[0])
+    closer = polish(surface, points, here.rotation, here.translation)
+    if rms > max(3.0 * closer.rms[0], 0.005 * surface.size):
+        moved = np.linalg.norm(closer.apply(points) - points, axis=2).max()
+        warnings = (
+            f"the test lies on the model within {rms:.3g}, but a move by at most {moved:.3g} would "
+            f"bring it to {closer.rms[0]:.3g}; the frame was left as it is",
+        )
+    candidate = Candidate(Transform(np.eye(3), np.zeros(3), scale), rms, score)
+    return Alignment(
+        np.eye(3), np.zeros(3), scale, rms, "as it is", score, (candidate,), warnings=warnings
+    )
+
+
+def _require_on_model(
+    surface: Surface, points: Floats, best: Choice, tolerance: float | None
+) -> None:
+    share = _share_on(surface, points, best.pose, tolerance)
+    if share < FEWEST:
+        raise InputError(
+            f"the test does not fit on the model in any position: in the best only {share:.0%} of "
+            f"its {len(points)} nodes lie on it (rms distance {best.rms:.3g}; the model spans "
+            f"{surface.size:.4g}, the test {np.linalg.norm(np.ptp(points, axis=0)):.4g}); check "
+            "the "
+            "length units of deck and test, and that both are the same structure"
+        )

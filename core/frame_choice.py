@@ -1,0 +1,282 @@
+"""Choose among the positions in which a test fits on a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .arrays import Floats
+from .frame_score import Scorer
+from .rigid_fit import Cloud, Poses, farthest_points, motion_between, polish, rms_of, search
+from .sliding import STEP, Family, family_of, members, sampled, step_of
+
+_POINTS = 48
+_FAMILIES = 12
+_HALVINGS = 8
+_NAMED = 4
+_OPEN_TURN = np.radians(15.0)
+_OPEN_SLIDE = 0.05
+_SAME_ANGLE = np.radians(5.0)
+_PEAKS = 5
+_COARSE = 0.1
+_CALM_RMS = 1.25
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """One position: its pose, rms distance and score (None without shapes)."""
+
+    pose: Poses
+    rms: float
+    score: float | None
+
+    @property
+    def angle(self) -> float:
+        """Angle of the rotation, radians."""
+        return float(Rotation.from_matrix(self.pose.rotation[0]).magnitude())
+
+
+@dataclass(frozen=True, eq=False)
+class Choices:
+    """Positions, the one taken first, and in words what was open and what decided."""
+
+    candidates: tuple[Choice, ...]
+    ambiguity: str
+    decided: bool
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Peak:
+    """A best position of a family.
+
+    `loose` motions can be followed far without leaving the model; along the `flat` ones of them
+    the shapes stay as good.
+    """
+
+    family: Family
+    best: Choice
+    loose: tuple[int, ...] = ()
+    flat: tuple[int, ...] = ()
+
+
+def margin_of(score: float) -> float:
+    """Difference of scores that tells candidates apart: at least 0.01, a tenth of what is missing.
+
+    A model that explains little of the test tells positions apart no better than that.
+    """
+    return max(0.01, 0.1 * (1.0 - score))
+
+
+def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, seed: int = 0) -> Choices:
+    """Find the positions in which points lie on a surface and rank them.
+
+    Geometry first: poses that fit about as well as the best (`rigid_fit.search`), sorted into
+    families within which the test slides (`sliding`). Every family is sampled and scored, its
+    best refined. Between candidates that score alike (`margin_of`) the smaller rotation is
+    taken; without a score, geometry and the smaller rotation decide.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        Of the analysis surface.
+    points : (n, 3) float
+        Test nodes, analysis length unit, test frame.
+    scorer : Scorer or None
+    seed : int
+    """
+    surface = cloud.surface
+    poses = search(cloud, points, seed)
+    limit = max(1.5 * poses.rms[0], poses.rms[0] + 0.002 * surface.size)
+    poses = poses.take(np.flatnonzero(poses.rms <= limit))
+    few = points[farthest_points(points, _POINTS)]
+    judge = _Judge(cloud, points, scorer, float(poses.rms[0]), limit)
+    found: list[_Peak] = []
+    for _ in range(_FAMILIES):
+        family = family_of(surface, few, poses.take(np.array([0])), limit)
+        found += _explore(judge, family, sampled(cloud, few, family, limit))
+        poses = poses.take(np.flatnonzero(~members(family, few, poses, surface)))
+        if not len(poses):
+            break
+    return _ranked(found, points, surface.size, scorer is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """How good a position is: its score, a little less where it leaves the surface."""
+
+    cloud: Cloud
+    points: Floats
+    scorer: Scorer | None
+    floor: float
+    limit: float
+
+    def worth(self, poses: Poses) -> Floats:
+        """Score less a small share for distance, (k,)."""
+        spoiled = 0.02 * np.maximum(self._rms(poses) ** 2 - self.floor**2, 0.0) / self.limit**2
+        return -spoiled if self.scorer is None else self.scorer.score(poses) - spoiled
+
+    def calm(self, poses: Poses, least: float) -> Floats:
+        """Minus the angle of rotation, far less where the worth or the fit falls short, (k,)."""
+        short = np.maximum(least - self.worth(poses), 0.0)
+        spoiled = np.maximum(self._rms(poses) / (_CALM_RMS * self.floor) - 1.0, 0.0)
+        return np.asarray(-_angles(poses) - 100.0 * short - 10.0 * spoiled)
+
+    def margin(self, worth: float) -> float:
+        """Difference of worth that does not count."""
+        if self.scorer is not None:
+            return margin_of(worth)
+        return 0.02 * (_CALM_RMS**2 - 1.0) * self.floor**2 / self.limit**2
+
+    def rested(self, pose: Poses) -> Choice:
+        """Lay one pose on the surface and score it."""
+        pose = polish(self.cloud.surface, self.points, pose.rotation, pose.translation, rounds=8)
+        score = None if self.scorer is None else float(self.scorer.score(pose)[0])
+        return Choice(pose, float(pose.rms[0]), score)
+
+    def _rms(self, poses: Poses) -> Floats:
+        return rms_of(self.cloud.surface, self.points, poses)
+
+
+def _explore(judge: _Judge, family: Family, samples: Poses) -> list[_Peak]:
+    """Score the samples of a family and refine its best positions."""
+    values = judge.worth(samples)
+    where = _coordinates(family, samples)
+    size = judge.cloud.surface.size
+    step = step_of(family, judge.cloud.surface)
+    found: list[_Peak] = []
+    left = np.ones(len(samples), bool)
+    for _ in range(_PEAKS):
+        top = int(np.argmax(np.where(left, values, -np.inf)))
+        if not left[top] or (found and values[top] < values.max() - _COARSE):
+            break
+        best, value = _climb(family, where[top], values[top], step, judge.worth)
+        apart = _offsets(family, where - best)
+        alike = values >= value - judge.margin(value)
+        loose = _loose(family, apart, step, size)
+        flat = tuple(k for k in loose if k in _loose(family, apart[alike], step, size))
+        if flat and not found:
+            best = _calmest(judge, family, where[alike], value, step)
+            return [_Peak(family, judge.rested(family.at(best[None])), loose, flat)]
+        found.append(_Peak(family, judge.rested(family.at(best[None])), loose))
+        far = np.where(family.turning, _OPEN_TURN * family.radius[0], _OPEN_SLIDE * size)
+        left &= np.any(np.abs(_offsets(family, where - where[top])) > far, axis=1)
+        left &= np.any(np.abs(apart) > far, axis=1)
+    return found
+
+
+def _calmest(judge: _Judge, family: Family, where: Floats, value: float, step: Floats) -> Floats:
+    """Coordinates of the least rotation among positions that are as good as the best."""
+    least = value - judge.margin(value)
+    calm = judge.calm(family.at(where), least)
+    start = int(np.argmax(calm))
+    return _climb(family, where[start], calm[start], step, lambda p: judge.calm(p, least))[0]
+
+
+def _angles(poses: Poses) -> Floats:
+    return np.asarray(Rotation.from_matrix(poses.rotation).magnitude())
+
+
+def _coordinates(family: Family, poses: Poses) -> Floats:
+    """Coordinates of poses along the motions of their family, (k, d)."""
+    if not len(family.motions):
+        return np.zeros((len(poses), 0))
+    motions = motion_between(family.pose, poses, family.centre, family.radius)
+    return np.asarray(np.linalg.lstsq(family.motions.T, motions.T, rcond=None)[0].T)
+
+
+def _climb(
+    family: Family,
+    start: Floats,
+    value: float,
+    step: Floats,
+    worth: Callable[[Poses], Floats],
+) -> tuple[Floats, float]:
+    """Find the nearest maximum along the motions by a pattern search with halved steps."""
+    best, d = start, len(start)
+    pattern = np.concatenate([np.eye(d), -np.eye(d)])
+    halvings = 0
+    while d and halvings < _HALVINGS:
+        trial = best + pattern * step * 0.5**halvings
+        values = worth(family.at(trial))
+        k = int(np.argmax(values))
+        if values[k] > value:
+            best, value = trial[k], float(values[k])
+        else:
+            halvings += 1
+    return best, float(value)
+
+
+def _offsets(family: Family, apart: Floats) -> Floats:
+    """Differences of coordinates (k, d) with turns taken the short way round."""
+    full = 2 * np.pi * family.radius[0]
+    return np.where(family.turning, (apart + full / 2) % full - full / 2, apart)
+
+
+def _loose(family: Family, apart: Floats, step: Floats, size: float) -> tuple[int, ...]:
+    """Motions along which samples reach far from the best without a gap; `apart` (k, d) from it."""
+    found = []
+    for k in range(len(family.motions)):
+        far = _OPEN_TURN * family.radius[0] if family.turning[k] else _OPEN_SLIDE * size
+        reach = 0.0
+        for side in (apart[:, k], -apart[:, k]):
+            ahead = np.concatenate([[0.0], np.sort(side[side > 0])])
+            gaps = np.flatnonzero(np.diff(ahead) > 4 * step[k])
+            reach += ahead[gaps[0]] if len(gaps) else ahead[-1]
+        if reach > far:
+            found.append(k)
+    return tuple(found)
+
+
+def _ranked(found: list[_Peak], points: Floats, size: float, scored: bool) -> Choices:
+    order = sorted(found, key=lambda e: (-(e.best.score or 0.0), e.best.rms))
+    kept: list[_Peak] = []
+    for e in order:
+        if all(_apart(e.best, other.best, points) > STEP * size for other in kept):
+            kept.append(e)
+    top = kept[0].best.score or 0.0
+    alike = [e for e in kept if not scored or (e.best.score or 0.0) >= top - margin_of(top)]
+    alike.sort(key=lambda e: (round(e.best.angle / _SAME_ANGLE), -(e.best.score or 0.0)))
+    ranked = alike + [e for e in kept if e not in alike]
+    ambiguity = _in_words(ranked, len(alike), scored)
+    decided = len(alike) == 1 and not ranked[0].flat
+    warnings = () if decided else (ambiguity,)
+    return Choices(tuple(e.best for e in ranked), ambiguity, decided, warnings)
+
+
+def _apart(a: Choice, b: Choice, points: Floats) -> float:
+    """Root mean square distance between the same points in two positions."""
+    d = (a.pose.apply(points) - b.pose.apply(points))[0]
+    return float(np.sqrt((d**2).sum(axis=1).mean()))
+
+
+def _in_words(ranked: list[_Peak], n_alike: int, scored: bool) -> str:
+    chosen = ranked[0]
+    motions = [_named(chosen.family, k) for k in chosen.loose]
+    if len(ranked) == 1 and not motions:
+        return ""
+    left = [*motions, f"{len(ranked)} positions"] if len(ranked) > 1 else motions
+    text = f"the geometry leaves open {' and '.join(left)}"
+    if not scored:
+        return f"{text}; without shapes to compare, the smallest rotation was taken"
+    scores = [f"{e.best.score:.3f} (turned {np.degrees(e.best.angle):.0f} degrees)" for e in ranked]
+    listed = ", ".join(scores[:_NAMED]) + (", ..." if len(scores) > _NAMED else "")
+    undecided = [_named(chosen.family, k) for k in chosen.flat]
+    if n_alike > 1:
+        undecided.append(f"{n_alike} of the positions")
+    if undecided:
+        return (
+            f"{text}; correlation does not decide {' and '.join(undecided)}: the smallest rotation "
+            f"was taken; scores {listed}"
+        )
+    return f"{text}; correlation decided; scores {listed}"
+
+
+def _named(family: Family, k: int) -> str:
+    axis = family.axis_of(k)
+    axis = axis * np.sign(axis[np.argmax(np.abs(axis))])
+    way = ", ".join(f"{v:.2f}" for v in axis + 0.0)
+    return f"{'a turn about' if family.turning[k] else 'a slide along'} ({way})"

@@ -1,0 +1,380 @@
+"""Rigid moves that lay points on a surface: registration from many starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from .arrays import Floats, Ints
+from .placement import place
+from .surface import LINE, POINT, TRIA, Surface, shape_functions
+
+CAP = 0.03
+"""A point farther than this share of the model's size counts as this far: it is off the model."""
+_CLOUD = 20_000
+_COARSE_POINTS = 48
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Rigid moves x = rotation @ p + translation and how well they fit.
+
+    Parameters
+    ----------
+    rotation : (k, 3, 3) float
+    translation : (k, 3) float
+    rms : (k,) float
+        Root mean square distance of the points from the surface, each at most `CAP` of its size.
+    """
+
+    rotation: Floats
+    translation: Floats
+    rms: Floats
+
+    def __len__(self) -> int:
+        return len(self.rms)
+
+    def take(self, rows: Ints) -> Poses:
+        """Return the poses of the given rows (indices or mask)."""
+        return Poses(self.rotation[rows], self.translation[rows], self.rms[rows])
+
+    def apply(self, points: Floats) -> Floats:
+        """Move points (n, 3) by every pose, (k, n, 3)."""
+        return np.asarray(
+            np.einsum("kij,nj->kni", self.rotation, points) + self.translation[:, None]
+        )
+
+    @staticmethod
+    def joined(parts: list[Poses]) -> Poses:
+        """Return the poses of all parts, in turn."""
+        return Poses(
+            np.concatenate([p.rotation for p in parts]),
+            np.concatenate([p.translation for p in parts]),
+            np.concatenate([p.rms for p in parts]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Points sampled on a surface with the directions in which it does not extend."""
+
+    surface: Surface
+    points: Floats
+    direction: Floats
+    kind: Ints
+    tree: cKDTree
+    spacing: float
+
+    def rms(self, rotation: Floats, translation: Floats, points: Floats) -> Floats:
+        """Return about the capped rms distance of each pose, (k,)."""
+        moved = Poses(rotation, translation, np.zeros(len(rotation))).apply(points)
+        distance = self.tree.query(moved.reshape(-1, 3))[0].reshape(moved.shape[:2])
+        return capped_rms(distance, self.surface)
+
+
+def cloud_of(surface: Surface) -> Cloud:
+    """Sample a surface for a coarse search."""
+    points, facets = surface.samples(_CLOUD)
+    kind = surface.kind[facets]
+    xyz = surface.xyz[surface.corners[facets]]
+    _, Ns, Nt = shape_functions(kind, np.full(len(kind), 0.5), np.full(len(kind), 0.5))
+    gs, gt = np.einsum("nc,ncx->nx", Ns, xyz), np.einsum("nc,ncx->nx", Nt, xyz)
+    direction = np.where((kind >= TRIA)[:, None], np.cross(gs, gt), gs)
+    direction = np.where((kind == POINT)[:, None], 0.0, direction)
+    length = np.linalg.norm(direction, axis=1, keepdims=True)
+    direction = np.divide(direction, length, out=np.zeros_like(direction), where=length > 0)
+    tree = cKDTree(points)
+    spacing = float(np.median(tree.query(points[::50], k=2)[0][:, 1]))
+    return Cloud(surface, points, direction, kind, tree, spacing)
+
+
+def capped_rms(distance: Floats, surface: Surface) -> Floats:
+    """Root mean square of distances (k, n) held to `CAP` of the surface's size, (k,)."""
+    return np.asarray(np.sqrt(np.mean(np.minimum(distance, CAP * surface.size) ** 2, axis=1)))
+
+
+def rms_of(surface: Surface, points: Floats, poses: Poses) -> Floats:
+    """Return the capped rms distance of points (n, 3) moved by each pose, (k,)."""
+    x = poses.apply(points)
+    at = place(surface, x.reshape(-1, 3), reach=2 * CAP * surface.size)
+    return capped_rms(at.distance.reshape(x.shape[:2]), surface)
+
+
+def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = 40) -> Poses:
+    """Find the poses that lay points on a surface, best first.
+
+    Starts: the principal axes of points and surface in their 24 right-handed orders, and
+    uniformly random rotations, each with the points' centre at the surface's centre, its box's
+    centre and random places on it. A coarse iterated fit to sampled points (Chen and Medioni,
+    1992, with weights that ignore outliers) thins them out, `polish` finishes.
+
+    Parameters
+    ----------
+    cloud : Cloud
+    points : (n, 3) float
+    seed : int
+        Of the random starts.
+    keep : int
+        How many poses to polish.
+    """
+    few = points[farthest_points(points, _COARSE_POINTS)]
+    R, t = _starts(cloud, points, np.random.default_rng(seed))
+    for count, softness in ((len(R), 1.0), (len(R) // 3, 0.3), (len(R) // 9, 0.1), (keep, 0.03)):
+        if count < len(R):
+            best = np.argsort(cloud.rms(R, t, few), kind="stable")[: max(count, keep)]
+            R, t = R[best], t[best]
+        for _ in range(4):
+            R, t = _coarse_step(cloud, R, t, few, softness)
+    poses = polish(cloud.surface, points, R, t)
+    return poses.take(np.argsort(poses.rms, kind="stable"))
+
+
+def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    base = principal_axes(cloud.points) @ _cube_rotations() @ principal_axes(points).T
+    random = Rotation.random(300, random_state=np.random.RandomState(rng.integers(2**31)))
+    R = np.concatenate([base, random.as_matrix()])
+    box, middle = cloud.surface.extent.mean(axis=0), (points.min(axis=0) + points.max(axis=0)) / 2
+    where = cloud.points[rng.integers(len(cloud.points), size=len(R))]
+    anchors = np.stack(
+        [np.broadcast_to(a, where.shape) for a in (cloud.points.mean(axis=0), box, where)]
+    )
+    centres = np.stack([points.mean(axis=0), middle, points.mean(axis=0)])
+    t = anchors - np.einsum("kij,mj->mki", R, centres)
+    return np.tile(R, (3, 1, 1)), t.reshape(-1, 3)
+
+
+def _cube_rotations() -> Floats:
+    """Return the 24 rotations that map a cube onto itself, (24, 3, 3)."""
+    return np.asarray(Rotation.create_group("O").as_matrix())
+
+
+def principal_axes(points: Floats) -> Floats:
+    """Right-handed principal axes of a cloud of points as columns, (3, 3)."""
+    axes = np.linalg.eigh(np.cov(points, rowvar=False))[1]
+    axes[:, 2] *= np.linalg.det(axes)
+    return np.asarray(axes)
+
+
+def farthest_points(points: Floats, count: int) -> Ints:
+    """Rows of `count` points spread as far as can be (Gonzalez, 1985)."""
+    if len(points) <= count:
+        return np.arange(len(points))
+    chosen = [int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    distance = np.linalg.norm(points - points[chosen[0]], axis=1)
+    while len(chosen) < count:
+        chosen.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return np.array(chosen)
+
+
+def _coarse_step(
+    cloud: Cloud, R: Floats, t: Floats, points: Floats, softness: float
+) -> tuple[Floats, Floats]:
+    x = np.einsum("kij,nj->kni", R, points) + t[:, None]
+    distance, found = cloud.tree.query(x.reshape(-1, 3))
+    found = found.reshape(x.shape[:2])
+    W = normal_space(
+        x - cloud.points[found], cloud.direction[found], cloud.kind[found], cloud.spacing
+    )
+    W = W + softness * np.eye(3)
+    weight = robust_weights(distance.reshape(x.shape[:2]), cloud.spacing)
+    return _moved(R, t, x, x - cloud.points[found], W * weight[..., None, None])
+
+
+def normal_space(r: Floats, direction: Floats, kind: Ints, slack: float) -> Floats:
+    """Projectors on the directions that a foot constrains, (..., 3, 3).
+
+    `r` (..., 3) leads from the foot to the point. A face constrains its normal, or beyond its
+    border everything but the way along the border; a line everything but its own direction; a
+    point everything. `slack` is the distance along the surface that does not count as beyond.
+    """
+    outer = direction[..., :, None] * direction[..., None, :]
+    face = (kind >= TRIA)[..., None, None]
+    normal = np.einsum("...x,...x->...", r, direction)[..., None] * direction
+    across = r - normal
+    beyond = np.linalg.norm(across, axis=-1)
+    beyond_face = beyond > np.maximum(slack, 0.3 * np.linalg.norm(r, axis=-1))
+    border = np.cross(direction, across)
+    border = np.divide(
+        border, beyond[..., None], out=np.zeros_like(border), where=beyond[..., None] > 0
+    )
+    past_end = np.abs(np.einsum("...x,...x->...", r, direction)) > slack
+    on_face = np.where(
+        beyond_face[..., None, None],
+        np.eye(3) - border[..., :, None] * border[..., None, :],
+        outer,
+    )
+    open_line = ((kind == LINE) & ~past_end)[..., None, None]
+    return np.asarray(np.where(face, on_face, np.eye(3) - np.where(open_line, outer, 0.0)))
+
+
+def robust_weights(distance: Floats, floor: float) -> Floats:
+    """Geman-McClure weights of distances (k, n), scaled by three times each row's median."""
+    scale = np.maximum(3.0 * np.median(distance, axis=1, keepdims=True), floor)
+    return np.asarray((1.0 / (1.0 + (distance / scale) ** 2)) ** 2)
+
+
+def jacobian(x: Floats, centre: Floats, radius: Floats) -> Floats:
+    """Motion of points (k, n, 3) by six scaled rigid motions about the centres, (k, n, 3, 6).
+
+    First three turns, then three shifts; `radius` (k,) makes a turn of one move a point at that
+    radius by one.
+    """
+    a = (x - centre[:, None]) / radius[:, None, None]
+    J = np.zeros((*x.shape, 6))
+    J[..., 0, 1], J[..., 0, 2], J[..., 1, 2] = a[..., 2], -a[..., 1], a[..., 0]
+    J[..., 1, 0], J[..., 2, 0], J[..., 2, 1] = -a[..., 2], a[..., 1], -a[..., 0]
+    J[..., [0, 1, 2], [3, 4, 5]] = 1.0
+    return J
+
+
+def centre_and_radius(x: Floats) -> tuple[Floats, Floats]:
+    """Centre (k, 3) and rms radius (k,) of moved points (k, n, 3)."""
+    centre = x.mean(axis=1)
+    radius = np.sqrt(((x - centre[:, None]) ** 2).sum(axis=2).mean(axis=1))
+    return centre, np.where(radius > 0, radius, 1.0)
+
+
+def move(
+    R: Floats, t: Floats, centre: Floats, turn: Floats, shift: Floats
+) -> tuple[Floats, Floats]:
+    """Turn poses about their centres by rotation vectors (k, 3), then shift them (k, 3)."""
+    D = Rotation.from_rotvec(turn).as_matrix()
+    return D @ R, np.einsum("kij,kj->ki", D, t - centre) + centre + shift
+
+
+def _moved(R: Floats, t: Floats, x: Floats, r: Floats, W: Floats) -> tuple[Floats, Floats]:
+    """One damped Gauss-Newton step that shrinks sum r.W.r."""
+    centre, radius = centre_and_radius(x)
+    J = jacobian(x, centre, radius)
+    JW = np.einsum("knxi,knxy->kniy", J, W)
+    H = np.einsum("kniy,knyj->kij", JW, J)
+    g = np.einsum("kniy,kny->ki", JW, r)
+    damping = 1e-4 * np.trace(H, axis1=1, axis2=2) / 6 + 1e-300
+    step = -np.linalg.solve(H + damping[:, None, None] * np.eye(6), g[..., None])[..., 0]
+    return move(R, t, centre, step[:, :3] / radius[:, None], step[:, 3:])
+
+
+def polish(surface: Surface, points: Floats, R: Floats, t: Floats, rounds: int = 30) -> Poses:
+    """Fit poses to the facets themselves until they rest; a step is kept only where it helps."""
+    R, t = R.copy(), t.copy()
+    best = Poses(R, t, np.full(len(R), np.inf))
+    cost = np.full(len(R), np.inf)
+    active = np.arange(len(R))
+    for _ in range(rounds):
+        x = Poses(R[active], t[active], cost[active]).apply(points)
+        at = place(surface, x.reshape(-1, 3), reach=0.3 * surface.size)
+        shape = x.shape[:2]
+        distance = at.distance.reshape(shape)
+        rms = capped_rms(distance, surface)
+        gain = cost[active] - rms > 1e-6 * rms + 1e-12 * surface.size
+        cost[active] = np.minimum(cost[active], rms)
+        better = active[gain]
+        best.rotation[better], best.translation[better] = R[better], t[better]
+        best.rms[better] = rms[gain]
+        active = active[gain]
+        if not len(active):
+            break
+        x, distance = x[gain], distance[gain]
+        r = x - at.foot.reshape(*shape, 3)[gain]
+        W = normal_space(
+            r,
+            at.normal.reshape(*shape, 3)[gain],
+            at.kind.reshape(shape)[gain],
+            1e-9 * surface.size,
+        )
+        weight = robust_weights(distance, 1e-6 * surface.size)
+        R[active], t[active] = _moved(R[active], t[active], x, r, W * weight[..., None, None])
+    return best
+
+
+def freedoms(surface: Surface, points: Floats, pose: Poses, step: float, limit: float) -> Floats:
+    """Rigid motions that keep points on the surface.
+
+    The squared distance is sampled a finite step away and fitted by a quadratic form: points at
+    the joints of a frame are held by a whisker in every direction, yet slide freely.
+
+    Parameters
+    ----------
+    surface, points
+        As for `polish`.
+    pose : Poses
+        One pose, at rest.
+    step : float
+        How far to move.
+    limit : float
+        A motion by `step` is free when it leaves the rms distance below this.
+
+    Returns
+    -------
+    (d, 6) float
+        Orthonormal motions scaled as in `jacobian`, d from 0 to 6.
+    """
+    x = pose.apply(points)
+    centre, radius = centre_and_radius(x)
+    J = jacobian(x, centre, radius)[0]
+    size = np.einsum("nxi,nxj->ij", J, J) / len(points)
+    # A motion that does not move the points (a turn about the line they lie on) is free.
+    value, vector = np.linalg.eigh(size)
+    still, basis = vector[:, value < 1e-9].T, vector[:, value >= 1e-9]
+    basis = basis / np.sqrt(value[value >= 1e-9])
+    n = basis.shape[1]
+    i, j = np.triu_indices(n)
+    unit = np.eye(n)
+    way = unit[i] + unit[j]
+    way = way / np.linalg.norm(way, axis=1, keepdims=True)
+    trial = step * np.concatenate([way, -way]) @ basis.T
+    poses = displaced(pose, centre, radius, trial)
+    away = np.minimum(rms_of(surface, points, poses) ** 2, (2 * step) ** 2)
+    rise = (away[: len(i)] + away[len(i) :]) / (2 * step**2) - pose.rms[0] ** 2 / step**2
+    H = np.diag(rise[i == j])
+    off = i != j
+    H[i[off], j[off]] = rise[off] - (H[i[off], i[off]] + H[j[off], j[off]]) / 2
+    H[j[off], i[off]] = H[i[off], j[off]]
+    power, motions = np.linalg.eigh(H)
+    return np.concatenate(
+        [still, (basis @ motions[:, power < (limit**2 - pose.rms[0] ** 2) / step**2]).T]
+    )
+
+
+def displaced(pose: Poses, centre: Floats, radius: Floats, motions: Floats) -> Poses:
+    """Follow scaled rigid motions (k, 6) about a centre (1, 3) from one pose for a unit of time.
+
+    A turn with a shift is a screw: a turn about an axis beside the centre stays about that axis.
+    """
+    k = len(motions)
+    turn = motions[:, :3] / radius
+    shift = np.einsum("kij,kj->ki", _screw(turn), motions[:, 3:])
+    R, t = move(
+        np.repeat(pose.rotation, k, axis=0),
+        np.repeat(pose.translation, k, axis=0),
+        centre,
+        turn,
+        shift,
+    )
+    return Poses(R, t, np.full(k, np.nan))
+
+
+def motion_between(pose: Poses, others: Poses, centre: Floats, radius: Floats) -> Floats:
+    """Scaled motions (k, 6) that `displaced` follows from one pose to the others."""
+    turn = Rotation.from_matrix(others.rotation @ pose.rotation[0].T)
+    shift = others.translation - (turn.apply(pose.translation[0] - centre[0]) + centre[0])
+    vector = turn.as_rotvec().reshape(-1, 3)
+    v = np.linalg.solve(_screw(vector), shift[..., None])[..., 0]
+    return np.concatenate([vector * radius, v], axis=1)
+
+
+def _screw(turn: Floats) -> Floats:
+    """Left Jacobian of the rotation group at rotation vectors (k, 3): (k, 3, 3)."""
+    angle = np.linalg.norm(turn, axis=1)
+    small = angle < 1e-4
+    a = np.where(small, 1.0, angle)
+    first = np.where(small, 0.5, (1 - np.cos(a)) / a**2)
+    second = np.where(small, 1 / 6, (a - np.sin(a)) / a**3)
+    K = np.zeros((len(turn), 3, 3))
+    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -turn[:, 2], turn[:, 1], -turn[:, 0]
+    K -= np.swapaxes(K, 1, 2)
+    return np.asarray(np.eye(3) + first[:, None, None] * K + second[:, None, None] * (K @ K))

@@ -1,0 +1,211 @@
+"""Poses that fit alike: ways in which a test can slide on its model, and samples along them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .arrays import Bools, Floats
+from .rigid_fit import (
+    Cloud,
+    Poses,
+    centre_and_radius,
+    displaced,
+    freedoms,
+    jacobian,
+    motion_between,
+    polish,
+    rms_of,
+)
+from .surface import Surface
+
+STEP = 0.02
+"""Share of the model's size by which a test must be able to move to count as free."""
+_TURN_STEP = np.radians(2.0)
+_SLIDE_STEP = 0.01
+_FAR = (0.2, 0.5)
+_MOST_SAMPLES = 1500
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """A pose and the rigid motions from it that keep the test on the model.
+
+    Parameters
+    ----------
+    pose : Poses
+        One pose.
+    centre, radius : (1, 3) and (1,) float
+        About which the motions are meant.
+    motions : (d, 6) float
+        Scaled motions, turns first, each a pure turn or slide where that is possible; a unit
+        moves the test by about one length unit.
+    turning : (d,) bool
+        Which of them turn.
+    """
+
+    pose: Poses
+    centre: Floats
+    radius: Floats
+    motions: Floats
+    turning: Bools
+
+    def at(self, coordinates: Floats) -> Poses:
+        """Poses at coordinates (k, d) along the motions."""
+        return displaced(self.pose, self.centre, self.radius, coordinates @ self.motions)
+
+    def axis_of(self, k: int) -> Floats:
+        """Direction of a motion, (3,): of the axis of a turn or of a slide."""
+        vector = self.motions[k, :3] if self.turning[k] else self.motions[k, 3:]
+        return np.asarray(vector / np.linalg.norm(vector))
+
+
+def family_of(surface: Surface, points: Floats, pose: Poses, limit: float) -> Family:
+    """Find how a test in a given pose can slide on the model.
+
+    Parameters
+    ----------
+    surface : Surface
+    points : (n, 3) float
+        Of the test.
+    pose : Poses
+        One pose, at rest.
+    limit : float
+        Largest rms distance that still fits.
+    """
+    centre, radius = centre_and_radius(pose.apply(points))
+    free = freedoms(surface, points, pose, STEP * surface.size, limit)
+    free = _straightened(surface, points, pose, free, STEP, limit, must=True)
+    for reach in _FAR:
+        free = np.concatenate(_parted(free))
+        free = _straightened(surface, points, pose, free, reach, limit, must=False)
+    turns, slides = _parted(free)
+    motions = np.concatenate([turns, slides])
+    return Family(pose, centre, radius, motions, np.arange(len(motions)) < len(turns))
+
+
+def _straightened(
+    surface: Surface,
+    points: Floats,
+    pose: Poses,
+    motions: Floats,
+    reach: float,
+    limit: float,
+    must: bool,
+) -> Floats:
+    """Follow each motion for a share of the model's size and settle there: where that led to.
+
+    The way from one resting pose to another that is far off tells an axis much better than the
+    surface beside the first. A motion that leads off the
+    model stays as it was, or is dropped where it `must` lead somewhere.
+    """
+    if not len(motions):
+        return motions
+    centre, radius = centre_and_radius(pose.apply(points))
+    length = reach * surface.size
+    trial = displaced(pose, centre, radius, length * np.concatenate([motions, -motions]))
+    rested = polish(surface, points, trial.rotation, trial.translation, rounds=8)
+    found = motion_between(pose, rested, centre, radius) / length
+    found[len(motions) :] *= -1
+    size = np.linalg.norm(found, axis=1)
+    likeness = np.einsum("ki,ki->k", found, np.tile(motions, (2, 1)))
+    fits = (rested.rms <= limit) & (size > 0.3) & (likeness > 0.5 * size)
+    both = (found * fits[:, None]).reshape(2, *motions.shape).sum(axis=0)
+    led = fits.reshape(2, -1).sum(axis=0)
+    led_to = np.where(led[:, None] > 0, both / np.maximum(led, 1)[:, None], motions)
+    return np.asarray(led_to[led > 0] if must else led_to)
+
+
+def _parted(free: Floats) -> tuple[Floats, Floats]:
+    """Turn a basis of motions (d, 6) into turns and pure slides."""
+    if not len(free):
+        return free, free
+    U, strength, _ = np.linalg.svd(free[:, :3], full_matrices=True)
+    turning = np.concatenate([strength, np.zeros(len(free))])[: len(free)] > 0.2
+    combined = U.T @ free
+    turns, slides = combined[turning], combined[~turning].copy()
+    slides[:, :3] = 0.0
+    slides /= np.linalg.norm(slides, axis=1, keepdims=True)
+    turns = turns / np.linalg.norm(turns[:, :3], axis=1, keepdims=True)
+    turns[:, 3:] -= turns[:, 3:] @ slides[:, 3:].T @ slides[:, 3:]
+    return turns, slides
+
+
+def members(family: Family, points: Floats, poses: Poses, surface: Surface) -> Bools:
+    """Whether each pose is reached by sliding along a family, (k,) bool."""
+    motions = motion_between(family.pose, poses, family.centre, family.radius)
+    J = jacobian(family.pose.apply(points), family.centre, family.radius)[0]
+    moved = np.einsum("nxi,ki->knx", J, motions)
+    flat = moved.reshape(len(poses), -1)
+    if len(family.motions):
+        free = np.einsum("nxi,di->dnx", J, family.motions).reshape(len(family.motions), -1)
+        along = np.linalg.lstsq(free.T, flat.T, rcond=None)[0]
+        flat = flat - (free.T @ along).T
+    rms = np.sqrt((flat**2).sum(axis=1) / len(points))
+    return np.asarray(rms < STEP * surface.size)
+
+
+def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses:
+    """Poses of a family that fit, about every two degrees of turn and 1 % of the size of slide.
+
+    Parameters
+    ----------
+    cloud : Cloud
+    points : (n, 3) float
+    family : Family
+    limit : float
+        Largest rms distance that still fits.
+
+    Returns
+    -------
+    Poses
+        The family's own pose first.
+    """
+    d = len(family.motions)
+    if d == 0:
+        return family.pose
+    ways = [_feasible(cloud, points, family, k, limit) for k in range(d)]
+    count = np.prod([len(way) for way in ways], dtype=float)
+    if count <= _MOST_SAMPLES:
+        coordinates = np.stack(np.meshgrid(*ways, indexing="ij"), axis=-1).reshape(-1, d)
+    else:
+        where = (_even(_MOST_SAMPLES, d) * [len(way) for way in ways]).astype(np.int64)
+        coordinates = np.stack([way[i] for way, i in zip(ways, where.T, strict=True)], axis=1)
+    poses = family.at(coordinates)
+    near = cloud.rms(poses.rotation, poses.translation, points) < 1.5 * limit + cloud.spacing
+    poses = poses.take(np.flatnonzero(near))
+    if d == 1:
+        poses = polish(cloud.surface, points, poses.rotation, poses.translation, rounds=3)
+    poses = replace(poses, rms=rms_of(cloud.surface, points, poses))
+    return Poses.joined([family.pose, poses.take(np.flatnonzero(poses.rms <= limit))])
+
+
+def step_of(family: Family, surface: Surface) -> Floats:
+    """Coordinate distance of neighbouring samples along each motion, (d,)."""
+    turn, slide = _TURN_STEP * family.radius[0], _SLIDE_STEP * surface.size
+    return np.where(family.turning, turn, slide)
+
+
+def _feasible(cloud: Cloud, points: Floats, family: Family, k: int, limit: float) -> Floats:
+    """Coordinates along one motion at which the test about fits, neighbours included."""
+    surface = cloud.surface
+    step = step_of(family, surface)[k]
+    reach = np.pi * family.radius[0] if family.turning[k] else surface.size
+    half = int(reach / step)
+    steps = step * np.arange(-half, half + 1 - family.turning[k])
+    poses = family.at(steps[:, None] * np.eye(len(family.motions))[k])
+    fits = rms_of(surface, points, poses) <= 2 * limit
+    fits[half] = True
+    fits[1:] |= fits[:-1].copy()
+    fits[:-1] |= fits[1:].copy()
+    return np.asarray(steps[fits])
+
+
+def _even(count: int, dimension: int) -> Floats:
+    """Evenly spread points of the unit cube (additive recurrence, Roberts 2018), (count, d)."""
+    root = 2.0
+    for _ in range(30):
+        root = (1.0 + root) ** (1.0 / (dimension + 1))
+    step = (1.0 / root) ** np.arange(1, dimension + 1)
+    return np.asarray((0.5 + np.arange(1, count + 1)[:, None] * step) % 1.0)
