@@ -7,6 +7,7 @@ import scipy.linalg as sl
 
 from .arrays import Floats
 from .errors import InputError
+from .lanczos import NEGATIVE_MASS
 from .mechanism import diagnose
 from .model import Model
 from .pencil import Pencil
@@ -28,19 +29,22 @@ def dense_modes(model: Model | None, pencil: Pencil, rigid: Floats) -> Spectrum:
         The mass or the stiffness is not positive semi-definite, or a motion has neither.
     """
     K, M = pencil.K.toarray(), pencil.M.toarray()
-    diagnose(model, pencil, pencil.safe_shift)
+    small = pencil.least_shift
+    diagnose(model, pencil, -small)
     high, high_vectors, high_residual = _condensed(K, M, rigid)
     if not len(high):
-        return Spectrum(high, high_vectors, high, pencil.safe_shift, complete=True, missed=0)
+        return Spectrum(high, high_vectors, high, -small, complete=True, missed=0)
     lowest = high[high > 1e-9 * high[-1]].min(initial=high[-1])
-    sigma = -max(0.5 * lowest, -1e-3 * pencil.safe_shift)
+    sigma = -max(0.5 * lowest, small)
     low, low_vectors, low_residual = _inverse(K, M, rigid, sigma, len(high))
     # errors are eps (lambda - sigma)^2 / (lambda_1 - sigma) below, eps lambda_max above
     balance = np.sqrt(max(high[-1], -sigma) * (low[0] - sigma))
     split = int(np.count_nonzero(low < balance))
+    X = np.hstack([low_vectors[:, :split], high_vectors[:, split:]])
+    X -= rigid @ (rigid.T @ M @ X)
     return Spectrum(
         np.concatenate([low[:split], high[split:]]),
-        np.hstack([low_vectors[:, :split], high_vectors[:, split:]]),
+        sl.solve_triangular(sl.cholesky(X.T @ M @ X, lower=True), X.T, lower=True).T,
         np.concatenate([low_residual[:split], high_residual[split:]]),
         sigma,
         complete=True,
@@ -85,10 +89,7 @@ def _mass_range(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     d = 1.0 / np.sqrt(np.diag(M)[massed])
     value, Q = np.linalg.eigh(d[:, None] * M[np.ix_(massed, massed)] * d)
     if value[0] < -1e-8 * value[-1]:
-        raise InputError(
-            "the mass matrix is not positive semi-definite: look for negative masses or mass "
-            "terms that do not belong together"
-        )
+        raise InputError(NEGATIVE_MASS)
     has = value > _NO_MASS * value[-1]
     B = np.zeros((len(M), np.count_nonzero(has)))
     B[massed] = d[:, None] * (Q[:, has] / np.sqrt(value[has]))

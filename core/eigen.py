@@ -219,11 +219,6 @@ def _without_strain(pencil: Pencil, spectrum: Spectrum) -> int:
     zero = strain_free(pencil, spectrum.vectors[:, :count], values[:count])
     elastic = values[:count][~zero]
     first = int(np.argmin(zero)) if len(elastic) else count
-    if values[0] < 0.0 and not zero[0]:
-        raise InputError(
-            "the stiffness has a negative eigenvalue, the structure is unstable: "
-            "look for negative springs or moduli"
-        )
     if first and len(elastic) and abs(values[first - 1]) > 1e-4 * elastic[0]:
         return 0
     return first

@@ -7,6 +7,7 @@ on a symmetric ordering. Which one is used is an argument, never a global settin
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Literal, Protocol
 
 import numpy as np
@@ -98,7 +99,11 @@ def factorise(
     if a.ndim != 2 or a.shape[0] != a.shape[1]:
         raise InputError(f"only a square matrix can be factorised, this one has shape {a.shape}")
     chosen = backend or best_backend()
-    make = {"pardiso": _PardisoFactorisation, "superlu": _SuperluFactorisation}.get(chosen)
+    makers: dict[str, Callable[[sp.spmatrix, bool], Factorisation]] = {
+        "pardiso": _PardisoFactorisation,
+        "superlu": _SuperluFactorisation,
+    }
+    make = makers.get(chosen)
     if make is None:
         raise InputError(f"unknown backend {chosen!r}: use 'pardiso' or 'superlu'")
     if definite is None:

@@ -13,6 +13,11 @@ from .errors import InputError
 _EXHAUSTED = 1e-13
 """Directions this much smaller than the largest eigenvalue of the operator are rounding."""
 
+NEGATIVE_MASS = (
+    "the mass matrix is not positive semi-definite: "
+    "look for negative masses or mass terms that do not belong together"
+)
+
 
 class BlockLanczos:
     """Largest eigenvalues theta of OP = A^-1 M, self-adjoint in the inner product of M.
@@ -131,11 +136,8 @@ class BlockLanczos:
                     coupling += h @ R
             MW = self._M @ W
             size, Q = np.linalg.eigh(W.T @ MW)
-            if size[0] < -1e-8 * self._scale**2:
-                raise InputError(
-                    "the mass matrix is not positive semi-definite: look for negative masses "
-                    "or mass terms that do not belong together"
-                )
+            if size.min(initial=0.0) < -1e-8 * self._scale**2:
+                raise InputError(NEGATIVE_MASS)
             floor = (_EXHAUSTED * self._scale) ** 2 if sweep == 0 else 0.25
             keep = size > floor
             root = np.sqrt(size[keep])

@@ -15,6 +15,9 @@ from .pencil import Pencil
 _SINGULAR = 1e-13
 """Energy of A = K - sigma M beside that of its diagonal below which a motion is unresisted."""
 
+_ROUNDING = 2e-15
+"""Strain energy beside that of the diagonal of K that is rounding of double precision."""
+
 _SMALL = 600
 _NAMED = 6
 
@@ -32,48 +35,65 @@ def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
     X : (n, n_mode) float
     energy : (n_mode,) float
         x^T K x of each.
+
+    Raises
+    ------
+    InputError
+        A strain energy is negative.
     """
-    rounding = 2e-15 * np.einsum("ij,ij,i->j", X, X, pencil.k_diagonal)
-    return np.asarray(np.abs(energy) <= rounding)
+    size = np.einsum("ij,ij,i->j", X, X, np.abs(pencil.k_diagonal))
+    rounding = max(_ROUNDING, 4.0 * pencil.precision) * size
+    below = energy < -rounding
+    if below.any():
+        raise InputError(_NEGATIVE.format(where(None, pencil, X[:, below])))
+    return np.asarray(energy <= _ROUNDING * size)
 
 
-def refuse_unresisted(
-    model: Model | None, pencil: Pencil, sigma: float, factor: Factorisation
-) -> None:
+def refuse_unresisted(model: Model | None, pencil: Pencil, sigma: float, f: Factorisation) -> None:
     """Raise `InputError` when A = K - sigma M is singular: a motion with no stiffness or mass.
 
-    One solve with the factor at hand; only when its answer is suspicious is more work done.
+    Parameters
+    ----------
+    model : Model or None
+        For the message.
+    f : Factorisation
+        Of A. One solve is all it takes, unless the answer is suspicious.
     """
-    A = (pencil.K - sigma * pencil.M).tocsr()
-    D = A.diagonal()
+    D = pencil.k_diagonal - sigma * pencil.m_diagonal
+    if not (D > 0.0).all():
+        diagnose(model, pencil, sigma, f.backend)
     b = np.sqrt(D) * np.random.default_rng(3).standard_normal(pencil.n)
-    y = factor.solve(b)
+    y = f.solve(b)
     if not np.isfinite(y).all() or not float(b @ y) > _SINGULAR * float(y @ (D * y)):
-        diagnose(model, pencil, sigma, factor.backend)
+        diagnose(model, pencil, sigma, f.backend)
 
 
 def diagnose(
     model: Model | None, pencil: Pencil, sigma: float, backend: Backend | None = None
 ) -> None:
-    """Raise `InputError` that says why A = K - sigma M is not positive definite, if it is not.
+    """Raise `InputError` that says why K - sigma M is not positive definite, if it is not.
 
-    The question is put to the pencil of A and its diagonal D, which has no units.
+    The question is put to the pencil of A = K - s M and its diagonal D, which has no units: at
+    a strong shift s, where only motions without stiffness and mass stay near zero, then at sigma
+    for a negative stiffness.
     """
-    A = (pencil.K - sigma * pencil.M).tocsr()
-    D = A.diagonal()
-    if not (D > 0.0).all():
-        rows = np.flatnonzero(~(D > 0.0))
-        raise InputError(_NEGATIVE.format(", ".join(pencil.name(int(r)) for r in rows[:_NAMED])))
-    scale = sp.diags(1.0 / np.sqrt(D))
-    scaled = (scale @ A @ scale).tocsr()
-    dense = pencil.n <= _SMALL
-    mu, Y = np.linalg.eigh(scaled.toarray()) if dense else _smallest(scaled, backend)
-    X = scale @ Y
-    if mu[0] < -_SINGULAR:
-        raise InputError(_NEGATIVE.format(where(model, pencil, X[:, :1])))
-    free = np.abs(mu) <= _SINGULAR
-    if free.any():
-        raise mechanism(model, pencil, X[:, free], massless=True)
+    strong = min(sigma, -1e-3 * float(pencil.stiffness_over_mass[-1]))
+    for shift in (strong, sigma):
+        A = (pencil.K - shift * pencil.M).tocsr()
+        D = A.diagonal()
+        if not (D > 0.0).all():
+            names = [pencil.name(int(r)) for r in np.flatnonzero(~(D > 0.0))]
+            raise InputError(_NEGATIVE.format(", ".join(names[:_NAMED])))
+        scale = sp.diags(1.0 / np.sqrt(D))
+        scaled = (scale @ A @ scale).tocsr()
+        dense = pencil.n <= _SMALL
+        mu, Y = np.linalg.eigh(scaled.toarray()) if dense else _smallest(scaled, backend)
+        X = scale @ Y
+        if mu[0] < -max(_SINGULAR, 4.0 * pencil.precision):
+            raise InputError(_NEGATIVE.format(where(model, pencil, X[:, :1])))
+        free = np.abs(mu) <= _SINGULAR
+        if shift == strong and free.any():
+            raise mechanism(model, pencil, X[:, free], massless=True)
 
 
 def _smallest(scaled: sp.csr_matrix, backend: Backend | None) -> tuple[Floats, Floats]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -53,12 +55,36 @@ class Pencil:
         data = self._k - sigma * self._m
         return sp.csr_matrix((data, self._indices, self._indptr), shape=(self.n, self.n))
 
-    @property
-    def safe_shift(self) -> float:
-        """A negative shift far above the rounding of K, whatever the units."""
+    @cached_property
+    def stiffness_over_mass(self) -> Floats:
+        """k_ii / m_ii where both are positive, ascending, (n_both,); at least one value."""
         both = (self.k_diagonal > 0.0) & (self.m_diagonal > 0.0)
-        ratio = self.k_diagonal[both] / self.m_diagonal[both]
-        return -1e-6 * float(np.median(ratio)) if both.any() else -1.0
+        return np.sort(self.k_diagonal[both] / self.m_diagonal[both]) if both.any() else np.ones(1)
+
+    @property
+    def least_shift(self) -> float:
+        """Size of a shift that stands clear of the rounding of K."""
+        ratio = self.stiffness_over_mass
+        return max(1e-11 * float(np.median(ratio)), 4.0 * self.precision * float(ratio[-1]))
+
+    @cached_property
+    def precision(self) -> float:
+        """Relative rounding of stiffness values that came through single precision or few digits.
+
+        Zero for full double precision. A matrix read from a punch file with ten digits restrains
+        its rigid-body motions by that rounding. Round numbers typed by hand are exact and do not
+        count: most values must need the last digit.
+        """
+        data = self.K.data[self.K.data != 0.0]
+        sample = data[:: max(1, len(data) // 2000)]
+        if len(sample) < 20:
+            return 0.0
+        needed = np.array([_digits(v) for v in sample])
+        most, typical = int(needed.max()), float(np.median(needed))
+        if 6 <= most == typical <= 12:
+            return 0.5 * 10.0 ** (1 - most)
+        single = sample.astype(np.float32).astype(np.float64)
+        return 6e-8 if typical >= 8 and np.array_equal(single, sample) else 0.0
 
     @property
     def pattern(self) -> sp.csr_matrix:
@@ -104,3 +130,8 @@ class Pencil:
             raise InputError(
                 f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
             )
+
+
+def _digits(value: float) -> int:
+    """Significant decimal digits that a number needs, at most 17."""
+    return len(repr(float(value)).split("e")[0].replace(".", "").strip("-0"))

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from scipy.linalg import qr
 from scipy.sparse.csgraph import connected_components
 
-from .arrays import Floats, Ints
+from .arrays import Floats, Ints, Numbers
 from .factor import factorise
 from .model import Model
 from .pencil import Pencil
@@ -39,15 +39,14 @@ def rigid_body_modes(model: Model, pencil: Pencil) -> tuple[Floats, int]:
     pieces : int
         Number of separate pieces that have rigid-body motions.
     """
-    _, label = connected_components(pencil.pattern, directed=False)
-    U, scalar = _geometric(model, label)
+    U, scalar = _geometric(model)
     size = sp.csr_matrix((np.abs(pencil.K.data), pencil.K.indices, pencil.K.indptr), pencil.K.shape)
     force = pencil.K @ U
-    noise = max(_ROUNDING, 4.0 * precision(pencil.K)) * (size @ np.abs(U).sum(axis=1))
+    noise = max(_ROUNDING, 4.0 * pencil.precision) * (size @ np.abs(U).sum(axis=1))
     mass = pencil.M @ U
     columns: list[tuple[Ints, Floats]] = []
     pieces = 0
-    for rows in _groups(label):
+    for rows in _groups(_pieces(model, pencil)):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         found = _strain_free(U[rows, used], mass[rows, used], force[rows, used], noise[rows])
         pieces += found.shape[1] > 0
@@ -58,28 +57,16 @@ def rigid_body_modes(model: Model, pencil: Pencil) -> tuple[Floats, int]:
     return V, pieces
 
 
-def precision(K: sp.csr_matrix) -> float:
-    """Relative rounding of stored values that came through single precision or few digits.
+def _pieces(model: Model, pencil: Pencil) -> Ints:
+    """Which separate piece each free degree of freedom belongs to, (n_free,).
 
-    Zero for full double precision. A matrix read from a punch file with ten digits restrains its
-    rigid-body motions by that rounding. Round numbers typed by hand are exact and do not count:
-    most values must need the last digit.
+    Connected are those that share an entry of K or M, and all that move one node.
     """
-    data = K.data[K.data != 0.0]
-    sample = data[:: max(1, len(data) // 2000)]
-    if len(sample) < 20:
-        return 0.0
-    needed = np.array([_digits(v) for v in sample])
-    most, typical = int(needed.max()), float(np.median(needed))
-    if most <= 12:
-        return 0.5 * 10.0 ** (1 - most) if most >= 6 and typical == most else 0.0
-    single = sample.astype(np.float32).astype(np.float64)
-    return 6e-8 if typical > 12 and np.array_equal(single, sample) else 0.0
-
-
-def _digits(value: float) -> int:
-    """Significant decimal digits that a number needs, at most 17."""
-    return len(repr(float(value)).split("e")[0].replace(".", "").strip("-0"))
+    nodes, row = np.unique(model.dofs.node, return_inverse=True)
+    T = abs(sp.csr_matrix(model.expansion))
+    node = sp.csr_matrix((np.ones(len(row)), (row, np.arange(len(row)))), (len(nodes), len(row)))
+    graph = sp.bmat([[pencil.pattern, None], [node @ T, sp.csr_matrix((len(nodes),) * 2)]])
+    return np.asarray(connected_components(graph, directed=False)[1][: pencil.n], np.int64)
 
 
 def _groups(label: Ints) -> Iterator[Ints]:
@@ -88,7 +75,7 @@ def _groups(label: Ints) -> Iterator[Ints]:
     yield from np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
-def _geometric(model: Model, label: Ints) -> tuple[Floats, Floats]:
+def _geometric(model: Model) -> tuple[Floats, Numbers]:
     """Six rigid-body motions and one common to the scalar points, (n_free, 7).
 
     By least squares over `expansion`. The second result, (n_free,), says which free degrees of
@@ -108,12 +95,6 @@ def _geometric(model: Model, label: Ints) -> tuple[Floats, Floats]:
     R[is_scalar, :6] = 0.0
     R[is_scalar, 6] = 1.0
     T = sp.csr_matrix(model.expansion)
-    # a dependent row that follows two pieces cannot tell the motion of one
-    filled = np.flatnonzero(np.diff(T.indptr))
-    low = np.minimum.reduceat(label[T.indices], T.indptr[filled])
-    high = np.maximum.reduceat(label[T.indices], T.indptr[filled])
-    keep = filled[low == high]
-    T, R, is_scalar = T[keep], R[keep], is_scalar[keep]
     normal = (T.T @ T).tocsr()
     idle = normal.diagonal() == 0.0
     U = factorise(normal + sp.diags(idle.astype(float))).solve(T.T @ R)

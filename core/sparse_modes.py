@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as sl
+import scipy.sparse as sp
 
 from .arrays import Floats
-from .errors import CheckError
+from .errors import CheckError, InputError
 from .factor import Backend, Factorisation, NotDefinite, factorise
-from .lanczos import BlockLanczos
+from .lanczos import NEGATIVE_MASS, BlockLanczos
 from .mechanism import diagnose, refuse_unresisted
 from .model import Model
 from .pencil import Pencil
@@ -71,8 +72,7 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
         below = _inertia(pencil, (request.limit, request.limit * 1.0001), request.backend)
         if below <= n_rigid:
             none = np.zeros(0)
-            sigma = pencil.safe_shift
-            return Spectrum(none, rigid[:, :0], none, sigma, complete=False, missed=0)
+            return Spectrum(none, rigid[:, :0], none, -request.limit, complete=False, missed=0)
     asked = min(x for x in (request.wanted, below) if x is not None)
     elastic = max(asked - n_rigid, 1)
     sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
@@ -102,10 +102,11 @@ def _started(
     model: Model | None, pencil: Pencil, rigid: Floats, elastic: int, request: Request
 ) -> tuple[float, Factorisation, BlockLanczos]:
     """Choose a shift that suits the spectrum, with its factor and the first Krylov vectors."""
-    safe = -pencil.safe_shift
+    _refuse_indefinite_mass(pencil)
+    typical = float(np.median(pencil.stiffness_over_mass))
     hertz = _FIRST_SHIFT_HZ
     first = (2.0 * np.pi * hertz) ** 2 if request.limit is None else 0.05 * request.limit
-    sigma = -float(np.clip(first, 1e-5 * safe, 1e5 * safe))
+    sigma = -float(np.clip(first, pencil.least_shift, 0.1 * typical))
     try:
         factor = factorise(pencil.shifted(sigma), True, request.backend)
     except NotDefinite:
@@ -124,7 +125,7 @@ def _started(
             lanczos.advance()
             lanczos.step()
         better = _better_shift(sigma, lanczos.ritz()[0], elastic)
-        if better is None:
+        if better is None or -better < pencil.least_shift:
             break
         sigma = better
         factor.refactorise(pencil.shifted(sigma))
@@ -161,6 +162,8 @@ def _converged(
     while True:
         if lanczos.exhausted or lanczos.size >= check_at or lanczos.full:
             theta, residual = lanczos.ritz()
+            if theta[-1] < -1e-6 * theta[0]:
+                _refuse_negative(pencil, sigma, factor)
             loose = int(np.argmin(np.append(residual <= _GUARD_TOLERANCE * theta, False)))
             tight = bool((residual <= request.tolerance * theta)[:elastic].all())
             if lanczos.exhausted:
@@ -177,6 +180,35 @@ def _converged(
         lanczos.step()
     found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(count), theta[:count])
     return replace(found, complete=lanczos.exhausted)
+
+
+def _refuse_indefinite_mass(pencil: Pencil, steps: int = 40) -> None:
+    """Raise `InputError` where a few Lanczos steps on the mass find a negative eigenvalue."""
+    M = pencil.M
+    if (M - sp.diags(pencil.m_diagonal)).count_nonzero() == 0:
+        return
+    root = np.sqrt(pencil.m_diagonal)
+    d = np.divide(1.0, root, out=np.zeros_like(root), where=root > 0.0)
+    q = d * (M @ np.random.default_rng(6).standard_normal(pencil.n))
+    Q = np.zeros((pencil.n, steps))
+    T = np.zeros((steps, steps))
+    for j in range(steps):
+        norm = np.linalg.norm(q)
+        if norm <= 1e-10:
+            break
+        Q[:, j] = q / norm
+        image = d * (M @ (d * Q[:, j]))
+        T[:, j] = Q.T @ image
+        q = image - Q @ T[:, j]
+    if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -1e-6:
+        raise InputError(NEGATIVE_MASS)
+
+
+def _refuse_negative(pencil: Pencil, sigma: float, factor: Factorisation) -> None:
+    """Raise `InputError` for a negative eigenvalue of (K - sigma M)^-1 M."""
+    if factor.negative:
+        diagnose(None, pencil, sigma, factor.backend)
+    raise InputError(NEGATIVE_MASS)
 
 
 def _polished(
