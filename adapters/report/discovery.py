@@ -37,7 +37,7 @@ def where(finding: Result) -> str:
     if place.get("region"):
         return str(place["region"])
     for key, noun in (("sensors", "sensor"), ("grids", "grid"), ("elements", "element")):
-        ids = [general(i) for i in place.get(key) or []]
+        ids = reading.texts(place, key)
         if ids:
             more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
             return f"{noun}{'s' * (len(ids) > 1)} {', '.join(ids[:4])}{more}"

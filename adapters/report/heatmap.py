@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
@@ -223,9 +224,13 @@ def _description(matrix: MacMatrix, title: str) -> str:
 def _values_table(matrix: MacMatrix) -> str:
     head = "<th>test \\ analysis</th>" + "".join(f"<th>{n}</th>" for n in matrix.analysis)
     rows = "".join(
-        f"<tr><th>{n}</th>"
-        + "".join("<td>–" if np.isnan(v) else f"<td>{round(100 * v)}" for v in row.tolist())
-        for n, row in zip(matrix.test, matrix.values, strict=True)
+        f"<tr><th>{n}</th>{_row(values.tolist())}</tr>"
+        for n, values in zip(matrix.test, matrix.values, strict=True)
     )
     table = f'<div class="wide"><table class="dense"><tr>{head}</tr>{rows}</table></div>'
     return tag("details", tag("summary", "values in %"), table)
+
+
+def _row(values: list[float]) -> str:
+    shown = ("–" if math.isnan(v) else str(round(100 * v)) for v in values)
+    return "".join(f"<td>{v}</td>" for v in shown)

@@ -38,14 +38,15 @@ def sensors(
     directions : bool
         Draw the measured directions.
     """
-    nodes = list(dict.fromkeys(s.get("node") for s in rows))
+    rows = [{**s, "node": str(s.get("node"))} for s in rows]
+    nodes = list(dict.fromkeys(s["node"] for s in rows))
     places = _places(rows, nodes, geometry, xyz)
     amount = _sensor_misfit(misfit_of or {})
     marks = []
     for node in nodes:
         if node not in places:
             continue
-        own = [s for s in rows if s.get("node") == node]
+        own = [s for s in rows if s["node"] == node]
         axes = [a for s in own if (a := direction(s.get("direction"))) is not None]
         said = ", ".join(dict.fromkeys(_direction_text(s.get("direction")) for s in own))
         note = f"sensor {node}: {said}" if said else f"sensor {node}"
@@ -60,7 +61,8 @@ def sensors(
                 "sensor",
                 note,
                 axes=np.array(axes) if axes and directions else None,
-                value=amount.get(str(node)),
+                value=amount.get(node),
+                name=node,
             )
         )
     return marks
@@ -70,16 +72,14 @@ def findings(
     found: Sequence[Result], geometry: Geometry, sensor_marks: Sequence[Mark]
 ) -> list[Mark]:
     """Effects and faults at their places, numbered, after the places that do as well."""
-    at_sensor = {
-        m.note.split(":")[0].split("\n")[0].removeprefix("sensor "): m.xyz for m in sensor_marks
-    }
+    at_sensor = {m.name: m.xyz for m in sensor_marks}
     credible: list[Mark] = []
     numbered: list[Mark] = []
     for k, f in enumerate(found, 1):
         note = str(f.get("sentence") or f"{discovery.kind(f)}, {discovery.where(f)}")
         place = reading.part(f, "where")
         if f.get("side") == "test":
-            named = [str(s) for s in place.get("sensors") or []]
+            named = reading.texts(place, "sensors")
             numbered += [Mark(at_sensor[s], "fault", note, str(k)) for s in named if s in at_sensor]
             continue
         centre = _point(place.get("xyz"))
@@ -98,10 +98,14 @@ def misfit(result: Result, geometry: Geometry | None) -> Floats | None:
         return None
     told = reading.part(result, "misfit")
     grids, values = reading.numbers(told.get("grids")), reading.numbers(told.get("values"))
-    rows = [(g, v) for g, v in zip(grids, values, strict=False) if g is not None and v is not None]
+    rows = [
+        (g, v)
+        for g, v in zip(grids, values, strict=False)
+        if g is not None and v is not None and abs(g) < 2**53
+    ]
     if not rows:
         return None
-    index = geometry.index_of(np.array([int(g) for g, _ in rows]))
+    index = geometry.index_of(np.array([int(g) for g, _ in rows], dtype=np.int64))
     amount = np.array([v for _, v in rows])
     field = np.full(len(geometry.ids), np.nan)
     known = index >= 0
@@ -135,19 +139,21 @@ def _direction_text(value: object) -> str:
 
 
 def _places(
-    rows: Sequence[Result], nodes: Sequence[object], geometry: Geometry, xyz: Floats | None
-) -> dict[object, Floats]:
+    rows: Sequence[Result], nodes: Sequence[str], geometry: Geometry, xyz: Floats | None
+) -> dict[str, Floats]:
+    """Return positions as given, as told in the rows (``xyz``), or of the nearest grids."""
     if xyz is not None:
         xyz = np.asarray(xyz, dtype=float).reshape(-1, 3)
         if len(xyz) == len(rows):
-            first = {n: next(k for k, s in enumerate(rows) if s.get("node") == n) for n in nodes}
-            return {n: xyz[k] for n, k in first.items()}
+            return {s["node"]: p for s, p in zip(reversed(rows), xyz[::-1], strict=True)}
         if len(xyz) == len(nodes):
             return dict(zip(nodes, xyz, strict=True))
-    near = {s.get("node"): reading.number(s.get("nearest_grid")) for s in rows}
-    grids = {n: int(g) for n, g in near.items() if g is not None}
+    near = {s["node"]: reading.identifiers([s.get("nearest_grid")]) for s in rows}
+    grids = {n: g[0] for n, g in near.items() if g}
     index = geometry.index_of(np.array(list(grids.values()), dtype=np.int64))
-    return {n: geometry.xyz[k] for n, k in zip(grids, index, strict=True) if k >= 0}
+    places = {n: geometry.xyz[k] for n, k in zip(grids, index, strict=True) if k >= 0}
+    told = {s["node"]: _point(s.get("xyz")) for s in rows}
+    return places | {n: p for n, p in told.items() if p is not None}
 
 
 def _sensor_misfit(result: Result) -> dict[str, float]:
@@ -159,7 +165,7 @@ def _sensor_misfit(result: Result) -> dict[str, float]:
 
 
 def _grids(place: Mapping[str, object], geometry: Geometry) -> Ints:
-    named = [int(g) for g in reading.numbers(place.get("grids")) if g is not None]
+    named = reading.identifiers(place.get("grids"))
     index = geometry.index_of(np.array(named, dtype=np.int64))
     return np.asarray(index[index >= 0])
 
@@ -192,6 +198,6 @@ def _credible(value: object, geometry: Geometry) -> list[Floats]:
         elif isinstance(entry, (list, tuple)):
             point = _point(entry)
             points += [] if point is None else [point]
-        elif (grid := reading.number(entry)) is not None:
-            points += list(geometry.xyz[_grids({"grids": [int(grid)]}, geometry)])
+        else:
+            points += list(geometry.xyz[_grids({"grids": [entry]}, geometry)])
     return points

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeGuard
@@ -12,13 +11,23 @@ import numpy as np
 from ...core.arrays import Floats
 
 Result = Mapping[str, Any]
+_UNBELIEVABLE = 1e60
 
 
 def number(value: object) -> float | None:
-    """Return a finite float, or None for anything else."""
+    """Return a finite float of a believable size, or None for anything else."""
     if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
         return None
-    return float(value) if math.isfinite(float(value)) else None
+    try:
+        found = float(value)
+    except OverflowError:
+        return None
+    return found if abs(found) < _UNBELIEVABLE else None  # NaN compares False
+
+
+def identifiers(value: object) -> list[int]:
+    """Return the node, grid or mode numbers of a sequence; what is none is passed over."""
+    return [int(v) for v in numbers(value) if v is not None and v == int(v) and abs(v) < 2**53]
 
 
 def numbers(value: object) -> list[float | None]:
@@ -76,8 +85,8 @@ def mode_number(value: object, side: str) -> int | None:
     """Return the mode number of an entry: a number, or a mapping that holds it."""
     if isinstance(value, Mapping):
         value = value.get(side, value.get("mode"))
-    found = number(value)
-    return None if found is None else int(found)
+    found = identifiers([value])
+    return found[0] if found else None
 
 
 def unpaired(correlation: Result, side: str) -> list[tuple[int, float | None]]:
@@ -139,6 +148,7 @@ def mac_matrix(correlation: Result, key: str) -> MacMatrix | None:
     if not rows or not rows[0] or len({len(r) for r in rows}) != 1:
         return None
     values = np.array([[np.nan if v is None else v for v in r] for r in rows])
+    values[(values < 0.0) | (values > 1.0 + 1e-6)] = np.nan  # no MAC
     modes = []
     for side, count in zip(("test", "analysis"), values.shape, strict=True):
         named = part(correlation, key).get(side)
@@ -181,7 +191,7 @@ def summary(correlation: Result) -> Summary:
         count = number(correlation.get("test_modes"))
         return Summary(
             None if pairs is None else int(pairs),
-            None if count is None else int(count),
+            None if not count else int(count),
             number(correlation.get("mean_abs_deviation_percent")),
             number(correlation.get("worst_deviation_percent")),
             number(correlation.get("mean_mac")),

@@ -23,7 +23,7 @@ class Mark:
     """Something at a place: `role` is the style (``sensor``, ``effect``, ``credible``, ``fault``).
 
     `axes` (n, 3) are directions drawn as ticks; `value` 0..1 colours the mark; `text` is written
-    beside it, `note` appears on hover.
+    beside it, `note` appears on hover; `name` is what it is called (a sensor's node).
     """
 
     xyz: Floats
@@ -32,6 +32,7 @@ class Mark:
     text: str = ""
     axes: Floats | None = None
     value: float | None = None
+    name: str = ""
 
 
 def scene(
@@ -42,7 +43,7 @@ def scene(
     values: Floats | None = None,
     width: int = 540,
     height: int = 480,
-    most: int = 1600,
+    most: int = 1400,
 ) -> str:
     """Return a figure of the structure from the front, and from behind where that shows more.
 
@@ -63,6 +64,7 @@ def scene(
     if not len(geometry.ids):
         return ""
     fine = surface(geometry)
+    marks = _nearby(marks, fine)
     front, hidden = _view(fine, isometric(), marks, values, width, height, most)
     views = [("", front)]
     if hidden:
@@ -113,6 +115,13 @@ def _view(
     return (body + "".join(plain) + _triad(view, page), page), len(hidden)
 
 
+def _nearby(marks: Sequence[Mark], mesh: Surface) -> list[Mark]:
+    """Return the marks that are on the picture at all: within a size of the structure."""
+    middle = (mesh.xyz.min(axis=0) + mesh.xyz.max(axis=0)) / 2.0
+    reach = 1.5 * mesh.size if mesh.size > 0.0 else np.inf
+    return [m for m in marks if np.linalg.norm(m.xyz - middle) <= reach]
+
+
 @dataclass(frozen=True, eq=False)
 class _Page:
     scale: float
@@ -139,6 +148,8 @@ class _Page:
 
 def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
     """Painter's order by slices of depth, one path a slice and colour; units of half a pixel."""
+    if not len(mesh.faces) + len(mesh.lines):
+        return ""
     projected = view.project(mesh.xyz)
     pixels = np.rint(page.at(projected) * 2.0).astype(np.int64)
     shapes = [pixels[_corners(face)] for face in mesh.faces] + [pixels[line] for line in mesh.lines]
@@ -146,7 +157,7 @@ def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
     depth = np.concatenate([projected[e, 2].mean(axis=1) for e in (mesh.faces, mesh.lines)])
     depth[len(mesh.faces) :] -= 0.004 * mesh.size
     order = np.argsort(-depth)
-    slices = np.floor((depth.max(initial=0.0) - depth) / max(np.ptp(depth), 1e-300) * _SLICES)
+    slices = np.floor((depth.max() - depth) / max(np.ptp(depth), 1e-300) * _SLICES)
     painted: dict[tuple[float, str], str] = {}
     for k in order:
         key = (slices[k], classes[k])

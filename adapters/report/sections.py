@@ -110,8 +110,7 @@ def _ringed(correlation: Result) -> list[tuple[int, int]]:
 
 def _framed(correlation: Result) -> list[tuple[list[int], list[int]]]:
     return [
-        ([int(v) for v in reading.numbers(c.get("test")) if v is not None],
-         [int(v) for v in reading.numbers(c.get("analysis")) if v is not None])
+        (reading.identifiers(c.get("test")), reading.identifiers(c.get("analysis")))
         for c in reading.records(correlation, "clusters")
     ]  # fmt: skip
 
@@ -200,7 +199,7 @@ def alignment(
     unit = f" {geometry.length_unit}" if geometry is not None and geometry.length_unit else ""
     sensors = reading.records(found, "sensors")
     facts = []
-    nodes = {s.get("node") for s in sensors}
+    nodes = {str(s.get("node")) for s in sensors}
     if sensors:
         facts.append(("sensors", f"{len(sensors)} at {len(nodes)} nodes"))
         distances = [d for s in sensors if (d := reading.number(s.get("distance"))) is not None]

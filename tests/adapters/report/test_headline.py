@@ -1,0 +1,69 @@
+"""The one sentence that is read first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from trueup.adapters.report import headline
+from trueup.adapters.report.headline import figures, story
+
+
+def test_correlation_counts_pairs_and_names_the_worst_and_the_lonely(
+    correlation: dict[str, Any],
+) -> None:
+    assert headline(correlation) == (
+        "2 of 3 test modes pair with the model; frequencies are 6.2 % off on average, 10.0 % at"
+        " worst (test mode 1). Test mode 3 has no partner."
+    )
+
+
+def test_update_tells_now_and_before(update: dict[str, Any]) -> None:
+    assert headline(update) == (
+        "After updating 2 parameters, 3 of 3 test modes pair with the model (2 before) and"
+        " frequencies are 0.8 % off on average (6.2 % before). One parameter stopped at a bound:"
+        " skin."
+    )
+
+
+def test_discovery_leads_with_its_own_sentence(discovery: dict[str, Any]) -> None:
+    first, *rest = story(discovery)
+    assert first == "About 0.62 kg is missing near grid 8."
+    assert rest[0] == "1 further finding below."
+    assert rest[1].startswith("With that adopted, 3 test modes pair with the completed model (2")
+
+
+@pytest.mark.parametrize(
+    ("verdict", "said"),
+    [
+        ("no_gap", "Nothing is missing"),
+        ("undecided", "do not decide"),
+        ("parameters_only", "Known parameters alone"),
+        ("test_fault", "from the test"),
+    ],
+)
+def test_every_verdict_has_a_sentence(discovery: dict[str, Any], verdict: str, said: str) -> None:
+    discovery |= {"verdict": verdict, "findings": []}
+    assert said in story(discovery)[0]
+
+
+def test_nothing_pairs(correlation: dict[str, Any]) -> None:
+    correlation |= {"pairs": [], "unpaired_test": [1, 2, 3]}
+    assert headline(correlation) == "None of the 3 test modes pairs with the model."
+
+
+@pytest.mark.parametrize("result", [{}, {"schema": "trueup/update/1"}, {"pairs": None}])
+def test_an_empty_run_claims_nothing(result: dict[str, Any]) -> None:
+    assert headline(result) == "The run holds no correlation of test and analysis."
+
+
+def test_key_figures_stand_beside_their_former_values(update: dict[str, Any]) -> None:
+    assert figures(update) == [
+        ("pairs", "3 of 3", "2 of 3"),
+        ("mean frequency deviation", "0.77 %", "6.25 %"),
+        ("worst frequency deviation", "1.00 %", "10.00 %"),
+        ("mean MAC of the pairs", "93.3 %", "86.5 %"),
+        ("full eigensolutions", "3", ""),
+        ("time", "7.4 s", ""),
+    ]

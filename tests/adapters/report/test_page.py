@@ -1,0 +1,310 @@
+"""The page: complete, self-contained, safe, and silent about what the run does not say."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from trueup.adapters.report import headline, make_report
+from trueup.adapters.report.deckdiff import deck_diff
+from trueup.core.geometry import Geometry
+
+VOID = {"meta", "br", "path", "rect", "circle", "line", "use"}
+
+
+class Reader(HTMLParser):
+    """Checks nesting; collects text, ids, links and attributes that could fetch."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.fetching: list[str] = []
+        self.headings: list[str] = []
+        self.scripts = 0
+        self.feed(page)
+        assert self.open == []
+
+    def handle_starttag(self, name: str, attributes: list[tuple[str, str | None]]) -> None:
+        given_ = dict(attributes)
+        if "id" in given_:
+            self.ids.append(given_["id"] or "")
+        if name == "a":
+            self.links.append(given_["href"] or "")
+        self.fetching += [f"{name} {k}" for k in given_ if k in ("src", "srcset", "data", "action")]
+        if name in ("link", "img", "iframe", "object", "embed", "base"):
+            self.fetching.append(name)
+        self.scripts += name == "script"
+        if name not in VOID:
+            self.open.append(name)
+
+    def handle_startendtag(self, name: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.handle_starttag(name, attributes)
+        if name not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, name: str) -> None:
+        assert self.open.pop() == name
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] == "h2":
+            self.headings.append(data)
+
+
+SECTIONS = [
+    "Pairs",
+    "MAC matrices",
+    "Modes without a partner",
+    "Parameters and progress",
+    "Alignment and sensors",
+    "Changes to the deck",
+]
+
+
+def test_update_has_all_its_sections(update: dict[str, Any], cube: Geometry, diff: str) -> None:
+    page = Reader(make_report(update, diff, cube))
+    assert page.headings == [h for h in SECTIONS if h != "Modes without a partner"]
+    update["after"]["unpaired_test"] = [4]
+    assert Reader(make_report(update, diff, cube)).headings == SECTIONS
+
+
+def test_discovery_has_all_its_sections(discovery: dict[str, Any], cube: Geometry) -> None:
+    page = Reader(make_report(discovery, None, cube))
+    assert page.headings[:2] == ["What was found", "The gap"]
+    assert "Also considered" in page.headings
+
+
+def test_three_matrices_of_an_update(update: dict[str, Any]) -> None:
+    captions = re.findall(r"<figcaption><b>([^<]*)</b>", make_report(update))
+    assert captions[2:5] == ["As measured", "After rotation of close modes", "After updating"]
+
+
+def test_the_page_needs_nothing_else(update: dict[str, Any], cube: Geometry, diff: str) -> None:
+    html = make_report(update, diff, cube)
+    page = Reader(html)
+    assert page.fetching == []
+    assert page.scripts == 1
+    assert not re.search(r"https?://|url\(|@import|fetch\(|XMLHttp|import\(", html)
+    assert all(link.startswith("#") for link in page.links)
+    assert {link[1:] for link in page.links} <= set(page.ids)
+    assert len(page.ids) == len(set(page.ids))
+
+
+def test_the_headline_comes_first(update: dict[str, Any]) -> None:
+    html = make_report(update)
+    first = re.search(r"<h1>(.*?)</h1>", html)
+    assert first is not None
+    assert headline(update).startswith(first.group(1))
+    assert html.index("<h1>") < html.index("<table")
+
+
+@pytest.mark.parametrize("run", ["correlation", "update", "discovery"])
+def test_every_key_may_be_missing(
+    run: str, request: pytest.FixtureRequest, cube: Geometry, diff: str
+) -> None:
+    whole = request.getfixturevalue(run)
+    assert Reader(make_report(whole, diff, cube)).headings
+    complete = {*SECTIONS, "What was found", "The gap", "Also considered"}
+    for key in whole:
+        less = {k: v for k, v in whole.items() if k != key}
+        assert set(Reader(make_report(less, diff, cube)).headings) <= complete
+    nothing = Reader(make_report({}, None))
+    assert nothing.headings == []
+
+
+def test_unknown_keys_are_passed_over(correlation: dict[str, Any]) -> None:
+    before = make_report(correlation)
+    assert make_report(correlation | {"colour": {"of": ["the", 1]}}) == before
+
+
+def test_text_from_files_cannot_become_markup(update: dict[str, Any]) -> None:
+    evil = '</script><script>alert("1")</script><img src=x onerror=y>'
+    update["parameters"][0]["name"] = evil
+    update["before"]["warnings"] = [evil]
+    update["deck"] = evil
+    page = Reader(make_report(update, evil, title=evil))
+    assert page.scripts == 1
+    assert page.fetching == []
+
+
+json_values = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=5),
+    lambda v: st.lists(v, max_size=3) | st.dictionaries(st.text(max_size=5), v, max_size=3),
+    max_leaves=5,
+)
+
+
+def _paths(value: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    items: Any = ()
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list):
+        items = enumerate(value)
+    return [p for k, v in items for p in [(*at, k), *_paths(v, (*at, k))]]
+
+
+@given(data=st.data())
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+def test_odd_values_never_break_the_page(
+    data: st.DataObject,
+    update: dict[str, Any],
+    correlation: dict[str, Any],
+    discovery: dict[str, Any],
+    cube: Geometry,
+) -> None:
+    result = copy.deepcopy(data.draw(st.sampled_from([update, correlation, discovery])))
+    *above, last = data.draw(st.sampled_from(_paths(result)))
+    place = result
+    for key in above:
+        place = place[key]
+    place[last] = data.draw(json_values)
+    Reader(make_report(result, None, cube))
+    assert headline(result).endswith((".", "!", "?"))
+
+
+def test_sensors_are_placed_where_they_are_told(update: dict[str, Any], cube: Geometry) -> None:
+    def circles(html: str) -> list[str]:
+        marks = re.findall(r'<g class="hot sensor">.*?(<circle[^>]*>)', html, re.DOTALL)
+        return [re.sub(r' r=".*', "", c) for c in marks]
+
+    by_grid = circles(make_report(update, None, cube))
+    given_ = circles(make_report(update, None, cube, cube.xyz[[0, 0, 7]]))
+    assert given_ == by_grid
+    moved = circles(make_report(update, None, cube, cube.xyz[[0, 0, 6]]))
+    assert moved[0] == by_grid[0]
+    assert moved[1] != by_grid[1]
+
+
+def test_effects_stand_at_their_place_with_those_that_explain_as_well(
+    discovery: dict[str, Any], cube: Geometry
+) -> None:
+    html = make_report(discovery, None, cube)
+    front = html.split('class="scene"')[1]
+    assert front.count('class="hot effect"') == 1
+    assert front.count('class="hot credible"') == 3
+    assert front.count('class="hot fault"') == 1
+    assert "missing in the model" in html
+    assert "fault of the test" in html
+
+
+def test_a_typical_run_stays_small() -> None:
+    rng = np.random.default_rng(0)
+    tests, modes = range(1, 25), range(1, 41)
+    values = np.clip(0.9 * np.eye(24, 40) + 0.06 * np.abs(rng.normal(size=(24, 40))), 0.0, 1.0)
+    matrix = {"test": list(tests), "analysis": list(modes), "values": values.tolist()}
+    pairs = [
+        {"test": t, "analysis": t, "test_hz": 10.0 * t, "analysis_hz": 10.1 * t, "mac": 0.9,
+         "deviation_percent": 1.0, "cluster": 1, "rotation_deg": 12.0}
+        for t in tests
+    ]  # fmt: skip
+    sensors = [
+        {"node": n, "direction": d, "nearest_grid": n, "distance": 1.0}
+        for n in range(1, 101)
+        for d in ("+X", "+Y", "+Z")
+    ]
+    state = {"pairs": pairs, "mac": matrix, "mac_rotated": matrix, "unpaired_analysis": list(modes),
+             "alignment": {"sensors": sensors}}  # fmt: skip
+    history = [
+        {"iteration": k, "objective": 1.0 / (k + 1), "factors": [1.0] * 20,
+         "deviations_percent": [1.0 / (k + 1)] * 24}
+        for k in range(10)
+    ]  # fmt: skip
+    around, up = np.meshgrid(np.linspace(0, 2 * np.pi, 200, endpoint=False), np.linspace(0, 2, 100))
+    xyz = np.stack([np.cos(around), np.sin(around), up], -1).reshape(-1, 3)
+    at = np.arange(20000).reshape(100, 200)
+    quad = np.stack([at[:-1], np.roll(at, -1, 1)[:-1], np.roll(at, -1, 1)[1:], at[1:]], -1)
+    shell = Geometry(np.arange(1, 20001), xyz, "m", {"quad": quad.reshape(-1, 4)})
+    run = {"schema": "trueup/update/1", "before": state, "after": state, "history": history}
+    assert len(make_report(run, None, shell).encode()) < 300_000
+
+
+def test_diff_marks_the_fields_that_changed(diff: str) -> None:
+    html = deck_diff(diff)
+    assert "<del>-PBAR    11      1       200.    <b>9000.   </b><b>9000.   </b>3000.</del>" in html
+    assert "<b>15750.  </b><b>15750.  </b>3000.</ins>" in html
+    assert "$ &lt;section &amp; more&gt;" in html
+    assert '<span class="file">--- a/properties.bdf</span>' in html
+
+
+def test_diff_of_free_fields_marks_characters() -> None:
+    html = deck_diff("-PBAR,11,1,200.,9000.\n+PBAR,11,1,200.,9500.\n+$ new\n+$ newer\n")
+    assert "<ins>+$ newer</ins>" in html
+    html = deck_diff("-PBAR,11,1,200.,9000.\n+PBAR,11,1,200.,9500.\n")
+    assert "<del>-PBAR,11,1,200.,9<b>0</b>00.</del>" in html
+
+
+def test_diff_lines_that_look_like_headers_are_changes() -> None:
+    html = deck_diff("@@ -1 +1 @@\n--5.\n++5.\n")
+    assert html.count("<del>") == html.count("<ins>") == 1
+
+
+def test_long_diffs_are_cut_aloud() -> None:
+    html = deck_diff("".join(f"+GRID,{k}\n" for k in range(1000)))
+    assert "… 400 more lines in changes.diff" in html
+    assert html.count("<ins>") == 600
+
+
+PROBE = """<script>
+const said = [];
+const at = (node, type, x, y) => node.dispatchEvent(
+  new PointerEvent(type, {clientX: x, clientY: y, bubbles: true}));
+const tip = document.getElementById('tip');
+const heat = document.querySelector('svg.heat');
+heat.scrollIntoView();
+let b = heat.getBoundingClientRect(), k = b.width / heat.viewBox.baseVal.width;
+const cell = +heat.dataset.cell;
+at(heat, 'pointermove', b.left + (84 + 1.5 * cell) * k, b.top + (8 + .5 * cell) * k);
+said.push(tip.hidden ? '' : tip.textContent);
+heat.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowDown'}));
+said.push(tip.textContent);
+at(heat, 'pointerleave', 0, 0);
+said.push(tip.hidden);
+const chart = document.querySelector('svg.lines');
+chart.scrollIntoView();
+b = chart.getBoundingClientRect(); k = b.width / chart.viewBox.baseVal.width;
+at(chart, 'pointermove', b.left + +chart.dataset.px.split(' ')[2] * k, b.top + 20);
+said.push(tip.textContent);
+const bar = document.querySelector('svg.bars .hot');
+at(bar, 'pointermove', 10, 10);
+said.push(tip.textContent);
+document.title = JSON.stringify(said);
+</script>"""
+
+
+@pytest.mark.slow
+def test_values_appear_under_the_pointer(
+    update: dict[str, Any], cube: Geometry, tmp_path: Path
+) -> None:
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        pytest.skip("no chromium on this machine")
+    page = tmp_path / "page.html"
+    html = make_report(update, None, cube)
+    page.write_text(html.replace("</body>", f"{PROBE}</body>"), encoding="utf-8")
+    shown = subprocess.run(
+        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+         f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    told = re.search(r"<title>(.*?)</title>", shown.stdout, re.DOTALL)
+    assert told is not None
+    heat, down, hidden, line, bar = json.loads(told.group(1).replace("&amp;", "&"))
+    assert heat == "MAC 40.0 %\ntest 1 (10.00 Hz)\nanalysis 2 (9.00 Hz)"
+    assert down == "MAC 10.0 %\ntest 2 (20.00 Hz)\nanalysis 2 (9.00 Hz)"
+    assert hidden is True
+    assert line.replace("▸ ", "") == "iteration 2\nfront flange: 1.75\nskin: 0.8"
+    assert bar == "test mode 1, 10.00 Hz\nbefore: −10 %\nafter: 1 %"

@@ -1,0 +1,130 @@
+"""The paper's tables as content."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from trueup.adapters.report import discovery as found
+from trueup.adapters.report import reading, tables
+from trueup.adapters.report.formats import fixed, general, hz, listed, signed
+
+
+def texts(table: tables.Table | None) -> list[list[str]]:
+    assert table is not None
+    return [[c.text for c in row] for row in table.rows]
+
+
+def test_pairs_list_every_test_mode_paired_or_not(correlation: dict[str, Any]) -> None:
+    assert texts(tables.pairs(correlation)) == [
+        ["1", "10.00", "2", "9.00", "−10.00", "81.0", "30.0", "1"],
+        ["2", "20.00", "1", "20.50", "+2.50", "92.0", "", ""],
+        ["3", "31.25", "none", "", "", "", "", ""],
+    ]
+
+
+def test_pairs_before_and_after_stand_side_by_side(update: dict[str, Any]) -> None:
+    table = tables.pairs(update)
+    assert table is not None
+    assert [c.group for c in table.columns] == ["", ""] + ["before"] * 6 + ["after"] * 6
+    assert [r[2] for r in texts(table)] == ["2", "1", "none"]
+    assert [r[10] for r in texts(table)] == ["+1.00", "+0.50", "−0.80"]
+
+
+def test_columns_that_say_nothing_are_left_out(correlation: dict[str, Any]) -> None:
+    correlation["pairs"][0] |= {"cluster": None, "rotation_deg": None}
+    table = tables.pairs(correlation)
+    assert table is not None
+    assert [c.heading for c in table.columns][-1] == "MAC %"
+
+
+def test_unpaired_modes_name_what_they_resemble_most(correlation: dict[str, Any]) -> None:
+    table = tables.unpaired(correlation)
+    assert texts(table) == [
+        ["test", "3", "31.25", "analysis 3", "58.0"],
+        ["analysis", "3", "30.00", "test 3", "58.0"],
+    ]
+    assert table is not None
+    assert table.note == "Above the test's range: 1 analysis mode."
+
+
+def test_parameters(update: dict[str, Any]) -> None:
+    assert texts(tables.parameters(update)) == [
+        ["front flange", "PBAR 11 I1, PBAR 11 I2", "9000, 9000", "15750, 15750", "1.7500",
+         "± 0.0123", ""],
+        ["skin", "PSHELL 1 T", "1.6", "1.28", "0.8000", "–", "at bound"],
+    ]  # fmt: skip
+
+
+def test_history_takes_lists_and_names_alike(update: dict[str, Any]) -> None:
+    by_list = texts(tables.history(update))
+    assert by_list[0] == ["0", "900", "6.25", "10.00", "1.0000", "1.0000"]
+    for step in update["history"]:
+        step["factors"] = dict(zip(["front flange", "skin"], step["factors"], strict=True))
+    assert texts(tables.history(update)) == by_list
+
+
+def test_findings_give_size_with_interval_and_count_the_places(
+    discovery: dict[str, Any],
+) -> None:
+    rows = texts(found.findings(discovery))
+    assert rows[0] == [
+        "model", "attached mass", "the far corner", "mass 0.00062 (0.00058 to 0.00066)", "97", "3",
+    ]  # fmt: skip
+    assert rows[1][1:3] == ["sensor polarity", "sensor 108"]
+
+
+def test_alternatives_show_whatever_figure_the_run_gives(discovery: dict[str, Any]) -> None:
+    table = found.alternatives(discovery)
+    assert table is not None
+    assert [c.heading for c in table.columns] == ["what", "where", "times less likely"]
+    assert texts(table) == [["local stiffness", "the near edge", "41"]]
+
+
+def test_gap_on_searched_and_held_out_data(discovery: dict[str, Any]) -> None:
+    assert [r[:3] for r in texts(found.gap(discovery))] == [
+        ["searched", "before", "2"],
+        ["searched", "after", "3"],
+        ["held out", "before", "1"],
+        ["held out", "after", "1"],
+    ]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [tables.pairs, tables.unpaired, tables.parameters, tables.history, found.findings,
+     found.alternatives, found.gap],
+)  # fmt: skip
+def test_without_content_there_is_no_table(make: Any) -> None:
+    assert make({}) is None
+
+
+def test_numbers_are_never_invented() -> None:
+    nothing = [None, math.nan, math.inf, "7", True, [], 10**400]
+    assert [reading.number(v) for v in nothing] == [None] * 7
+    assert {fixed(v, 1) for v in nothing} == {"–"}
+    assert {hz(v) for v in nothing} == {"–"}
+
+
+def test_a_mac_outside_its_range_is_unknown() -> None:
+    matrix = reading.mac_matrix({"mac": {"values": [[0.5, 7.0, -0.1, None]]}}, "mac")
+    assert matrix is not None
+    assert [v if v == v else None for v in matrix.values[0].tolist()] == [0.5, None, None, None]
+    assert matrix.analysis == (1, 2, 3, 4)
+
+
+@pytest.mark.parametrize("values", [[], [[]], [[1.0], [1.0, 0.5]], None, "x"])
+def test_a_ragged_matrix_is_none(values: object) -> None:
+    assert reading.mac_matrix({"mac": {"values": values}}, "mac") is None
+
+
+def test_numbers_are_written_as_engineers_do() -> None:
+    assert [signed(v, 2) for v in (1.5, -1.5, 0.0, -0.001)] == ["+1.50", "−1.50", "0.00", "0.00"]
+    assert [general(v) for v in (1e-7, 1234567.0, 0.25, 3, "x")] == [
+        "1e−7", "1.235e6", "0.25", "3", "x",
+    ]  # fmt: skip
+    assert [hz(v) for v in (0.1234, 33.9, 1234.56)] == ["0.1234", "33.90", "1234.6"]
+    assert listed([1, 2]) == "1 and 2"
+    assert listed(list(range(9))) == "0, 1, 2, 3, 4 and 4 more"
