@@ -197,11 +197,11 @@ def inspect_table(entry: Result) -> RenderableType:
     table.add_column("what")
     table.add_column("holds", overflow="fold")
     for what, said in _contents(entry.get("contents")):
-        table.add_row(what, said)
+        table.add_row(Text(what), Text(said))
     for skipped in reading.records(entry, "skipped"):
         line = f" (line {skipped['line']})" if skipped.get("line") is not None else ""
         what = f"{skipped.get('what', 'something')}{line}"
-        table.add_row(Text("skipped", style="yellow"), f"{what}: {skipped.get('why', '')}")
+        table.add_row(Text("skipped", style="yellow"), Text(f"{what}: {skipped.get('why', '')}"))
     for warning in reading.texts(entry, "warnings"):
         table.add_row(Text("warning", style="yellow"), Text(warning))
     return Group(Text(str(entry.get("format", "")), style="dim"), table)
@@ -244,7 +244,7 @@ def _rich(table: tables.Table | None, state: str = "") -> Table | None:
     shown = _titled(f"{table.title}, {state}" if state else table.title)
     grouped = any(c.group for c in table.columns)
     if grouped:
-        shown.padding = (0, 1)
+        shown.padding = (0, 1, 0, 0)
     group = ""
     for c in table.columns:
         heading = _BRIEF.get(c.heading, c.heading)

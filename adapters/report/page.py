@@ -99,7 +99,7 @@ def _sections(
 
 
 def _verdict(result: Result) -> str:
-    word = result.get("verdict")
+    word = str(result.get("verdict") or "")
     return tag("span", esc(VERDICTS.get(word, word)), class_="verdict") if word else ""
 
 

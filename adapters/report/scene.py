@@ -110,7 +110,9 @@ def _view(
     for mark in marks:
         visible = bool(buffer.sees(view.project(mark.xyz[None, :]), slack)[0])
         (plain if visible else hidden).append(_mark(mark, view, page, fine.size))
-    body = tag("g", _mesh(drawn, view, page, values), class_="mesh")
+    coarse = len(drawn.xyz) < len(fine.xyz)
+    mesh = _mesh(drawn, view, page, values)
+    body = tag("g", mesh, class_="coarse mesh" if coarse else "mesh")
     body += tag("g", *hidden, class_="hidden") if hidden else ""
     return (body + "".join(plain) + _triad(view, page), page), len(hidden)
 
@@ -140,7 +142,7 @@ class _Page:
         room = np.array([width - 48.0, height - 48.0])
         scale = float((room / extent).min())
         needed = extent * scale + 48.0
-        return cls(scale, 24.0 - low * scale, int(needed[0]), int(max(needed[1], 120)))
+        return cls(scale, 24.0 - low * scale, int(max(needed[0], 120)), int(needed[1]) + 34)
 
     def at(self, projected: Floats) -> Floats:
         return np.asarray(projected[..., :2] * self.scale + self.shift)

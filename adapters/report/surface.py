@@ -61,8 +61,9 @@ def surface(geometry: Geometry) -> Surface:
 def coarsened(fine: Surface, most: int) -> Surface:
     """Return a mesh of at most about `most` faces and lines, or the mesh itself if it is small.
 
-    Nodes in one cell of a regular grid become one (the member nearest their mean, so that it
-    stays on the structure); faces that collapse or coincide go.
+    Nodes in one cell of a regular grid become one: the member nearest their mean, so that it
+    stays on the structure, free edges and lines first, so that outlines stay. Faces that
+    collapse or coincide go.
 
     References
     ----------
@@ -175,7 +176,8 @@ def _clustered(fine: Surface, pitch: float) -> Surface:
     mean = np.stack(
         [np.bincount(group, weights=fine.xyz[:, k], minlength=n) / members for k in range(3)], 1
     )
-    order = np.lexsort((np.linalg.norm(fine.xyz - mean[group], axis=1), group))
+    inner = ~_on_edge(fine)
+    order = np.lexsort((np.linalg.norm(fine.xyz - mean[group], axis=1), inner, group))
     first = order[np.searchsorted(group[order], np.arange(n))]
     return Surface(
         fine.xyz[first],
@@ -183,6 +185,17 @@ def _clustered(fine: Surface, pitch: float) -> Surface:
         _distinct(group[fine.lines], 2),
         group[fine.node_of],
     )
+
+
+def _on_edge(mesh: Surface) -> Bools:
+    """Nodes on a free edge or on a line."""
+    sides = mesh.faces[:, [0, 1, 1, 2, 2, 3, 3, 0]].reshape(-1, 2)
+    sides = np.sort(sides[sides[:, 0] != sides[:, 1]], axis=1)
+    edges, counts = np.unique(sides, axis=0, return_counts=True)
+    found = np.zeros(len(mesh.xyz), bool)
+    found[edges[counts == 1].ravel()] = True
+    found[mesh.lines.ravel()] = True
+    return found
 
 
 def _distinct(elements: Ints, corners: int) -> Ints:
