@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -54,11 +55,19 @@ def cmif(values: Numbers) -> Floats:
 
 
 def peaks(indicator: Floats, floor: float) -> Ints:
-    """Lines at which a singular value peaks above `floor`, rising; one line may stand twice."""
+    """Lines at which a singular value peaks above the noise, rising; one may stand twice.
+
+    Parameters
+    ----------
+    indicator : (n_line, n_value) float
+    floor : float
+        What noise alone makes of the singular values.
+    """
     found = []
     for column in np.maximum(indicator.T, 1e-300):
         lines, _ = find_peaks(20.0 * np.log10(column), prominence=_PROMINENCE_DB)
-        found.append(lines[column[lines] > floor])
+        out_of_noise, _ = find_peaks(column, height=2.0 * floor, prominence=floor)
+        found.append(np.intersect1d(lines, out_of_noise))
     return np.sort(np.concatenate(found)) if found else np.empty(0, np.int64)
 
 
@@ -73,12 +82,12 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
     floor : float
         What noise alone makes of the singular values.
     """
-    lines = peaks(indicator, 2.0 * floor)
+    lines = peaks(indicator, floor)
     valley = np.log(np.maximum(indicator[:, 0], 1e-300))
     edges = [0, *_cuts(valley, lines, 0, len(frequencies_hz) - 1), len(frequencies_hz) - 1]
     f = frequencies_hz
     bands = []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         margin = max(_MARGIN * (f[b] - f[a]), f[min(a + 8, len(f) - 1)] - f[a])
         first, last = max(f[a] - margin, f[0]), min(f[b] + margin, f[-1])
         bands.append(Band(float(f[a]), float(f[b]), float(first), float(last)))

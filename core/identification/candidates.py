@@ -56,14 +56,15 @@ def propose(
     for block in blocks[1:]:
         spare += _new(_run(survey, block, first, last, n_peaks, max_order)[0], [*firm, *spare])
     third = (last - first) / 3.0
-    for low in (first, first + 0.5 * third, first + third, first + 1.5 * third, first + 2.0 * third):
+    for step in range(5):
+        low = first + 0.5 * step * third
         found, _ = _run(survey, blocks[0], low, low + third, max(3, n_peaks // 2), max_order)
         spare += _new(found, [*firm, *spare])
     return Candidates(firm, tuple(spare), chart)
 
 
 def complete_blocks(measured: Numbers) -> list[tuple[Ints, Ints]]:
-    """Sets of outputs and inputs with every combination measured, the most telling first.
+    """Find sets of outputs and inputs with every combination measured, the most telling first.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ class BandData:
         jω.
     derivative : (n_line,) complex
         (jω)^d.
-    residual_terms : (2 n_line, 4) float
-        Orthonormal basis of lower and upper residual, complex coefficients.
+    residual_terms : (2 n_line, 8) float
+        Orthonormal basis of the lower and upper residuals, complex coefficients.
     y : (n_output, n_input, 2 n_line) float
         Stacked functions, weighted, orthogonal to `residual_terms`.
     weight : (n_output, n_input) float
@@ -54,6 +54,9 @@ class BandData:
 def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order: int) -> BandData:
     """Prepare the functions of a band for fitting.
 
+    The modes below and above act in the band as (jω)^d [LR₂/(jω)⁴ + LR/(jω)² + UR + UR₂ (jω)²]:
+    their mass and stiffness lines and one further term of the expansion of each.
+
     Parameters
     ----------
     frequencies_hz : (n_line,) float
@@ -64,8 +67,9 @@ def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order:
     """
     s = 2j * np.pi * frequencies_hz
     derivative = s**order
-    lower = derivative / s**2 * np.mean(np.abs(s)) ** 2
-    terms = stacked(np.array([lower, 1j * lower, derivative, 1j * derivative])).T
+    powers = np.array([-4, -2, 0, 2])[:, None]
+    lines = derivative * (s / np.mean(np.abs(s))) ** powers
+    terms = stacked(np.concatenate([lines, 1j * lines])).T
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
     y = stacked(values)
     y -= (y @ Q) @ Q.T
@@ -86,12 +90,15 @@ def basis(data: BandData, poles: Numbers) -> Floats:
     )
     flat = stacked(F).reshape(-1, 2 * len(data.s)).T
     flat = flat - data.residual_terms @ (data.residual_terms.T @ flat)
-    return np.ascontiguousarray(flat).reshape(-1, 2, len(poles), 2)
+    return np.ascontiguousarray(flat).reshape(2 * len(data.s), 2, len(poles), 2)
 
 
 def turned(z: Numbers) -> Floats:
-    """2×2 matrices [[Re z, Im z], [−Im z, Re z]], (..., 2, 2): effect of a unit real or imaginary
-    change of one factor on the (F1, F2) coefficients, z being the other factor."""
+    """Return the 2×2 matrices [[Re z, Im z], [−Im z, Re z]], (..., 2, 2).
+
+    Their rows are what a unit real and a unit imaginary change of one factor do to the (F1, F2)
+    coefficients, z being the other factor.
+    """
     return np.stack(
         [np.stack([z.real, z.imag], axis=-1), np.stack([-z.imag, z.real], axis=-1)], axis=-2
     )
@@ -115,7 +122,7 @@ class Normal:
 
 
 def normal_shapes(G: Floats, participation: Numbers, weight: Floats) -> Floats:
-    """Normal matrices of the shapes alone, (n_output, 2 n_mode, 2 n_mode).
+    """Return the normal matrices of the shapes alone, (n_output, 2 n_mode, 2 n_mode).
 
     Parameters
     ----------

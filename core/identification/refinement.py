@@ -10,6 +10,9 @@ from ..arrays import Floats, Numbers
 from .moments import BandData, Normal, basis, normal, normal_shapes, turned
 
 _RIDGE = 1e-12  # relative, on the normal matrices of the shapes
+_STUCK = 1e8  # of the damping of the iteration: no step helps any more
+_FACTOR = 1.5  # largest change of the logarithm of a decay rate in one step
+_LEAST_DAMPING = 1e-6
 _SMALL = 1e-10  # relative decrease of the misfit that ends the iteration
 
 
@@ -103,12 +106,10 @@ def refine(
             step = np.zeros(2 * len(poles) * (1 + len(participation)))
             step[columns] = np.linalg.solve(S + mu * np.eye(len(S)), gradient / scale) / scale
             trial = _moved(data, state.fit, step)
-            if trial is not None and trial.fit.misfit <= state.fit.misfit + floor:
+            if trial.fit.misfit <= state.fit.misfit + floor or mu > _STUCK:
                 break
             mu *= 10.0
-            if mu > 1e8:
-                break
-        if mu > 1e8 or trial is None:
+        if mu > _STUCK:
             converged = True
             break
         decrease = state.fit.misfit - trial.fit.misfit
@@ -128,7 +129,7 @@ def free_columns(participation: Numbers, moving: Numbers) -> Numbers:
 
 
 def system_at(data: BandData, fit: Fit) -> tuple[Normal, Floats, Floats]:
-    """Normal matrices, F (2 n_line, 2, n_mode, 2) and F'F at a fit."""
+    """Return normal matrices, F (2 n_line, 2, n_mode, 2) and F'F at a fit."""
     F = basis(data, fit.poles)
     G = _gram(F)
     return normal(G, fit.participation, fit.shapes, data.weight), F, G
@@ -141,7 +142,8 @@ def reduced_system(data: BandData, state: _State) -> tuple[Floats, Floats]:
     S = n.common_common - eliminated(n)
     r = f.shapes[:, None, :] * f.participation[None, :, :]
     coefficients = np.stack([r.real, r.imag], axis=-1)
-    left = state.B - np.einsum("gkfKF,oiKF->oigkf", state.G[:, :, :, 0], coefficients, optimize=True)
+    G = state.G[:, :, :, 0]
+    left = state.B - np.einsum("gkfKF,oiKF->oigkf", G, coefficients, optimize=True)
     left *= data.weight[:, :, None, None, None]
     pole = np.einsum("oikaf,oikf->ka", turned(r), left[:, :, 1], optimize=True)
     part = np.einsum("okaf,oikf->kai", turned(f.shapes), left[:, :, 0], optimize=True)
@@ -150,16 +152,31 @@ def reduced_system(data: BandData, state: _State) -> tuple[Floats, Floats]:
 
 def eliminated(n: Normal) -> Floats:
     """Return Σ_o N_θψ N_ψψ⁻¹ N_ψθ, what the shapes take from the normal matrix of θ."""
-    T = np.linalg.solve(ridged(n.shape_shape), n.shape_common)
+    T = solve_shapes(n.shape_shape, n.shape_common)
     size = n.common_common.shape[0]
     return np.asarray(n.shape_common.reshape(-1, size).T @ T.reshape(-1, size))
 
 
-def ridged(N: Floats) -> Floats:
-    """Normal matrices of the shapes, kept invertible where nothing speaks for a mode."""
-    trace = np.trace(N, axis1=1, axis2=2) / N.shape[1]
-    ridge = _RIDGE * np.maximum(trace, 1e-3 * trace.max() + 1e-300)
-    return np.asarray(N + ridge[:, None, None] * np.eye(N.shape[1]))
+def solve_shapes(N: Floats, right: Floats) -> Floats:
+    """Solve the normal equations of the shapes, one system per output.
+
+    Parameters
+    ----------
+    N : (n_output, n, n) float
+    right : (n_output, n, n_right) float
+
+    Returns
+    -------
+    (n_output, n, n_right) float
+        Scaled to unit diagonal and with a slight ridge, so that it exists where nothing speaks
+        for a mode.
+    """
+    diagonal = np.diagonal(N, axis1=1, axis2=2)
+    floor = 1e-12 * diagonal.max(initial=0.0) + 1e-300
+    scale = 1.0 / np.sqrt(np.maximum(diagonal, floor))
+    scaled = N * scale[:, :, None] * scale[:, None, :] + _RIDGE * np.eye(N.shape[1])
+    x = np.linalg.solve(scaled, right * scale[:, :, None])
+    return np.asarray(x * scale[:, :, None])
 
 
 def _gram(F: Floats) -> Floats:
@@ -169,6 +186,9 @@ def _gram(F: Floats) -> Floats:
 
 def _state(data: BandData, poles: Numbers, participation: Numbers) -> _State:
     """Shapes and misfit at given poles and participation."""
+    if not len(poles):
+        none = Fit(poles, participation, np.zeros((len(data.y), 0), complex), data.power)
+        return _State(none, np.zeros((2, 0, 2, 2, 0, 2)), np.zeros((*data.y.shape[:2], 2, 0, 2)))
     biggest = np.argmax(np.abs(participation), axis=0)
     participation = participation / participation[biggest, np.arange(len(poles))]
     F = basis(data, poles)
@@ -178,21 +198,21 @@ def _state(data: BandData, poles: Numbers, participation: Numbers) -> _State:
     weighted = B[:, :, 0] * data.weight[:, :, None, None]
     b = np.einsum("ikaf,oikf->oka", turned(participation), weighted, optimize=True)
     b = b.reshape(len(b), -1)
-    x = np.linalg.solve(ridged(N), b[:, :, None])[:, :, 0]
+    x = solve_shapes(N, b[:, :, None])[:, :, 0]
     misfit = data.power - float(np.sum(x * (2.0 * b - np.einsum("oab,ob->oa", N, x))))
     pairs = x.reshape(len(x), -1, 2)
     shapes = pairs[..., 0] + 1j * pairs[..., 1]
     return _State(Fit(poles, participation, shapes, max(misfit, 0.0)), G, B)
 
 
-def _moved(data: BandData, fit: Fit, step: Floats) -> _State | None:
-    """Apply a step of θ; None when a pole would leave the stable half plane or jump."""
+def _moved(data: BandData, fit: Fit, step: Floats) -> _State:
+    """Apply a step of θ; decay rates move by factors, so no pole leaves the stable half plane."""
     m = len(fit.poles)
     pole = step[: 2 * m].reshape(m, 2)
     part = step[2 * m :].reshape(m, 2, -1)
-    change = pole[:, 0] + 1j * pole[:, 1]
-    poles = fit.poles + change
-    far = np.abs(change) > 2.0 * np.abs(fit.poles.real) + 1e-3 * np.abs(fit.poles)
-    if np.any(poles.real >= 0.0) or np.any(poles.imag <= 0.0) or np.any(far):
-        return None
+    decay, omega = -fit.poles.real, fit.poles.imag
+    reach = 2.0 * decay + 1e-3 * omega
+    decay = decay * np.exp(np.clip(-pole[:, 0] / decay, -_FACTOR, _FACTOR))
+    omega = omega + np.clip(pole[:, 1], -reach, reach)
+    poles = -np.maximum(decay, _LEAST_DAMPING * omega) + 1j * omega
     return _state(data, poles, fit.participation + (part[:, 0] + 1j * part[:, 1]).T)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import chi2
 
 from ..arrays import Floats, Numbers
 from .moments import BandData, basis
-from .refinement import Fit, fit_shapes, refine, ridged, system_at
+from .refinement import Fit, fit_shapes, refine, solve_shapes, system_at
 from .stabilisation import MAX_DAMPING, Candidate
 
-_MARGIN = 1.5  # of the best that a pole fitted to noise can reach
+_RISK = 0.01  # that noise alone makes one root somewhere in a band
+_MARGIN = 1.5  # beyond what that risk allows, since noise is never quite white
+_MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
-_ROUNDS = 8  # of adding a root where the residual still shows one
+_ROUNDS = 12  # of trying a root where the residual still shows one
+_AROUND = 4  # lines around a failed trial that are not tried again
+_BACKGROUND = 2  # roots beside or beneath the modes of a band, which a fit may use
 _START_DAMPING = (0.001, 0.003, 0.01, 0.03)
 
 
@@ -40,44 +45,51 @@ def select(
     f = frequencies_hz
     state = prune(data, f, start)
     for c in spare:
-        state = _try(data, f, state, c)
+        state = _try(data, f, state, c) or state
+    open_lines = (f >= low) & (f <= high)
     for _ in range(_ROUNDS):
-        candidate = _from_residual(data, f, state, low, high)
-        if candidate is None:
+        if not open_lines.any():
             break
+        line, candidate = _from_residual(data, f, state, open_lines)
         grown = _try(data, f, state, candidate)
-        if grown is state:
-            break
-        state = grown
-    return state
+        if grown is None:
+            open_lines[max(line - _AROUND, 0) : line + _AROUND + 1] = False
+        else:
+            state = grown
+    return prune(data, f, state)
 
 
 def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
-    """What each mode explains, over what the best pole fitted to noise alone would explain.
+    """Compare what each mode explains with what the best pole fitted to noise would explain.
 
     The sum of squares that would be lost without mode k, the others fitted again, over the
     variance of the residual around its frequency, is χ² with 2 n_output degrees of freedom for a
-    pole given beforehand; one that was sought in n lines and with a free participation reaches
-    about (√(2 n_output) + √(2 n_input) + √(2 ln n))².
+    pole given beforehand. A free participation makes them about (√(2 n_output) +
+    √(2 n_input − 2))² (the largest eigenvalue of a Wishart matrix) and a free pole 2 more; the
+    best of n lines is allowed for by the risk.
     """
     m = len(fit.poles)
     if m == 0:
         return np.empty(0)
     n, F, _ = system_at(data, fit)
-    inverse = np.linalg.inv(ridged(n.shape_shape)).reshape(-1, m, 2, m, 2)
+    unit = np.broadcast_to(np.eye(2 * m), n.shape_shape.shape)
+    inverse = solve_shapes(n.shape_shape, unit).reshape(-1, m, 2, m, 2)
     own = inverse[:, np.arange(m), :, np.arange(m), :].transpose(1, 0, 2, 3)
     x = np.stack([fit.shapes.real, fit.shapes.imag], axis=-1)
     lost = np.einsum("oka,oka->k", x, np.linalg.solve(own, x[..., None])[..., 0])
     n_output, n_input = data.weight.shape
-    noise = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input) + np.sqrt(2 * np.log(len(f)))) ** 2
-    return np.asarray(lost / (_MARGIN * noise * local_variance(data, f, fit, F)))
+    freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
+    noise = chi2.isf(_RISK / len(f), freedom)
+    narrow = -fit.poles.real / np.pi < np.median(np.diff(f))
+    margin = np.where(narrow, _MARGIN_OF_SPIKES, _MARGIN)
+    return np.asarray(lost / (margin * noise * local_variance(data, f, fit, F)))
 
 
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
     """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
     r = fit.shapes[:, None, :] * fit.participation[None, :, :]
-    coefficients = np.stack([r.real, r.imag], axis=-1).reshape(r.shape[:2] + (-1,))
-    left = data.y - coefficients @ F[:, 0].reshape(len(F), -1).T
+    coefficients = np.stack([r.real, r.imag], axis=-1).reshape((*r.shape[:2], 2 * r.shape[2]))
+    left = data.y - coefficients @ F[:, 0].reshape(len(F), 2 * len(fit.poles)).T
     return np.asarray(left * data.weight[:, :, None])
 
 
@@ -97,14 +109,14 @@ def local_variance(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
         used = np.count_nonzero(np.abs(hz - hz[k]) <= half[k])
         lines = np.count_nonzero(near)
         spent = max(1.0 - used / lines / max(1.0, data.weight.sum(axis=1).mean()), 0.25)
-        floor = _DYNAMIC_RANGE**2 * power[near].mean()
+        floor = _DYNAMIC_RANGE**2 * (power[near].mean() + 0.01 * power.mean())
         variance[k] = max(per_line[near].mean() / spent, floor, 1e-300)
     return variance
 
 
 def start_from(data: BandData, candidates: tuple[Candidate, ...]) -> Fit:
     """Shapes for the candidates as proposed, participations completed."""
-    n_output, n_input = data.weight.shape
+    n_input = data.weight.shape[1]
     poles = np.array([c.pole for c in candidates], dtype=complex)
     part = np.array([c.participation for c in candidates], dtype=complex)
     part = complete_participation(data, poles, part.reshape(-1, n_input).T)
@@ -145,7 +157,9 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
     """Refine and drop the least credible mode until all stand."""
     while len(fit.poles):
         fit = refine(data, fit.poles, fit.participation)
-        value = significance(data, f, fit) * plausible(f, fit)
+        value = significance(data, f, fit)
+        if np.count_nonzero(~plausible(f, fit)) > _BACKGROUND:
+            value = value * plausible(f, fit)
         worst = int(np.argmin(value))
         if value[worst] >= 1.0:
             break
@@ -155,15 +169,19 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
 
 
 def plausible(f: Floats, fit: Fit) -> Numbers:
-    """Whether each root is a mode of the band: inside, damped a little, not its background."""
+    """Whether each root is a mode of the band: inside, damped a little, not its background.
+
+    Roots beyond the band or as wide as a good part of it stand for what the residual terms do
+    not describe; they serve the fit and are not reported.
+    """
     magnitude = np.abs(fit.poles)
     hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
     inside = (hz >= f[0]) & (hz <= f[-1])
     return inside & (damping < MAX_DAMPING) & (2.0 * damping * hz < _WIDEST * (f[-1] - f[0]))
 
 
-def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit:
-    """Add a root; return the same object when the data do not ask for it."""
+def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit | None:
+    """Add a root and refine; None when the data do not ask for it."""
     new = complete_participation(
         data,
         np.append(fit.poles, candidate.pole),
@@ -171,32 +189,30 @@ def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit:
     )
     grown = fit_shapes(data, np.append(fit.poles, candidate.pole), new)
     if significance(data, f, grown)[-1] < 0.5:
-        return fit
-    stood = significance(data, f, fit) * plausible(f, fit) >= 1.0
+        return None
+    stood = significance(data, f, fit) >= 1.0
     grown = refine(data, grown.poles, grown.participation)
-    stands = significance(data, f, grown) * plausible(f, grown) >= 1.0
-    return grown if stands[-1] and (stands[:-1] | ~stood).all() else fit
+    stands = significance(data, f, grown) >= 1.0
+    background = np.count_nonzero(~plausible(f, grown))
+    if background > max(_BACKGROUND, np.count_nonzero(~plausible(f, fit))):
+        return None
+    return grown if stands[-1] and (stands[:-1] | ~stood).all() else None
 
 
 def _from_residual(
-    data: BandData, f: Floats, fit: Fit, low: float, high: float
-) -> Candidate | None:
-    """The root that a single-mode fit finds at the strongest peak of the residual."""
+    data: BandData, f: Floats, fit: Fit, open_lines: Numbers
+) -> tuple[int, Candidate]:
+    """Find the line where the residual is strongest, and the root of a single-mode fit there."""
     F = basis(data, fit.poles)
     left = residual_lines(data, fit, F)
     n_line = len(f)
     lines = (left[..., :n_line] + 1j * left[..., n_line:]).transpose(2, 0, 1)
-    _, value, vh = np.linalg.svd(lines, full_matrices=False)
-    core = (f >= low) & (f <= high)
-    peak = int(np.argmax(np.where(core, value[:, 0], 0.0)))
-    participation = vh[peak, 0].conj()
+    power = np.einsum("foi,foi->f", lines, lines.conj()).real
+    peak = int(np.argmax(np.where(open_lines, power, -1.0)))
+    participation = np.linalg.svd(lines[peak], full_matrices=False)[2][0].conj()
     only = BandData(data.s, data.derivative, data.residual_terms, left, data.weight)
     omega = 2.0 * np.pi * f[peak]
-    best: Candidate | None = None
-    least = np.inf
-    for zeta in _START_DAMPING:
-        pole = omega * complex(-zeta, np.sqrt(1.0 - zeta**2))
-        one = fit_shapes(only, np.array([pole]), participation[:, None])
-        if one.misfit < least:
-            best, least = Candidate(pole, participation, 0), one.misfit
-    return best
+    poles = [omega * complex(-z, np.sqrt(1.0 - z**2)) for z in _START_DAMPING]
+    fits = [fit_shapes(only, np.array([p]), participation[:, None]) for p in poles]
+    best = int(np.argmin([one.misfit for one in fits]))
+    return peak, Candidate(poles[best], participation, 0)

@@ -126,9 +126,7 @@ def noise_levels(values: Numbers) -> Floats:
     return levels
 
 
-def _axis(
-    frfs: Frfs, fmin: float | None, fmax: float | None, name: str
-) -> tuple[Floats, Numbers]:
+def _axis(frfs: Frfs, fmin: float | None, fmax: float | None, name: str) -> tuple[Floats, Numbers]:
     f = frfs.frequencies_hz
     if len(f) > 1 and np.any(np.diff(f) <= 0.0):
         line = int(np.flatnonzero(np.diff(f) <= 0.0)[0]) + 1

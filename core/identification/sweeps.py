@@ -10,8 +10,8 @@ from ..arrays import Floats, Numbers
 from .bands import Band
 from .candidates import Candidates
 from .moments import BandData, band_data
-from .refinement import Fit, refine
-from .selection import prune, select, significance, start_from
+from .refinement import Fit, fit_shapes
+from .selection import plausible, prune, select, significance, start_from
 from .survey import Survey
 from .synthesis import modal_response
 
@@ -54,6 +54,8 @@ class BandFit:
     significance : (n_mode,) float
     core : (n_mode,) bool
         The modes that this band answers for.
+    background : (n_mode,) bool
+        Roots beside or beneath the modes, see `plausible`.
     """
 
     band: Band
@@ -62,6 +64,7 @@ class BandFit:
     fit: Fit
     significance: Floats
     core: Numbers
+    background: Numbers
 
 
 def fit_range(
@@ -69,30 +72,37 @@ def fit_range(
 ) -> tuple[BandFit, ...]:
     """Fit all bands, first each for itself, then with the contributions of all others removed."""
     owned: list[Roots] = []
+    beside: list[Roots] = []
     for band, proposed in zip(bands, proposals, strict=True):
         f, data = _data(survey, band, None)
-        owned.append(_core(prune(data, f, start_from(data, proposed.firm)), band))
+        fit = prune(data, f, start_from(data, proposed.firm))
+        owned.append(_core(f, fit, band))
+        beside.append(_background(f, fit))
     owned = _without_doubles(owned)
-    for band_number, (band, proposed) in enumerate(zip(bands, proposals, strict=True)):
+    for n, (band, proposed) in enumerate(zip(bands, proposals, strict=True)):
         near, far = _near_and_far(_joined(owned), band)
         f, data = _data(survey, band, far)
+        near = _joined([near, beside[n]])
         start = Fit(near.poles, near.participation, near.shapes, np.inf)
         fit = select(data, f, start, proposed.spare, band.low, band.high)
-        owned[band_number] = _core(fit, band)
+        owned[n] = _core(f, fit, band)
+        beside[n] = _background(f, fit)
         owned = _without_doubles(owned)
     for sweep in range(_FINAL_SWEEPS):
         done = []
-        for band_number, band in enumerate(bands):
+        for n, band in enumerate(bands):
             near, far = _near_and_far(_joined(owned), band)
             f, data = _data(survey, band, far)
-            fit = refine(data, near.poles, near.participation)
-            mine = np.isin(near.poles, owned[band_number].poles)
-            owned[band_number] = Roots(
-                fit.poles[mine], fit.participation[:, mine], fit.shapes[:, mine]
-            )
+            near = _joined([near, beside[n]])
+            fit = prune(data, f, fit_shapes(data, near.poles, near.participation))
+            owned[n] = _core(f, fit, band)
+            owned = _without_doubles(owned)
+            beside[n] = _background(f, fit)
             if sweep == _FINAL_SWEEPS - 1:
                 value = significance(data, f, fit)
-                done.append(BandFit(band, f, data, fit, value, mine))
+                mine = np.isin(fit.poles, owned[n].poles)
+                aside = ~plausible(f, fit)
+                done.append(BandFit(band, f, data, fit, value, mine, aside))
     return tuple(done)
 
 
@@ -107,11 +117,20 @@ def _data(survey: Survey, band: Band, far: Roots | None) -> tuple[Floats, BandDa
     return f, band_data(f, values, survey.measured, survey.order)
 
 
-def _core(fit: Fit, band: Band) -> Roots:
+def _roots(fit: Fit) -> Roots:
+    return Roots(fit.poles, fit.participation, fit.shapes)
+
+
+def _core(f: Floats, fit: Fit, band: Band) -> Roots:
+    """Modes of a fit that belong to the core of its band."""
     hz = np.abs(fit.poles) / (2.0 * np.pi)
     reach = np.abs(fit.poles.real) / (2.0 * np.pi) * _SAME
-    keep = (hz >= band.low - reach) & (hz <= band.high + reach)
-    return Roots(fit.poles[keep], fit.participation[:, keep], fit.shapes[:, keep])
+    inside = (hz >= band.low - reach) & (hz <= band.high + reach)
+    return _take(_roots(fit), inside & plausible(f, fit))
+
+
+def _background(f: Floats, fit: Fit) -> Roots:
+    return _take(_roots(fit), ~plausible(f, fit))
 
 
 def _joined(owned: list[Roots]) -> Roots:
