@@ -11,6 +11,8 @@ from .editing.split import Split, split_property
 from .editing.write import write_deck, write_in_place
 from .parameters import FieldRef, ParameterSpec, parse_parameter
 from .read import Deck, EigenRequest, read_deck
+from .results.describe import describe_results
+from .results.modes import read_modes
 from .weight import Weight, weight
 
 __all__ = [
@@ -23,10 +25,12 @@ __all__ = [
     "Weight",
     "add_cards",
     "build_model",
+    "describe_results",
     "free_id",
     "parse_parameter",
     "read_deck",
     "read_deck_text",
+    "read_modes",
     "read_value",
     "set_values",
     "split_property",

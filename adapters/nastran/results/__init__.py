@@ -1,0 +1,1 @@
+"""Results of the user's own Nastran runs."""

@@ -1,0 +1,194 @@
+"""Analysis modes from the user's own Nastran run, in basic axes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ....core.arrays import Floats, Ints, Numbers
+from ....core.dofs import Dofs
+from ....core.errors import InputError
+from ....core.modes import Modes
+from ..grids import Points, read_points
+from ..read import Deck
+from .hdf5 import grids_with_own_systems, read_hdf5_tables
+from .op2 import read_op2_tables
+from .table import ModeTable
+
+Reader = Callable[[Path], tuple[list[ModeTable], tuple[str, ...]]]
+
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_SAME = 1e-5  # relative difference of eigenvalues that superelements share
+
+
+def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None = None) -> Modes:
+    """Read normal or complex modes from an OP2 or a Nastran HDF5 file.
+
+    Frequencies are undamped natural frequencies in Hz, from the eigenvalues. Superelements that
+    list the same modes are put together, each mode once. Of a conjugate pair of complex roots the
+    one with positive imaginary part is taken. Where a file has both real and complex modes of a
+    subcase, the real ones are taken.
+
+    Parameters
+    ----------
+    path : path
+        The file; its kind is told by its contents.
+    deck : Deck, optional
+        The deck of the run: gives the displacement systems (CD), by which the shapes are turned
+        to basic axes. Without it the shapes of an OP2 stay along the axes of the file.
+    subcase : int, optional
+        Which one, where the file has several; default that of the deck.
+
+    Returns
+    -------
+    Modes
+        Dofs: six a grid, grids increasing, then scalar points (component 1).
+
+    Raises
+    ------
+    InputError
+        No modes in the file, several subcases to choose from, grids that the deck lacks, an HDF5
+        file with displacement systems but no deck.
+    """
+    path = Path(path)
+    is_hdf5 = is_hdf5_file(path)
+    reader: Reader = read_hdf5_tables if is_hdf5 else read_op2_tables
+    tables, names = reader(path)
+    if not tables:
+        held = ", ".join(names[:8]) or "nothing"
+        raise InputError(
+            f"{path} holds no eigenvectors (it holds {held}): ask Nastran for DISPLACEMENT in "
+            "a SOL 103 run"
+        )
+    if is_hdf5 and deck is None and len(grids_with_own_systems(path)):
+        grid = grids_with_own_systems(path)[0]
+        raise InputError(
+            f"{path}: grid {grid} has a displacement system of its own: name the deck as well"
+        )
+    chosen = _of_subcase(tables, deck, subcase, path)
+    table = _joined([_without_conjugates(t) for t in chosen], path)
+    return _modes(table, None if deck is None else read_points(deck.bulk), path)
+
+
+def is_hdf5_file(path: Path) -> bool:
+    """Whether a file starts as HDF5 does.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}") from None
+
+
+def _of_subcase(
+    tables: list[ModeTable], deck: Deck | None, subcase: int | None, path: Path
+) -> list[ModeTable]:
+    there = sorted({t.subcase for t in tables})
+    listed = ", ".join(map(str, there))
+    if subcase is not None and subcase not in there:
+        raise InputError(f"{path} has no modes of subcase {subcase}: it has those of {listed}")
+    if subcase is None and deck is not None and deck.case.subcase in there:
+        subcase = deck.case.subcase
+    if subcase is None and len(there) > 1:
+        raise InputError(f"{path} holds modes of subcases {listed}: say which one is meant")
+    chosen = [t for t in tables if t.subcase == (there[0] if subcase is None else subcase)]
+    real = [t for t in chosen if not t.is_complex]
+    return real or chosen
+
+
+def _without_conjugates(table: ModeTable) -> ModeTable:
+    if not table.is_complex:
+        return table
+    keep = table.eigenvalues.imag >= 0.0
+    return table.take(np.arange(len(table.points)), np.flatnonzero(keep))
+
+
+def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
+    """Put the superelements of one eigensolution together, each point once."""
+    tables = sorted(tables, key=lambda t: t.superelement)
+    first = tables[0]
+    known = set(first.points.tolist())
+    parts = [first]
+    for table in tables[1:]:
+        if table.superelement == first.superelement:
+            raise InputError(
+                f"{path} holds modes of subcase {table.subcase} several times (design cycles or "
+                "restarts): give the file of one run"
+            )
+        if not _shares_modes(first, table):
+            raise InputError(
+                f"{path}: superelements {first.superelement} and {table.superelement} hold "
+                "different modes: give the modes of the assembled structure"
+            )
+        new = np.array([p not in known for p in table.points.tolist()], bool)
+        known |= set(table.points.tolist())
+        parts.append(table.take(new, np.arange(len(table.numbers))))
+    return ModeTable(
+        first.subcase,
+        first.superelement,
+        np.concatenate([t.points for t in parts]),
+        np.concatenate([t.scalar for t in parts]),
+        first.numbers,
+        first.eigenvalues,
+        np.concatenate([t.shapes for t in parts]),
+        first.generalized_mass,
+        first.basic,
+    )
+
+
+def _shares_modes(a: ModeTable, b: ModeTable) -> bool:
+    if len(a.eigenvalues) != len(b.eigenvalues) or a.basic != b.basic:
+        return False
+    scale = float(np.abs(a.eigenvalues).max(initial=0.0))
+    return bool(np.allclose(a.eigenvalues, b.eigenvalues, rtol=_SAME, atol=1e-9 * scale))
+
+
+def _modes(table: ModeTable, points: Points | None, path: Path) -> Modes:
+    scalar = table.scalar
+    if points is not None:
+        _require_same_points(table, points, path)
+        scalar = np.isin(table.points, points.scalar_ids)
+    grids, scalars = np.flatnonzero(~scalar), np.flatnonzero(scalar)
+    grids = grids[np.argsort(table.points[grids], kind="stable")]
+    scalars = scalars[np.argsort(table.points[scalars], kind="stable")]
+    ids, shapes = table.points[grids], table.shapes[grids]
+    if points is not None and not table.basic:
+        shapes = _to_basic(ids, shapes, points)
+    n_mode = len(table.numbers)
+    node = np.concatenate([np.repeat(ids, 6), table.points[scalars]])
+    component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalars), int)])
+    return Modes(
+        frequencies_hz=table.frequencies_hz,
+        shapes=np.concatenate([shapes.reshape(-1, n_mode), table.shapes[scalars][:, 0]]),
+        dofs=Dofs(node, component),
+        damping=table.damping,
+        generalized_mass=table.generalized_mass,
+        source=path.name,
+    )
+
+
+def _require_same_points(table: ModeTable, points: Points, path: Path) -> None:
+    unknown = ~np.isin(table.points, np.concatenate([points.ids, points.scalar_ids]))
+    if unknown.any():
+        raise InputError(
+            f"{path} holds point {table.points[unknown][0]}, which the deck does not have: "
+            "it is not a run of this deck"
+        )
+
+
+def _to_basic(ids: Ints, shapes: Numbers, points: Points) -> Floats:
+    """Turn translations and rotations from the displacement systems to the basic axes."""
+    rows = np.searchsorted(points.ids, ids)
+    turned = np.flatnonzero(points.rotated[rows])
+    R = points.directions[rows[turned]]  # rows are the displacement directions
+    result = np.array(shapes)
+    for three in (slice(0, 3), slice(3, 6)):
+        result[turned, three] = np.einsum("gki,gkm->gim", R, shapes[turned, three])
+    return result

@@ -1,0 +1,89 @@
+"""Eigenvectors as a results file holds them: by subcase and superelement, in the file's axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....core.arrays import Floats, Ints, Numbers, frozen, require_finite, require_shape
+
+
+@dataclass(frozen=True, eq=False)
+class ModeTable:
+    """The eigenvectors of one subcase and superelement.
+
+    Parameters
+    ----------
+    subcase, superelement : int
+        Superelement 0 is the residual structure.
+    points : (n_point,) int
+        Grid and scalar points.
+    scalar : (n_point,) bool
+        Which points are scalar: their one displacement stands in the first component.
+    numbers : (n_mode,) int
+        Mode numbers.
+    eigenvalues : (n_mode,) float or complex
+        Real: squared circular frequency [rad^2/s^2]; complex: the root [1/s].
+    shapes : (n_point, 6, n_mode) float or complex
+        Displacements in the axes that `basic` tells.
+    generalized_mass : (n_mode,) float
+        NaN where the file has none.
+    basic : bool
+        Whether the components are along the basic axes; else each grid's displacement system.
+    """
+
+    subcase: int
+    superelement: int
+    points: Ints
+    scalar: Numbers
+    numbers: Ints
+    eigenvalues: Numbers
+    shapes: Numbers
+    generalized_mass: Floats
+    basic: bool
+
+    def __post_init__(self) -> None:
+        n_point, n_mode = len(self.points), len(self.numbers)
+        for name in ("points", "scalar", "numbers", "eigenvalues", "shapes", "generalized_mass"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+        require_shape(self.scalar, (n_point,), "scalar points")
+        require_shape(self.shapes, (n_point, 6, n_mode), "eigenvectors")
+        require_shape(self.eigenvalues, (n_mode,), "eigenvalues")
+        require_shape(self.generalized_mass, (n_mode,), "generalized masses")
+        require_finite(self.eigenvalues, "the eigenvalues")
+        require_finite(self.shapes, "the eigenvectors")
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether the eigenvalues are roots of a complex eigensolution."""
+        return bool(np.iscomplexobj(self.eigenvalues))
+
+    @property
+    def frequencies_hz(self) -> Floats:
+        """Undamped natural frequencies; of a negative eigenvalue that of its size, as printed."""
+        size = np.abs(self.eigenvalues)
+        omega: Floats = size if self.is_complex else np.sqrt(size)
+        return omega / (2.0 * np.pi)
+
+    @property
+    def damping(self) -> Floats:
+        """Fractions of critical; NaN for real modes."""
+        size = np.abs(self.eigenvalues)
+        if not self.is_complex:
+            return np.full(len(size), np.nan)
+        return np.divide(-self.eigenvalues.real, size, out=np.zeros(len(size)), where=size > 0.0)
+
+    def take(self, rows: Numbers, modes: Numbers) -> ModeTable:
+        """Return some points (indices or mask) and modes."""
+        return ModeTable(
+            self.subcase,
+            self.superelement,
+            self.points[rows],
+            self.scalar[rows],
+            self.numbers[modes],
+            self.eigenvalues[modes],
+            self.shapes[rows][:, :, modes],
+            self.generalized_mass[modes],
+            self.basic,
+        )
