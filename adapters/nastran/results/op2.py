@@ -52,6 +52,7 @@ def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
 
 def _read(path: Path) -> Any:
     from cpylog import SimpleLogger
+    from pyNastran.op2.errors import FatalError, FortranMarkerError
     from pyNastran.op2.op2 import OP2
 
     log = SimpleLogger("critical", log_func=lambda *_: None)
@@ -66,8 +67,8 @@ def _read(path: Path) -> Any:
             raise InputError(f"cannot read {path}: {error.strerror}") from None
         raise InputError(f"{path} is not an OP2 file: a binary Nastran file is expected") from None
     except (
-        ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError,
-        NotImplementedError, RuntimeError, SyntaxError, TypeError, ValueError, struct.error,
+        ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RuntimeError,
+        SyntaxError, TypeError, ValueError, struct.error, FatalError, FortranMarkerError,
     ) as error:  # fmt: skip
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise InputError(f"{path} cannot be read as OP2, it may be cut short: {reason}") from None
