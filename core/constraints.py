@@ -220,25 +220,26 @@ def unsupported(
     M = None if mass is None else _blocks(mass, dof)
     absent = dof < 0
     for _ in range(3):
-        size = np.abs(np.einsum("nii->ni", K)).max(axis=1)
-        trial = K / np.where(size > 0.0, size, 1.0)[:, None, None]
+        trial = _unit_size(K) if M is None else _unit_size(K) + _unit_size(M)
         trial[absent[:, :, None] & np.eye(3, dtype=bool)] = 1.0
         values, vectors = np.linalg.eigh(trial)
-        direction = vectors[:, :, 0]
-        singular = (values[:, 0] < ratio) & ~absent.all(axis=1)
-        if M is not None:
-            inertia = np.einsum("ni,nij,nj->n", direction, M, direction)
-            singular &= inertia <= ratio * np.abs(np.einsum("nii->n", M))
-        if not singular.any():
+        which = np.flatnonzero((values[:, 0] < ratio) & ~absent.all(axis=1))
+        if not len(which):
             break
-        which = np.flatnonzero(singular)
-        strongest = np.argmax(np.abs(np.where(absent, 0.0, direction))[which], axis=1)
+        direction = np.where(absent, 0.0, vectors[:, :, 0])[which]
+        strongest = np.argmax(np.abs(direction), axis=1)
         found.append(dof[which, strongest])
         absent[which, strongest] = True
-        K[which, strongest, :] = K[which, :, strongest] = 0.0
-        if M is not None:
-            M[which, strongest, :] = M[which, :, strongest] = 0.0
+        for X in (K, M):
+            if X is not None:
+                X[which, strongest, :] = X[which, :, strongest] = 0.0
     return np.sort(np.concatenate(found))
+
+
+def _unit_size(K: Floats) -> Floats:
+    """Blocks scaled so that the largest diagonal term of each is one."""
+    size = np.abs(np.einsum("nii->ni", K)).max(axis=1, initial=0.0)
+    return np.asarray(K / np.where(size > 0.0, size, 1.0)[:, None, None])
 
 
 def _blocks(matrix: sp.csr_matrix, dof: Ints) -> Floats:

@@ -26,6 +26,7 @@ Sample = Callable[[Floats], Floats]
 
 _SIZES = (5, 9, 17, 33, 65)
 _LARGEST_PRODUCT = 4096
+_MOST_LINES = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +79,7 @@ def expand(sample: Sample, lower: Floats, upper: Floats, tolerance: float) -> Ex
     """
     k = len(lower)
     generator = np.random.default_rng(20240229)
-    others = lower + (upper - lower) * generator.random((1 if k == 1 else 3, k))
-    bases = [_basis(sample, i, lower, upper, others, tolerance) for i in range(k)]
+    bases = [_basis(sample, i, lower, upper, generator, tolerance) for i in range(k)]
     sizes = [len(b) for b in bases]
     if np.prod(sizes) > _LARGEST_PRODUCT:
         raise CheckError(
@@ -111,26 +111,64 @@ def _series(coefficients: Floats) -> tuple[float, ...] | None:
 
 
 def _basis(
-    sample: Sample, i: int, lower: Floats, upper: Floats, others: Floats, tolerance: float
+    sample: Sample,
+    i: int,
+    lower: Floats,
+    upper: Floats,
+    generator: np.random.Generator,
+    tolerance: float,
 ) -> Floats:
-    """Chebyshev coefficients (n_function, n_coefficient) of the functions of parameter i."""
+    """Chebyshev coefficients (n_function, n_coefficient) of the functions of parameter i.
+
+    The other parameters stand at both ends, then at random values, until two more random values
+    bring nothing new.
+    """
+    k = len(lower)
+    others = [0.5 * (lower + upper)] if k == 1 else [lower, upper]
+    lines = [_line(sample, i, lower, upper, other, tolerance) for other in others]
+    while True:
+        degree = max(len(line) for line in lines)
+        basis = _reduce(
+            np.concatenate([_pad(c, degree) for c in lines], axis=1), lower[i], upper[i], tolerance
+        )
+        if k == 1:
+            return basis
+        trials = lower + (upper - lower) * generator.random((2, k))
+        new = [_line(sample, i, lower, upper, trial, tolerance) for trial in trials]
+        degree = max(basis.shape[1], *(len(c) for c in new))
+        Q = np.linalg.qr(_pad(basis.T, degree))[0]
+        left = [np.abs(c - Q @ (Q.T @ c)).sum(axis=0).max() for c in (_pad(c, degree) for c in new)]
+        if max(left) <= 4.0 * tolerance:
+            return basis
+        lines.extend(new)
+        if len(lines) > _MOST_LINES:
+            raise CheckError(
+                "several parameters on the same elements act together in a way that cannot be "
+                "expanded over their bounds: give narrower bounds or join them into one"
+            )
+
+
+def _line(
+    sample: Sample, i: int, lower: Floats, upper: Floats, other: Floats, tolerance: float
+) -> Floats:
+    """Chebyshev coefficients (n_coefficient, n_feature) along parameter i through `other`."""
     for n in _SIZES:
         x = np.cos(np.pi * np.arange(n) / (n - 1))
-        rows = []
-        for other in others:
-            points = np.repeat(other[None, :], n, axis=0)
-            points[:, i] = 0.5 * (lower[i] + upper[i]) + 0.5 * (upper[i] - lower[i]) * x
-            rows.append(sample(points))
-        features = np.concatenate(rows, axis=1)
-        coefficients = np.linalg.solve(chebyshev.chebvander(x, n - 1), features)
+        points = np.repeat(other[None, :], n, axis=0)
+        points[:, i] = 0.5 * (lower[i] + upper[i]) + 0.5 * (upper[i] - lower[i]) * x
+        coefficients = np.linalg.solve(chebyshev.chebvander(x, n - 1), sample(points))
         above = np.flatnonzero(np.abs(coefficients).max(axis=1) > tolerance)
         degree = int(above[-1]) if len(above) else 0
         if degree <= n - 3:
-            return _reduce(coefficients[: degree + 1], lower[i], upper[i], tolerance)
+            return np.asarray(coefficients[: degree + 1])
     raise CheckError(
         f"the matrices depend on a parameter too steeply between {lower[i]:g} and {upper[i]:g} "
         "times its value: give narrower bounds"
     )
+
+
+def _pad(coefficients: Floats, length: int) -> Floats:
+    return np.pad(coefficients, ((0, length - len(coefficients)), (0, 0)))
 
 
 def _reduce(coefficients: Floats, lower: float, upper: float, tolerance: float) -> Floats:

@@ -139,7 +139,10 @@ def _evaluation(group: Group, points: Points, variation: Variation, wtmass: floa
         rotated = points.rotated[grid].any(axis=1)
 
     def evaluate(rows: Ints, p: Floats, wanted: tuple[bool, bool]) -> Matrices:
-        K, M = group.matrices(variation.at(p), rows, wanted)
+        try:
+            K, M = group.matrices(variation.at(p), rows, wanted)
+        except InputError as error:
+            raise InputError(f"{variation.describe(p)}{error}") from None
         for X in (K, M):
             if X is not None and not np.isfinite(X).all():
                 bad = int(group.ids[rows[np.flatnonzero(~np.isfinite(X).all(axis=(1, 2)))[0]]])

@@ -245,6 +245,8 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, (KeyError, TypeError, IndexError, AttributeError)):
         return "the card cannot be read: a field is missing or of the wrong type"
     text = " ".join(line.strip() for line in str(error).splitlines() if line.strip())
+    if "norm(" in text or "coords are colinear" in text.lower():
+        return "its three points coincide or stand in a line"
     text = re.split(r"\s*(?:card\s*=|\bfields?=\[|\['|BDFCard|\[\")", text)[0].strip(" ;:,")
     return text[:160] or "the card cannot be read"
 

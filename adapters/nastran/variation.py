@@ -64,6 +64,16 @@ class Variation:
             self._known[tag] = self._make(p)
         return self._known[tag]
 
+    def describe(self, p: Floats) -> str:
+        """Say which parameters are away from the deck, for messages; "" when none is."""
+        moved = [
+            f"{q.name!r} at {v:g} times its value"
+            for q, v in zip(self.parameters, p, strict=True)
+            if v != 1.0
+        ]
+        plural = "s" if moved[1:] else ""
+        return f"parameter{plural} {', '.join(moved)}: " if moved else ""
+
     def _make(self, p: Floats) -> Bulk:
         reader = CardReader(self.bulk.files)
         changed: dict[Key, Card] = {}
