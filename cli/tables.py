@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -57,7 +58,7 @@ def result_tables(result: Result, width: int = 110) -> Iterator[RenderableType]:
         parameters_table(result),
         history_table(result),
     )
-    yield from (t for t in shown if t is not None)
+    yield from (Padding(t, (1, 0, 0, 0), expand=False) for t in shown if t is not None)
 
 
 def pairs_table(result: Result) -> Table | None:
@@ -130,7 +131,7 @@ def mac_table(result: Result, width: int = 110) -> RenderableType | None:
         for value in row:
             line.append(*_shaded(float(value), cell, shades))
         lines.append(line)
-    return Group(*lines, Text(""))
+    return Group(*lines)
 
 
 def _shaded(value: float, cell: int, shades: list[str]) -> tuple[str, str]:

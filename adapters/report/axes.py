@@ -59,7 +59,7 @@ class Plot:
             main = emphasised is not None and math.isclose(v, emphasised, abs_tol=1e-12)
             d = f"M{short(self.left)} {short(self.y(v))}h{short(self.width)}"
             rules += tag("path", d=d, class_="base" if main else None)
-            rules += svg_text(self.left - 6, self.y(v) + 3.5, general(v, 3), text_anchor="end")
+            rules += svg_text(self.left - 6, self.y(v) + 3.5, general(v, 5), text_anchor="end")
         return tag("g", rules, class_="rules")
 
     def _scaled(self, value: float) -> float:

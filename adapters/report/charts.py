@@ -30,6 +30,7 @@ def lines(
     reference: float | None = None,
     ordered: bool = False,
     log: bool = False,
+    breaks: Sequence[tuple[float, str]] = (),
     width: int = 510,
     height: int = 270,
 ) -> str:
@@ -50,6 +51,8 @@ def lines(
         Colour by the order of the series (modes by frequency) instead of by name.
     log : bool
         Logarithmic values; all must be above zero.
+    breaks : sequence of (x, label)
+        Where something new begins, such as a stage: a thin upright line with its label.
     """
     drawn = [s for s in series if any(v is not None for v in s.values)]
     known = [v for s in drawn for v in s.values if v is not None]
@@ -61,6 +64,10 @@ def lines(
     room = min(150, 14 + 6.2 * max(len(s.name) for s in drawn)) if len(drawn) > 1 else 14
     plot = Plot(48, 8, width - 48 - room, height - 50, min(x), max(x), tuple(y_ticks), log)
     body = plot.frame(emphasised=reference) + _iterations(plot, x)
+    for where, label in breaks:
+        d = f"M{short(plot.x(where))} {plot.top}v{short(plot.height)}"
+        body += tag("path", class_="break", d=d)
+        body += svg_text(plot.x(where) + 4, plot.top + 9, label)
     colours = [_colour(k, len(drawn), ordered) for k in range(len(drawn))]
     for k, s in enumerate(drawn):
         body += _line(plot, x, s, k, colours[k], len(drawn), ordered)

@@ -25,11 +25,15 @@ def signed(value: object, digits: int) -> str:
 
 
 def hz(value: object) -> str:
-    """Return a frequency: five figures or two decimals, whichever is fewer characters."""
+    """Return a frequency, two decimals where it is ordinary; a rigid-body mode's is 0.000."""
     v = number(value)
     if v is None:
         return MISSING
-    return f"{v:.1f}" if abs(v) >= 1000.0 else f"{v:.2f}" if abs(v) >= 1.0 else f"{v:.4g}"
+    size = abs(v)
+    for least, digits in ((1000.0, 1), (1.0, 2), (0.1, 4), (0.001, 5)):
+        if size >= least:
+            return f"{v:.{digits}f}"
+    return "0.000"
 
 
 def percent(value: object, digits: int = 0) -> str:
@@ -44,6 +48,8 @@ def general(value: object, digits: int = 4) -> str:
     if v is None:
         return MISSING if value is None or isinstance(value, float) else str(value)
     text = f"{v:.{digits}g}"
+    if "e" in text and 1.0 <= abs(v) < 1e6:
+        text = f"{v:.0f}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa}e{int(exponent)}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib.resources import files
+from pathlib import PurePath
 
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
@@ -51,7 +52,7 @@ def make_report(
     """
     shown = [s for s in _sections(result, diff, geometry, sensors_xyz) if s is not None]
     kind = _VERBS.get(reading.verb(result), "Run")
-    name = title or str(result.get("title") or result.get("deck") or "")
+    name = title or _compared(result)
     kicker = tag(
         "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(result), class_="kicker"
     )
@@ -61,8 +62,8 @@ def make_report(
     body = tag(
         "main",
         kicker,
-        tag("h1", esc(first)),
-        tag("p", esc(" ".join(rest)), class_="lede") if rest else "",
+        tag("h1", _unbroken(first)),
+        tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
         _strip(result),
         _warnings(reading.texts(result, "warnings") + _nested_warnings(result)),
         links if len(shown) > 2 else "",
@@ -80,6 +81,19 @@ def make_report(
         f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}{tip}{script}</body>'
         "</html>\n"
     )
+
+
+def _unbroken(text: str) -> str:
+    """Escape; a number stays on the line of its percent sign."""
+    return esc(text).replace(" %", "&nbsp;%")
+
+
+def _compared(result: Result) -> str:
+    """Name the deck and the test by their file names."""
+    deck = result.get("input_deck") or result.get("deck")
+    sides = ([str(deck)] if deck else [], reading.texts(result, "test"))
+    named = [", ".join(PurePath(p).name for p in paths) for paths in sides if paths]
+    return " against ".join(named)
 
 
 def _sections(

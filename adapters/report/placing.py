@@ -47,7 +47,7 @@ def sensors(
         if node not in places:
             continue
         own = [s for s in rows if s["node"] == node]
-        axes = [a for s in own if (a := direction(s.get("direction"))) is not None]
+        axes = [a for s in own if (a := _axis(s)) is not None]
         said = ", ".join(dict.fromkeys(_direction_text(s.get("direction")) for s in own))
         note = f"sensor {node}: {said}" if said else f"sensor {node}"
         if own[0].get("nearest_grid") is not None:
@@ -128,6 +128,11 @@ def direction(value: object) -> Floats | None:
     axis = np.array(vector, dtype=float)
     length = float(np.linalg.norm(axis))
     return axis / length if length > 0.0 else None
+
+
+def _axis(row: Result) -> Floats | None:
+    told = direction(row.get("axis"))
+    return direction(row.get("direction")) if told is None else told
 
 
 def _direction_text(value: object) -> str:

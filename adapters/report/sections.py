@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ...core.arrays import Floats
@@ -131,8 +133,7 @@ def parameters(result: Result) -> Section | None:
     table = tables.parameters(result)
     body = html_table(table) if table else ""
     steps = reading.records(result, "history")
-    x = [reading.number(h.get("iteration")) for h in steps]
-    at = [float(k) if v is None else v for k, v in enumerate(x)]
+    at, breaks = _iterations(steps)
     named = [str(p.get("name", k + 1)) for k, p in enumerate(reading.records(result, "parameters"))]
     objective = [reading.number(h.get("objective")) for h in steps]
     known = [v for v in objective if v is not None]
@@ -142,13 +143,17 @@ def parameters(result: Result) -> Section | None:
         "div",
         charts.lines(
             "Factors on the deck's values", at, _series([h.get("factors") for h in steps], named),
-            reference=1.0,
+            reference=1.0, breaks=breaks,
         ),
-        charts.lines("Objective", at, [charts.Series("objective", tuple(objective))], log=steep),
+        charts.lines(
+            "Objective", at, [charts.Series("objective", tuple(objective))], log=steep,
+            breaks=breaks,
+        ),
         charts.lines(
             "Frequency deviation of each pair", at,
             [charts.Series(_pair_name(result, s.name), s.values) for s in deviations],
             unit="%", reference=0.0, ordered=True, width=1056, height=330,
+            breaks=breaks,
         ),
         class_="row",
     )  # fmt: skip
@@ -172,21 +177,39 @@ def _series(steps: list[object], names: list[str]) -> list[charts.Series]:
 
 
 def _pair_name(result: Result, name: str) -> str:
-    """Deviations come in the order of the pairs or by test mode number; say the frequency."""
-    known = reading.mode_hz(reading.final(result), "test")
-    modes = sorted(reading.pair_by_test(reading.final(result)))
-    histories = reading.records(result, "history")
-    keyed = any(isinstance(h.get("deviations_percent"), dict) for h in histories)
-    width = max((len(reading.numbers(h.get("deviations_percent"))) for h in histories), default=0)
+    """Name a line of deviations, which come by test mode or by pair, with its frequency."""
+    final = reading.final(result)
+    known, every = reading.mode_hz(final, "test"), reading.test_modes(final)
+    paired = sorted(reading.pair_by_test(final))
+    histories = [h.get("deviations_percent") for h in reading.records(result, "history")]
     if not name.isdigit():
         return name
-    if keyed:
+    width = max((len(reading.numbers(h)) for h in histories), default=0)
+    if any(isinstance(h, dict) for h in histories):
         mode = int(name)
-    elif width == len(modes):
-        mode = modes[int(name) - 1]
+    elif width in (len(every), len(paired)):
+        mode = (every if width == len(every) else paired)[int(name) - 1]
     else:
         return f"pair {name}"
     return f"{mode} · {hz(known[mode])} Hz" if mode in known else f"test {mode}"
+
+
+def _iterations(steps: list[Result]) -> tuple[list[float], list[tuple[float, str]]]:
+    """Return the x of each step, and where a new stage begins.
+
+    Iterations that start again with every stage are counted through.
+    """
+    told = [reading.number(h.get("iteration")) for h in steps]
+    x = [float(k) if v is None else v for k, v in enumerate(told)]
+    if any(b <= a for a, b in pairwise(x)):
+        x = [float(k) for k in range(len(steps))]
+    stages = [reading.number(h.get("stage")) for h in steps]
+    breaks = [
+        (x[k], f"stage {general(stages[k])}")
+        for k in range(1, len(x))
+        if stages[k] is not None and stages[k] != stages[k - 1]
+    ]
+    return x, breaks
 
 
 def alignment(

@@ -122,8 +122,8 @@ def test_a_ragged_matrix_is_none(values: object) -> None:
 
 def test_numbers_are_written_as_engineers_do() -> None:
     assert [signed(v, 2) for v in (1.5, -1.5, 0.0, -0.001)] == ["+1.50", "−1.50", "0.00", "0.00"]
-    assert [general(v) for v in (1e-7, 1234567.0, 0.25, 3, "x")] == [
-        "1e−7", "1.235e6", "0.25", "3", "x",
+    assert [general(v) for v in (1e-7, 1234567.0, 13759.6, 0.25, 3, "x")] == [
+        "1e−7", "1.235e6", "13760", "0.25", "3", "x",
     ]  # fmt: skip
     assert [hz(v) for v in (0.1234, 33.9, 1234.56)] == ["0.1234", "33.90", "1234.6"]
     assert listed([1, 2]) == "1 and 2"
