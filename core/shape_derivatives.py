@@ -1,0 +1,161 @@
+"""Derivatives of mode shapes, exact outside the known modes by preconditioned solves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Floats, Ints
+from .eigen import Eigensolution
+from .errors import InputError
+from .factor import Factorisation, factorise
+from .model import Model
+from .pencil import Pencil
+
+_ITERATIONS = 80
+_OWN_FACTOR = 8
+"""Parameters from which on a factor next to the cluster costs less than it saves."""
+
+_BLOCK = 64
+
+REPEATED = 1e-6
+"""Eigenvalues this close, relatively, have no modes of their own."""
+
+
+class ShapeDerivatives:
+    """Derivatives of the mass-normalised shapes of clusters of one solution.
+
+    Parameters
+    ----------
+    model, p, solution
+        As in `sensitivity.sensitivities`.
+    tolerance : float
+        Relative accuracy, in energy, of the part outside all modes of the solution.
+
+    Notes
+    -----
+    Modal sum over the other known modes; what they leave lies in their M-orthogonal complement,
+    where K - lambda M is positive definite: conjugate gradients preconditioned by a factor of
+    K - s M, all parameters and modes of a cluster in one block.
+    """
+
+    def __init__(self, model: Model, p: Floats, solution: Eigensolution, tolerance: float) -> None:
+        self._pencil = Pencil.of(model, p)
+        self._solution, self._tolerance = solution, tolerance
+        self._X = solution.vectors
+        self._MX = np.asarray(self._pencil.M @ solution.vectors)
+        self._near: Factorisation | None = None
+        self._base: Factorisation | None = solution.factor
+
+    def of(self, cluster: Ints, changes: Sequence[tuple[sp.csr_matrix, sp.csr_matrix]]) -> Floats:
+        """Differentiate a cluster as a subspace, without rotation within.
+
+        Parameters
+        ----------
+        cluster : (n_cluster,) int
+        changes : sequence of (K', M')
+            Derivative matrices by each parameter.
+
+        Returns
+        -------
+        (n_free, n_cluster, n_parameter) float
+
+        Raises
+        ------
+        InputError
+            The modes above the last of the solution are too close to the cluster.
+        """
+        X, lam = self._X, self._solution.eigenvalues
+        Xc, lam_c = X[:, cluster], lam[cluster]
+        b = np.empty((len(X), len(cluster), len(changes)))
+        within = np.empty((len(cluster), len(cluster), len(changes)))
+        for i, (dK, dM) in enumerate(changes):
+            moved = dM @ Xc
+            b[:, :, i] = moved * lam_c - dK @ Xc
+            within[:, :, i] = -0.5 * (Xc.T @ moved)
+        columns = np.repeat(lam_c, len(changes))
+        b = b.reshape(len(X), -1)
+        along = X.T @ b
+        others = np.setdiff1d(np.arange(len(lam)), cluster)
+        z = self._outside(cluster, b - self._MX @ along, columns)
+        z += X[:, others] @ (along[others] / (lam[others, None] - columns))
+        z += Xc @ within.reshape(len(cluster), -1)
+        return z.reshape(len(X), len(cluster), len(changes))
+
+    def _outside(self, cluster: Ints, r: Floats, lam: Floats) -> Floats:
+        """(K - lam M)^-1 r on the complement of the known modes; one lam a column."""
+        factor, s = self._factor(cluster, r.shape[1])
+        z = np.zeros_like(r)
+        for first in range(0, r.shape[1], _BLOCK):
+            part = slice(first, first + _BLOCK)
+            z[:, part] = self._conjugate_gradients(factor, r[:, part], lam[part] - s, cluster)
+        distance = np.einsum("ij,ij->j", z, r)
+        size = np.einsum("ij,ij->j", z, self._pencil.M @ z)
+        if (distance < REPEATED * np.abs(lam) * size).any():
+            raise _too_close(cluster)
+        return z
+
+    def _conjugate_gradients(
+        self, factor: Factorisation, r: Floats, mu: Floats, cluster: Ints
+    ) -> Floats:
+        """Solve (A - mu M) z = r with the factor of A as preconditioner, column by column."""
+        M, X, MX = self._pencil.M, self._X, self._MX
+        z = np.zeros_like(r)
+        d = np.zeros_like(r)
+        Ad = np.zeros_like(r)
+        rho = np.ones(r.shape[1])
+        goal = np.zeros(r.shape[1])
+        for k in range(_ITERATIONS):
+            s = factor.solve(r)
+            s -= X @ (MX.T @ s)
+            new = np.maximum(np.einsum("ij,ij->j", r, s), 0.0)
+            if k == 0:
+                goal = self._tolerance**2 * new
+            active = new > goal
+            if not active.any():
+                return z
+            beta = np.where(active & (k > 0), new / np.where(rho > 0.0, rho, 1.0), 0.0)
+            d = s + beta * d
+            Ad = r + beta * Ad
+            Bd = Ad - M @ (mu * d)
+            Bd -= MX @ (X.T @ Bd)
+            bend = np.einsum("ij,ij->j", d, Bd)
+            if (bend[active] <= 0.0).any():
+                break
+            alpha = np.where(active, new / np.where(active, bend, 1.0), 0.0)
+            z += alpha * d
+            r = r - alpha * Bd
+            rho = new
+        raise _too_close(cluster)
+
+    def _factor(self, cluster: Ints, columns: int) -> tuple[Factorisation, float]:
+        """Return a factor of K - s M and s: next to the cluster where many solves follow."""
+        solution = self._solution
+        if columns < _OWN_FACTOR * len(cluster):
+            if self._base is None:
+                self._base = factorise(self._pencil.shifted(solution.sigma), True)
+            return self._base, solution.sigma
+        lam = solution.eigenvalues
+        low, high = int(cluster.min()), int(cluster.max())
+        below = lam[low] - (lam[low - 1] if low else 2.0 * solution.sigma)
+        above = lam[high + 1] - lam[high] if high + 1 < len(lam) else 0.0
+        reach = 0.01 * (lam[high] - solution.sigma)
+        s = (
+            lam[high] + min(above / 2.0, reach)
+            if above > below
+            else lam[low] - min(below / 2.0, reach)
+        )
+        if self._near is None:
+            self._near = factorise(self._pencil.shifted(s), False)
+        else:
+            self._near.refactorise(self._pencil.shifted(s))
+        return self._near, float(s)
+
+
+def _too_close(cluster: Ints) -> InputError:
+    return InputError(
+        f"mode {int(cluster.max()) + 1} cannot be told from the modes above the last one "
+        "solved: solve for more modes"
+    )
