@@ -13,7 +13,7 @@ _RIDGE = 1e-12  # relative, on the normal matrices of the shapes
 _STUCK = 1e8  # of the damping of the iteration: no step helps any more
 _FACTOR = 1.5  # largest change of the logarithm of a decay rate in one step
 _LEAST_DAMPING = 1e-6
-_SMALL = 1e-10  # relative decrease of the misfit that ends the iteration
+_SMALL = 1e-9  # relative decrease of the misfit that ends the iteration
 
 
 @dataclass(frozen=True, eq=False)

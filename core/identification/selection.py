@@ -16,6 +16,7 @@ _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
 _ROUNDS = 12  # of trying a root where the residual still shows one
+_TRIAL_ITERATIONS = 10  # after which a root that explains too little is given up
 _AROUND = 4  # lines around a failed trial that are not tried again
 _BACKGROUND = 2  # roots beside or beneath the modes of a band, which a fit may use
 _START_DAMPING = (0.001, 0.003, 0.01, 0.03)
@@ -177,7 +178,8 @@ def plausible(f: Floats, fit: Fit) -> Numbers:
     magnitude = np.abs(fit.poles)
     hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
     inside = (hz >= f[0]) & (hz <= f[-1])
-    return inside & (damping < MAX_DAMPING) & (2.0 * damping * hz < _WIDEST * (f[-1] - f[0]))
+    narrow = 2.0 * damping * hz < _WIDEST * (f[-1] - f[0])
+    return np.asarray(inside & (damping < MAX_DAMPING) & narrow)
 
 
 def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit | None:
@@ -191,7 +193,11 @@ def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit | Non
     if significance(data, f, grown)[-1] < 0.5:
         return None
     stood = significance(data, f, fit) >= 1.0
-    grown = refine(data, grown.poles, grown.participation)
+    grown = refine(data, grown.poles, grown.participation, max_iterations=_TRIAL_ITERATIONS)
+    if not grown.converged:
+        if significance(data, f, grown)[-1] < 0.8:
+            return None
+        grown = refine(data, grown.poles, grown.participation)
     stands = significance(data, f, grown) >= 1.0
     background = np.count_nonzero(~plausible(f, grown))
     if background > max(_BACKGROUND, np.count_nonzero(~plausible(f, fit))):

@@ -86,7 +86,8 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     rows, columns = measured.any(axis=1), measured.any(axis=0)
     rows, columns = _one_component(measured, rows, columns, responses, references, warnings)
     values, measured = values[rows][:, columns], measured[rows][:, columns]
-    responses, references = responses.take(rows), references.take(columns)
+    responses = responses.take(np.flatnonzero(rows))
+    references = references.take(np.flatnonzero(columns))
     roving = len(references) > len(responses)
     if roving:
         values, measured = np.ascontiguousarray(values.transpose(1, 0, 2)), measured.T
@@ -207,10 +208,10 @@ def _one_component(
             best = out_set, in_set
     lost = rows & ~best[0]
     if lost.any():
-        labels = ", ".join(responses.take(lost).labels[:5])
+        labels = ", ".join(responses.take(np.flatnonzero(lost)).labels[:5])
         warnings.append(
             f"{np.count_nonzero(lost)} response(s) ({labels}{', ...' if lost.sum() > 5 else ''}) "
-            f"share no reference with the others ({', '.join(references.take(best[1]).labels)}): "
+            f"share no reference with the others ({', '.join(references.take(np.flatnonzero(best[1])).labels)}): "
             "their scale is unknown, left out"
         )
     return best

@@ -168,7 +168,7 @@ def _correlation(left: Floats, level: Floats, variances: list[Floats], parts: li
             break
         rho.append(value)
     taper = 1.0 - np.arange(len(rho)) / (len(rho) + 1.0)
-    return np.array(rho) * np.maximum(taper, 0.5)
+    return np.asarray(np.array(rho) * np.maximum(taper, 0.5))
 
 
 def _weighted_gram(F: Floats, level: Floats, rho: Floats) -> Floats:

@@ -1,0 +1,178 @@
+"""What an identification gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from ..dofs import Dofs
+from ..frfs import Frfs
+from ..modes import Modes
+from .bands import Band
+from .stabilisation import Chart
+from .synthesis import modal_response
+
+
+@dataclass(frozen=True, eq=False)
+class Indicator:
+    """The complex mode indicator function of the survey.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+    values : (n_line, n_value) float
+        Singular values of the response matrix, largest first, in the units of the responses.
+    """
+
+    frequencies_hz: Floats
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Background:
+    """What the modes do not explain of one band.
+
+    Parameters
+    ----------
+    band : Band
+    residuals : (4, n_output, n_input) complex
+        Factors of (jω)^(d−4), (jω)^(d−2), (jω)^d, (jω)^(d+2), d the derivative order of the
+        quantity: the second and third are the mass and the stiffness line.
+    poles : (n_root,) complex
+        Roots beside or beneath the modes that the fit used, rad/s.
+    shapes : (n_output, n_root) complex
+    participation : (n_input, n_root) complex
+    """
+
+    band: Band
+    residuals: Numbers
+    poles: Numbers
+    shapes: Numbers
+    participation: Numbers
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """Modes of a test with their uncertainty and quality, by rising frequency.
+
+    Parameters
+    ----------
+    modes : Modes
+        Complex shapes, turned to their principal phase, largest component of magnitude 1.
+        `generalized_mass` as in `real_modes`.
+    real_modes : Modes
+        Normalised real shapes, largest component 1; `generalized_mass` in the units of
+        force over the response's acceleration where a driving point tells it, NaN elsewhere.
+    frequency_std : (n_mode,) float
+        Standard error of the frequency [Hz].
+    damping_std : (n_mode,) float
+        Standard error of the damping ratio.
+    shape_std : (n_dof, n_mode) float
+        Standard error of the real shapes, an error of their common scale left out.
+    participation : (n_reference, n_mode) complex
+        H = (jω)^d Σ ψ lᵀ/(jω − λ) + conj. with ψ the complex shapes.
+    references : Dofs
+        Where the structure was driven (or, for a roving hammer, observed).
+    mpc : (n_mode,) float
+        Modal phase collinearity, 0..1.
+    mpd : (n_mode,) float
+        Mean phase deviation [degrees].
+    mode_indicator : (n_mode,) float
+        1 − multivariate mode indicator at the frequency: 1 for a normal mode well excited.
+    quality : (n_mode,) float
+        Squared correlation of measured and synthesised functions around the mode, 0..1.
+    significance : (n_mode,) float
+        What the mode explains over what noise would; all are above 1.
+    close_pair_possible : (n_mode,) bool
+        Whether a second root may hide behind this one, unseen by the references.
+    remarks : tuple of str
+        One per mode; empty for a mode without reproach.
+    bands : tuple of Background
+        Bands fitted, with their residual terms.
+    chart : Chart
+        Stabilisation diagram.
+    cmif : Indicator
+    quantity : str
+        Of the functions fitted.
+    warnings : tuple of str
+    """
+
+    modes: Modes
+    real_modes: Modes
+    frequency_std: Floats
+    damping_std: Floats
+    shape_std: Floats
+    participation: Numbers
+    references: Dofs
+    mpc: Floats
+    mpd: Floats
+    mode_indicator: Floats
+    quality: Floats
+    significance: Floats
+    close_pair_possible: Numbers
+    remarks: tuple[str, ...]
+    bands: tuple[Background, ...]
+    chart: Chart
+    cmif: Indicator
+    quantity: str
+    warnings: tuple[str, ...]
+
+    @property
+    def poles(self) -> Numbers:
+        """Poles λ of the modes, (n_mode,) complex [rad/s]."""
+        omega = 2.0 * np.pi * self.modes.frequencies_hz
+        zeta = self.modes.damping
+        return np.asarray(omega * (-zeta + 1j * np.sqrt(np.maximum(1.0 - zeta**2, 0.0))))
+
+    def synthesised(self, frequencies_hz: Floats | None = None) -> Frfs:
+        """Return the functions that modes and residual terms make, at any lines.
+
+        Parameters
+        ----------
+        frequencies_hz : (n_line,) float, optional
+            Default: the measured lines. Outside the fitted range the nearest band's residual
+            terms are continued.
+        """
+        f = self.cmif.frequencies_hz if frequencies_hz is None else np.asarray(frequencies_hz)
+        values = synthesise(
+            f, self.poles, self.modes.shapes, self.participation, self.bands, self.quantity
+        )
+        source = f"synthesised, {self.modes.source}"
+        return Frfs(f, self.modes.dofs, self.references, values, self.quantity, source)
+
+
+def synthesise(
+    f: Floats,
+    poles: Numbers,
+    shapes: Numbers,
+    participation: Numbers,
+    bands: tuple[Background, ...],
+    quantity: str,
+) -> Numbers:
+    """Functions of modes and, band by band, of residual terms; see `Identification`."""
+    values = modal_response(f, poles, shapes, participation, quantity)
+    inner = np.array([b.band.high for b in bands[:-1]])
+    number = np.searchsorted(inner, f, side="left")
+    for n, b in enumerate(bands):
+        here = np.flatnonzero(number == n)
+        if len(here):
+            values[:, :, here] += background_response(f[here], b, quantity)
+    return values
+
+
+def background_response(f: Floats, b: Background, quantity: str) -> Numbers:
+    """Functions of the residual terms and background roots of a band."""
+    terms = residual_terms(f, quantity)
+    values = np.tensordot(b.residuals.transpose(1, 2, 0), terms, axes=1)
+    if len(b.poles):
+        values = values + modal_response(f, b.poles, b.shapes, b.participation, quantity)
+    return np.asarray(values)
+
+
+def residual_terms(f: Floats, quantity: str) -> Numbers:
+    """Lines of the four residual terms, (4, n_line) complex."""
+    s = 2j * np.pi * np.asarray(f, dtype=float)
+    d = ("displacement", "velocity", "acceleration").index(quantity)
+    return np.stack([s ** (d - 4), s ** (d - 2), s**d, s ** (d + 2)])

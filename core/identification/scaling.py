@@ -1,0 +1,141 @@
+"""Driving points: modal mass, reciprocity, references that stand under each other's name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from ..dofs import Dofs
+
+_MISALIGNED = 0.03  # largest part of a reference direction that the responses do not span
+_IN_PHASE = np.cos(np.radians(45.0))
+_UNRECIPROCAL = 0.3  # relative difference of H_ij and H_ji above which scaling is withheld
+_MOST_PERMUTED = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Scaling:
+    """Modal masses and what was found on the way.
+
+    Parameters
+    ----------
+    modal_mass : (n_mode,) float
+        For the shapes as given; NaN where no driving point tells.
+    warnings : tuple of str
+    """
+
+    modal_mass: Floats
+    warnings: tuple[str, ...]
+
+
+def driving_points(outputs: Dofs, inputs: Dofs) -> Floats:
+    """Express each input direction in the outputs measured at its node.
+
+    Parameters
+    ----------
+    outputs, inputs : Dofs
+
+    Returns
+    -------
+    (n_input, n_output) float
+        Rows of factors, NaN where the outputs at the node do not span the input direction.
+        Translations are not mixed with rotations. Outputs listed twice share the factor.
+    """
+    factors = np.full((len(inputs), len(outputs)), np.nan)
+    for i in range(len(inputs)):
+        rotation = inputs.component[i] > 3
+        rows = np.flatnonzero(
+            (outputs.node == inputs.node[i]) & ((outputs.component > 3) == rotation)
+        )
+        if not len(rows):
+            continue
+        axes = outputs.axis[rows].T
+        c = np.linalg.lstsq(axes, inputs.axis[i], rcond=1e-6)[0]
+        if np.linalg.norm(axes @ c - inputs.axis[i]) <= _MISALIGNED:
+            factors[i] = 0.0
+            factors[i, rows] = c
+    return factors
+
+
+def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats) -> Scaling:
+    """Find modal masses from the driving points, after checking them by reciprocity.
+
+    A normal mode has l = φ/(2 j ω_d m) at the point it is driven at; the modal mass m is the
+    least-squares one over all driving points.
+
+    Parameters
+    ----------
+    poles : (n_mode,) complex
+    shapes : (n_output, n_mode) complex
+        Turned to their principal phase, in physical units.
+    participation : (n_input, n_mode) complex
+        Physical units (shape times participation is displacement per force).
+    points : (n_input, n_output) float
+        From `driving_points`.
+
+    References
+    ----------
+    Ewins (2000), Modal Testing, 2nd edition, section 2.7.
+    """
+    n_mode = len(poles)
+    none = np.full(n_mode, np.nan)
+    driven = np.flatnonzero(np.isfinite(points).all(axis=1))
+    if not len(driven):
+        return Scaling(none, ("no reference has a response at its own point and direction (no "
+                              "driving point): modal masses are unknown",))  # fmt: skip
+    at = points[driven] @ shapes
+    part = participation[driven]
+    level = np.abs(poles) ** 2 / np.abs(poles.real)
+    exchanged, now, then = _exchange(at, part, level)
+    if exchanged:
+        names = ", ".join(str(int(driven[k]) + 1) for k in exchanged)
+        return Scaling(none, (
+            f"references number {names} seem to stand under each other's name: reciprocity fails "
+            f"as they are ({100 * now:.0f} % difference) and holds when they are exchanged "
+            f"({100 * then:.0f} %); modal masses are withheld",))  # fmt: skip
+    if now > _UNRECIPROCAL:
+        return Scaling(none, (f"the functions between the driving points differ by {100 * now:.0f} "
+                              "% from their reciprocal: modal masses are withheld",))  # fmt: skip
+    q = np.sum(at.conj() * part, axis=0) / np.maximum(np.sum(np.abs(at) ** 2, axis=0), 1e-300)
+    inverse_mass = 2j * poles.imag * q
+    sound = inverse_mass.real > _IN_PHASE * np.abs(inverse_mass)
+    reversed_sign = inverse_mass.real < -_IN_PHASE * np.abs(inverse_mass)
+    warnings = []
+    if np.count_nonzero(reversed_sign) > 0.5 * n_mode:
+        warnings.append("the driving-point functions have the wrong sign (force or response "
+                        "reversed): modal masses are withheld")  # fmt: skip
+    elif not sound.all():
+        warnings.append(f"{np.count_nonzero(~sound)} mode(s) have no sound modal mass: they hardly "
+                        "move the driving points")  # fmt: skip
+    mass = np.where(sound, np.abs(inverse_mass) ** 2, np.nan)
+    return Scaling(np.asarray(inverse_mass.real / mass), tuple(warnings))
+
+
+def _exchange(at: Numbers, part: Numbers, level: Floats) -> tuple[list[int], float, float]:
+    """Which driven references are exchanged, and the reciprocity error before and after."""
+    n = len(at)
+    identity = tuple(range(n))
+    now = _reciprocity_error(at, part, level)
+    if n < 2 or n > _MOST_PERMUTED:
+        return [], now, now
+    best, then = identity, now
+    for order in permutations(range(n)):
+        error = _reciprocity_error(at, part[list(order)], level)
+        if error < then:
+            best, then = order, error
+    moved = [k for k in range(n) if best[k] != k]
+    if now > _UNRECIPROCAL and then < 0.25 * now:
+        return moved, now, then
+    return [], now, now
+
+
+def _reciprocity_error(at: Numbers, part: Numbers, level: Floats) -> float:
+    """Relative difference of the residues between pairs of driving points and their reciprocal."""
+    a = at[:, None, :] * part[None, :, :] * level
+    upper = np.triu_indices(len(at), 1)
+    there, back = a[upper], a.transpose(1, 0, 2)[upper]
+    size = float(np.sum(np.abs(there) ** 2) + np.sum(np.abs(back) ** 2))
+    return float(np.sqrt(np.sum(np.abs(there - back) ** 2) / size)) if size > 0.0 else 0.0
