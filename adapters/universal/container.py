@@ -17,7 +17,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from .content import Skipped
-from .layout58 import HEADER_LINES, REALS, columns, records
+from .layout58 import HEADER_LINES, REALS, columns, form, records
 
 _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")
@@ -182,11 +182,10 @@ class _Scan:
         """End of a 58b and start of what follows, where the size of its block leads to a -1."""
         if len(header) < 4:
             return None
-        at, form = self._form(begin, header[2])
-        sizes = [header[3]]
-        if len(form) >= 3:  # the announced size is wrong in some files: try what the points need
-            sizes += [form[1] * sum(r) for r in records(form[0], form[2] != 0)]
-        for size in sizes:
+        at, shape = self._form(begin, header[2])
+        # The announced size is wrong in some files: what the points need is tried as well.
+        sizes = [shape[1] * sum(r) for r in records(shape[0], shape[2] != 0)] if shape else []
+        for size in (header[3], *sizes):
             closing = self._closing(at + size)
             if closing is not None:
                 if not self.exact_lines:
@@ -197,11 +196,11 @@ class _Scan:
 
     def _past_text(self, begin: int) -> tuple[int, int] | None:
         """End of an ASCII 58 and start of what follows, where its lines have all one length."""
-        at, form = self._form(begin, HEADER_LINES)
-        if len(form) < 3 or form[0] not in REALS or form[1] < 1:
+        at, shape = self._form(begin, HEADER_LINES)
+        if not shape or shape[0] not in REALS or shape[1] < 1:
             return None
-        width = columns(form[0], form[2] != 0)
-        n_value = form[1] * (REALS[form[0]] + (form[2] == 0))
+        width = columns(shape[0], shape[2] != 0)
+        n_value = shape[1] * (REALS[shape[0]] + (shape[2] == 0))
         pitch = self._after_line(at) - at
         full, rest = divmod(n_value, len(width))
         end = at + full * pitch
@@ -218,21 +217,21 @@ class _Scan:
 
     def _form(self, begin: int, n_line: int) -> tuple[int, tuple[int, ...]]:
         """Offset behind the header of a function, and the integers of its seventh line."""
-        at, form = begin, tuple[int, ...]()
+        at, found = begin, tuple[int, ...]()
         for k in range(min(n_line, HEADER_LINES)):
             start, at = at, self._after_line(at)
-            form = _integers(self.data[start:at][:30]) if k == 6 else form
-        return at, form
+            found = form(self.data[start:at]) if k == 6 else found
+        return at, found
 
     def _closing(self, at: int) -> tuple[int, int] | None:
         """Start of a -1 that follows `at` at once or on the next line, and of the line after."""
         if at > len(self.data):
             return None
         tail = self.data[at : at + 200]
-        blanks = len(tail) - len(tail.lstrip(b" \t\r\n"))
-        if not tail[blanks:].startswith(b"-1"):
+        skipped = len(tail) - len(tail.lstrip(b"\r\n"))
+        if not tail[skipped:].startswith(self._mark):
             return None
-        after = self._blank(at + blanks + 2, len(self.data))
+        after = self._blank(at + skipped + len(self._mark), len(self.data))
         return None if after is None else (at, after)
 
     def _delimiter(self, at: int) -> tuple[int, int] | None:

@@ -17,7 +17,7 @@ from ...core.arrays import Floats, Ints
 _TO_E = bytes.maketrans(b"Dd", b"EE")
 _NUMBER = rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d{2,3}(?![\d.]))?"
 _ONE = re.compile(_NUMBER)
-_GLUED = re.compile(rb"(?:" + _NUMBER + rb")+")
+_GLUED = re.compile(_NUMBER + rb"(?:(?=[+-])" + _NUMBER + rb")*")
 _LETTERLESS = re.compile(rb"(?<=[\d.])([+-]\d{2,3})$")
 
 
@@ -79,13 +79,19 @@ def table(lines: Sequence[bytes], widths: Sequence[int]) -> Floats:
             return values.reshape(-1, n)
     except NotANumber:
         pass
-    return np.array([_columns(line, widths, row) for row, line in enumerate(lines)]).reshape(-1, n)
+    return np.array([_row(line, widths, row) for row, line in enumerate(lines)]).reshape(-1, n)
 
 
-def integers(line: bytes, row: int = 0) -> list[int]:
-    """All integers of a line; stops at the first word that is none (vendors add comments)."""
+def integers(line: bytes) -> list[int]:
+    """All integers of a line; stops at the first word that is none (vendors add comments).
+
+    Words longer than ten digits are fields of ten columns that touch.
+    """
+    words = line.split()
+    if any(len(word) > 10 and word.isdigit() for word in words):
+        words = [line[k : k + 10] for k in range(0, len(line), 10)]
     found = []
-    for token in line.split():
+    for token in words:
         try:
             found.append(int(token))
         except ValueError:
@@ -121,6 +127,14 @@ def _repaired(token: bytes, row: int) -> list[float]:
     if not _GLUED.fullmatch(token):
         raise NotANumber(row, text(token))
     return [float(_LETTERLESS.sub(rb"E\1", part).translate(_TO_E)) for part in _ONE.findall(token)]
+
+
+def _row(line: bytes, widths: Sequence[int], row: int) -> list[float]:
+    try:
+        values = [value for token in line.split() for value in _repaired(token, row)]
+    except NotANumber:
+        values = []
+    return values if len(values) == len(widths) else _columns(line, widths, row)
 
 
 def _columns(line: bytes, widths: Sequence[int], row: int) -> list[float]:

@@ -12,7 +12,7 @@ from ...core.arrays import Floats, Numbers
 from .container import Section, Source
 from .fields import NotANumber, integers, numbers_of, text
 from .fixed import block
-from .layout58 import HEADER_LINES, REALS, columns, records
+from .layout58 import HEADER_LINES, REALS, columns, form, records
 from .legacy_floats import decode
 
 KINDS = {
@@ -136,8 +136,8 @@ def read_head(source: Source, section: Section) -> Head58:
         found = _dofs_by_name(ids, names, response, reference)
     else:
         found = response, reference
-    form = integers(lines[6][:30])
-    if len(form) < 3:
+    layout = form(lines[6])
+    if not layout:
         raise source.error(
             section.line + 7, "dataset 58: data type, count and spacing are expected"
         )
@@ -153,9 +153,9 @@ def read_head(source: Source, section: Section) -> Head58:
         ids,
         function,
         *found,
-        ordinate_type=form[0],
-        n_point=form[1],
-        even=form[2] != 0,
+        ordinate_type=layout[0],
+        n_point=layout[1],
+        even=layout[2] != 0,
         start=steps[0],
         step=steps[1],
         abscissa=_axis(lines[7]),
@@ -176,10 +176,7 @@ def read_values(source: Source, head: Head58) -> tuple[Floats, Numbers]:
     ValueError
         Fewer or more values than the header announces, or a type that is not known.
     """
-    if head.ordinate_type not in REALS:
-        raise ValueError(f"ordinate data type {head.ordinate_type} is none of 2, 4, 5, 6")
-    if head.n_point < 1:
-        raise ValueError(f"it announces {head.n_point} points")
+    check_size(source, head)
     x, parts = (_binary if head.section.binary else _text)(source, head)
     y = np.ascontiguousarray(parts).view(np.complex128)[:, 0] if head.is_complex else parts[:, 0]
     if x is None:
@@ -187,14 +184,32 @@ def read_values(source: Source, head: Head58) -> tuple[Floats, Numbers]:
     return x, y
 
 
+def check_size(source: Source, head: Head58) -> None:
+    """Check that a function can hold what its header announces, before room is made for it.
+
+    Raises
+    ------
+    ValueError
+        It cannot; says why.
+    """
+    if head.ordinate_type not in REALS:
+        raise ValueError(f"ordinate data type {head.ordinate_type} is none of 2, 4, 5, 6")
+    if head.n_point < 1:
+        raise ValueError(f"it announces {head.n_point} points")
+    if head.section.binary:
+        _record(source, head)
+        return
+    want = head.n_point * (REALS[head.ordinate_type] + (not head.even))
+    room = head.section.end - head.data_at
+    if want > room:  # not even one character for each number
+        raise ValueError(f"it announces {want} numbers in {room} bytes")
+
+
 def _text(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     n = REALS[head.ordinate_type]
     per_point = n if head.even else n + 1
     widths = columns(head.ordinate_type, head.even)
     want = head.n_point * per_point
-    room = head.section.end - head.data_at
-    if want > room:  # not even one character for each number
-        raise ValueError(f"it announces {want} numbers in {room} bytes")
     values, surplus = block(source.data, head.data_at, head.section.end, widths, want)
     if len(values) < want or surplus >= len(widths):
         raise ValueError(f"it announces {want} numbers and holds {len(values) + surplus}")
@@ -202,11 +217,13 @@ def _text(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     return (None, table) if head.even else (table[:, 0], table[:, 1:])
 
 
-def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
+def _record(source: Source, head: Head58) -> tuple[int, ...]:
+    """Bytes of the numbers of one point, as they fit the size of the block."""
     header = (*head.section.header, 0, 0, 0, 0)
-    big, form = header[0] == 2, header[1]
-    if header[0] not in (1, 2) or form not in (1, 2, 3):
-        raise ValueError(f"byte order {header[0]} or floating-point format {form} is not known")
+    if header[0] not in (1, 2) or header[1] not in (1, 2, 3):
+        raise ValueError(
+            f"byte order {header[0]} or floating-point format {header[1]} is not known"
+        )
     tail = source.data[max(head.data_at, head.section.end - _TAIL) : head.section.end]
     room = head.section.end - head.data_at
     ends = range(room - len(tail) + len(tail.rstrip(b" \r\n")), room + 1)
@@ -217,7 +234,14 @@ def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     padded = want < room and header[3] in ends
     if not fitting and not padded:
         raise ValueError(f"its {head.n_point} points take {want} bytes and it holds {room}")
-    raw = np.frombuffer(source.data, np.uint8, want, head.data_at).reshape(head.n_point, -1)
+    return record
+
+
+def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
+    record = _record(source, head)
+    big, form = head.section.header[0] == 2, head.section.header[1]
+    size = head.n_point * sum(record)
+    raw = np.frombuffer(source.data, np.uint8, size, head.data_at).reshape(head.n_point, -1)
     if head.even:
         return None, decode(raw.reshape(-1, record[0]), big, form).reshape(head.n_point, -1)
     numbers, at = [], 0

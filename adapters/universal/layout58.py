@@ -8,6 +8,17 @@ REALS = {2: 1, 4: 1, 5: 2, 6: 2}
 HEADER_LINES = 11
 
 
+def form(line: bytes) -> tuple[int, ...]:
+    """Ordinate data type, number of points and spacing from the seventh line; else nothing."""
+    parts = [line[0:10], line[10:20], line[20:30]]
+    for words in (parts, line.split()):
+        try:
+            return int(words[0]), int(words[1]), int(words[2])
+        except (ValueError, IndexError):
+            continue
+    return ()
+
+
 def columns(ordinate_type: int, even: bool) -> tuple[int, ...]:
     """Widths of the fields on a full line of the ASCII form."""
     if ordinate_type in (2, 5):

@@ -13,7 +13,7 @@ from ...core.frfs import Frfs
 from .container import Source
 from .content import Function, Skipped
 from .fields import NotANumber
-from .functions import QUANTITIES, Head58, read_values
+from .functions import QUANTITIES, Head58, check_size, read_values
 from .response_units import DERIVATIVE, MOTION, factors, highest_quantity, quantity_of
 
 Frames = Callable[[Ints], Floats]
@@ -78,6 +78,7 @@ def assemble(
     functions : tuple of Function
         The rest.
     """
+    records = [r for r in records if _whole(r, report)]
     _say_unfit(records, report)
     chosen = _largest_group([r for r in records if is_frf(r.head)], report)
     frfs = _frfs(chosen, frames, length_unit, report) if chosen else None
@@ -249,22 +250,37 @@ def _say_changed(records: Sequence[Record], quantity: str, report: Report) -> No
         )
 
 
+def _whole(record: Record, report: Report) -> bool:
+    """Whether a function can hold what its header announces."""
+    try:
+        check_size(record.source, record.head)
+    except ValueError as error:
+        _refuse(record, str(error), report)
+        return False
+    return True
+
+
 def _read(record: Record, report: Report) -> tuple[Floats, Numbers] | None:
     """Values of a function; None, and a line in the report, where they cannot be read."""
-    source, head = record.source, record.head
     try:
-        return read_values(source, head)
+        return read_values(record.source, record.head)
     except NotANumber as error:
         report.skip(record, f"{error.text!r} is not a number", 12 + error.row)
     except ValueError as error:
-        if not head.section.closed:
-            raise source.error(
-                head.section.line,
-                f"the file ends inside dataset 58 that starts here ({error}); it is cut off, "
-                "export or copy it again",
-            ) from None
-        report.skip(record, str(error))
+        _refuse(record, str(error), report)
     return None
+
+
+def _refuse(record: Record, why: str, report: Report) -> None:
+    """List a function whose data are not what its header announces; the last may be cut off."""
+    section = record.head.section
+    if not section.closed:
+        raise record.source.error(
+            section.line,
+            f"the file ends inside dataset 58 that starts here ({why}); it is cut off, "
+            "export or copy it again",
+        )
+    report.skip(record, why)
 
 
 def _function(record: Record, x: Floats, y: Numbers) -> Function:

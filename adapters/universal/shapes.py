@@ -117,9 +117,9 @@ def _modal_2414(head: _Head) -> tuple[float, float, float]:
 
 
 def _of_eigenvalue(pole: complex) -> tuple[float, float]:
-    """Frequency [Hz] and damping ratio of an eigenvalue [rad/s]."""
+    """Frequency [Hz] and damping ratio of an eigenvalue [rad/s]; no real part: not given."""
     size = abs(pole)
-    return size / (2.0 * math.pi), (-pole.real / size if size else math.nan)
+    return size / (2.0 * math.pi), (-pole.real / size if pole.real else math.nan)
 
 
 def _damping(viscous: float, hysteretic: float) -> float:
