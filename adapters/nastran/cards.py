@@ -128,7 +128,7 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
             continue
         if current is not None:
             yield current
-        text = text.lstrip()
+        text = _from_first_column(text)
         name = _SEPARATOR.split(text[:10], maxsplit=1)[0][:8].upper().rstrip("*")
         if not _NAME.fullmatch(name):
             what = "replication, which is not supported" if "=" in name else "not a card's name"
@@ -142,6 +142,15 @@ def _indented(text: str) -> bool:
     """Whether a line that starts with a blank holds a card's name within its first field."""
     head = text[:8].strip()
     return text[0] == " " and bool(head) and head[0] not in "+*,"
+
+
+def _from_first_column(text: str) -> str:
+    """Return a card set in a little with its name in column 1, fixed fields in their columns."""
+    bare = text.lstrip()
+    if len(bare) == len(text) or "," in bare[:10]:
+        return bare
+    text = text.expandtabs()
+    return text[:8].strip().ljust(8) + text[8:]
 
 
 def fields_of(lines: list[str]) -> Fields:

@@ -30,28 +30,21 @@ class CardLine:
     data: bytes
 
     @cached_property
-    def indent(self) -> int:
-        """Blanks before a card's name that does not start in column 1."""
-        text = self.data
-        word = text[:8].strip()
-        if text[:1] != b" " or not word or word[:1] in b"+*,":
-            return 0
-        return len(text) - len(text.lstrip())
-
-    @cached_property
     def content(self) -> bytes:
-        """What stands before a comment, from the name on."""
-        return self.data[self.indent :].split(b"$", 1)[0]
+        """What stands before a comment."""
+        return self.data.split(b"$", 1)[0]
 
     @property
     def comment(self) -> bytes:
         """The comment from its dollar sign on."""
-        return self.data[self.indent + len(self.content) :]
+        return self.data[len(self.content) :]
 
     @cached_property
     def free(self) -> bool:
-        """Whether the fields are separated by commas."""
-        return b"," in self.content[:10]
+        """Whether the fields are separated by commas (a name may be set in a little)."""
+        word = self.content[:8].strip()
+        named = word and word[:1] not in b"+*,"
+        return b"," in (self.content.lstrip() if named else self.content)[:10]
 
     @cached_property
     def large(self) -> bool:
@@ -72,8 +65,7 @@ class CardLine:
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
         """Where each data field that is there stands in `data`; fewer than `capacity` at times."""
-        found = self._free_cells() if self.free else self._fixed_cells()
-        return tuple(Cell(a + self.indent, b + self.indent) for a, b in found)
+        return tuple(self._free_cells() if self.free else self._fixed_cells())
 
     def text(self, k: int) -> str:
         """Return data field `k` (from 0), stripped; "" where blank or beyond the line's end."""
@@ -96,23 +88,20 @@ class CardLine:
             return b",".join(words[1 + self.capacity :]).strip()
         return self.content.expandtabs()[CONTENT_END:].rstrip()
 
-    def _free_cells(self) -> list[tuple[int, int]]:
+    def _free_cells(self) -> list[Cell]:
         words = self.content.split(b",")
-        found: list[tuple[int, int]] = []
+        found: list[Cell] = []
         at = len(words[0]) + 1
         for word in words[1 : 1 + self.capacity]:
-            found.append((at, at + len(word)))
+            found.append(Cell(at, at + len(word)))
             at += len(word) + 1
         return found
 
-    def _fixed_cells(self) -> list[tuple[int, int]]:
-        stops = self._stops()
+    def _fixed_cells(self) -> list[Cell]:
+        stops = _Stops(self.content)
         columns = range(8, CONTENT_END, self.width)
-        found = [(stops(c), stops(c + self.width)) for c in columns]
-        return [(a, b) for a, b in found if a < len(self.content)]
-
-    def _stops(self) -> _Stops:
-        return _Stops(self.content)
+        found = [Cell(stops(c), stops(c + self.width)) for c in columns]
+        return [cell for cell in found if cell.start < len(self.content)]
 
 
 class _Stops:

@@ -101,13 +101,12 @@ def _put_free(line: CardLine, texts: Mapping[int, bytes]) -> bytes:
         left = old[: len(old) - len(old.lstrip())] if old.strip() else b""
         right = old[len(old.rstrip()) :] if old.strip() else b""
         words[k + 1] = left + text + right
-    return line.data[: line.indent] + b",".join(words) + blanks + line.comment
+    return b",".join(words) + blanks + line.comment
 
 
 def _put_fixed(line: CardLine, texts: Mapping[int, bytes]) -> bytes:
     width = line.width
-    content_end = line.indent + len(line.content)
-    data, comment = line.data[:content_end], line.comment
+    data, comment = line.content, line.comment
     inside = {k: t for k, t in texts.items() if k < len(line.cells)}
     for k in sorted(inside, reverse=True):
         start, stop = line.cells[k]
@@ -119,11 +118,10 @@ def _put_fixed(line: CardLine, texts: Mapping[int, bytes]) -> bytes:
         data = data[:start] + text + data[stop:]
     for k in sorted(texts.keys() - inside.keys()):
         column = 8 + k * width
-        short = column - len(data[line.indent :].expandtabs())
+        short = column - len(data.expandtabs())
         data = data + b" " * short + texts[k] if short >= 0 else data[:short] + texts[k]
-    was = len(line.content)
     if comment and b"\t" not in data:
-        data = data.ljust(line.indent + was)
+        data = data.ljust(len(line.content))
     if comment and line.content[-1:] in b" \t" and data[-1:] not in b" \t":
         data += b" "
     return data + comment
@@ -153,7 +151,7 @@ def _as_large(line: CardLine, edits: Mapping[int, Value], last: bool) -> tuple[b
         rows[-1] = rows[-1].ljust(CONTENT_END) + line.tail
     if line.comment:
         rows[-1] += b" " + line.comment
-    return tuple(line.data[: line.indent] + r for r in rows)
+    return tuple(rows)
 
 
 def _row(head: bytes, cells: Sequence[str], free: bool) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -163,6 +164,8 @@ def _bounds(data: bytes, raw: Bytes) -> tuple[Ints, Ints]:
     ends = np.append(ends, len(raw)).astype(np.int64)
     if starts[-1] == len(raw):
         starts, ends = starts[:-1], ends[:-1]
+    if data.startswith(codecs.BOM_UTF8):
+        starts[0] = len(codecs.BOM_UTF8)
     return ends, starts
 
 
@@ -249,8 +252,8 @@ def _chunk_numbers(file: TextFile, raw: Bytes, rows: Ints) -> Ints:
 
 
 def _slow_number(line: bytes) -> int:
-    text = line.split(b"$", 1)[0].lstrip()
-    if b"," in text[:10]:
+    text = line.split(b"$", 1)[0]
+    if b"," in text.lstrip()[:10]:
         word = text.split(b",", 2)[1]
     else:
         text = text.expandtabs()

@@ -220,6 +220,14 @@ def test_many_values_at_once_and_back_again(deck, data):
     assert edited.files[0].data.count(b"$") == before.count(b"$")
 
 
+@pytest.mark.parametrize(
+    "line", ["  PROD  1       1       2.\n", "  PROD,1,1,2.\n", " PROD*  1               1\n* 2.\n"]
+)
+def test_a_name_set_in_a_little_leaves_fixed_fields_in_their_columns(line):
+    assert by_our_reader(line.encode())[0][:3] == ["PROD", "1", "1"]
+    assert find_card(as_read(line.encode()), "PROD", 1).read(3) == "1"
+
+
 def edit(line: str, ref: tuple[str, int, str], value: float) -> str:
     """Change one value of a deck that is bulk data alone."""
     deck = as_read(line.encode("latin-1"))
@@ -344,6 +352,13 @@ CASES = {
     "tabs": (
         "PSHELL\t3\t1\t2.5\t1\n", ("PSHELL", 3, "T"), 3.25,
         "PSHELL\t3\t1\t3.25    1\n",
+    ),
+    "byte order mark": (
+        "\xef\xbb\xbfPROD,1,1,2.\n", ("PROD", 1, "A"), 3.0, "\xef\xbb\xbfPROD,1,1,3.\n",
+    ),
+    "name not in the first column": (
+        "  PROD  1       1       2.\n", ("PROD", 1, "A"), 3.0,
+        "  PROD  1       1       3.\n",
     ),
     "lower case": (
         "pshell  3       1       2.5\n", ("PSHELL", 3, "T"), 3.25,
