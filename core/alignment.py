@@ -8,14 +8,15 @@ import numpy as np
 
 from .arrays import Floats
 from .errors import InputError
-from .frame_choice import Choice, choose
+from .frame_choice import choose
 from .frame_score import scorer_of
 from .geometry import Geometry
 from .measured import measured_directions
 from .modes import Modes
 from .observation import default_tolerance
 from .placement import place
-from .rigid_fit import Poses, cloud_of, polish, rms_of
+from .poses import Poses
+from .rigid_fit import cloud_of, polish, rms_of, search
 from .surface import Surface, surface_of
 from .transform import Transform
 from .units import length_factor
@@ -132,7 +133,11 @@ def align(
     lies = _share_on(surface, points, here, tolerance) >= ON_MODEL
     if lies and (score is None or score >= POOR):
         return _as_it_is(surface, points, here, score, scale)
-    choice = choose(cloud_of(surface), points, scorer, seed)
+    cloud = cloud_of(surface)
+    poses = search(cloud, points, seed)
+    if not lies:
+        _require_on_model(surface, points, poses.take(np.array([0])), tolerance)
+    choice = choose(cloud, points, scorer, poses)
     best = choice.candidates[0]
     if lies and (score is None or best.score is None or best.score < max(GOOD, score + AHEAD)):
         return _as_it_is(surface, points, here, score, scale)
@@ -143,8 +148,12 @@ def align(
             f"{score:.2f}) and well in another position ({best.score:.2f}), which was taken; "
             "check the coordinate frame of the test",
         )
-    else:
-        _require_on_model(surface, points, best, tolerance)
+    share = _share_on(surface, points, best.pose, tolerance)
+    if share < ON_MODEL:
+        warnings += (
+            f"only {share:.0%} of the test nodes lie on the model in the best position (rms "
+            f"{best.rms:.3g}); check that both are the same structure and not mirrored",
+        )
     return Alignment(
         best.pose.rotation[0],
         best.pose.translation[0],
@@ -205,13 +214,13 @@ def _as_it_is(
 
 
 def _require_on_model(
-    surface: Surface, points: Floats, best: Choice, tolerance: float | None
+    surface: Surface, points: Floats, best: Poses, tolerance: float | None
 ) -> None:
-    share = _share_on(surface, points, best.pose, tolerance)
+    share = _share_on(surface, points, best, tolerance)
     if share < FEWEST:
         raise InputError(
             f"the test does not fit on the model in any position: in the best only {share:.0%} of "
-            f"its {len(points)} nodes lie on it (rms distance {best.rms:.3g}; the model spans "
+            f"its {len(points)} nodes lie on it (rms distance {best.rms[0]:.3g}; the model spans "
             f"{surface.size:.4g}, the test {np.linalg.norm(np.ptp(points, axis=0)):.4g}); check "
             "the "
             "length units of deck and test, and that both are the same structure"

@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from .arrays import Floats
 from .frame_score import Scorer
-from .rigid_fit import Cloud, Poses, farthest_points, motion_between, polish, rms_of, search
+from .poses import Poses, motion_between
+from .rigid_fit import Cloud, farthest_points, polish, rms_of
 from .sliding import STEP, Family, family_of, members, sampled, step_of
 
 _POINTS = 48
@@ -23,6 +24,7 @@ _SAME_ANGLE = np.radians(5.0)
 _PEAKS = 5
 _COARSE = 0.1
 _CALM_RMS = 1.25
+_FLAT = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,13 +56,14 @@ class _Peak:
     """A best position of a family.
 
     `loose` motions can be followed far without leaving the model; along the `flat` ones of them
-    the shapes stay as good.
+    the shapes stay as good, along the others over the length `blur` (d,).
     """
 
     family: Family
     best: Choice
-    loose: tuple[int, ...] = ()
-    flat: tuple[int, ...] = ()
+    loose: tuple[int, ...]
+    flat: tuple[int, ...]
+    blur: Floats
 
 
 def margin_of(score: float) -> float:
@@ -71,13 +74,13 @@ def margin_of(score: float) -> float:
     return max(0.01, 0.1 * (1.0 - score))
 
 
-def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, seed: int = 0) -> Choices:
-    """Find the positions in which points lie on a surface and rank them.
+def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, poses: Poses) -> Choices:
+    """Rank the positions in which points lie on a surface.
 
-    Geometry first: poses that fit about as well as the best (`rigid_fit.search`), sorted into
-    families within which the test slides (`sliding`). Every family is sampled and scored, its
-    best refined. Between candidates that score alike (`margin_of`) the smaller rotation is
-    taken; without a score, geometry and the smaller rotation decide.
+    Geometry first: the poses that fit about as well as the best are sorted into families within
+    which the test slides (`sliding`). Every family is sampled and scored, its best refined.
+    Between candidates that score alike (`margin_of`) the smaller rotation is taken; without a
+    score, geometry and the smaller rotation decide.
 
     Parameters
     ----------
@@ -86,10 +89,10 @@ def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, seed: int = 0) -
     points : (n, 3) float
         Test nodes, analysis length unit, test frame.
     scorer : Scorer or None
-    seed : int
+    poses : Poses
+        What `rigid_fit.search` found, best first.
     """
     surface = cloud.surface
-    poses = search(cloud, points, seed)
     limit = max(1.5 * poses.rms[0], poses.rms[0] + 0.002 * surface.size)
     poses = poses.take(np.flatnonzero(poses.rms <= limit))
     few = points[farthest_points(points, _POINTS)]
@@ -155,14 +158,17 @@ def _explore(judge: _Judge, family: Family, samples: Poses) -> list[_Peak]:
             break
         best, value = _climb(family, where[top], values[top], step, judge.worth)
         apart = _offsets(family, where - best)
-        alike = values >= value - judge.margin(value)
-        loose = _loose(family, apart, step, size)
-        flat = tuple(k for k in loose if k in _loose(family, apart[alike], step, size))
+        alike = values >= value - judge.margin(value) if judge.scorer else left
+        far = np.where(family.turning, _OPEN_TURN * family.radius[0], _OPEN_SLIDE * size)
+        gap = step * np.where(family.turning, 5.0, 2.0)  # turned samples settle on facets
+        reach, blur = _reach(apart, gap), _reach(apart[alike], gap)
+        loose = tuple(np.flatnonzero(reach > far))
+        flat = tuple(k for k in loose if blur[k] > max(far[k], _FLAT * reach[k]))
         if flat and not found:
             best = _calmest(judge, family, where[alike], value, step)
-            return [_Peak(family, judge.rested(family.at(best[None])), loose, flat)]
-        found.append(_Peak(family, judge.rested(family.at(best[None])), loose))
-        far = np.where(family.turning, _OPEN_TURN * family.radius[0], _OPEN_SLIDE * size)
+        found.append(_Peak(family, judge.rested(family.at(best[None])), loose, flat, blur))
+        if flat:
+            break
         left &= np.any(np.abs(_offsets(family, where - where[top])) > far, axis=1)
         left &= np.any(np.abs(apart) > far, axis=1)
     return found
@@ -216,19 +222,15 @@ def _offsets(family: Family, apart: Floats) -> Floats:
     return np.where(family.turning, (apart + full / 2) % full - full / 2, apart)
 
 
-def _loose(family: Family, apart: Floats, step: Floats, size: float) -> tuple[int, ...]:
-    """Motions along which samples reach far from the best without a gap; `apart` (k, d) from it."""
-    found = []
-    for k in range(len(family.motions)):
-        far = _OPEN_TURN * family.radius[0] if family.turning[k] else _OPEN_SLIDE * size
-        reach = 0.0
+def _reach(apart: Floats, gap: Floats) -> Floats:
+    """How far samples reach along each motion without a gap, (d,); `apart` (k, d) from the best."""
+    reach = np.zeros(len(gap))
+    for k in range(len(gap)):
         for side in (apart[:, k], -apart[:, k]):
             ahead = np.concatenate([[0.0], np.sort(side[side > 0])])
-            gaps = np.flatnonzero(np.diff(ahead) > 4 * step[k])
-            reach += ahead[gaps[0]] if len(gaps) else ahead[-1]
-        if reach > far:
-            found.append(k)
-    return tuple(found)
+            gaps = np.flatnonzero(np.diff(ahead) > gap[k])
+            reach[k] += ahead[gaps[0]] if len(gaps) else ahead[-1]
+    return reach
 
 
 def _ranked(found: list[_Peak], points: Floats, size: float, scored: bool) -> Choices:
@@ -272,7 +274,16 @@ def _in_words(ranked: list[_Peak], n_alike: int, scored: bool) -> str:
             f"{text}; correlation does not decide {' and '.join(undecided)}: the smallest rotation "
             f"was taken; scores {listed}"
         )
-    return f"{text}; correlation decided; scores {listed}"
+    sharp = " and ".join(_blurred(chosen, k) for k in chosen.loose)
+    return f"{text}; correlation decided{' (' + sharp + ')' if sharp else ''}; scores {listed}"
+
+
+def _blurred(peak: _Peak, k: int) -> str:
+    """Say over what range positions along a motion correlate alike."""
+    half = peak.blur[k] / 2
+    if peak.family.turning[k]:
+        return f"the turn to within {np.degrees(half / peak.family.radius[0]):.1f} degrees"
+    return f"the slide to within {half:.3g}"
 
 
 def _named(family: Family, k: int) -> str:

@@ -12,7 +12,7 @@ from .geometry import Geometry
 from .modes import Modes
 from .observation import Grids, grids_of
 from .placement import place
-from .rigid_fit import Poses
+from .poses import Poses
 
 BAND = 0.3
 """Analysis modes within this relative distance in frequency may explain a test mode."""

@@ -7,17 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .arrays import Bools, Floats
-from .rigid_fit import (
-    Cloud,
-    Poses,
-    centre_and_radius,
-    displaced,
-    freedoms,
-    jacobian,
-    motion_between,
-    polish,
-    rms_of,
-)
+from .poses import Poses, centre_and_radius, displaced, jacobian, motion_between
+from .rigid_fit import Cloud, polish, rms_of
 from .surface import Surface
 
 STEP = 0.02
@@ -130,6 +121,55 @@ def _parted(free: Floats) -> tuple[Floats, Floats]:
     turns = turns / np.linalg.norm(turns[:, :3], axis=1, keepdims=True)
     turns[:, 3:] -= turns[:, 3:] @ slides[:, 3:].T @ slides[:, 3:]
     return turns, slides
+
+
+def freedoms(surface: Surface, points: Floats, pose: Poses, step: float, limit: float) -> Floats:
+    """Rigid motions that keep points on the surface.
+
+    The squared distance is sampled a finite step away and fitted by a quadratic form: points at
+    the joints of a frame are held by a whisker in every direction, yet slide freely.
+
+    Parameters
+    ----------
+    surface, points
+        As for `polish`.
+    pose : Poses
+        One pose, at rest.
+    step : float
+        How far to move.
+    limit : float
+        A motion by `step` is free when it leaves the rms distance below this.
+
+    Returns
+    -------
+    (d, 6) float
+        Orthonormal motions scaled as in `jacobian`, d from 0 to 6.
+    """
+    x = pose.apply(points)
+    centre, radius = centre_and_radius(x)
+    J = jacobian(x, centre, radius)[0]
+    size = np.einsum("nxi,nxj->ij", J, J) / len(points)
+    # A motion that does not move the points (a turn about the line they lie on) is free.
+    value, vector = np.linalg.eigh(size)
+    still, basis = vector[:, value < 1e-9].T, vector[:, value >= 1e-9]
+    basis = basis / np.sqrt(value[value >= 1e-9])
+    n = basis.shape[1]
+    i, j = np.triu_indices(n)
+    unit = np.eye(n)
+    way = unit[i] + unit[j]
+    way = way / np.linalg.norm(way, axis=1, keepdims=True)
+    trial = step * np.concatenate([way, -way]) @ basis.T
+    poses = displaced(pose, centre, radius, trial)
+    away = np.minimum(rms_of(surface, points, poses) ** 2, (2 * step) ** 2)
+    rise = (away[: len(i)] + away[len(i) :]) / (2 * step**2) - pose.rms[0] ** 2 / step**2
+    H = np.diag(rise[i == j])
+    off = i != j
+    H[i[off], j[off]] = rise[off] - (H[i[off], i[off]] + H[j[off], j[off]]) / 2
+    H[j[off], i[off]] = H[i[off], j[off]]
+    power, motions = np.linalg.eigh(H)
+    return np.concatenate(
+        [still, (basis @ motions[:, power < (limit**2 - pose.rms[0] ** 2) / step**2]).T]
+    )
 
 
 def members(family: Family, points: Floats, poses: Poses, surface: Surface) -> Bools:
