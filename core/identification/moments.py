@@ -9,11 +9,15 @@ from F'F and F'Y; the number of lines is met only once per step.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ..arrays import Floats, Ints, Numbers
+
+Solver = Callable[[Floats, Floats], Floats]
 
 
 def stacked(lines: Numbers) -> Floats:
@@ -45,10 +49,17 @@ class BandData:
     y: Floats
     weight: Floats
 
-    @property
+    @cached_property
     def power(self) -> float:
         """Sum of squares of what is to be explained."""
-        return float(np.einsum("oin,oin,oi->", self.y, self.y, self.weight, optimize=True))
+        return float(np.sum(np.einsum("oin,oin->oi", self.y, self.y) * self.weight))
+
+    @cached_property
+    def patterns(self) -> tuple[tuple[Floats, Ints], ...]:
+        """Distinct rows of `weight` with the outputs that have them; most surveys have one."""
+        rows, number = np.unique(self.weight, axis=0, return_inverse=True)
+        number = number.ravel()
+        return tuple((rows[p], np.flatnonzero(number == p)) for p in range(len(rows)))
 
 
 def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order: int) -> BandData:
@@ -73,24 +84,31 @@ def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order:
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
     y = stacked(values)
     y -= (y @ Q) @ Q.T
+    y[~measured] = 0.0
     return BandData(s, derivative, np.ascontiguousarray(Q), y, measured.astype(float))
 
 
-def basis(data: BandData, poles: Numbers) -> Floats:
-    """Functions F1..F4 of each mode, (2 n_line, 2, n_mode, 2): value or derivative, mode, part."""
+def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:
+    """Functions F1..F4 of each mode: (2 n_line, 2, n_mode, 2) by value or derivative, mode, part.
+
+    Without the derivative the second axis has length 1.
+    """
     near = data.derivative / (data.s - poles[:, None])
     far = data.derivative / (data.s - poles.conj()[:, None])
-    near2 = near / (data.s - poles[:, None])
-    far2 = far / (data.s - poles.conj()[:, None])
-    F = np.stack(
-        [
-            np.stack([near + far, 1j * (near - far)], axis=1),
-            np.stack([near2 + far2, 1j * (near2 - far2)], axis=1),
-        ]
-    )
-    flat = stacked(F).reshape(-1, 2 * len(data.s)).T
+    functions = [np.stack([near + far, 1j * (near - far)], axis=1)]
+    if derivative:
+        near = near / (data.s - poles[:, None])
+        far = far / (data.s - poles.conj()[:, None])
+        functions.append(np.stack([near + far, 1j * (near - far)], axis=1))
+    flat = stacked(np.stack(functions)).reshape(-1, 2 * len(data.s)).T
     flat = flat - data.residual_terms @ (data.residual_terms.T @ flat)
-    return np.ascontiguousarray(flat).reshape(2 * len(data.s), 2, len(poles), 2)
+    return np.ascontiguousarray(flat).reshape(2 * len(data.s), len(functions), len(poles), 2)
+
+
+def parts_of(z: Numbers) -> Floats:
+    """Real and imaginary parts side by side: (..., m) complex to (..., 2 m) float."""
+    pairs = np.stack([z.real, z.imag], axis=-1)
+    return np.asarray(pairs.reshape(*z.shape[:-1], 2 * z.shape[-1]))
 
 
 def turned(z: Numbers) -> Floats:
@@ -121,20 +139,67 @@ class Normal:
     common_common: Floats
 
 
-def normal_shapes(G: Floats, participation: Numbers, weight: Floats) -> Floats:
-    """Return the normal matrices of the shapes alone, (n_output, 2 n_mode, 2 n_mode).
+def shape_normals(G: Floats, participation: Numbers) -> Floats:
+    """Return what each input adds to the normal matrix of the shapes, (n_input, 2m, 2m).
 
     Parameters
     ----------
-    G : (2, n_mode, 2, 2, n_mode, 2) float
-        F'F.
+    G : (., n_mode, 2, ., n_mode, 2) float
+        F'F, values first.
     participation : (n_input, n_mode) complex
-    weight : (n_output, n_input) float
     """
     L = turned(participation)
     n = 2 * participation.shape[1]
     per_input = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, G[0, :, :, 0], L, optimize=True)
-    return np.asarray((weight @ per_input.reshape(len(L), -1)).reshape(-1, n, n))
+    return np.asarray(per_input.reshape(len(L), n, n))
+
+
+def reduced_normal(
+    G: Floats,
+    participation: Numbers,
+    shapes: Numbers,
+    patterns: tuple[tuple[Floats, Ints], ...],
+    solve: Solver,
+) -> Floats:
+    """Assemble the normal matrix of θ with the shapes eliminated, (n_theta, n_theta).
+
+    Outputs measured at the same inputs share the normal matrix of their shapes, and what they
+    add is linear in the second moments of the shapes: nothing here grows with their number.
+    θ is ordered as in `Normal`.
+    """
+    L = turned(participation)
+    n_input, m = participation.shape
+    vv, vd, dd = G[0, :, :, 0], G[0, :, :, 1], G[1, :, :, 1]
+    pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=True)
+    part = np.einsum("ikaf,kfKF->ikaKF", L, vv, optimize=True)
+    own = shape_normals(G, participation)
+    tensor = np.zeros((m, 2, 1 + n_input, m, 2, 1 + n_input))
+    pole_pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=True)
+    pole_part = np.einsum("ikbf,kfKF->ikbKF", L, vd.transpose(2, 3, 0, 1), optimize=True)
+    for w, rows in patterns:
+        P = turned(shapes[rows])
+        flat = P.reshape(len(rows), -1)
+        moment = (flat.T @ flat).reshape(m, 2, 2, m, 2, 2)
+        H = np.zeros((m, 2, m, 2, 1 + n_input))
+        H[..., 0] = np.tensordot(w, pole, axes=1)
+        H[..., 1:] = (w[:, None, None, None, None] * part).transpose(1, 2, 3, 4, 0)
+        flat_h = H.reshape(2 * m, -1)
+        N = np.tensordot(w, own, axes=1)
+        Q = -(flat_h.T @ solve(N, flat_h)).reshape(m, 2, 1 + n_input, m, 2, 1 + n_input)
+        Q[:, :, 0, :, :, 0] += np.tensordot(w, pole_pole, axes=1)
+        for i in range(n_input):
+            Q[:, :, 0, :, :, 1 + i] += w[i] * pole_part[i]
+            Q[:, :, 1 + i, :, :, 0] += w[i] * pole_part[i].transpose(2, 3, 0, 1)
+            Q[:, :, 1 + i, :, :, 1 + i] += w[i] * vv
+        tensor += np.einsum("kafKAF,kftKFT->katKAT", moment, Q, optimize=True)
+    n_p = 2 * m
+    S = np.empty((n_p * (1 + n_input), n_p * (1 + n_input)))
+    first, rest = slice(0, 1), slice(1, None)
+    for rows_of, a in ((slice(0, n_p), first), (slice(n_p, None), rest)):
+        for columns_of, b in ((slice(0, n_p), first), (slice(n_p, None), rest)):
+            block = tensor[:, :, a, :, :, b]
+            S[rows_of, columns_of] = block.reshape(int(np.prod(block.shape[:3])), -1)
+    return S
 
 
 def normal(G: Floats, participation: Numbers, shapes: Numbers, weight: Floats) -> Normal:
@@ -171,16 +236,13 @@ def normal(G: Floats, participation: Numbers, shapes: Numbers, weight: Floats) -
     x = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=True)
     x = (weight @ x.reshape(n_input, -1)).reshape(n_output, m, 2, m, 2)
     shape_pole = np.einsum("okaKB,oKAB->okaKA", x, P, optimize=True)
-    h = np.einsum("ikaf,kfKF->ikaKF", L, vv, optimize=True)
-    shape_part = np.stack(
-        [
-            np.einsum("kaKF,oKAF->okaKA", h[i], P, optimize=True)
-            * weight[:, i, None, None, None, None]
-            for i in range(n_input)
-        ],
-        axis=-1,
-    )
+    h = np.einsum("ikaf,kfKF->iKFka", L, vv, optimize=True).reshape(n_input, m, 2, n_p)
+    by_mode = P.transpose(1, 0, 2, 3).reshape(m, n_output * 2, 2)
+    shape_part = (by_mode @ h).reshape(n_input, m, n_output, 2, n_p)
+    shape_part *= weight.T[:, None, :, None, None]
+    shape_part = shape_part.transpose(2, 4, 1, 3, 0)
     cross = np.concatenate(
         [shape_pole.reshape(n_output, n_p, n_p), shape_part.reshape(n_output, n_p, n_l)], axis=2
     )
-    return Normal(normal_shapes(G, participation, weight), cross, common)
+    own = weight @ shape_normals(G, participation).reshape(n_input, -1)
+    return Normal(own.reshape(n_output, n_p, n_p), cross, common)

@@ -7,7 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats, Numbers
-from .moments import BandData, Normal, basis, normal, normal_shapes, turned
+from .moments import (
+    BandData,
+    Normal,
+    basis,
+    normal,
+    parts_of,
+    reduced_normal,
+    shape_normals,
+    turned,
+)
 
 _RIDGE = 1e-12  # relative, on the normal matrices of the shapes
 _STUCK = 1e8  # of the damping of the iteration: no step helps any more
@@ -42,18 +51,9 @@ class Fit:
     converged: bool = True
 
 
-@dataclass(frozen=True, eq=False)
-class _State:
-    """A trial point with everything its step needs."""
-
-    fit: Fit
-    G: Floats
-    B: Floats
-
-
 def fit_shapes(data: BandData, poles: Numbers, participation: Numbers) -> Fit:
     """Least-squares shapes (and residual terms) at fixed poles and participation (LSFD)."""
-    return _state(data, poles, participation).fit
+    return _with_shapes(data, poles, participation)[0]
 
 
 def refine(
@@ -92,31 +92,30 @@ def refine(
     problems whose variables separate, SIAM J. Numer. Anal. 10, 413-432.
     """
     moving = np.ones(len(poles), bool) if free is None else np.asarray(free)
-    state = _state(data, poles, participation)
+    fit, projections = _with_shapes(data, poles, participation)
     mu, count, converged = 1e-4, 0, not moving.any()
     floor = 1e-14 * data.power
     while count < max_iterations and not converged:
         count += 1
-        columns = free_columns(state.fit.participation, moving)
-        S, gradient = reduced_system(data, state)
+        columns = free_columns(fit.participation, moving)
+        S, gradient = _reduced_system(data, fit, projections)
         S, gradient = S[np.ix_(columns, columns)], gradient[columns]
         scale = np.sqrt(np.maximum(np.diag(S), 1e-300))
         S = S / np.outer(scale, scale)
         while True:
             step = np.zeros(2 * len(poles) * (1 + len(participation)))
             step[columns] = np.linalg.solve(S + mu * np.eye(len(S)), gradient / scale) / scale
-            trial = _moved(data, state.fit, step)
-            if trial.fit.misfit <= state.fit.misfit + floor or mu > _STUCK:
+            trial, of_trial = _moved(data, fit, step)
+            if trial.misfit <= fit.misfit + floor or mu > _STUCK:
                 break
             mu *= 10.0
         if mu > _STUCK:
             converged = True
             break
-        decrease = state.fit.misfit - trial.fit.misfit
-        converged = decrease <= _SMALL * trial.fit.misfit + floor
-        state, mu = trial, max(mu / 10.0, 1e-9)
-    f = state.fit
-    return Fit(f.poles, f.participation, f.shapes, f.misfit, count, bool(converged))
+        decrease = fit.misfit - trial.misfit
+        converged = decrease <= _SMALL * trial.misfit + floor
+        fit, projections, mu = trial, of_trial, max(mu / 10.0, 1e-9)
+    return Fit(fit.poles, fit.participation, fit.shapes, fit.misfit, count, bool(converged))
 
 
 def free_columns(participation: Numbers, moving: Numbers) -> Numbers:
@@ -135,48 +134,50 @@ def system_at(data: BandData, fit: Fit) -> tuple[Normal, Floats, Floats]:
     return normal(G, fit.participation, fit.shapes, data.weight), F, G
 
 
-def reduced_system(data: BandData, state: _State) -> tuple[Floats, Floats]:
-    """Return the reduced normal matrix of θ and the steepest descent of half the misfit."""
-    f = state.fit
-    n = normal(state.G, f.participation, f.shapes, data.weight)
-    S = n.common_common - eliminated(n)
-    r = f.shapes[:, None, :] * f.participation[None, :, :]
-    coefficients = np.stack([r.real, r.imag], axis=-1)
-    G = state.G[:, :, :, 0]
-    left = state.B - np.einsum("gkfKF,oiKF->oigkf", G, coefficients, optimize=True)
-    left *= data.weight[:, :, None, None, None]
-    pole = np.einsum("oikaf,oikf->ka", turned(r), left[:, :, 1], optimize=True)
-    part = np.einsum("okaf,oikf->kai", turned(f.shapes), left[:, :, 0], optimize=True)
-    return S, np.concatenate([pole.ravel(), part.ravel()])
-
-
-def eliminated(n: Normal) -> Floats:
-    """Return Σ_o N_θψ N_ψψ⁻¹ N_ψθ, what the shapes take from the normal matrix of θ."""
-    T = solve_shapes(n.shape_shape, n.shape_common)
-    size = n.common_common.shape[0]
-    return np.asarray(n.shape_common.reshape(-1, size).T @ T.reshape(-1, size))
-
-
-def solve_shapes(N: Floats, right: Floats) -> Floats:
-    """Solve the normal equations of the shapes, one system per output.
+def _reduced_system(data: BandData, fit: Fit, projections: Floats) -> tuple[Floats, Floats]:
+    """Return the reduced normal matrix of θ and the steepest descent of half the misfit.
 
     Parameters
     ----------
-    N : (n_output, n, n) float
-    right : (n_output, n, n_right) float
+    projections : (n_output, n_input, n_mode, 2) float
+        Y'F of the values, see `_with_shapes`.
+    """
+    m = len(fit.poles)
+    F = basis(data, fit.poles)
+    G = _gram(F)
+    S = reduced_normal(G, fit.participation, fit.shapes, data.patterns, solve_shapes)
+    r = fit.shapes[:, None, :] * fit.participation[None, :, :]
+    model = parts_of(r)
+    slopes = data.y @ F[:, 1].reshape(len(F), 2 * m)
+    slopes -= model @ G[0, :, :, 1].reshape(2 * m, 2 * m)
+    left = projections.reshape(slopes.shape) - model @ G[0, :, :, 0].reshape(2 * m, 2 * m)
+    mask = data.weight[:, :, None, None]
+    slopes, left = slopes.reshape(*r.shape, 2) * mask, left.reshape(*r.shape, 2) * mask
+    pole = np.einsum("oikaf,oikf->ka", turned(r), slopes)
+    part = np.einsum("okaf,oikf->kai", turned(fit.shapes), left, optimize=True)
+    return S, np.concatenate([pole.ravel(), part.ravel()])
+
+
+def solve_shapes(N: Floats, right: Floats) -> Floats:
+    """Solve normal equations of shapes.
+
+    Parameters
+    ----------
+    N : (..., n, n) float
+    right : (..., n, n_right) float
 
     Returns
     -------
-    (n_output, n, n_right) float
+    (..., n, n_right) float
         Scaled to unit diagonal and with a slight ridge, so that it exists where nothing speaks
         for a mode.
     """
-    diagonal = np.diagonal(N, axis1=1, axis2=2)
+    diagonal = np.diagonal(N, axis1=-2, axis2=-1)
     floor = 1e-12 * diagonal.max(initial=0.0) + 1e-300
     scale = 1.0 / np.sqrt(np.maximum(diagonal, floor))
-    scaled = N * scale[:, :, None] * scale[:, None, :] + _RIDGE * np.eye(N.shape[1])
-    x = np.linalg.solve(scaled, right * scale[:, :, None])
-    return np.asarray(x * scale[:, :, None])
+    scaled = N * scale[..., :, None] * scale[..., None, :] + _RIDGE * np.eye(N.shape[-1])
+    x = np.linalg.solve(scaled, right * scale[..., :, None])
+    return np.asarray(x * scale[..., :, None])
 
 
 def _gram(F: Floats) -> Floats:
@@ -184,28 +185,36 @@ def _gram(F: Floats) -> Floats:
     return np.asarray((flat.T @ flat).reshape(F.shape[1:] + F.shape[1:]))
 
 
-def _state(data: BandData, poles: Numbers, participation: Numbers) -> _State:
-    """Shapes and misfit at given poles and participation."""
-    if not len(poles):
-        none = Fit(poles, participation, np.zeros((len(data.y), 0), complex), data.power)
-        return _State(none, np.zeros((2, 0, 2, 2, 0, 2)), np.zeros((*data.y.shape[:2], 2, 0, 2)))
+def _with_shapes(data: BandData, poles: Numbers, participation: Numbers) -> tuple[Fit, Floats]:
+    """Shapes and misfit at given poles and participation; and Y'F, (n_output, n_input, m, 2)."""
+    m, (n_output, n_input) = len(poles), data.weight.shape
+    if not m:
+        none = Fit(poles, participation, np.zeros((n_output, 0), complex), data.power)
+        return none, np.zeros((n_output, n_input, 0, 2))
     biggest = np.argmax(np.abs(participation), axis=0)
-    participation = participation / participation[biggest, np.arange(len(poles))]
-    F = basis(data, poles)
-    G = _gram(F)
-    B = (data.y @ F.reshape(len(F), -1)).reshape(data.y.shape[:2] + F.shape[1:])
-    N = normal_shapes(G, participation, data.weight)
-    weighted = B[:, :, 0] * data.weight[:, :, None, None]
-    b = np.einsum("ikaf,oikf->oka", turned(participation), weighted, optimize=True)
-    b = b.reshape(len(b), -1)
-    x = solve_shapes(N, b[:, :, None])[:, :, 0]
-    misfit = data.power - float(np.sum(x * (2.0 * b - np.einsum("oab,ob->oa", N, x))))
-    pairs = x.reshape(len(x), -1, 2)
+    participation = participation / participation[biggest, np.arange(m)]
+    F = basis(data, poles, derivative=False)
+    B = data.y @ F.reshape(len(F), 2 * m)
+    per_input = shape_normals(_gram(F), participation)
+    L = turned(participation)
+    x = np.empty((n_output, 2 * m))
+    explained = 0.0
+    for w, rows in data.patterns:
+        mix = np.zeros((n_input, m, 2, m, 2))
+        mix[:, np.arange(m), :, np.arange(m), :] = (w[:, None, None, None] * L).transpose(
+            1, 0, 3, 2
+        )
+        b = B[rows].reshape(len(rows), -1) @ mix.reshape(-1, 2 * m)
+        N = np.tensordot(w, per_input, axes=1)
+        x[rows] = solve_shapes(N, b.T).T
+        explained += float(np.sum(x[rows] * (2.0 * b - x[rows] @ N)))
+    pairs = x.reshape(n_output, m, 2)
     shapes = pairs[..., 0] + 1j * pairs[..., 1]
-    return _State(Fit(poles, participation, shapes, max(misfit, 0.0)), G, B)
+    fit = Fit(poles, participation, shapes, max(data.power - explained, 0.0))
+    return fit, B.reshape(n_output, n_input, m, 2)
 
 
-def _moved(data: BandData, fit: Fit, step: Floats) -> _State:
+def _moved(data: BandData, fit: Fit, step: Floats) -> tuple[Fit, Floats]:
     """Apply a step of θ; decay rates move by factors, so no pole leaves the stable half plane."""
     m = len(fit.poles)
     pole = step[: 2 * m].reshape(m, 2)
@@ -215,4 +224,4 @@ def _moved(data: BandData, fit: Fit, step: Floats) -> _State:
     decay = decay * np.exp(np.clip(-pole[:, 0] / decay, -_FACTOR, _FACTOR))
     omega = omega + np.clip(pole[:, 1], -reach, reach)
     poles = -np.maximum(decay, _LEAST_DAMPING * omega) + 1j * omega
-    return _state(data, poles, fit.participation + (part[:, 0] + 1j * part[:, 1]).T)
+    return _with_shapes(data, poles, fit.participation + (part[:, 0] + 1j * part[:, 1]).T)

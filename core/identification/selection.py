@@ -6,8 +6,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..arrays import Floats, Numbers
-from .moments import BandData, basis
-from .refinement import Fit, fit_shapes, refine, solve_shapes, system_at
+from .moments import BandData, basis, parts_of, shape_normals
+from .refinement import Fit, fit_shapes, refine, solve_shapes
 from .stabilisation import MAX_DAMPING, Candidate
 
 _RISK = 0.01  # that noise alone makes one root somewhere in a band
@@ -16,6 +16,8 @@ _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
 _ROUNDS = 12  # of trying a root where the residual still shows one
+_FAILURES = 5  # in a row, after which no more is tried
+_PROMISING = 0.6  # significance of a root before it is refined, below which it is not tried
 _TRIAL_ITERATIONS = 10  # after which a root that explains too little is given up
 _AROUND = 4  # lines around a failed trial that are not tried again
 _BACKGROUND = 2  # roots beside or beneath the modes of a band, which a fit may use
@@ -48,14 +50,17 @@ def select(
     for c in spare:
         state = _try(data, f, state, c) or state
     open_lines = (f >= low) & (f <= high)
+    failed = 0
     for _ in range(_ROUNDS):
-        if not open_lines.any():
+        if not open_lines.any() or failed == _FAILURES:
             break
         line, candidate = _from_residual(data, f, state, open_lines)
         grown = _try(data, f, state, candidate)
         if grown is None:
+            failed += 1
             open_lines[max(line - _AROUND, 0) : line + _AROUND + 1] = False
         else:
+            failed = 0
             state = grown
     return prune(data, f, state)
 
@@ -72,12 +77,15 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
     m = len(fit.poles)
     if m == 0:
         return np.empty(0)
-    n, F, _ = system_at(data, fit)
-    unit = np.broadcast_to(np.eye(2 * m), n.shape_shape.shape)
-    inverse = solve_shapes(n.shape_shape, unit).reshape(-1, m, 2, m, 2)
-    own = inverse[:, np.arange(m), :, np.arange(m), :].transpose(1, 0, 2, 3)
+    F = basis(data, fit.poles, derivative=False)
+    flat = F.reshape(len(F), 2 * m)
+    per_input = shape_normals((flat.T @ flat).reshape(1, m, 2, 1, m, 2), fit.participation)
     x = np.stack([fit.shapes.real, fit.shapes.imag], axis=-1)
-    lost = np.einsum("oka,oka->k", x, np.linalg.solve(own, x[..., None])[..., 0])
+    lost = np.zeros(m)
+    for w, rows in data.patterns:
+        inverse = solve_shapes(np.tensordot(w, per_input, axes=1), np.eye(2 * m))
+        own = inverse.reshape(m, 2, m, 2)[np.arange(m), :, np.arange(m), :]
+        lost += np.einsum("oka,kab,okb->k", x[rows], np.linalg.inv(own), x[rows])
     n_output, n_input = data.weight.shape
     freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
     noise = chi2.isf(_RISK / len(f), freedom)
@@ -88,9 +96,8 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
 
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
     """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
-    r = fit.shapes[:, None, :] * fit.participation[None, :, :]
-    coefficients = np.stack([r.real, r.imag], axis=-1).reshape((*r.shape[:2], 2 * r.shape[2]))
-    left = data.y - coefficients @ F[:, 0].reshape(len(F), 2 * len(fit.poles)).T
+    model = parts_of(fit.shapes[:, None, :] * fit.participation[None, :, :])
+    left = data.y - model @ F[:, 0].reshape(len(F), 2 * len(fit.poles)).T
     return np.asarray(left * data.weight[:, :, None])
 
 
@@ -190,7 +197,7 @@ def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit | Non
         np.column_stack([fit.participation, candidate.participation]),
     )
     grown = fit_shapes(data, np.append(fit.poles, candidate.pole), new)
-    if significance(data, f, grown)[-1] < 0.5:
+    if significance(data, f, grown)[-1] < _PROMISING:
         return None
     stood = significance(data, f, fit) >= 1.0
     grown = refine(data, grown.poles, grown.participation, max_iterations=_TRIAL_ITERATIONS)
@@ -209,7 +216,7 @@ def _from_residual(
     data: BandData, f: Floats, fit: Fit, open_lines: Numbers
 ) -> tuple[int, Candidate]:
     """Find the line where the residual is strongest, and the root of a single-mode fit there."""
-    F = basis(data, fit.poles)
+    F = basis(data, fit.poles, derivative=False)
     left = residual_lines(data, fit, F)
     n_line = len(f)
     lines = (left[..., :n_line] + 1j * left[..., n_line:]).transpose(2, 0, 1)

@@ -209,9 +209,10 @@ def _one_component(
     lost = rows & ~best[0]
     if lost.any():
         labels = ", ".join(responses.take(np.flatnonzero(lost)).labels[:5])
+        kept = ", ".join(references.take(np.flatnonzero(best[1])).labels)
         warnings.append(
             f"{np.count_nonzero(lost)} response(s) ({labels}{', ...' if lost.sum() > 5 else ''}) "
-            f"share no reference with the others ({', '.join(references.take(np.flatnonzero(best[1])).labels)}): "
+            f"share no reference with the others ({kept}): "
             "their scale is unknown, left out"
         )
     return best
