@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +15,25 @@ from .eigen import Eigensolution
 from .errors import InputError
 from .model import Model
 from .shape_derivatives import REPEATED, ShapeDerivatives
+
+
+class Spectral(Protocol):
+    """What a solution must have to be differentiated."""
+
+    @property
+    def eigenvalues(self) -> Floats:
+        """Ascending, (n_mode,)."""
+        ...
+
+    @property
+    def vectors(self) -> Floats:
+        """Mass-orthonormal, (n, n_mode)."""
+        ...
+
+    @property
+    def rigid_body_modes(self) -> int:
+        """How many of the first modes are rigid-body modes."""
+        ...
 
 
 class Sensitivities(NamedTuple):
@@ -96,15 +116,47 @@ def sensitivities(
     preconditioned by the factor of K - s M with s near lambda; so nearly repeated pairs, where
     Nelson's method loses its accuracy, do no harm.
     """
-    lam = solution.eigenvalues
-    T, by_position = _coefficients(modes, len(lam))
+    T, by_position = coefficients(modes, len(solution.eigenvalues))
     _check(model, solution, parameters, shapes_at)
     changes = [(model.dK(i, p), model.dM(i, p)) for i in parameters]
+    change_of = None
+    if shapes_at is not None:
+        static = ShapeDerivatives(model, p, solution, tolerance)
+        change_of = partial(static.of, changes=changes)
+    return differentiate(T, by_position, solution, changes, shapes_at, change_of)
+
+
+def differentiate(
+    T: Floats,
+    by_position: bool,
+    solution: Spectral,
+    changes: Sequence[tuple[Any, Any]],
+    shapes_at: Any | None,
+    change_of: Callable[[Ints], Floats] | None,
+) -> Sensitivities:
+    """Put together the derivatives of clusters, as `sensitivities` says.
+
+    Parameters
+    ----------
+    T : (n_mode, n) float
+        Coefficients of the wanted shapes.
+    by_position : bool
+        Whether each column of `T` is one mode.
+    solution : Eigensolution or the like
+        ``eigenvalues``, ``vectors`` and ``rigid_body_modes``.
+    changes : sequence of (K', M')
+        By each parameter, sparse or dense.
+    shapes_at : (n_sensor, n) sparse or dense, or None
+    change_of : callable or None
+        Derivative of the vectors of a cluster, (n, n_cluster, n_parameter).
+
+    Returns
+    -------
+    Sensitivities
+    """
     size = np.sum(T**2, axis=0)
-    slopes = np.zeros((T.shape[1], len(parameters)))
-    sensors = sp.csr_matrix((0, model.n_free)) if shapes_at is None else shapes_at
-    shapes = np.zeros((sensors.shape[0], *slopes.shape))
-    static = ShapeDerivatives(model, p, solution, tolerance) if sensors.shape[0] else None
+    slopes = np.zeros((T.shape[1], len(changes)))
+    shapes = None if shapes_at is None else np.zeros((shapes_at.shape[0], *slopes.shape))
     for cluster in clusters(T, solution):
         columns = np.flatnonzero(T[cluster].any(axis=0))
         t = T[np.ix_(cluster, columns)]
@@ -114,11 +166,12 @@ def sensitivities(
             slopes[columns] = np.linalg.eigvalsh(G)[:, rank].T
         else:
             slopes[columns] = np.einsum("ac,iab,bc->ci", t, G, t) / size[columns, None]
-        if static is not None:
-            at_sensors = sensors @ static.of(cluster, changes).reshape(model.n_free, -1)
-            at_sensors = np.asarray(at_sensors).reshape(-1, len(cluster), len(parameters))
-            shapes[:, columns] = np.einsum("sai,ac->sci", at_sensors, t)
-    return Sensitivities(lam @ T**2 / size, slopes, None if shapes_at is None else shapes)
+        if shapes_at is not None and shapes is not None and change_of is not None:
+            change = change_of(cluster)
+            seen = np.asarray(shapes_at @ change.reshape(len(change), -1))
+            seen = seen.reshape(-1, len(cluster), len(changes))
+            shapes[:, columns] = np.einsum("sai,ac->sci", seen, t)
+    return Sensitivities(solution.eigenvalues @ T**2 / size, slopes, shapes)
 
 
 def cluster_derivatives(
@@ -146,12 +199,12 @@ def cluster_derivatives(
         slopes of the branches.
     """
     _check(model, solution, parameters, None)
-    _coefficients(cluster, len(solution.eigenvalues))
+    coefficients(cluster, len(solution.eigenvalues))
     changes = [(model.dK(i, p), model.dM(i, p)) for i in parameters]
     return _derivative_matrices(changes, solution, np.asarray(cluster))
 
 
-def clusters(T: Floats, solution: Eigensolution) -> Iterator[Ints]:
+def clusters(T: Floats, solution: Spectral) -> Iterator[Ints]:
     """Positions of the modes, ascending, that must be differentiated together.
 
     Parameters
@@ -173,7 +226,7 @@ def clusters(T: Floats, solution: Eigensolution) -> Iterator[Ints]:
 
 
 def _derivative_matrices(
-    changes: Sequence[tuple[sp.csr_matrix, sp.csr_matrix]], solution: Eigensolution, cluster: Ints
+    changes: Sequence[tuple[Any, Any]], solution: Spectral, cluster: Ints
 ) -> Floats:
     X, lam = solution.vectors[:, cluster], solution.eigenvalues[cluster]
     G = np.zeros((len(changes), len(cluster), len(cluster)))
@@ -183,8 +236,8 @@ def _derivative_matrices(
     return G
 
 
-def _coefficients(modes: Sequence[int] | Numbers, count: int) -> tuple[Floats, bool]:
-    """Columns of coefficients, (count, n), and whether positions were given."""
+def coefficients(modes: Sequence[int] | Numbers, count: int) -> tuple[Floats, bool]:
+    """Return columns of coefficients, (count, n), and whether positions were given."""
     given = np.asarray(modes)
     if given.ndim == 2:
         if given.shape[0] != count:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -22,6 +23,44 @@ _BLOCK = 64
 
 REPEATED = 1e-6
 """Eigenvalues this close, relatively, have no modes of their own."""
+
+
+def modal_part(
+    X: Floats, lam: Floats, cluster: Ints, changes: Sequence[tuple[Any, Any]]
+) -> tuple[Floats, Floats, Floats]:
+    """Differentiate a cluster within the span of known modes.
+
+    Parameters
+    ----------
+    X : (n, n_mode) float
+        Mass-orthonormal.
+    lam : (n_mode,) float
+    cluster : (n_cluster,) int
+    changes : sequence of (K', M')
+        By each of n_parameter parameters, sparse or dense.
+
+    Returns
+    -------
+    z : (n, n_cluster * n_parameter) float
+        Modal sum over the modes outside the cluster, and -Phi_c (Phi_c^T M' Phi_c) / 2.
+    b : (n, n_cluster * n_parameter) float
+        -(K' - lambda M') phi.
+    along : (n_mode, n_cluster * n_parameter) float
+        X^T b.
+    """
+    Xc, lam_c = X[:, cluster], lam[cluster]
+    b = np.empty((len(X), len(cluster), len(changes)))
+    within = np.empty((len(cluster), len(cluster), len(changes)))
+    for i, (dK, dM) in enumerate(changes):
+        moved = dM @ Xc
+        b[:, :, i] = moved * lam_c - dK @ Xc
+        within[:, :, i] = -0.5 * (Xc.T @ moved)
+    b = b.reshape(len(X), -1)
+    along = X.T @ b
+    others = np.setdiff1d(np.arange(len(lam)), cluster)
+    distance = lam[others, None] - np.repeat(lam_c, len(changes))
+    z = X[:, others] @ (along[others] / distance) + Xc @ within.reshape(len(cluster), -1)
+    return z, b, along
 
 
 class ShapeDerivatives:
@@ -67,22 +106,11 @@ class ShapeDerivatives:
         InputError
             The modes above the last of the solution are too close to the cluster.
         """
-        X, lam = self._X, self._solution.eigenvalues
-        Xc, lam_c = X[:, cluster], lam[cluster]
-        b = np.empty((len(X), len(cluster), len(changes)))
-        within = np.empty((len(cluster), len(cluster), len(changes)))
-        for i, (dK, dM) in enumerate(changes):
-            moved = dM @ Xc
-            b[:, :, i] = moved * lam_c - dK @ Xc
-            within[:, :, i] = -0.5 * (Xc.T @ moved)
-        columns = np.repeat(lam_c, len(changes))
-        b = b.reshape(len(X), -1)
-        along = X.T @ b
-        others = np.setdiff1d(np.arange(len(lam)), cluster)
-        z = self._outside(cluster, b - self._MX @ along, columns)
-        z += X[:, others] @ (along[others] / (lam[others, None] - columns))
-        z += Xc @ within.reshape(len(cluster), -1)
-        return z.reshape(len(X), len(cluster), len(changes))
+        lam = self._solution.eigenvalues
+        z, b, along = modal_part(self._X, lam, cluster, changes)
+        columns = np.repeat(lam[cluster], len(changes))
+        z += self._outside(cluster, b - self._MX @ along, columns)
+        return z.reshape(len(z), len(cluster), len(changes))
 
     def _outside(self, cluster: Ints, r: Floats, lam: Floats) -> Floats:
         """(K - lam M)^-1 r on the complement of the known modes; one lam a column."""

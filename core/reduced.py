@@ -1,0 +1,324 @@
+"""A model projected onto few vectors: its modes at any parameter values in milliseconds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+import scipy.linalg as sl
+import scipy.sparse as sp
+
+from .arrays import Floats, Ints
+from .eigen import Eigensolution, solve
+from .errors import InputError
+from .factor import factorise
+from .model import Model, Term
+from .pencil import Pencil
+from .reduced_basis import further, projected, static_answers
+from .sensitivity import Sensitivities, coefficients, differentiate
+from .shape_derivatives import modal_part
+
+
+@dataclass(frozen=True, eq=False)
+class LowRank:
+    """A change U diag(s) U^T of a reduced matrix.
+
+    Parameters
+    ----------
+    vectors : (n_basis, k) float
+        U projected on the basis, see `ReducedModel.project`.
+    sizes : (k,) float
+        s.
+    """
+
+    vectors: Floats
+    sizes: Floats
+
+    @property
+    def matrix(self) -> Floats:
+        """The change, (n_basis, n_basis)."""
+        return np.asarray((self.vectors * self.sizes) @ self.vectors.T)
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedModes:
+    """Modes of a reduced model at one parameter point.
+
+    Parameters
+    ----------
+    eigenvalues : (n_mode,) float
+        Ascending, (rad/s)^2.
+    vectors : (n_basis, n_mode) float
+        Coordinates in the basis, mass-orthonormal.
+    rigid_body_modes : int
+        Of the full model.
+    """
+
+    eigenvalues: Floats
+    vectors: Floats
+    rigid_body_modes: int
+
+    @property
+    def frequencies_hz(self) -> Floats:
+        """Natural frequencies, (n_mode,) Hz."""
+        return np.asarray(np.sqrt(np.maximum(self.eigenvalues, 0.0)) / (2.0 * np.pi))
+
+    def take(self, count: int) -> ReducedModes:
+        """Return the lowest `count` modes."""
+        return ReducedModes(
+            self.eigenvalues[:count], self.vectors[:, :count], min(self.rigid_body_modes, count)
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedModel:
+    """K(p) and M(p) of a model on a fixed basis Q.
+
+    Parameters
+    ----------
+    model : Model
+        The full model.
+    p0 : (n_parameter,) float
+        Where the basis was made.
+    Q : (n_free, n_basis) float
+        Orthonormal with respect to K - sigma M at `p0`.
+    stiffness, mass : (n_term, n_basis, n_basis) float
+        Q^T K_t Q of each term of the model.
+    solution : Eigensolution
+        Of the full model at `p0`, with its factor.
+    """
+
+    model: Model
+    p0: Floats
+    Q: Floats
+    stiffness: Floats
+    mass: Floats
+    solution: Eigensolution = field(repr=False)
+
+    @property
+    def size(self) -> int:
+        """Number of basis vectors."""
+        return int(self.Q.shape[1])
+
+    def K(self, p: Floats) -> Floats:
+        """Return the reduced stiffness at `p`, (n_basis, n_basis)."""
+        return _weighted(self.model.stiffness, self.stiffness, p)
+
+    def M(self, p: Floats) -> Floats:
+        """Return the reduced mass at `p`, (n_basis, n_basis)."""
+        return _weighted(self.model.mass, self.mass, p)
+
+    def dK(self, parameter: int, p: Floats) -> Floats:
+        """Return the derivative of the reduced stiffness, (n_basis, n_basis)."""
+        return _weighted(self.model.stiffness, self.stiffness, p, parameter)
+
+    def dM(self, parameter: int, p: Floats) -> Floats:
+        """Return the derivative of the reduced mass, (n_basis, n_basis)."""
+        return _weighted(self.model.mass, self.mass, p, parameter)
+
+    def project(self, vectors: sp.spmatrix | Floats) -> Floats:
+        """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).
+
+        The transpose of what sensors C, (n_sensor, n_free), see of the basis: C Q is
+        ``project(C.T).T``.
+        """
+        return np.asarray((vectors.T @ self.Q).T)
+
+    def solve(
+        self,
+        p: Floats,
+        n_modes: int | None = None,
+        stiffness: LowRank | None = None,
+        mass: LowRank | None = None,
+    ) -> ReducedModes:
+        """Find modes at the parameter values `p`.
+
+        Parameters
+        ----------
+        p : (n_parameter,) float
+        n_modes : int, optional
+            Default: as many as the full solution at `p0` has.
+        stiffness, mass : LowRank, optional
+            Added to K and M: what the model lacks.
+
+        Raises
+        ------
+        InputError
+            Where K - sigma M is not positive definite: a negative change that is too large.
+        """
+        K, M = self.K(p), self.M(p)
+        if stiffness is not None:
+            K = K + stiffness.matrix
+        if mass is not None:
+            M = M + mass.matrix
+        n = self.size
+        wanted = min(n, len(self.solution.eigenvalues) if n_modes is None else n_modes)
+        sigma = self.solution.sigma
+        try:
+            theta, q = sl.eigh(M, K - sigma * M, subset_by_index=(n - wanted, n - 1))
+        except np.linalg.LinAlgError as error:
+            raise InputError(
+                "the reduced model is not positive definite at these parameter values"
+            ) from error
+        theta, q = theta[::-1], q[:, ::-1]
+        theta = np.maximum(theta, np.finfo(float).tiny)
+        rigid = min(self.solution.rigid_body_modes, wanted)
+        return ReducedModes(sigma + 1.0 / theta, q / np.sqrt(theta), rigid)
+
+    def vectors(self, modes: ReducedModes) -> Floats:
+        """Return the shapes on the free degrees of freedom, (n_free, n_mode), unit modal mass."""
+        return np.asarray(self.Q @ modes.vectors)
+
+    def sensitivities(
+        self,
+        p: Floats,
+        modes: Sequence[int] | Ints | Floats,
+        parameters: Sequence[int],
+        sensors: Floats | None = None,
+    ) -> Sensitivities:
+        """Differentiate modes within the basis, exactly.
+
+        Parameters
+        ----------
+        p : (n_parameter,) float
+        modes, parameters
+            As in `sensitivity.sensitivities`; columns of coefficients may have as many rows as
+            there are modes of interest.
+        sensors : (n_sensor, n_basis) float, optional
+            C Q of the sensors.
+
+        Returns
+        -------
+        Sensitivities
+        """
+        everything = self._finite(self.solve(p, self.size))
+        count = len(everything.eigenvalues)
+        given = np.asarray(modes)
+        if given.ndim == 2:
+            given = np.vstack([given, np.zeros((max(count - len(given), 0), given.shape[1]))])
+        T, by_position = coefficients(given, count)
+        changes = [(self.dK(i, p), self.dM(i, p)) for i in parameters]
+        change_of = partial(_within_basis, everything, changes)
+        return differentiate(T, by_position, everything, changes, sensors, change_of)
+
+    def error_estimate(self, p: Floats, modes: ReducedModes) -> tuple[Floats, Floats]:
+        """Estimate what the basis lacks at `p`, from the residuals of the full model.
+
+        The residual r = (K - lambda M) Q q is answered by the factor at `p0`, e = A0^-1 r.
+
+        Returns
+        -------
+        eigenvalue : (n_mode,) float
+            r^T e relative to lambda - sigma: about the relative error of the eigenvalue, which
+            is always too high.
+        shape : (n_mode,) float
+            ||e||_M: about the norm of the missing part of the mass-normalised shape. An
+            estimate, not a bound: modes close to each other miss more.
+        """
+        factor = self.solution.factor
+        if factor is None:
+            raise InputError("the reduced model was built without the factor of the full one")
+        pencil = Pencil.of(self.model, p)
+        X = self.vectors(modes)
+        r = pencil.K @ X - (pencil.M @ X) * modes.eigenvalues
+        e = factor.solve(r)
+        energy = np.maximum(np.einsum("ij,ij->j", r, e), 0.0)
+        size = np.sqrt(np.maximum(np.einsum("ij,ij->j", e, pencil.M @ e), 0.0))
+        return energy / (modes.eigenvalues - self.solution.sigma), size
+
+    def _finite(self, modes: ReducedModes) -> ReducedModes:
+        """Leave out the vectors of the basis without mass."""
+        span = modes.eigenvalues - self.solution.sigma
+        return modes.take(int(np.count_nonzero(span < 1e13 * span[0])))
+
+
+def build_reduced(
+    model: Model,
+    p0: Floats,
+    targets: Sequence[int] | Ints,
+    parameters: Sequence[int],
+    extra_vectors: Floats | None = None,
+    *,
+    solution: Eigensolution | None = None,
+    more_modes: int = 12,
+    max_static: int = 250,
+) -> ReducedModel:
+    """Project a model onto its modes and their static answers to the parameters.
+
+    Parameters
+    ----------
+    model : Model
+    p0 : (n_parameter,) float
+        Usually the middle of where the parameters may go.
+    targets : (n,) int
+        Modes, from 0, that must be good.
+    parameters : sequence of int
+        Positions in ``model.parameters`` that will move.
+    extra_vectors : (n_free, k) float, optional
+        Further shapes, for instance static answers A^-1 f to the forces of suspected effects.
+    solution : Eigensolution, optional
+        At `p0` with ``keep_factor``; made here otherwise.
+    more_modes : int
+        Modes in the basis beyond the last target, when `solution` is not given.
+    max_static : int
+        Most static vectors kept, by their energy.
+
+    Returns
+    -------
+    ReducedModel
+
+    Raises
+    ------
+    InputError
+        A target or parameter that does not exist.
+
+    Notes
+    -----
+    The basis is Phi and A^-1 (dK/dp_i - lambda_j dM/dp_i) phi_j, with A = K - sigma M the
+    matrix whose factor the eigensolution has: the first-order change of every target (Fox and
+    Kapoor 1968) is in its span up to the factor (lambda - sigma) / (lambda_k - sigma) of the
+    first mode k left out. Modes alone are not enough.
+    """
+    last = int(np.max(targets, initial=-1))
+    if solution is None:
+        solution = solve(model, last + 1 + more_modes, p=p0, keep_factor=True)
+    if last < 0 or last >= len(solution.eigenvalues) or min(targets) < 0:
+        raise InputError(f"mode {last + 1} is a target, the model has {len(solution.eigenvalues)}")
+    pencil = Pencil.of(model, p0)
+    factor = solution.factor or factorise(pencil.shifted(solution.sigma), True)
+    Q = np.hstack(
+        [
+            solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma),
+            static_answers(model, p0, solution, factor, targets, parameters, max_static),
+        ]
+    )
+    if extra_vectors is not None:
+        Q = np.hstack([Q, further(pencil.K - solution.sigma * pencil.M, Q, extra_vectors)])
+    return ReducedModel(
+        model,
+        np.array(p0, np.float64),
+        Q,
+        projected(model.stiffness, Q),
+        projected(model.mass, Q),
+        solution,
+    )
+
+
+def _weighted(
+    terms: Sequence[Term], matrices: Floats, p: Floats, parameter: int | None = None
+) -> Floats:
+    """Sum of the matrices with their coefficients at p, or the derivatives of these."""
+    c = [
+        t.coefficient(p) if parameter is None else t.coefficient_derivative(p, parameter)
+        for t in terms
+    ]
+    return np.asarray(np.tensordot(np.array(c), matrices, 1))
+
+
+def _within_basis(
+    modes: ReducedModes, changes: Sequence[tuple[Floats, Floats]], cluster: Ints
+) -> Floats:
+    z, _, _ = modal_part(modes.vectors, modes.eigenvalues, cluster, changes)
+    return z.reshape(len(z), len(cluster), len(changes))

@@ -1,0 +1,99 @@
+"""Vectors that carry a reduced model, and the projection of its matrices onto them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Floats, Ints
+from .eigen import Eigensolution
+from .errors import InputError
+from .factor import Factorisation
+from .model import Model, Term
+
+_DEPENDENT = 1e-10
+"""Energy beside the largest below which a direction is dependent on the others."""
+
+
+def static_answers(
+    model: Model,
+    p0: Floats,
+    solution: Eigensolution,
+    factor: Factorisation,
+    targets: Sequence[int] | Ints,
+    parameters: Sequence[int],
+    most: int,
+) -> Floats:
+    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi.
+
+    Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
+    values, compare; of their principal directions those of largest energy are kept.
+
+    Parameters
+    ----------
+    model, p0, solution, targets, parameters
+        As in `reduced.build_reduced`.
+    factor : Factorisation
+        Of A = K - sigma M.
+    most : int
+        Most vectors kept.
+
+    Returns
+    -------
+    (n_free, k) float
+        A-orthonormal, A-orthogonal to the modes, k <= `most`.
+    """
+    chosen = np.asarray(targets, np.int64)
+    span = solution.eigenvalues - solution.sigma
+    X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
+    weight = 1.0 / np.sqrt(span[chosen])
+
+    def loads(i: int) -> Floats:
+        return np.asarray((model.dK(i, p0) @ X - (model.dM(i, p0) @ X) * lam) * weight)
+
+    n, m = X.shape
+    S = np.empty((n, m * len(parameters)), order="F")
+    for k, i in enumerate(parameters):
+        S[:, k * m : (k + 1) * m] = factor.solve(loads(i))
+    energy = np.empty((S.shape[1],) * 2)
+    modal = np.empty((len(span), S.shape[1]))
+    for k, i in enumerate(parameters):
+        F = loads(i)
+        energy[:, k * m : (k + 1) * m] = S.T @ F
+        modal[:, k * m : (k + 1) * m] = (solution.vectors.T @ F) / span[:, None]
+    energy -= modal.T @ (span[:, None] * modal)
+    value, W = np.linalg.eigh((energy + energy.T) / 2.0)
+    best = np.argsort(-value)[:most]
+    best = best[value[best] > _DEPENDENT * max(value.max(initial=0.0), 0.0)]
+    W = W[:, best] / np.sqrt(value[best])
+    return np.asarray(S @ W - solution.vectors @ (modal @ W))
+
+
+def further(A: sp.csr_matrix, Q: Floats, Y: Floats) -> Floats:
+    """Return what Y, (n, m), adds to the A-orthonormal Q, itself A-orthonormal, (n, k <= m)."""
+    if Y.shape[0] != Q.shape[0]:
+        raise InputError(f"extra vectors have {Y.shape[0]} rows for {Q.shape[0]} dofs")
+    size = np.einsum("ij,ij->j", Y, A @ Y)
+    Y = Y / np.sqrt(np.where(size > 0.0, size, 1.0))
+    for _ in range(2):
+        Y = Y - Q @ (Q.T @ (A @ Y))
+        value, W = np.linalg.eigh(Y.T @ (A @ Y))
+        kept = value > _DEPENDENT
+        Y = Y @ (W[:, kept] / np.sqrt(value[kept]))
+    return Y
+
+
+def projected(terms: Sequence[Term], Q: Floats) -> Floats:
+    """Return Q^T A_t Q of each term A_t, (n_term, n_basis, n_basis)."""
+    out = np.zeros((len(terms), Q.shape[1], Q.shape[1]))
+    for k, term in enumerate(terms):
+        half = sp.triu(term.matrix, 1) + 0.5 * sp.diags(term.matrix.diagonal())
+        half = half.tocoo()
+        rows, at = np.unique(np.concatenate([half.row, half.col]), return_inverse=True)
+        part = sp.csr_matrix((half.data, at.reshape(2, -1)), shape=(len(rows), len(rows)))
+        q = np.ascontiguousarray(Q[rows])
+        product = q.T @ (part @ q)
+        out[k] = product + product.T
+    return out

@@ -1,0 +1,211 @@
+"""The reduced model against the full one."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core.eigen import solve
+from trueup.core.errors import InputError
+from trueup.core.model import Model, Term
+from trueup.core.reduced import LowRank, build_reduced
+from trueup.core.sensitivity import sensitivities
+
+
+@pytest.fixture
+def grid(frame):
+    """A free, slightly warped grid of bars; moduli and densities of four regions."""
+
+    def build(n=7, **options):
+        x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 0.8, n))
+        xyz = np.column_stack([x.ravel(), y.ravel(), 0.05 * (x * y).ravel()])
+        at = np.arange(n * n).reshape(n, n)
+        bars = [*zip(at[:, :-1].ravel(), at[:, 1:].ravel(), strict=True)]
+        bars += zip(at[:-1].ravel(), at[1:].ravel(), strict=True)
+        count = len(bars)
+        regions = [range(count // 5), range(count // 5, count // 2), range(count // 2, count)]
+        parameters = [("E", r) for r in regions] + [("rho", regions[1])]
+        return frame(xyz, bars, parameters=parameters, **options)
+
+    return build
+
+
+def shifted(p, *factors):
+    q = np.array(p)
+    q[: len(factors)] = factors
+    return q
+
+
+def mac(a, b):
+    return (np.sum(a * b, axis=0) ** 2) / (np.sum(a * a, axis=0) * np.sum(b * b, axis=0))
+
+
+TARGETS = range(6, 14)
+PARAMETERS = range(4)
+
+
+def test_at_its_own_point_it_is_the_full_model(grid):
+    model = grid()
+    p = model.deck_point
+    reduced = build_reduced(model, p, TARGETS, PARAMETERS)
+    full = solve(model, 20)
+    found = reduced.solve(p, 20)
+    np.testing.assert_allclose(found.eigenvalues[6:], full.eigenvalues[6:], rtol=1e-9)
+    assert found.rigid_body_modes == 6
+    X = reduced.vectors(found)
+    np.testing.assert_allclose(X.T @ (model.M() @ X), np.eye(20), atol=1e-9)
+
+
+@pytest.mark.parametrize("factors", [(1.3, 0.7, 1.0, 1.2), (0.7, 1.3, 0.8, 0.75)])
+def test_thirty_percent_away_it_is_close_and_modes_alone_are_not(grid, factors):
+    model = grid()
+    p = np.array(factors)
+    full = solve(model, 20, p=p)
+    errors = []
+    for parameters in (PARAMETERS, []):
+        reduced = build_reduced(model, model.deck_point, TARGETS, parameters)
+        found = reduced.solve(p, 14)
+        deviation = np.sqrt(found.eigenvalues[6:] / full.eigenvalues[6:14]) - 1.0
+        assert (deviation > -1e-9).all()
+        errors.append(deviation.max())
+    assert errors[0] < 7e-4
+    assert errors[1] > 10.0 * errors[0]
+
+
+def test_shapes_thirty_percent_away(grid):
+    model = grid()
+    p = np.array([1.3, 0.7, 1.0, 1.2])
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS)
+    full = solve(model, 16, p=p)
+    X = reduced.vectors(reduced.solve(p, 14))
+    assert mac(X[:, 6:12], full.vectors[:, 6:12]).min() > 0.9997
+
+
+def test_a_basis_of_all_modes_is_exact_anywhere(grid):
+    model = grid(3, fixed=[(0, c) for c in range(1, 7)])
+    p = np.array([2.0, 0.4, 3.0, 0.5])
+    everything = solve(model, model.n_free, keep_factor=True)
+    reduced = build_reduced(model, model.deck_point, [0], [], solution=everything)
+    assert reduced.size == model.n_free
+    np.testing.assert_allclose(
+        reduced.solve(p, 10).eigenvalues, solve(model, 10, p=p).eigenvalues, rtol=1e-8
+    )
+
+
+def test_low_rank_changes(grid):
+    """A hidden point mass and a ground spring, with the answers to their forces in the basis."""
+    model = grid()
+    p = model.deck_point
+    dof = [6 * 17 + c for c in (0, 1, 2)]
+    U = sp.identity(model.n_free, format="csc")[:, dof]
+    start = solve(model, 30, keep_factor=True)
+    extra = start.factor.solve(U.toarray())
+    reduced = build_reduced(model, p, TARGETS, PARAMETERS, extra, solution=start)
+    seen = reduced.project(U)
+    np.testing.assert_allclose(seen, reduced.Q[dof].T)
+    for s, m in ((0.0, 0.5), (2e4, 0.0), (1e4, 0.2)):
+        K = model.K() + s * (U @ U.T)
+        M = model.M() + m * (U @ U.T)
+        changed = Model(model.geometry, model.dofs, model.expansion, (Term(K),), (Term(M),))
+        full = solve(changed, 12).eigenvalues[6:]
+        ones = np.ones(3)
+        found = reduced.solve(p, 12, LowRank(seen, s * ones), LowRank(seen, m * ones))
+        error = abs(found.eigenvalues[6:] / full - 1.0).max()
+        unchanged = abs(reduced.solve(p, 12).eigenvalues[6:] / full - 1.0).max()
+        assert error < 2e-3
+        assert unchanged > 10.0 * error
+
+
+def test_too_large_a_negative_change_is_refused(grid):
+    model = grid()
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS)
+    u = reduced.project(sp.identity(model.n_free, format="csc")[:, [100]])
+    with pytest.raises(InputError, match="positive definite"):
+        reduced.solve(model.deck_point, 10, LowRank(u, np.array([-1e9])))
+
+
+def test_derivatives_within_the_basis_agree_with_central_differences(grid):
+    model = grid()
+    p = np.array([1.1, 0.9, 1.2, 1.0])
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS)
+    C = sp.identity(model.n_free, format="csr")[::11]
+    CQ = reduced.project(C.T).T
+    found = reduced.sensitivities(p, TARGETS, PARAMETERS, CQ)
+    base = reduced.solve(p, 20)
+    np.testing.assert_allclose(found.values, base.eigenvalues[list(TARGETS)], rtol=1e-9)
+    h = 1e-4
+    for k in PARAMETERS:
+        sides = []
+        for s in (h, -h):
+            q = p.copy()
+            q[k] += s
+            side = reduced.solve(q, 20)
+            shape = CQ @ side.vectors
+            sign = np.sign(np.sum(shape * (CQ @ base.vectors), axis=0))
+            sides.append((side.eigenvalues, shape * sign))
+        slope = (sides[0][0] - sides[1][0])[6:14] / (2.0 * h)
+        np.testing.assert_allclose(found.slopes[:, k], slope, rtol=1e-5)
+        expected = (sides[0][1] - sides[1][1])[:, 6:14] / (2.0 * h)
+        expected = expected * np.sign(np.sum((CQ @ base.vectors)[:, 6:14] ** 2, axis=0))
+        np.testing.assert_allclose(
+            abs(found.shapes[:, :, k]), abs(expected), atol=1e-5 * abs(expected).max()
+        )
+
+
+def test_derivatives_are_those_of_the_full_model(grid):
+    model = grid()
+    p = model.deck_point
+    start = solve(model, 30, keep_factor=True)
+    reduced = build_reduced(model, p, TARGETS, PARAMETERS, solution=start)
+    C = sp.identity(model.n_free, format="csr")[::11]
+    full = sensitivities(model, p, start, TARGETS, PARAMETERS, C)
+    found = reduced.sensitivities(p, TARGETS, PARAMETERS, reduced.project(C.T).T)
+    np.testing.assert_allclose(found.slopes, full.slopes, rtol=1e-6)
+    np.testing.assert_allclose(
+        abs(found.shapes), abs(full.shapes), atol=2e-3 * abs(full.shapes).max()
+    )
+    T = np.zeros((14, 2))
+    T[7:9] = [[0.8, -0.6], [0.6, 0.8]]
+    both = reduced.sensitivities(p, T, [0, 1])
+    assert both.slopes.shape == (2, 2)
+
+
+def test_the_error_estimate_is_of_the_size_of_the_error(grid):
+    model = grid()
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS)
+    for p in ((1.3, 0.7, 1.0, 1.2), (1.05, 1.0, 0.95, 1.0)):
+        p = np.array(p)
+        found = reduced.solve(p, 14)
+        truth = solve(model, 14, p=p).eigenvalues[6:]
+        error = found.eigenvalues[6:] / truth - 1.0
+        estimate = reduced.error_estimate(p, found)[0][6:]
+        ratio = estimate[error > 1e-9] / error[error > 1e-9]
+        assert ratio.min() > 0.2
+        assert ratio.max() < 5.0
+
+
+def test_at_most_so_many_static_vectors(grid):
+    model = grid()
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS, max_static=7)
+    assert reduced.size == len(reduced.solution.eigenvalues) + 7
+
+
+def test_rotations_without_mass(grid):
+    model = grid(lumped=True)
+    p = np.array([1.2, 0.8, 1.1, 0.9])
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS)
+    full = solve(model, 14, p=p)
+    found = reduced.solve(p, 14)
+    np.testing.assert_allclose(found.eigenvalues[6:12], full.eigenvalues[6:12], rtol=2e-3)
+    slopes = reduced.sensitivities(p, TARGETS, PARAMETERS).slopes
+    assert np.isfinite(slopes).all()
+
+
+def test_bad_input_is_refused_in_words(grid):
+    model = grid(3)
+    with pytest.raises(InputError, match="is a target"):
+        build_reduced(model, model.deck_point, [10], [0], solution=solve(model, 8))
+    with pytest.raises(InputError, match="extra vectors have 3 rows"):
+        build_reduced(model, model.deck_point, [6], [0], np.ones((3, 1)))
+    reduced = build_reduced(model, model.deck_point, [6], [0], solution=solve(model, 8))
+    with pytest.raises(InputError, match="without the factor"):
+        reduced.error_estimate(model.deck_point, reduced.solve(model.deck_point))
