@@ -207,7 +207,7 @@ def _add_plane(
 
     Km, Kb = integral(section.A), integral(section.D)
     if section.B.any():
-        both = np.block([[[Km, Kc := integral(section.B)]], [[transpose(Kc), Kb]]])
+        both = np.block([[Km, Kc := integral(section.B)], [transpose(Kc), Kb]])
         kept = np.concatenate([_PLANE, _PLANE + 12])
         both = condense(both, kept, np.concatenate([_INNER, _INNER + 12]))
         rows, sign = np.concatenate([_MEMBRANE, _BENDING]), np.append(np.ones(8), _SIGN)
