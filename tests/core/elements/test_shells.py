@@ -82,10 +82,8 @@ def test_stiffness_does_not_depend_on_where_numbering_starts():
     assert np.abs(back - K).max() < 1e-9 * np.abs(K).max()
 
 
-PLATE = np.array(
-    [[0, 0], [0.24, 0], [0.24, 0.12], [0, 0.12]]
-    + [[0.04, 0.02], [0.18, 0.03], [0.16, 0.08], [0.08, 0.08]]
-)
+RIM = np.array([[0, 0], [0.24, 0], [0.24, 0.12], [0, 0.12]])
+PLATE = np.concatenate([RIM, [[0.04, 0.02], [0.18, 0.03], [0.16, 0.08], [0.08, 0.08]]])
 PATCH = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]])
 
 
@@ -206,9 +204,7 @@ def test_facets_of_triangles_are_hinged_without_grid_normals(structure):
 def test_supported_plate_converges(structure, triangles, aspect, target):
     a, b, t, E, n = 2.0, 2.0 * aspect, 0.01, 1.7472e7, 8
     D = E * t**3 / 12 / (1 - 0.3**2)
-    points, conn = structure.grid(
-        n, n, lambda s, r: np.column_stack([s * a / 2, r * b / 2, 0 * s])
-    )
+    points, conn = structure.grid(n, n, lambda s, r: np.column_stack([s * a / 2, r * b / 2, 0 * s]))
     conn = split(conn) if triangles else conn
     K = structure.assemble(len(points), conn, stiffness(points, conn, E, 0.3, t))
     x, y, _ = points.T
@@ -297,9 +293,7 @@ def test_offset_equals_coupling_of_the_laminate():
     """A plate moved along its normal: by rigid arms, or by A, B, D about the grids' plane."""
     xyz = np.array([QUADS[0]], dtype=float)
     h, plate = 0.3, sections(1)
-    moved = ShellSection(
-        plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S, plate.drilling
-    )
+    moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S, plate.drilling)
     by_arms = quad4_stiffness(xyz, plate, 0.0, offset=h)[0]
     by_laminate = quad4_stiffness(xyz, moved, 0.0)[0]
     curvature = np.zeros((4, 6))
@@ -336,7 +330,8 @@ def test_rotated_section_turns_the_material_not_the_energy():
     assert strain @ turned.A[0] @ strain == pytest.approx(along @ A[0] @ along)
     shear = np.array([0.3, -0.8])
     assert shear @ turned.S[0] @ shear == pytest.approx((R @ shear) @ S[0] @ (R @ shear))
-    assert rotate_section(turned, np.array([-angle])).D == pytest.approx(section.D)
+    back = rotate_section(turned, np.array([-angle])).D
+    assert np.abs(back - section.D).max() < 1e-12
 
 
 @pytest.mark.parametrize("coupled", [False, True])
@@ -362,13 +357,10 @@ def test_corner_jacobians_show_a_folded_quad():
 
 def test_grid_normals_respect_the_angle_limit():
     corner = np.array([0, 0, 1, 1, 2])
-    ten, fifty = np.radians([10, 50])
-    normal = np.array(
-        [[0, 0, 1], [np.sin(ten), 0, np.cos(ten)], [0, 0, 1], [np.sin(fifty), 0, np.cos(fifty)]]
-        + [[1, 0, 0]]
-    )
+    angle = np.radians([0, 10, 0, 50, 90])
+    normal = np.column_stack([np.sin(angle), 0 * angle, np.cos(angle)])
     mean = grid_normals(corner, normal, 4, 20.0)
-    half = ten / 2
+    half = np.radians(5)
     assert mean[0] == pytest.approx([np.sin(half), 0, np.cos(half)])
     assert np.isnan(mean[1]).all()
     assert mean[2] == pytest.approx([1, 0, 0])
