@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.errors import InputError
 from .content import Skipped
 from .layout58 import HEADER_LINES, REALS, columns, form, records
 
@@ -38,79 +37,21 @@ class Section:
     closed: bool = True
 
 
-@dataclass(frozen=True, eq=False)
-class Source:
-    """An open universal file, mapped read-only, with its datasets."""
-
-    path: Path
-    data: mmap.mmap
-    sections: tuple[Section, ...] = ()
-    skipped: tuple[Skipped, ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """How messages call the file."""
-        return str(self.path)
-
-    def lines(self, section: Section) -> list[bytes]:
-        """All lines of a dataset, without their ends."""
-        return self.data[section.begin : section.end].splitlines()
-
-    def head(self, section: Section, n: int) -> tuple[list[bytes], int]:
-        """Return the first `n` lines of a dataset and the offset of what follows them."""
-        found: list[bytes] = []
-        at = section.begin
-        while len(found) < n and at < section.end:
-            stop = _LINE_END.search(self.data, at, section.end)
-            found.append(self.data[at : stop.start() if stop else section.end])
-            at = stop.end() if stop else section.end
-        return found, at
-
-    def release(self, section: Section) -> None:
-        """Let the system take back the memory that the bytes of a dataset occupy."""
-        _release(self.data, section.begin, section.end)
-
-    def error(self, line: int, what: str) -> InputError:
-        """Return the error that names this file and a line of it."""
-        return InputError(f"{self.name} line {line}: {what}")
-
-
-def open_source(path: Path, exact_lines: bool = True) -> Source:
-    """Map a universal file and find its datasets.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    exact_lines : bool
-        Count line ends within binary blocks too, as an editor does; that reads the whole file.
-
-    Raises
-    ------
-    InputError
-        The file does not exist, is empty, holds no dataset, or ends inside one that cannot tell
-        by itself whether it is whole.
-    """
-    try:
-        with path.open("rb") as stream:
-            data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise InputError(f"{path} is empty; a universal file is expected") from error
-    scan = _Scan(path, data, exact_lines)
-    sections = tuple(scan.sections())
-    if not sections:
-        raise InputError(
-            f"{path} is not a universal file: no line '    -1' followed by a dataset number; "
-            "give a .unv or .uff file"
-        )
-    return Source(path, data, sections, tuple(scan.skipped), tuple(scan.warnings))
+def first_lines(data: mmap.mmap, begin: int, end: int, n: int) -> tuple[list[bytes], int]:
+    """Return the first `n` lines with their ends, and the offset of what follows them."""
+    room = 100 * (n + 1)
+    while True:
+        piece = data[begin : min(end, begin + room)]
+        lines = piece.splitlines(keepends=True)
+        if len(lines) > n or begin + room >= end:
+            break
+        room *= 4
+    lines = lines[:n]
+    return lines, begin + sum(map(len, lines))
 
 
 @dataclass
-class _Scan:
+class Scan:
     """One pass over the delimiters of a file."""
 
     path: Path
@@ -216,12 +157,9 @@ class _Scan:
         return closing
 
     def _form(self, begin: int, n_line: int) -> tuple[int, tuple[int, ...]]:
-        """Offset behind the header of a function, and the integers of its seventh line."""
-        at, found = begin, tuple[int, ...]()
-        for k in range(min(n_line, HEADER_LINES)):
-            start, at = at, self._after_line(at)
-            found = form(self.data[start:at]) if k == 6 else found
-        return at, found
+        """Offset behind the header of a function, and what its seventh line says."""
+        lines, at = first_lines(self.data, begin, len(self.data), min(n_line, HEADER_LINES))
+        return at, form(lines[6]) if len(lines) > 6 else ()
 
     def _closing(self, at: int) -> tuple[int, int] | None:
         """Start of a -1 that follows `at` at once or on the next line, and of the line after."""
@@ -294,12 +232,14 @@ class _Scan:
         for a in range(self._counted, offset, step):
             piece = np.frombuffer(self.data[a : min(a + step, offset)], np.uint8)
             self._line += int(np.count_nonzero(piece == self._newline))
-            _release(self.data, a, min(a + step, offset))
+        if offset - self._counted > step:
+            release(self.data, self._counted, offset)
         self._counted = max(self._counted, offset)
         return self._line
 
 
-def _release(data: mmap.mmap, begin: int, end: int) -> None:
+def release(data: mmap.mmap, begin: int, end: int) -> None:
+    """Let the system take back the memory that mapped bytes occupy."""
     start = -(-begin // mmap.PAGESIZE) * mmap.PAGESIZE
     if end - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
         data.madvise(mmap.MADV_DONTNEED, start, end - start)

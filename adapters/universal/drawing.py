@@ -9,10 +9,11 @@ import numpy as np
 
 from ...core.arrays import Ints
 from ...core.geometry import Geometry
-from .container import Section, Source
+from .container import Section
 from .content import Skipped, Trace
 from .fields import integers
 from .frames import NodeFrames, some
+from .source import Source
 
 _BEAMS = (11, 21, 22, 23, 24, 31, 32)
 _LINES = (*_BEAMS, 121, 136, 137, 141, 151, 171)

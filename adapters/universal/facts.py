@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from ...core.units import METRES
-from .container import Section, Source
+from .container import Section
 from .content import Header, Units
 from .fields import NotANumber, floats, integers, text
+from .source import Source
 
 # What the codes of dataset 164 mean for lengths.
 _CODES = {1: "m", 2: "ft", 3: "m", 4: "ft", 5: "mm", 6: "cm", 7: "in", 8: "mm", 10: "mm"}

@@ -9,8 +9,7 @@ to read floating point numbers accurately*, 1990). Fields in any other layout ar
 
 from __future__ import annotations
 
-import mmap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +18,7 @@ import numpy.typing as npt
 from ...core.arrays import Floats
 from .fields import numbers_of
 
+Read = Callable[[int, int], bytes]
 Bytes = npt.NDArray[np.uint8]
 
 _POWERS = 10.0 ** np.arange(23)
@@ -46,16 +46,16 @@ class _Layout:
 
 
 def block(
-    data: mmap.mmap, begin: int, end: int, widths: Sequence[int], n_value: int
+    read: Read, begin: int, end: int, widths: Sequence[int], n_value: int
 ) -> tuple[Floats, int]:
     """Read `n_value` numbers printed in lines of fields of the given widths.
 
     Parameters
     ----------
-    data : mmap
-        The file.
+    read : callable
+        Gives the bytes of the file between two offsets.
     begin, end : int
-        Bytes that hold the block.
+        Offsets of the block.
     widths : sequence of int
         Columns of the fields on a full line.
     n_value : int
@@ -74,9 +74,9 @@ def block(
         A field that holds something else.
     """
     values = np.empty(n_value)
-    done, at, row = _fast(data, begin, end, widths, values)
+    done, at, row = _fast(read, begin, end, widths, values)
     rest: list[float] = []
-    for line in data[at:end].splitlines():
+    for line in read(at, end).splitlines():
         rest += numbers_of(line, widths, row)
         row += 1
     take = min(len(rest), n_value - done)
@@ -85,11 +85,11 @@ def block(
 
 
 def _fast(
-    data: mmap.mmap, begin: int, end: int, widths: Sequence[int], values: Floats
+    read: Read, begin: int, end: int, widths: Sequence[int], values: Floats
 ) -> tuple[int, int, int]:
     """Fill `values` from full lines of equal length; return (values, bytes, lines) consumed."""
     total, per_line = sum(widths), len(widths)
-    first = data[begin : min(end, begin + total + 200)]
+    first = read(begin, min(end, begin + total + 200))
     head = first.splitlines(keepends=True)[0] if first else b""
     pitch = len(head)
     if len(head.rstrip(b"\r\n")) < total or head[-1:] not in (b"\n", b"\r"):
@@ -97,8 +97,8 @@ def _fast(
     n_line = min(len(values) // per_line, (end - begin) // pitch)
     for start in range(0, n_line, _ROWS):
         stop = min(start + _ROWS, n_line)
-        size = (stop - start) * pitch
-        rows = np.frombuffer(data, np.uint8, size, begin + start * pitch).reshape(-1, pitch)
+        chunk = read(begin + start * pitch, begin + stop * pitch)
+        rows = np.frombuffer(chunk, np.uint8).reshape(-1, pitch)
         if np.any(rows[:, -1] != head[-1]) or np.any(rows[:, total:-1] > 32):
             return start * per_line, begin + start * pitch, start
         out = values[start * per_line : stop * per_line].reshape(-1, per_line)

@@ -9,11 +9,12 @@ from itertools import pairwise
 import numpy as np
 
 from ...core.arrays import Floats, Numbers
-from .container import Section, Source
+from .container import Section
 from .fields import NotANumber, integers, numbers_of, text
 from .fixed import block
 from .layout58 import HEADER_LINES, REALS, columns, form, records
 from .legacy_floats import decode
+from .source import Source
 
 KINDS = {
     0: "general",
@@ -210,7 +211,7 @@ def _text(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     per_point = n if head.even else n + 1
     widths = columns(head.ordinate_type, head.even)
     want = head.n_point * per_point
-    values, surplus = block(source.data, head.data_at, head.section.end, widths, want)
+    values, surplus = block(source.read, head.data_at, head.section.end, widths, want)
     if len(values) < want or surplus >= len(widths):
         raise ValueError(f"it announces {want} numbers and holds {len(values) + surplus}")
     table = values.reshape(-1, per_point)
@@ -241,7 +242,8 @@ def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
     record = _record(source, head)
     big, form = head.section.header[0] == 2, head.section.header[1]
     size = head.n_point * sum(record)
-    raw = np.frombuffer(source.data, np.uint8, size, head.data_at).reshape(head.n_point, -1)
+    content = source.read(head.data_at, head.data_at + size)
+    raw = np.frombuffer(content, np.uint8).reshape(head.n_point, -1)
     if head.even:
         return None, decode(raw.reshape(-1, record[0]), big, form).reshape(head.n_point, -1)
     numbers, at = [], 0

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Floats, Ints
-from .container import Section, Source
+from .container import Section
 from .content import Trace
 from .fields import NotANumber, floats, integers, table, text
+from .source import Source
 from .systems import BASIC, KINDS, CoordinateSystem, from_points
 
 _15 = (10, 10, 10, 10, 13, 13, 13)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core.errors import InputError
-from .container import Section, Source, open_source
+from .container import Section
 from .content import Dataset, Header, Skipped, Trace, Units, UniversalContent
 from .drawing import Element, drawn_geometry, read_2412
 from .facts import read_header, read_units
@@ -18,6 +19,7 @@ from .names import name_of
 from .nodes import NodeTable, read_15, read_18, read_82, read_2411, read_2420
 from .responses import Record, Report, assemble
 from .shapes import Shape, read_55, read_2414
+from .source import Source, open_source
 from .systems import CoordinateSystem
 
 
@@ -102,18 +104,19 @@ def read_universal(
 
 def _content(files: Sequence[Path], wanted: Selection, exact_lines: bool) -> UniversalContent:
     gathered = _Gathered(wanted)
-    for path in files:
-        source = open_source(path, exact_lines)
-        gathered.skipped += source.skipped
-        gathered.warnings += source.warnings
-        for section in source.sections:
-            _read(source, section, gathered)
     warnings = gathered.warnings
-    frames = node_frames(gathered.nodes, gathered.systems, warnings)
-    units = agreed_units(gathered.units)
-    unit = units.length_unit if units else None
-    report = Report(gathered.skipped, warnings)
-    frfs, functions = assemble(gathered.functions, frames.at, unit, report)
+    with ExitStack() as open_files:
+        for path in files:
+            source = open_files.enter_context(open_source(path, exact_lines))
+            gathered.skipped += source.skipped
+            warnings += source.warnings
+            for section in source.sections:
+                _read(source, section, gathered)
+        frames = node_frames(gathered.nodes, gathered.systems, warnings)
+        units = agreed_units(gathered.units)
+        unit = units.length_unit if units else None
+        report = Report(gathered.skipped, warnings)
+        frfs, functions = assemble(gathered.functions, frames.at, unit, report)
     return UniversalContent(
         files=tuple(str(p) for p in files),
         geometry=drawn_geometry(frames, gathered.elements, gathered.traces, unit, warnings),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from functools import lru_cache
 
 from ...core.units import METRES
 from .functions import Head58
@@ -34,7 +35,7 @@ _PER_FORCE = re.compile(r"/\s*\(?(kN|N|lbf?)\)?\s*$")
 
 def quantity_of(head: Head58) -> str | None:
     """Return what the response is, by its type or else its unit; None where neither tells."""
-    by_unit = _MOTION_UNITS.get(_plain(_PER_FORCE.sub("", head.ordinate.unit)))
+    by_unit = _motion(head.ordinate.unit)
     return MOTION.get(head.ordinate.quantity) or (by_unit[0] if by_unit else None)
 
 
@@ -80,6 +81,21 @@ def factors(
             f"{length_unit or 'm'} and N"
         )
     return found
+
+
+@lru_cache(maxsize=64)
+def _motion(unit: str) -> tuple[str, float] | None:
+    """Quantity and size in metres of a unit such as ``mm/s^2`` or ``g/N``."""
+    return _MOTION_UNITS.get(_plain(_PER_FORCE.sub("", unit)))
+
+
+@lru_cache(maxsize=64)
+def _force(unit: str, quotient: str) -> float:
+    """Size in newton of a force, named by itself or at the end of a quotient."""
+    per = _PER_FORCE.search(quotient)
+    if _plain(unit) in _FORCE_UNITS:
+        return _FORCE_UNITS[_plain(unit)]
+    return _FORCE_UNITS[per[1].lower()] if per else 1.0
 
 
 def _plain(unit: str) -> str:

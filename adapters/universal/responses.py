@@ -10,11 +10,11 @@ import numpy as np
 from ...core.arrays import Floats, Ints, Numbers
 from ...core.dofs import Dofs
 from ...core.frfs import Frfs
-from .container import Source
 from .content import Function, Skipped
 from .fields import NotANumber
 from .functions import QUANTITIES, Head58, check_size, read_values
 from .response_units import DERIVATIVE, MOTION, factors, highest_quantity, quantity_of
+from .source import Source
 
 Frames = Callable[[Ints], Floats]
 _FREQUENCY, _FORCE = 18, (13, 9)
@@ -180,7 +180,7 @@ def _fill(
         if read is None:
             continue
         x, y = read
-        why = _unusable(x, y, axis)
+        why = _unusable(record.head, x, y, axis)
         if why:
             report.skip(record, why)
             continue
@@ -190,16 +190,16 @@ def _fill(
         order = DERIVATIVE[quantity] - DERIVATIVE[quantity_of(record.head) or quantity]
         if order:
             values[place] *= (2j * np.pi * axis) ** order
-        record.source.release(record.head.section)
     return axis, filled
 
 
-def _unusable(x: Floats, y: Numbers, axis: Floats | None) -> str:
+def _unusable(head: Head58, x: Floats, y: Numbers, axis: Floats | None) -> str:
     """Say why a response cannot join the others, or nothing."""
-    bad = np.count_nonzero(~np.isfinite(y)) + np.count_nonzero(~np.isfinite(x))
-    if bad:
+    parts = np.ascontiguousarray(y).view(np.float64)
+    if not (np.isfinite(parts).all() and np.isfinite(x).all()):
+        bad = np.count_nonzero(~np.isfinite(y)) + np.count_nonzero(~np.isfinite(x))
         return f"{bad} of its {len(y)} values are not finite numbers"
-    if np.any(np.diff(x) <= 0.0):
+    if len(x) > 1 and (head.step <= 0.0 if head.even else np.any(np.diff(x) <= 0.0)):
         return "its frequencies do not increase"
     if axis is not None and np.abs(x - axis).max() > 1e-4 * (axis[-1] - axis[0]) / len(axis):
         return "its frequency axis differs from that of the other responses"

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Floats, Ints, Numbers
-from .container import Section, Source
+from .container import Section
 from .content import Skipped
 from .fields import NotANumber, floats, integers, node_numbers, text
+from .source import Source
 
 _ANALYSES = {
     0: "unknown",
@@ -159,7 +160,6 @@ def _shape(
         return None
     width = head.n_value * (2 if head.data_type in (5, 6) else 1)
     nodes, values = _values(source, section, source.lines(section), head.n_line, width)
-    source.release(section)
     if head.data_type in (5, 6):
         values = np.ascontiguousarray(values).view(np.complex128)
     return Shape(*modal, nodes, values, head.ids, section.line, source.name)

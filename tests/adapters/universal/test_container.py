@@ -1,77 +1,86 @@
 """Datasets are found whatever became of the lines that separate them."""
 
+from contextlib import ExitStack
+
 import pytest
 
-from trueup.adapters.universal.container import open_source
+from trueup.adapters.universal.source import open_source
 from trueup.core.errors import InputError
 
 TWO = "    -1\n   151\nname\n    -1\n    -1\n    15\n         1         0\n    -1\n"
 
 
-def found(path):
-    return [(s.number, s.line, s.closed) for s in open_source(path).sections]
+@pytest.fixture
+def opened(write):
+    """Open a universal file of the given content; it is closed after the test."""
+    with ExitStack() as stack:
+        yield lambda content: stack.enter_context(open_source(write(content)))
 
 
-def test_number_and_line_of_each_dataset(write):
-    assert found(write(TWO)) == [(151, 2, True), (15, 6, True)]
+def found(source):
+    return [(s.number, s.line, s.closed) for s in source.sections]
+
+
+def test_number_and_line_of_each_dataset(opened):
+    assert found(opened(TWO)) == [(151, 2, True), (15, 6, True)]
 
 
 @pytest.mark.parametrize("end", ["\r\n", "\r"])
-def test_any_line_end(write, end):
-    source = open_source(write(TWO.replace("\n", end)))
+def test_any_line_end(opened, end):
+    source = opened(TWO.replace("\n", end))
     assert [(s.number, s.line) for s in source.sections] == [(151, 2), (15, 6)]
     assert [source.lines(s) for s in source.sections] == [[b"name"], [b"         1         0"]]
 
 
-def test_trailing_blanks_nulls_and_no_last_line_end(write):
+def test_trailing_blanks_nulls_and_no_last_line_end(opened):
     text = TWO.replace("    -1\n", "    -1" + 74 * " " + "\n").rstrip("\n")
-    assert found(write(text)) == [(151, 2, True), (15, 6, True)]
-    assert found(write(TWO + "\x1a")) == [(151, 2, True), (15, 6, True)]
+    assert found(opened(text)) == [(151, 2, True), (15, 6, True)]
+    assert found(opened(TWO + "\x1a")) == [(151, 2, True), (15, 6, True)]
 
 
-def test_a_stray_delimiter_loses_nothing_and_is_told(write):
+def test_a_stray_delimiter_loses_nothing_and_is_told(opened):
     text = TWO.replace("    -1\n    -1\n", "    -1\n    -1\n    -1\n")
-    source = open_source(write(text))
+    source = opened(text)
     assert [s.number for s in source.sections] == [151, 15]
     assert len(source.warnings) == 1
     assert "line 5: a stray -1" in source.warnings[0]
 
 
-def test_a_lost_delimiter_loses_nothing_and_is_told(write):
-    source = open_source(write(TWO.replace("    -1\n    -1\n", "    -1\n")))
+def test_a_lost_delimiter_loses_nothing_and_is_told(opened):
+    source = opened(TWO.replace("    -1\n    -1\n", "    -1\n"))
     assert [s.number for s in source.sections] == [151, 15]
     assert [source.lines(s) for s in source.sections] == [[b"name"], [b"         1         0"]]
     assert "closes dataset 151 is missing" in source.warnings[0]
 
 
 @pytest.mark.parametrize("last", [False, True])
-def test_delimiter_glued_to_the_last_line(write, last):
+def test_delimiter_glued_to_the_last_line(opened, last):
     head, tail = "    -1\n    15\n1.5    -1\n", "    -1\n   151\nname\n    -1\n"
-    source = open_source(write(tail + head if last else head + tail))
+    source = opened(tail + head if last else head + tail)
     by_number = {s.number: source.lines(s) for s in source.sections}
     assert by_number == {15: [b"1.5"], 151: [b"name"]}
     assert all(s.closed for s in source.sections)
 
 
-def test_a_number_minus_one_in_ten_columns_is_data(write):
-    source = open_source(write("    -1\n    82\n         1         2\n        -1\n    -1\n"))
+def test_a_number_minus_one_in_ten_columns_is_data(opened):
+    source = opened("    -1\n    82\n         1         2\n        -1\n    -1\n")
     assert source.lines(source.sections[0])[-1] == b"        -1"
 
 
-def test_text_outside_datasets_is_listed(write):
-    source = open_source(write("made by hand\n" + TWO + "\nthe end\n"))
+def test_text_outside_datasets_is_listed(opened):
+    source = opened("made by hand\n" + TWO + "\nthe end\n")
     assert [(s.what, s.line) for s in source.skipped] == [
         ("text outside any dataset", 1),
         ("text outside any dataset", 11),
     ]
 
 
-def test_comments_after_the_number(write):
-    assert found(write("    -1\n    55   %VALEURS AUX NOEUDS\nx\n    -1\n")) == [(55, 2, True)]
+def test_comments_after_the_number(opened):
+    assert found(opened("    -1\n    55   %VALEURS AUX NOEUDS\nx\n    -1\n")) == [(55, 2, True)]
 
 
-def test_cut_off(write):
-    assert found(write(TWO[:-8])) == [(151, 2, True), (15, 6, False)]
+def test_cut_off(opened):
+    assert found(opened(TWO[:-8])) == [(151, 2, True), (15, 6, False)]
 
 
 def binary(block, n_byte, glued=True):
@@ -87,15 +96,14 @@ def binary(block, n_byte, glued=True):
 
 @pytest.mark.parametrize("announced", [16, 0, 999])
 @pytest.mark.parametrize("glued", [True, False])
-def test_binary_block_full_of_delimiters(write, announced, glued):
+def test_binary_block_full_of_delimiters(opened, announced, glued):
     block = b"\0\n    -1\n    15\n"
     assert len(block) == 16
-    path = write(binary(block, announced, glued) + TWO.encode())
-    source = open_source(path)
+    source = opened(binary(block, announced, glued) + TWO.encode())
     assert [s.number for s in source.sections] == [58, 151, 15]
     assert source.data[source.sections[0].end - 16 : source.sections[0].end] == block
     # lines as an editor counts them, those in the block included
-    lines = path.read_bytes().split(b"\n")
+    lines = source.path.read_bytes().split(b"\n")
     assert [lines[s.line - 1].split()[0] for s in source.sections] == [b"58b", b"151", b"15"]
 
 

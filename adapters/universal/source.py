@@ -1,0 +1,99 @@
+"""An open universal file."""
+
+from __future__ import annotations
+
+import mmap
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO
+
+from ...core.errors import InputError
+from .container import Scan, Section, first_lines
+from .content import Skipped
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """An open universal file with its datasets; a context manager that closes it.
+
+    The delimiters are looked for in the mapped file; values are read from the stream, so that a
+    large file does not stay in memory as well.
+    """
+
+    path: Path
+    data: mmap.mmap
+    stream: BinaryIO
+    sections: tuple[Section, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def __enter__(self) -> Source:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stream.close()
+        self.data.close()
+
+    @property
+    def name(self) -> str:
+        """How messages call the file."""
+        return str(self.path)
+
+    def read(self, begin: int, end: int) -> bytes:
+        """Bytes of the file between two offsets, without mapping them."""
+        self.stream.seek(begin)
+        return self.stream.read(end - begin)
+
+    def lines(self, section: Section) -> list[bytes]:
+        """All lines of a dataset, without their ends."""
+        return self.read(section.begin, section.end).splitlines()
+
+    def head(self, section: Section, n: int) -> tuple[list[bytes], int]:
+        """Return the first `n` lines of a dataset and the offset of what follows them."""
+        lines, at = first_lines(self.data, section.begin, section.end, n)
+        return [line.rstrip(b"\r\n") for line in lines], at
+
+    def error(self, line: int, what: str) -> InputError:
+        """Return the error that names this file and a line of it."""
+        return InputError(f"{self.name} line {line}: {what}")
+
+
+def open_source(path: Path, exact_lines: bool = True) -> Source:
+    """Open a universal file and find its datasets.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    exact_lines : bool
+        Count line ends within binary blocks too, as an editor does; that reads the whole file.
+
+    Raises
+    ------
+    InputError
+        The file does not exist, is empty, or holds no dataset.
+    """
+    try:
+        stream = path.open("rb", buffering=0)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    try:
+        data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
+    except ValueError as error:
+        stream.close()
+        raise InputError(f"{path} is empty; a universal file is expected") from error
+    scan = Scan(path, data, exact_lines)
+    sections = tuple(scan.sections())
+    if not sections:
+        stream.close()
+        raise InputError(
+            f"{path} is not a universal file: no line '    -1' followed by a dataset number; "
+            "give a .unv or .uff file"
+        )
+    return Source(path, data, stream, sections, tuple(scan.skipped), tuple(scan.warnings))
