@@ -141,8 +141,9 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     others = {unit: length_factor(measured, unit) for unit in METRES if unit != deck}
     better = _plausible(surface, test, others)
     sure = better is not None and _lies_on(surface, others[better] * test.xyz)
-    times = f"{_round(1 / ratio)} times smaller" if ratio < 1 else f"{_round(ratio)} times larger"
-    said = f"the test is {times} than the model ({_sizes(surface, test, deck, measured)})"
+    by = METRES[deck] / METRES[better] if better else 1 / ratio
+    times = f"{_round(by)} times smaller" if by > 1 else f"{_round(1 / by)} times larger"
+    said = f"the test is about {times} than the model ({_sizes(surface, test, deck, measured)})"
     if low <= ratio <= high and not sure:
         return replace(units, warnings=(f"{said}; check the length units of both",))
     if better is None and ratio < low:
