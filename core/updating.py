@@ -16,6 +16,7 @@ from .eigen import Eigensolution, solve
 from .errors import InputError
 from .model import Model
 from .residuals import KINDS, Residuals, Weights, eigenvalue_residuals, shape_residuals
+from .sensitivity import sensitivities
 
 
 _UNIDENTIFIABLE = 1e-4
@@ -251,8 +252,6 @@ class _Problem:
 
     def linearise(self, state: State, parameters: Sequence[int], residuals: str) -> Residuals:
         pairs = self.used(state.correlation)
-        from .sensitivity import sensitivities
-
         T = self._turned(state.correlation, pairs)
         values, slopes, shapes = sensitivities(
             self.model,

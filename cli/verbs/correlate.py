@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from ..console import working
@@ -11,10 +12,18 @@ from ..study import Study
 
 def correlate(study: Study, output: Output) -> None:
     """Align, pair, rotate close modes and tabulate."""
+    from ..writing import answer
+
+    result, run = run_correlate(study, output)
+    answer(result, output, run)
+
+
+def run_correlate(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
+    """Write the run folder of a correlation; return its result and where it is."""
     from ...core.results import correlate_tables
     from ..pipeline import correlated
     from ..runfolder import refuse_existing, run_folder
-    from ..writing import answer, default_folder, fill_run_folder
+    from ..writing import default_folder, fill_run_folder
 
     run = default_folder(study, "correlate")
     refuse_existing(run, output.force)
@@ -28,4 +37,4 @@ def correlate(study: Study, output: Output) -> None:
     }
     with run_folder(run, output.force) as work:
         fill_run_folder(work, study, result, found)
-    answer(result, output, run)
+    return result, run

@@ -46,14 +46,25 @@ def read_result(run: Path) -> dict[str, Any]:
 
 def render(run: Path, result: dict[str, Any]) -> str:
     """Return the report page of a run folder whose result.h5 and changes.diff are in place."""
-    from ...adapters.report import make_report
+    from ...adapters.report import make_report, overlay
     from ...adapters.store import read_store
 
     diff = run / "changes.diff"
     store = run / "result.h5"
     content = read_store(store) if store.is_file() else None
+    shapes = None
+    if content and content.geometry and {"analysis", "test"} <= set(content.modes):
+        shapes = overlay(
+            result,
+            content.geometry,
+            content.modes.get("updated", content.modes["analysis"]),
+            content.modes["test"],
+            content.matrices.get("observation"),
+            content.matrices.get("transformation"),
+        )
     return make_report(
         result,
         diff.read_text(encoding="utf-8") if diff.is_file() else None,
         geometry=content.geometry if content else None,
+        shapes=shapes,
     )

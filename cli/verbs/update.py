@@ -17,6 +17,14 @@ _AGREES = 1e-4
 
 def update(study: Study, output: Output) -> None:
     """Move the named parameters to the test, by sensitivities."""
+    from ..writing import answer
+
+    result, run = run_update(study, output)
+    answer(result, output, run)
+
+
+def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
+    """Write the run folder of an update; return its result and where it is."""
     from ...core import eigen
     from ...core.comparison import compare
     from ...core.residuals import Weights
@@ -26,7 +34,7 @@ def update(study: Study, output: Output) -> None:
     from ..pipeline import correlated, criteria_of
     from ..runfolder import refuse_existing, run_folder
     from ..stages import stages_of
-    from ..writing import answer, default_folder, fill_run_folder
+    from ..writing import default_folder, fill_run_folder
 
     if not study.parameters:
         raise InputError(
@@ -88,7 +96,7 @@ def update(study: Study, output: Output) -> None:
         }
         result["before"]["warnings"] = result["after"]["warnings"] = []
         fill_run_folder(work, replace(study, out=None), result, before, after)
-    answer(result, output, run)
+    return result, run
 
 
 def write_updated(study: Study, model: Any, done: Any, work: Path) -> dict[str, Any]:

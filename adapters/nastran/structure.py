@@ -1,0 +1,90 @@
+"""The elements of a deck one by one, for discovery."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...core.assembly_parameters import parametric_terms
+from ...core.discovery.structure import Members, Structure, Supports
+from ...core.model import Model
+from .build import build_model, read_structure
+from .build import _to_basic as to_basic
+from .constraints import read_constraints
+from .grids import Points
+from .parameters import FieldRef, ParameterSpec
+from .read import Deck
+from .variation import read_variation
+
+
+_DOUBTED: dict[str, tuple[tuple[str, ...], float]] = {
+    "PSHELL": (("T",), 0.06),
+    "PBAR": (("I1", "I2"), 0.4),
+    "PELAS": (("K",), 0.4),
+    "MAT1": (("E",), 0.05),
+}
+_ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "K": "k", "E": "e"}
+
+
+def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Structure:
+    """Assemble a deck and keep its elements and supports apart.
+
+    Raises
+    ------
+    InputError
+        As `build_model`.
+    """
+    model = build_model(deck, parameters)
+    variation = read_variation(deck.bulk, parameters)
+    parts = read_structure(deck, variation)
+    displacement = (to_basic(parts.points).T @ model.expansion).tocsr()
+    members = tuple(
+        Members(g.card, g.shape, g.ids, g.corners, b)
+        for g, b in zip(parts.groups, parts.blocks, strict=True)
+        if g.shape
+    )
+    fixed = read_constraints(deck, parts.points).fixed
+    empty = read_structure(deck, read_variation(deck.bulk, ()))
+    stiffness, _ = parametric_terms(empty.blocks, parts.points.n_dof, np.zeros(0), np.zeros(0))
+    K = sum((t.matrix for t in stiffness), sp.csr_matrix((parts.points.n_dof,) * 2))
+    return Structure(
+        model, members, displacement, _supports(parts.points, K, displacement, fixed, model)
+    )
+
+
+def _supports(
+    points: Points, K: sp.csr_matrix, displacement: sp.csr_matrix, fixed: object, model: Model
+) -> Supports | None:
+    held = np.asarray(fixed)
+    held = np.flatnonzero(held) if held.dtype == bool else held
+    held = held[held < 6 * len(points.ids)]
+    own = K.diagonal()[held]
+    held, own = held[own > 0.0], own[own > 0.0]
+    if not len(held):
+        return None
+    root = (K[held] @ displacement).tocsr()
+    live = np.diff(root.indptr) > 0
+    held, own, root = held[live], own[live], root[live]
+    return Supports(
+        points.ids[held // 6], held % 6 + 1, points.xyz[held // 6], root, own
+    )
+
+
+def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float, ...]]:
+    """Return what an analyst would doubt first, and how far each may be off (spread of ln p).
+
+    Moduli of materials, thicknesses of shells, bending inertias of bars (both axes together)
+    and stiffnesses of springs.
+    """
+    specs, spreads = [], []
+    for name, (fields, spread) in _DOUBTED.items():
+        for number, card in sorted(deck.bulk.table(name).items()):
+            held = tuple(f for f in fields if getattr(card, _ATTRIBUTE[f], None))
+            if held:
+                refs = tuple(FieldRef(name, number, f) for f in held)
+                specs.append(ParameterSpec(f"{name} {number} {'+'.join(held)}", refs, 0.25, 4.0))
+                spreads.append(spread)
+    return tuple(specs), tuple(spreads)
+

@@ -1,0 +1,1 @@
+"""Find what a model lacks or what is wrong in a test."""

@@ -1,0 +1,153 @@
+"""One kind of effect at every place where it could be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Ints
+from .basis import Basis
+
+
+class Law(Protocol):
+    """How the magnitude enters: the matrix of an effect is ``value(θ) · A`` with θ = ln size."""
+
+    on: str
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return the factors on the q rows of the candidates `rows` at `theta` (n,): (n, q or 1)."""
+        ...
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return their derivatives by θ."""
+        ...
+
+
+@dataclass(frozen=True)
+class MassLaw:
+    """A mass m = e^θ adds m·A to M."""
+
+    on: str = "M"
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return m."""
+        return np.exp(theta)[:, None]
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return dm/dθ."""
+        return np.exp(theta)[:, None]
+
+
+@dataclass(frozen=True)
+class FactorLaw:
+    """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
+
+    on: str = "K"
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return f − 1."""
+        return np.expm1(theta)[:, None]
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return df/dθ."""
+        return np.exp(theta)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class SpringLaw:
+    """A spring k = e^θ adds k·A to K."""
+
+    on: str = "K"
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return k."""
+        return np.exp(theta)[:, None]
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return dk/dθ."""
+        return np.exp(theta)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class ReleaseLaw:
+    """A connection that was rigid gets the stiffness k = e^θ.
+
+    Each freed coordinate, condensed, takes q qᵀ / (k + d) from K, with q the forces that its
+    unit displacement puts on the rest and d its own stiffness. `own` (n, q) holds d.
+    """
+
+    own: Floats
+    on: str = "K"
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return −1/(k + d)."""
+        return -1.0 / (np.exp(theta)[:, None] + self.own[rows])
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return the derivative by θ."""
+        k = np.exp(theta)[:, None]
+        return k / (k + self.own[rows]) ** 2
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """All places of one kind of effect.
+
+    Parameters
+    ----------
+    kind : str
+        One of the fixed words of the interface.
+    xyz : (n, 3) float
+        Where, deck units.
+    law : Law
+    trials : (n_trial,) float
+        Values of θ that the search tries at every place.
+    root : (n · q, n_free) sparse
+        A of place i is the sum of the outer products of its q rows.
+    rows_each : int
+        q.
+    where : tuple of dict
+        ``grids`` or ``elements`` of each place, ``components`` where the kind has them.
+    typical, spread : float
+        Prior of θ: normal with this mean and standard deviation.
+    """
+
+    kind: str
+    xyz: Floats
+    law: Law
+    trials: Floats
+    root: sp.csr_matrix
+    rows_each: int
+    where: tuple[dict[str, Any], ...]
+    typical: float
+    spread: float
+    extra: dict[str, Any] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+    def factors(self, basis: Basis) -> Floats:
+        """Return the rows of `root` on the basis, (n, q, r)."""
+        U = np.asarray(self.root @ basis.vectors)
+        return U.reshape(len(self), self.rows_each, basis.size)
+
+    def full(self, row: int) -> sp.csr_matrix:
+        """Return A of one place, (n_free, n_free)."""
+        part = self.root[row * self.rows_each : (row + 1) * self.rows_each]
+        return (part.T @ part).tocsr()
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """One candidate with a magnitude: which kind (number in the catalogue), which place, θ."""
+
+    kind: int
+    row: int
+    theta: float
+
+
+Catalogue = Sequence[Candidates]

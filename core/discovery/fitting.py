@@ -1,0 +1,242 @@
+"""Fit known parameters and the magnitudes of suspects together, on the small basis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from ..arrays import Floats, Ints
+from .basis import Basis
+from .candidates import Catalogue, Suspect
+from .evidence import Evidence, matched, mode_costs
+
+_DEGENERATE = 2e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter,)."""
+
+    spread: Floats
+    lower: Floats
+    upper: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What stays the same while hypotheses compete.
+
+    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r).
+    """
+
+    evidence: Evidence
+    basis: Basis
+    sensors: Floats
+    catalogue: Catalogue
+    factors: tuple[Floats, ...]
+    prior: Prior
+    modes: int
+
+    def turned(self, T: Floats) -> Problem:
+        """Return the problem on the basis ``vectors @ T``."""
+        return replace(
+            self,
+            basis=self.basis.turned(T),
+            sensors=self.sensors @ T,
+            factors=tuple(f @ T for f in self.factors),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A hypothesis with its best parameters and magnitudes.
+
+    `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
+    the Gauss-Newton Hessian of half the objective, prior included, active parameters first.
+    """
+
+    objective: float
+    misfit: float
+    log_p: Floats
+    suspects: tuple[Suspect, ...]
+    match: Ints
+    eigenvalues: Floats
+    vectors: Floats
+    information: Floats
+    active: tuple[int, ...]
+
+
+def _matrices(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> tuple[Floats, Floats]:
+    p = np.exp(log_p)
+    K, M = problem.basis.K(p), problem.basis.M(p)
+    for s in suspects:
+        law = problem.catalogue[s.kind].law
+        U = problem.factors[s.kind][s.row]
+        c = law.value(np.array([s.theta]), np.array([s.row]))[0]
+        target = K if law.on == "K" else M
+        target += (U.T * c) @ U
+    return K, M
+
+
+def solve(
+    problem: Problem, log_p: Floats, suspects: Sequence[Suspect], modes: int | None = None
+) -> tuple[Floats, Floats]:
+    """Return the lowest eigenvalues and vectors on the basis."""
+    K, M = _matrices(problem, log_p, suspects)
+    n = min(modes or problem.modes, len(K))
+    values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
+    return values, vectors
+
+
+def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, Ints]:
+    """Return the misfit of a solution and its match."""
+    shapes = problem.sensors @ vectors
+    costs = mode_costs(
+        problem.evidence, values, problem.evidence.shapes.T @ shapes, np.sum(shapes**2, axis=0)
+    )
+    return matched(costs)
+
+
+def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> float:
+    total = float(np.sum((log_p / problem.prior.spread) ** 2))
+    for s in suspects:
+        c = problem.catalogue[s.kind]
+        total += ((s.theta - c.typical) / c.spread) ** 2
+    return total
+
+
+def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fit:
+    """Return a hypothesis as it stands, nothing fitted."""
+    values, vectors = solve(problem, log_p, suspects)
+    bad, match = misfit(problem, values, vectors)
+    return Fit(
+        bad + _prior(problem, log_p, suspects),
+        bad,
+        log_p,
+        tuple(suspects),
+        match,
+        values,
+        vectors,
+        np.zeros((0, 0)),
+        (),
+    )
+
+
+def fit(
+    problem: Problem,
+    log_p: Floats,
+    suspects: Sequence[Suspect],
+    active: Sequence[int],
+    iterations: int = 8,
+    tolerance: float = 0.05,
+) -> Fit:
+    """Minimise misfit plus prior over ln p and θ by Gauss-Newton with Levenberg's damping.
+
+    Parameters
+    ----------
+    problem : Problem
+    log_p : (n_parameter,) float
+        Start.
+    suspects : sequence of Suspect
+        Start of the magnitudes; places stay.
+    active : sequence of int
+        Parameters that move.
+    iterations : int
+    tolerance : float
+        Smallest fall of the objective that counts.
+    """
+    now = evaluate(problem, np.array(log_p), suspects)
+    damping = 0.0
+    H = np.zeros((len(active) + len(suspects),) * 2)
+    for _ in range(iterations):
+        H, g = _normal_equations(problem, now, active)
+        if not len(g):
+            break
+        better = None
+        for _ in range(5):
+            step = -la.solve(
+                H + damping * np.diag(np.diag(H)) + 1e-9 * np.eye(len(H)), g, assume_a="pos"
+            )
+            trial = _stepped(problem, now, active, np.clip(step, -0.8, 0.8))
+            if trial.objective < now.objective:
+                better, damping = trial, 0.3 * damping
+                break
+            damping = max(5.0 * damping, 0.05)
+        if better is None:
+            break
+        fell = now.objective - better.objective
+        now = better
+        if fell < tolerance:
+            break
+    return replace(now, information=H, active=tuple(active))
+
+
+def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
+    log_p = np.array(now.log_p)
+    log_p[list(active)] += step[: len(active)]
+    log_p = np.clip(log_p, problem.prior.lower, problem.prior.upper)
+    suspects = [
+        replace(s, theta=s.theta + float(d))
+        for s, d in zip(now.suspects, step[len(active) :], strict=True)
+    ]
+    return evaluate(problem, log_p, suspects)
+
+
+def _normal_equations(
+    problem: Problem, now: Fit, active: Sequence[int]
+) -> tuple[Floats, Floats]:
+    """Hessian and gradient of half the objective, robust weights included."""
+    e, noise = problem.evidence, problem.evidence.noise
+    V, lam, k = now.vectors, now.eigenvalues, now.match
+    Vk, lk = V[:, k], lam[k]
+    n, here = len(k), np.arange(len(k))
+    p = np.exp(now.log_p)
+    changes: list[tuple[Floats | None, Floats | None]] = [
+        (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q]) for q in active
+    ]
+    for s in now.suspects:
+        law, U = problem.catalogue[s.kind].law, problem.factors[s.kind][s.row]
+        A = (U.T * law.slope(np.array([s.theta]), np.array([s.row]))[0]) @ U
+        changes.append((A, None) if law.on == "K" else (None, A))
+    shapes = problem.sensors @ V
+    dlam = np.zeros((len(changes), n))
+    dshape = np.zeros((len(changes), len(shapes), n))
+    gap = lk[None, :] - lam[:, None]
+    close = np.abs(gap) < _DEGENERATE * np.abs(lk)[None, :]
+    safe = np.where(close, 1.0, gap)
+    for i, (dK, dM) in enumerate(changes):
+        a = V.T @ (dK @ Vk) if dK is not None else 0.0
+        b = V.T @ (dM @ Vk) if dM is not None else np.zeros((V.shape[1], n))
+        F = a - b * lk[None, :]
+        dlam[i] = F[k, here]
+        C = np.where(close, 0.0, F / safe)
+        C[k, here] = -0.5 * b[k, here]
+        dshape[i] = shapes @ C
+    floor = np.maximum(lk, 1e-6 * (2.0 * np.pi * e.frequencies_hz) ** 2)
+    off = 0.5 * np.log(floor / (2.0 * np.pi * e.frequencies_hz) ** 2) / noise.frequency
+    doff = 0.5 * dlam / floor / noise.frequency
+    a = shapes[:, k]
+    length = np.maximum(np.linalg.norm(a, axis=0), np.finfo(float).tiny)
+    a = a / length
+    t = e.shapes
+    scale = np.sqrt(noise.independent) / noise.shape
+    rest = (a - t * np.sum(t * a, axis=0)) * scale
+    d = dshape / length
+    d = d - a * np.einsum("sj,psj->pj", a, d)[:, None]
+    d = (d - t * np.einsum("sj,psj->pj", t, d)[:, None]) * scale
+    w = np.sqrt(1.0 / (1.0 + (off**2 + np.sum(rest**2, axis=0)) / noise.robust))
+    J = np.concatenate([doff * w, (d * w).reshape(len(changes), -1)], axis=1)
+    r = np.concatenate([off * w, (rest * w).ravel()])
+    H, g = J @ J.T, J @ r
+    spread = np.concatenate(
+        [problem.prior.spread[list(active)], [problem.catalogue[s.kind].spread for s in now.suspects]]
+    )
+    mean = np.concatenate(
+        [np.zeros(len(active)), [problem.catalogue[s.kind].typical for s in now.suspects]]
+    )
+    x = np.concatenate([now.log_p[list(active)], [s.theta for s in now.suspects]])
+    H = H + np.diag(1.0 / spread**2)
+    return H, g + (x - mean) / spread**2

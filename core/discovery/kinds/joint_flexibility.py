@@ -1,0 +1,97 @@
+"""A joint that gives: the end of a beam that is not rigidly connected."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...arrays import Floats, Ints
+from ..candidates import Candidates, ReleaseLaw
+from ..structure import Members, Structure
+from .scale import Scale
+
+_KINK = 0.98
+
+
+def candidates(structure: Structure, scale: Scale) -> Candidates | None:
+    """Give each beam end that meets others a finite rotational stiffness, all axes alike."""
+    beams = [m for m in structure.members if m.shape == "line" and m.block.width == 6]
+    ends = _joints(structure, beams)
+    roots, own, xyz, where = [], [], [], []
+    p = np.ones(len(structure.model.parameters))
+    for m, chosen in zip(beams, ends, strict=True):
+        if not len(chosen):
+            continue
+        K, _ = m.matrices(chosen[:, 0], p)
+        if K is None:
+            continue
+        turning = 6 * chosen[:, 1][:, None] + np.arange(3, 6)
+        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
+        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
+        d, R = np.linalg.eigh(D)
+        stiff = d[:, 0] > 1e-9 * d[:, -1]
+        chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
+        at = m.coordinates(chosen[:, 0])
+        roots.append(_rows(np.matmul(Q, R), at, structure))
+        own.append(d)
+        grids = m.corners[chosen[:, 0], chosen[:, 1]]
+        xyz.append(structure.model.geometry.xyz[grids])
+        where += [
+            {
+                "grids": [int(structure.model.geometry.ids[g])],
+                "elements": [int(e)],
+                "components": [4, 5, 6],
+            }
+            for g, e in zip(grids, m.ids[chosen[:, 0]], strict=True)
+        ]
+    if not roots:
+        return None
+    stiffness = np.concatenate(own)
+    typical = float(np.median(np.log(stiffness)))
+    return Candidates(
+        kind="joint_flexibility",
+        xyz=np.concatenate(xyz),
+        law=ReleaseLaw(stiffness),
+        trials=typical + np.log([0.003, 0.03, 0.3, 3.0]),
+        root=sp.vstack(roots).tocsr(),
+        rows_each=3,
+        where=tuple(where),
+        typical=typical - 1.0,
+        spread=2.5,
+    )
+
+
+def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
+    """Element rows and ends (n, 2) where a beam meets anything but its own straight continuation."""
+    n = len(structure.model.geometry.ids)
+    count = np.zeros(n, np.int64)
+    along: list[list[Floats]] = [[] for _ in range(n)]
+    shelled = np.zeros(n, bool)
+    for m in structure.members:
+        if m.shape == "line":
+            np.add.at(count, m.corners.ravel(), 1)
+        else:
+            shelled[m.corners.ravel()] = True
+    for m in beams:
+        x = structure.model.geometry.xyz[m.corners]
+        t = x[:, 1] - x[:, 0]
+        t = t / np.maximum(np.linalg.norm(t, axis=1), np.finfo(float).tiny)[:, None]
+        for (a, b), direction in zip(m.corners, t, strict=True):
+            along[a].append(direction)
+            along[b].append(-direction)
+    kinked = np.array(
+        [c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -_KINK for c, d in zip(count, along, strict=True)]
+    )
+    joint = ((count >= 3) | kinked) & ~shelled
+    return [np.argwhere(joint[m.corners]) for m in beams]
+
+
+def _rows(Q: Floats, at: Ints, structure: Structure) -> sp.csr_matrix:
+    """Rows (3 n, n_free) of the forces Q (n, m, 3) at the coordinates `at` (n, m)."""
+    n, m, k = Q.shape
+    rows = np.repeat(np.arange(n * k), m)
+    columns = np.repeat(at, k, axis=0).ravel()
+    F = sp.csr_matrix(
+        (Q.transpose(0, 2, 1).ravel(), (rows, columns)), (n * k, structure.displacement.shape[0])
+    )
+    return (F @ structure.displacement).tocsr()

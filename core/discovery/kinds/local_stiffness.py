@@ -1,0 +1,32 @@
+"""Stiffness lost or gained over a patch of elements: a crack, a repair, a doubler."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..candidates import Candidates, FactorLaw
+from ..structure import Structure
+from .patches import PatchCandidates, patches_of, where_of
+from .scale import Scale
+
+_FACTORS = (0.15, 0.4, 0.7, 1.6, 3.0)
+
+
+def candidates(structure: Structure, scale: Scale) -> Candidates | None:
+    """Factors on the stiffness of every patch of shell elements."""
+    patches = patches_of(structure, scale.size)
+    if not patches:
+        return None
+    return PatchCandidates(
+        kind="local_stiffness",
+        xyz=np.array([p.xyz for p in patches]),
+        law=FactorLaw(),
+        trials=np.log(_FACTORS),
+        root=sp.csr_matrix((0, structure.model.n_free)),
+        rows_each=0,
+        where=where_of(structure, patches),
+        typical=0.0,
+        spread=1.2,
+        extra={"structure": structure, "patches": patches},
+    )

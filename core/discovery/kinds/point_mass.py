@@ -1,0 +1,72 @@
+"""An attached mass: equipment, a bracket, ballast, a sensor's own mass."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...arrays import Floats
+from ..candidates import Candidates, MassLaw
+from ..structure import Structure
+from .scale import Scale
+
+
+def candidates(structure: Structure, scale: Scale) -> Candidates:
+    """Masses on every grid and in the middle of every shell element."""
+    points, xyz, grids = points_of(structure)
+    return Candidates(
+        kind="point_mass",
+        xyz=xyz,
+        law=MassLaw(),
+        trials=scale.masses(),
+        root=translations(structure, points),
+        rows_each=3,
+        where=tuple({"grids": [int(g)]} for g in grids),
+        typical=float(np.log(0.03 * scale.mass)),
+        spread=1.5,
+    )
+
+
+def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, Floats]:
+    """Weights (n_point, n_grid), positions and nearest grid of grids and shell middles."""
+    g = structure.model.geometry
+    moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
+    carries = np.zeros(len(g.ids), bool)
+    rows = g.index_of(structure.model.dofs.node)
+    carries[rows[moving & (rows >= 0)]] = True
+    used = np.zeros(len(g.ids), bool)
+    for m in structure.members:
+        if m.shape:
+            used[m.corners.ravel()] = True
+    own = np.flatnonzero(carries & used)
+    weights = [sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))]
+    nearest = [own]
+    for m in structure.members:
+        if m.shape in {"quad", "tria"}:
+            n, k = m.corners.shape
+            w = sp.csr_matrix(
+                (np.full(n * k, 1.0 / k), (np.repeat(np.arange(n), k), m.corners.ravel())),
+                (n, len(g.ids)),
+            )
+            weights.append(w)
+            nearest.append(m.corners[:, 0])
+    P = sp.vstack(weights).tocsr()
+    return P, np.asarray(P @ g.xyz), g.ids[np.concatenate(nearest)]
+
+
+def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
+    """Rows (3 n_point, n_free): the translations of points given by grid weights."""
+    model = structure.model
+    rows = model.geometry.index_of(model.dofs.node)
+    pick = []
+    for component in (1, 2, 3):
+        which = np.flatnonzero((model.dofs.component == component) & (rows >= 0))
+        pick.append(
+            sp.csr_matrix(
+                (np.ones(len(which)), (rows[which], which)),
+                (len(model.geometry.ids), len(model.dofs)),
+            )
+        )
+    stacked = sp.vstack([points @ S for S in pick]).tocsr()
+    order = np.arange(3 * points.shape[0]).reshape(3, -1).T.ravel()
+    return (stacked[order] @ model.expansion).tocsr()

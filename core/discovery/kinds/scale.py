@@ -1,0 +1,36 @@
+"""Sizes that make trial magnitudes sensible on any structure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """What is large and small on this structure.
+
+    Parameters
+    ----------
+    mass : float
+        Of the whole structure.
+    size : float
+        Diagonal of its box.
+    omega2 : float
+        (rad/s)² in the middle of the measured band.
+    """
+
+    mass: float
+    size: float
+    omega2: float
+
+    def masses(self, count: int = 4) -> Floats:
+        """Trial masses, ln."""
+        return np.log(self.mass * np.geomspace(0.006, 0.12, count))
+
+    def springs(self, count: int = 5) -> Floats:
+        """Trial stiffnesses, ln."""
+        return np.log(self.mass * self.omega2 * np.geomspace(1e-3, 1.0, count))

@@ -1,0 +1,81 @@
+"""Every place and size of one kind of effect, evaluated exactly on a small basis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Floats, Ints
+from .evidence import matched, mode_costs
+from .fitting import Fit, Problem
+
+_CHUNK = 256
+
+
+def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) -> Floats:
+    """Misfit with one more suspect at every place and size, all else as it stands.
+
+    Parameters
+    ----------
+    problem : Problem
+        On the basis of the eigenvectors of `state` (see `at_state`), so that the state itself
+        is diagonal.
+    state : Fit
+        Its eigenvalues are those of the basis.
+    kind : int
+        Number in the catalogue.
+    rows : (n,) int
+        Places.
+    trials : (n_trial,) float
+        Values of θ.
+
+    Returns
+    -------
+    (n, n_trial) float
+        The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
+    """
+    law, U = problem.catalogue[kind].law, problem.factors[kind][rows]
+    lam = np.maximum(state.eigenvalues, 0.0)
+    out = np.empty((len(rows), len(trials)))
+    S2 = problem.sensors.T @ problem.sensors
+    cross = problem.evidence.shapes.T @ problem.sensors
+    for start in range(0, len(rows), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        u, places = U[part], rows[part]
+        for j, theta in enumerate(trials):
+            c = law.value(np.full(len(places), theta), places)
+            values, Z = _changed(lam, u, c, law.on)
+            lengths = np.einsum("gnm,gnm->gm", Z, S2 @ Z)
+            costs = mode_costs(problem.evidence, values, cross @ Z, lengths)
+            out[part, j] = [matched(x)[0] for x in costs]
+    return out
+
+
+def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats]:
+    """Eigenpairs of diag(lam) + c uᵀu or of the pencil (diag(lam), I + c uᵀu), batched."""
+    n = len(lam)
+    if on == "K":
+        A = np.matmul(u.transpose(0, 2, 1) * c[:, None, :], u)
+        A[:, np.arange(n), np.arange(n)] += lam
+        return tuple(np.linalg.eigh(A))  # type: ignore[return-value]
+    e, R = np.linalg.eigh(np.matmul(u, u.transpose(0, 2, 1)))
+    e = np.maximum(e, 0.0)
+    small = e < 1e-12 * np.maximum(e[:, -1:], np.finfo(float).tiny)
+    d = np.where(small, 0.0, (1.0 / np.sqrt(1.0 + c * e) - 1.0) / np.where(small, 1.0, e))
+    W = np.matmul(R.transpose(0, 2, 1), u)
+    H = np.matmul(W.transpose(0, 2, 1) * d[:, None, :], W)
+    H[:, np.arange(n), np.arange(n)] += 1.0
+    values, Z = np.linalg.eigh(np.matmul(H * lam, H))
+    return values, np.matmul(H, Z)
+
+
+def best_apart(xyz: Floats, score: Floats, distance: float, count: int) -> list[int]:
+    """Indices of the best scores that are at least `distance` apart, best first."""
+    kept: list[int] = []
+    for i in np.argsort(score, kind="stable"):
+        if not np.isfinite(score[i]):
+            break
+        if all(np.linalg.norm(xyz[i] - xyz[j]) > distance for j in kept):
+            kept.append(int(i))
+        if len(kept) >= count:
+            break
+    return kept

@@ -1,0 +1,104 @@
+"""Where on a structure something may be missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Ints
+from ..assembly import ElementBlock
+from ..model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Members:
+    """Elements of one card.
+
+    Parameters
+    ----------
+    card : str
+        What the adapter calls them, opaque here but for sentences.
+    shape : str
+        ``line``, ``quad``, ... as in `Geometry`; "" where not drawn.
+    ids : (n,) int
+    corners : (n, k) int
+        Rows of the geometry.
+    block : ElementBlock
+        Their matrices, in the coordinates of `Structure.displacement`.
+    """
+
+    card: str
+    shape: str
+    ids: Ints
+    corners: Ints
+    block: ElementBlock
+
+    def matrices(self, rows: Ints, p: Floats) -> tuple[Floats | None, Floats | None]:
+        """Return stiffness and mass of some elements, each (n, m, m)."""
+        return self.block.evaluate(rows, p, (True, True))
+
+    def coordinates(self, rows: Ints) -> Ints:
+        """Rows of `Structure.displacement` of some elements, (n, m)."""
+        w = self.block.width
+        places = self.block.places[rows]
+        return (w * places[:, :, None] + np.arange(w)).reshape(len(rows), -1)
+
+
+@dataclass(frozen=True, eq=False)
+class Supports:
+    """Degrees of freedom that the deck fixes.
+
+    Parameters
+    ----------
+    grid, component : (n,) int
+    xyz : (n, 3) float
+    root : (n, n_free) sparse
+        Forces on the free degrees of freedom of a unit displacement of each.
+    own : (n,) float
+        Stiffness of each, all else fixed.
+    """
+
+    grid: Ints
+    component: Ints
+    xyz: Floats
+    root: sp.csr_matrix
+    own: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A model with its elements one by one.
+
+    Parameters
+    ----------
+    model : Model
+    members : tuple of Members
+    displacement : (n_g, n_free) sparse
+        Displacements in the coordinates of the element matrices.
+    supports : Supports or None
+    """
+
+    model: Model
+    members: tuple[Members, ...]
+    displacement: sp.csr_matrix
+    supports: Supports | None = None
+
+    def centroids(self, m: Members) -> Floats:
+        """Centroids of the elements of one card, (n, 3)."""
+        return np.asarray(self.model.geometry.xyz[m.corners].mean(axis=1))
+
+
+def thinned(xyz: Floats, distance: float) -> Ints:
+    """Rows of a subset of points in which every other point has one within `distance`."""
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(xyz)
+    left = np.ones(len(xyz), bool)
+    kept = []
+    for i in range(len(xyz)):
+        if left[i]:
+            kept.append(i)
+            left[tree.query_ball_point(xyz[i], distance)] = False
+    return np.array(kept, dtype=np.int64)
