@@ -1,6 +1,7 @@
 """The self-contained HTML report."""
 
 from .headline import headline
+from .overlay import Overlay, overlay
 from .page import make_report
 
-__all__ = ["headline", "make_report"]
+__all__ = ["Overlay", "headline", "make_report", "overlay"]

@@ -232,5 +232,5 @@ def _values_table(matrix: MacMatrix) -> str:
 
 
 def _row(values: list[float]) -> str:
-    shown = ("–" if math.isnan(v) else str(round(100 * v)) for v in values)
-    return "".join(f"<td>{v}</td>" for v in shown)
+    """Cells without end tags, which HTML leaves optional: a third of the bytes."""
+    return "".join("<td>–" if math.isnan(v) else f"<td>{round(100 * v)}" for v in values)

@@ -8,9 +8,10 @@ from pathlib import PurePath
 
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
-from . import colour, discovery_sections, reading, sections
+from . import colour, discovery_sections, reading, sections, viewer
 from .headline import VERDICTS, figures, story
 from .markup import esc, tag
+from .overlay import Overlay
 from .reading import Result
 from .section import Section
 
@@ -23,6 +24,7 @@ def make_report(
     geometry: Geometry | None = None,
     sensors_xyz: Floats | None = None,
     title: str | None = None,
+    shapes: Overlay | None = None,
 ) -> str:
     """Return the report of a run as one HTML page that needs nothing else.
 
@@ -44,13 +46,15 @@ def make_report(
         Default: the positions of their nearest grids.
     title : str, optional
         What was compared; stands above the headline.
+    shapes : Overlay, optional
+        The paired shapes (`overlay` makes them), shown moving.
 
     Returns
     -------
     str
         The page, UTF-8 when written.
     """
-    shown = [s for s in _sections(result, diff, geometry, sensors_xyz) if s is not None]
+    shown = [s for s in _sections(result, diff, geometry, sensors_xyz, shapes) if s is not None]
     kind = _VERBS.get(reading.verb(result), "Run")
     name = title or _compared(result)
     kicker = tag(
@@ -76,7 +80,8 @@ def make_report(
         f"<style>{_style()}</style>"
     )
     tip = '<div id="tip" role="status" hidden></div>'
-    script = f"<script>{_asset('page.js')}</script>"
+    moving = "" if shapes is None else _asset("viewer.js")
+    script = f"<script>{_asset('page.js')}{moving}</script>"
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}{tip}{script}</body>'
         "</html>\n"
@@ -97,13 +102,18 @@ def _compared(result: Result) -> str:
 
 
 def _sections(
-    result: Result, diff: str | None, geometry: Geometry | None, sensors_xyz: Floats | None
+    result: Result,
+    diff: str | None,
+    geometry: Geometry | None,
+    sensors_xyz: Floats | None,
+    shapes: Overlay | None,
 ) -> list[Section | None]:
     return [
         discovery_sections.findings(result, geometry, sensors_xyz),
         discovery_sections.gap(result),
         sections.pairs(result),
         sections.matrices(result),
+        viewer.shapes(shapes),
         sections.unpaired(result),
         sections.parameters(result),
         discovery_sections.alternatives(result),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,7 +43,7 @@ def scene(
     values: Floats | None = None,
     width: int = 540,
     height: int = 480,
-    most: int = 1400,
+    most: int = 900,
 ) -> str:
     """Return a figure of the structure from the front, and from behind where that shows more.
 
@@ -90,6 +90,21 @@ def scene(
     return tag("figure", caption, tag("div", *pictures, class_="row"))
 
 
+def still(mesh: Surface, title: str, values: Floats, width: int = 480, height: int = 420) -> str:
+    """Return one view of a mesh, its faces coloured by values of 0..1 at its rows."""
+    plain = replace(mesh, node_of=np.arange(len(mesh.xyz)))
+    (body, page), _ = _view(plain, isometric(), [], values, width, height, len(mesh.faces) + 1)
+    return tag(
+        "svg",
+        body,
+        class_="scene",
+        viewBox=f"0 0 {page.width} {page.height}",
+        width=page.width,
+        role="img",
+        aria_label=title,
+    )
+
+
 def _view(
     fine: Surface,
     view: View,
@@ -102,7 +117,7 @@ def _view(
     """Return one view with its page and how many marks the structure hides in it."""
     projected = view.project(fine.xyz)
     buffer, seen = depth_buffer(projected, fine.faces)
-    drawn = coarsened(Surface(fine.xyz, fine.faces[seen], fine.lines, fine.node_of), most)
+    drawn = coarsened(replace(fine, faces=fine.faces[seen]), most)
     page = _Page.around(projected, marks, view, width, height)
     slack = 0.02 * fine.size
     hidden: list[str] = []

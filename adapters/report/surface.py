@@ -24,13 +24,15 @@ class Surface:
     """A mesh to draw.
 
     `xyz` (n, 3); `faces` (n_face, 4) rows of `xyz`, a triangle repeats its last corner;
-    `lines` (n_line, 2); `node_of` (n_original,) the row that each original node went to.
+    `lines` (n_line, 2); `node_of` (n_original,) the row that each original node went to, and
+    `original` (n,) the original node that stands at each row.
     """
 
     xyz: Floats
     faces: Ints
     lines: Ints
     node_of: Ints
+    original: Ints
 
     @property
     def size(self) -> float:
@@ -54,6 +56,7 @@ def surface(geometry: Geometry) -> Surface:
         np.asarray(geometry.xyz),
         np.vstack([*shells, skin]),
         np.asarray(lines),
+        np.arange(len(geometry.ids)),
         np.arange(len(geometry.ids)),
     )
 
@@ -184,6 +187,7 @@ def _clustered(fine: Surface, pitch: float) -> Surface:
         _distinct(group[fine.faces], 3),
         _distinct(group[fine.lines], 2),
         group[fine.node_of],
+        fine.original[first],
     )
 
 

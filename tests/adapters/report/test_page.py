@@ -7,18 +7,22 @@ import json
 import re
 import shutil
 import subprocess
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from trueup.adapters.report import headline, make_report
+from trueup.adapters.report import headline, make_report, overlay
 from trueup.adapters.report.deckdiff import deck_diff
+from trueup.core.dofs import Dofs
 from trueup.core.geometry import Geometry
+from trueup.core.modes import Modes
 
 VOID = {"meta", "br", "path", "rect", "circle", "line", "use"}
 
@@ -47,16 +51,16 @@ class Reader(HTMLParser):
         if name in ("link", "img", "iframe", "object", "embed", "base"):
             self.fetching.append(name)
         self.scripts += name == "script"
-        if name not in VOID:
+        if name not in VOID and name != "td":  # the end tag of a cell is optional
             self.open.append(name)
 
     def handle_startendtag(self, name: str, attributes: list[tuple[str, str | None]]) -> None:
         self.handle_starttag(name, attributes)
-        if name not in VOID:
+        if name not in VOID and name != "td":
             self.open.pop()
 
     def handle_endtag(self, name: str) -> None:
-        assert self.open.pop() == name
+        assert name == "td" or self.open.pop() == name
 
     def handle_data(self, data: str) -> None:
         if self.open and self.open[-1] == "h2":
@@ -258,7 +262,7 @@ def test_long_diffs_are_cut_aloud() -> None:
     assert html.count("<ins>") == 600
 
 
-PROBE = """<script>
+PROBE = """
 const said = [];
 const at = (node, type, x, y) => node.dispatchEvent(
   new PointerEvent(type, {clientX: x, clientY: y, bubbles: true}));
@@ -282,29 +286,71 @@ const bar = document.querySelector('svg.bars .hot');
 at(bar, 'pointermove', 10, 10);
 said.push(tip.textContent);
 document.title = JSON.stringify(said);
-</script>"""
+"""
+
+
+def titled(html: str, probe: str, folder: Path) -> Any:
+    """What a probe script puts into the title, in a real browser."""
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        pytest.skip("no chromium on this machine")
+    page = folder / "page.html"
+    page.write_text(html.replace("</body>", f"<script>{probe}</script></body>"), encoding="utf-8")
+    shown = subprocess.run(
+        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+         f"--user-data-dir={folder / 'profile'}", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    told = re.search(r"<title>(.*?)</title>", shown.stdout, re.DOTALL)
+    assert told is not None
+    return json.loads(unescape(told.group(1)))
 
 
 @pytest.mark.slow
 def test_values_appear_under_the_pointer(
     update: dict[str, Any], cube: Geometry, tmp_path: Path
 ) -> None:
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if browser is None:
-        pytest.skip("no chromium on this machine")
-    page = tmp_path / "page.html"
-    html = make_report(update, None, cube)
-    page.write_text(html.replace("</body>", f"{PROBE}</body>"), encoding="utf-8")
-    shown = subprocess.run(
-        [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
-         f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", page.as_uri()],
-        capture_output=True, text=True, timeout=120, check=True,
-    )  # fmt: skip
-    told = re.search(r"<title>(.*?)</title>", shown.stdout, re.DOTALL)
-    assert told is not None
-    heat, down, hidden, line, bar = json.loads(told.group(1).replace("&amp;", "&"))
+    heat, down, hidden, line, bar = titled(make_report(update, None, cube), PROBE, tmp_path)
     assert heat == "MAC 40.0 %\ntest 1 (10.00 Hz)\nanalysis 2 (9.00 Hz)"
     assert down == "MAC 10.0 %\ntest 2 (20.00 Hz)\nanalysis 2 (9.00 Hz)"
     assert hidden is True
     assert line.replace("▸ ", "") == "iteration 2\nfront flange: 1.75\nskin: 0.8"
     assert bar == "test mode 1, 10.00 Hz\nbefore: −10 %\nafter: 1 %"
+
+
+SHAPES_PROBE = """
+const said = [], strip = [...document.querySelectorAll('.strip button')];
+const canvas = document.querySelector('.stage > canvas');
+const inked = () => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data
+  .reduce((sum, v, k) => sum + (k % 4 === 3 && v > 0), 0);
+document.querySelector('.controls button').click();
+said.push(strip.length, inked() > 1000, document.querySelector('.stage svg') === null);
+const before = canvas.toDataURL();
+strip[1].click();
+said.push(document.querySelector('.stage figcaption').textContent, canvas.toDataURL() !== before);
+const pressed = strip.map(b => b.getAttribute('aria-pressed'));
+canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}));
+said.push(pressed);
+document.title = JSON.stringify(said);
+"""
+
+
+@pytest.mark.slow
+def test_the_shapes_move_in_a_browser(
+    correlation: dict[str, Any], cube: Geometry, tmp_path: Path
+) -> None:
+    at = Dofs(np.repeat(np.arange(1, 9), 3), np.tile(np.arange(1, 4), 8))
+    analysis = Modes(np.arange(1.0, 5.0), np.random.default_rng(3).normal(size=(24, 4)), at)
+    seen = sp.csr_matrix((np.ones(3), (range(3), (0, 2, 22))), shape=(3, 24))
+    sensors = Dofs(np.array([101, 101, 108]), np.array([1, 3, 2]))
+    test = Modes(np.arange(1.0, 4.0), (seen @ analysis.shapes)[:, :3], sensors)
+    shapes = overlay(correlation, cube, analysis, test, seen)
+    count, drawn, replaced, caption, changed, pressed = titled(
+        make_report(correlation, None, cube, shapes=shapes), SHAPES_PROBE, tmp_path
+    )
+    assert count == 2
+    assert drawn
+    assert replaced
+    assert caption.startswith("Test 2 (20.00 Hz) and analysis 1 (20.50 Hz), 2.5 %, MAC 92 %")
+    assert changed
+    assert pressed == ["false", "true"]

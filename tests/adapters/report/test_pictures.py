@@ -23,7 +23,7 @@ MATRIX = MacMatrix((1, 2), (4, 5, 7), VALUES)
 
 
 def parsed(figure: str) -> ET.Element:
-    return ET.fromstring(figure)
+    return ET.fromstring(re.sub(r"<details>.*?</details>", "", figure))
 
 
 def drawn() -> ET.Element:
@@ -74,7 +74,7 @@ def test_clusters_are_framed_along_their_outer_edge_only() -> None:
 
 def test_values_stand_in_a_table_too() -> None:
     html = heatmap(MATRIX, "x", test_hz={}, analysis_hz={})
-    assert "<tr><th>1</th><td>97</td><td>2</td><td>–</td></tr>" in html
+    assert "<tr><th>1</th><td>97<td>2<td>–</tr>" in html
 
 
 def lightness(colour: str) -> float:
