@@ -11,7 +11,9 @@
   const labels = d.labels.split('|'), brief = d.brief.split('|');
   const nodes = xyz.length / 3, probes = sensors.length / 3, nFaces = faces.length / 4, nLines = lines.length / 2;
   const P = new Float32Array(3 * nodes), depth = new Float32Array(nFaces + nLines), order = new Uint32Array(nFaces + nLines);
-  let ramp = [], ink = {};
+  let reach = 0.05, height = 0.05;             // half extents across and along z, whatever the turn
+  for (let i = 0; i < 3 * nodes; i += 3) { reach = Math.max(reach, Math.hypot(xyz[i], xyz[i + 1]) / 32767); height = Math.max(height, Math.abs(xyz[i + 2]) / 32767); }
+  let ramp = [], ink = {}, amount = +d.amplitude;
   const colours = () => {
     const style = getComputedStyle(document.documentElement), get = n => style.getPropertyValue(n).trim();
     ramp = Array.from({ length: 20 }, (_, k) => get('--c' + k));
@@ -23,7 +25,7 @@
     if (canvas.width !== Math.round(w * k) || canvas.height !== Math.round(h * k)) { canvas.width = Math.round(w * k); canvas.height = Math.round(h * k); }
     ctx.setTransform(k, 0, 0, k, 0, 0); ctx.clearRect(0, 0, w, h); ctx.lineJoin = 'round';
     const ca = Math.cos(view.turn), sa = Math.sin(view.turn), ce = Math.cos(view.lift), se = Math.sin(view.lift);
-    const scale = 0.47 * Math.min(w, h) * view.zoom;
+    const scale = 0.46 * Math.min(w / (reach + amount), h / (reach * Math.abs(se) + height * ce + amount));
     const project = (x, y, z, out, i) => {     // right, down, away
       out[i] = w / 2 + scale * (-sa * x + ca * y);
       out[i + 1] = h / 2 - scale * (-se * (ca * x + sa * y) + ce * z);
@@ -67,8 +69,8 @@
   };
 
   const make = (name, fields = {}, ...children) => { const e = Object.assign(document.createElement(name), fields); e.append(...children); return e; };
-  const view = { turn: -0.86, lift: 0.48, zoom: 1.15 };
-  let pair = 0, playing = !matchMedia('(prefers-reduced-motion: reduce)').matches, seen = false, start = 0, amount = +d.amplitude;
+  const view = { turn: -0.86, lift: 0.48 };
+  let pair = 0, playing = !matchMedia('(prefers-reduced-motion: reduce)').matches, seen = false, start = 0;
   const canvas = make('canvas', { tabIndex: 0 }); canvas.setAttribute('role', 'img');
   const caption = make('figcaption'), strip = make('div', { className: 'strip' });
   const play = make('button', { type: 'button' });
@@ -90,7 +92,7 @@
     const small = make('canvas'), b = make('button', { type: 'button', title: label }, small, brief[k]);
     b.addEventListener('click', () => pick(k)); strip.append(b);
   });
-  const thumbs = () => [...strip.querySelectorAll('canvas')].forEach((c, k) => draw(c, k, +d.amplitude, { turn: -0.86, lift: 0.48, zoom: 1 }, false));
+  const thumbs = () => [...strip.querySelectorAll('canvas')].forEach((c, k) => draw(c, k, +d.amplitude, { turn: -0.86, lift: 0.48 }, false));
   thumbs(); pick(0); run(playing); still();
   play.addEventListener('click', () => run(!playing));
   slider.addEventListener('input', () => { amount = +slider.value; if (!playing) still(); });
