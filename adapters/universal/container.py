@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import mmap
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -22,6 +22,9 @@ _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _FIRST = re.compile(rb"[ \t\r\n\x00]*-1[ \t]*(?=[\r\n]|\Z)")
 _SPACES = b" \t"
+
+Read = Callable[[int, int], bytes]
+"""Gives the bytes of a file between two offsets."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +40,11 @@ class Section:
     closed: bool = True
 
 
-def first_lines(data: mmap.mmap, begin: int, end: int, n: int) -> tuple[list[bytes], int]:
+def first_lines(read: Read, begin: int, end: int, n: int) -> tuple[list[bytes], int]:
     """Return the first `n` lines with their ends, and the offset of what follows them."""
     room = 100 * (n + 1)
     while True:
-        piece = data[begin : min(end, begin + room)]
+        piece = read(begin, min(end, begin + room))
         lines = piece.splitlines(keepends=True)
         if len(lines) > n or begin + room >= end:
             break
@@ -60,6 +63,7 @@ class Scan:
     skipped: list[Skipped] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     _counted: int = 0
+    _mapped: int = 0
     _line: int = 1
 
     def __post_init__(self) -> None:
@@ -158,8 +162,11 @@ class Scan:
 
     def _form(self, begin: int, n_line: int) -> tuple[int, tuple[int, ...]]:
         """Offset behind the header of a function, and what its seventh line says."""
-        lines, at = first_lines(self.data, begin, len(self.data), min(n_line, HEADER_LINES))
+        lines, at = first_lines(self._read, begin, len(self.data), min(n_line, HEADER_LINES))
         return at, form(lines[6]) if len(lines) > 6 else ()
+
+    def _read(self, begin: int, end: int) -> bytes:
+        return self.data[begin:end]
 
     def _closing(self, at: int) -> tuple[int, int] | None:
         """Start of a -1 that follows `at` at once or on the next line, and of the line after."""
@@ -232,8 +239,9 @@ class Scan:
         for a in range(self._counted, offset, step):
             piece = np.frombuffer(self.data[a : min(a + step, offset)], np.uint8)
             self._line += int(np.count_nonzero(piece == self._newline))
-        if offset - self._counted > step:
-            release(self.data, self._counted, offset)
+        if offset - self._mapped > step:
+            release(self.data, self._mapped, offset)
+            self._mapped = offset
         self._counted = max(self._counted, offset)
         return self._line
 

@@ -225,7 +225,7 @@ def _record(source: Source, head: Head58) -> tuple[int, ...]:
         raise ValueError(
             f"byte order {header[0]} or floating-point format {header[1]} is not known"
         )
-    tail = source.data[max(head.data_at, head.section.end - _TAIL) : head.section.end]
+    tail = source.read(max(head.data_at, head.section.end - _TAIL), head.section.end)
     room = head.section.end - head.data_at
     ends = range(room - len(tail) + len(tail.rstrip(b" \r\n")), room + 1)
     layouts = records(head.ordinate_type, head.even)

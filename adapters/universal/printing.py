@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import numpy as np
-
-from ...core.arrays import Numbers
-
 DELIMITER = b"    -1\n"
-_LINES = 1 << 12
 
 
 def dataset(number: int, *parts: bytes) -> bytes:
@@ -40,19 +33,3 @@ def tight(value: float) -> bytes:
         if len(printed) <= 12:
             break
     return b"%13s" % printed.encode()
-
-
-def blocks(values: Numbers, formats: tuple[str, ...]) -> Iterator[bytes]:
-    """Print real numbers line by line, each line in `formats`; the last may be shorter."""
-    per_line = len(formats)
-    line = "".join(formats) + "\n"
-    full = len(values) // per_line
-    for start in range(0, full, _LINES):
-        stop = min(start + _LINES, full)
-        piece = values[start * per_line : stop * per_line]
-        yield (line * (stop - start) % tuple(piece.tolist())).encode("ascii")
-    rest = values[full * per_line :]
-    if len(rest):
-        yield ("".join(formats[: len(rest)]) + "\n").encode("ascii") % tuple(
-            np.asarray(rest).tolist()
-        )

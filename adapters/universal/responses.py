@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -133,7 +134,7 @@ def _frfs(
     row = {dof: k for k, dof in enumerate(responses)}
     column = {dof: k for k, dof in enumerate(references)}
     shape = len(responses), len(references), heads[0].n_point
-    values = np.full(shape, np.nan, np.complex128)
+    values = np.empty(shape, np.complex128)
     quantity = highest_quantity(heads)
     if quantity is None:
         report.warnings.append(
@@ -145,6 +146,9 @@ def _frfs(
     axis, filled = _fill(values, records, (row, column), quantity, scale, report)
     if axis is None:
         return None
+    for place in product(range(shape[0]), range(shape[1])):
+        if place not in filled:
+            values[place] = np.nan
     _say_changed(records, quantity, report)
     rows, columns = (sorted({place[k] for place in filled}) for k in (0, 1))
     if (len(rows), len(columns)) != values.shape[:2]:

@@ -15,14 +15,9 @@ from .content import Skipped
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """An open universal file with its datasets; a context manager that closes it.
-
-    The delimiters are looked for in the mapped file; values are read from the stream, so that a
-    large file does not stay in memory as well.
-    """
+    """An open universal file with its datasets; a context manager that closes it."""
 
     path: Path
-    data: mmap.mmap
     stream: BinaryIO
     sections: tuple[Section, ...] = ()
     skipped: tuple[Skipped, ...] = ()
@@ -38,7 +33,6 @@ class Source:
         trace: TracebackType | None,
     ) -> None:
         self.stream.close()
-        self.data.close()
 
     @property
     def name(self) -> str:
@@ -46,7 +40,7 @@ class Source:
         return str(self.path)
 
     def read(self, begin: int, end: int) -> bytes:
-        """Bytes of the file between two offsets, without mapping them."""
+        """Bytes of the file between two offsets."""
         self.stream.seek(begin)
         return self.stream.read(end - begin)
 
@@ -56,7 +50,7 @@ class Source:
 
     def head(self, section: Section, n: int) -> tuple[list[bytes], int]:
         """Return the first `n` lines of a dataset and the offset of what follows them."""
-        lines, at = first_lines(self.data, section.begin, section.end, n)
+        lines, at = first_lines(self.read, section.begin, section.end, n)
         return [line.rstrip(b"\r\n") for line in lines], at
 
     def error(self, line: int, what: str) -> InputError:
@@ -84,16 +78,17 @@ def open_source(path: Path, exact_lines: bool = True) -> Source:
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from error
     try:
-        data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
+        # The file is mapped only to look for delimiters: pages that were mapped count as memory.
+        with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            scan = Scan(path, data, exact_lines)
+            sections = tuple(scan.sections())
     except ValueError as error:
         stream.close()
         raise InputError(f"{path} is empty; a universal file is expected") from error
-    scan = Scan(path, data, exact_lines)
-    sections = tuple(scan.sections())
     if not sections:
         stream.close()
         raise InputError(
             f"{path} is not a universal file: no line '    -1' followed by a dataset number; "
             "give a .unv or .uff file"
         )
-    return Source(path, data, stream, sections, tuple(scan.skipped), tuple(scan.warnings))
+    return Source(path, stream, sections, tuple(scan.skipped), tuple(scan.warnings))

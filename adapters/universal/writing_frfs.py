@@ -8,9 +8,11 @@ import numpy as np
 
 from ...core.arrays import Floats
 from ...core.dofs import Dofs
+from ...core.errors import InputError
 from ...core.frfs import Frfs
+from .digits import print_lines
 from .layout58 import records
-from .printing import DELIMITER, blocks, text_line, tight
+from .printing import DELIMITER, text_line, tight
 
 _QUANTITIES = {"displacement": (8, 1, "NONE"), "velocity": (11, 1, "NONE"),
                "acceleration": (12, 1, "NONE")}  # fmt: skip
@@ -38,8 +40,13 @@ def frf_datasets(
     for i, response in enumerate(responses):
         for j, reference in enumerate(references):
             values = frfs.values[i, j]
-            if np.isnan(values).any():
+            if np.isnan(values).all():
                 continue
+            if not np.isfinite(values).all():
+                raise InputError(
+                    f"response {_name(*response)} to {_name(*reference)} holds values that are "
+                    "not finite numbers; a universal file cannot say so"
+                )
             names = f"{_name(*response)}/{_name(*reference)}"
             yield DELIMITER + number + b"\n"
             yield b"".join(text_line(t) for t in (names, "NONE", "NONE", "NONE", "NONE"))
@@ -97,7 +104,7 @@ def _packed(x: Floats, values: Floats, even: bool, single: bool) -> bytes:
 def _printed(x: Floats, values: Floats, even: bool, single: bool) -> Iterator[bytes]:
     parts = np.ascontiguousarray(values).view(np.float64)
     if even:
-        yield from blocks(parts, ("%13.5E",) * 6 if single else ("%20.12E",) * 4)
+        yield from print_lines(parts, 13, 5, 6) if single else print_lines(parts, 20, 12, 4)
         return
     number = "%13.5E" if single else "%20.12E"
     lines = []

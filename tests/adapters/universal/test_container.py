@@ -101,7 +101,7 @@ def test_binary_block_full_of_delimiters(opened, announced, glued):
     assert len(block) == 16
     source = opened(binary(block, announced, glued) + TWO.encode())
     assert [s.number for s in source.sections] == [58, 151, 15]
-    assert source.data[source.sections[0].end - 16 : source.sections[0].end] == block
+    assert source.read(source.sections[0].end - 16, source.sections[0].end) == block
     # lines as an editor counts them, those in the block included
     lines = source.path.read_bytes().split(b"\n")
     assert [lines[s.line - 1].split()[0] for s in source.sections] == [b"58b", b"151", b"15"]

@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from trueup.adapters.universal.digits import print_lines
 from trueup.adapters.universal.fields import NotANumber, floats, integers, table, text
 from trueup.adapters.universal.fixed import block
-from trueup.adapters.universal.printing import blocks, tight
+from trueup.adapters.universal.printing import tight
 
 
 @pytest.mark.parametrize(
@@ -68,13 +69,35 @@ NUMBERS = st.lists(
 )
 
 
-@given(NUMBERS, st.sampled_from([("%13.5E", 13, 6), ("%20.12e", 20, 4), ("%13.5e ", 14, 6)]))
+@given(NUMBERS, st.sampled_from([(13, "5E", 6), (20, "12e", 4), (13, "4E", 6), (20, "11E", 4)]))
 def test_blocks_are_read_as_python_reads_each_number(values, form):
-    printed, width, per_line = form
-    content = b"".join(blocks(np.array(values), (printed,) * per_line))
+    width, kind, per_line = form
+    fields = [f"{v:{width}.{kind}}" for v in values]
+    lines = ["".join(fields[k : k + per_line]) for k in range(0, len(fields), per_line)]
+    content = "".join(line + "\n" for line in lines).encode()
     found, surplus = block(from_bytes(content), 0, len(content), (width,) * per_line, len(values))
-    np.testing.assert_array_equal(found, [float(printed % v) for v in values])
+    np.testing.assert_array_equal(found, [float(f) for f in fields])
     assert surplus == 0
+
+
+TIES = st.builds(lambda m, k: (m + 0.5) * 10.0**k, st.integers(0, 10**6), st.integers(-6, 6))
+NINES = st.builds(lambda n, k: (1.0 - 10.0**-n) * 10.0**k, st.integers(1, 16), st.integers(-99, 99))
+
+
+@given(
+    st.lists(
+        st.floats(allow_nan=False, allow_infinity=False) | TIES | NINES | st.just(-0.0),
+        min_size=1,
+        max_size=30,
+    ),
+    st.sampled_from([(13, 5, 6), (20, 12, 4)]),
+)
+def test_lines_are_printed_as_python_prints_each_number(values, form):
+    width, decimals, per_line = form
+    fields = [f"{v:{width}.{decimals}E}" for v in values]
+    lines = ["".join(fields[k : k + per_line]) for k in range(0, len(fields), per_line)]
+    printed = b"".join(print_lines(np.array(values), width, decimals, per_line))
+    assert printed.decode() == "".join(line + "\n" for line in lines)
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=24, max_size=24), st.integers(0, 23))
