@@ -1,6 +1,7 @@
 """Nastran decks and results."""
 
 from .build import build_model
+from .describe import describe_deck
 from .editing.add import add_cards
 from .editing.decktext import DeckText, read_deck_text
 from .editing.diff import unified_diff
@@ -25,6 +26,7 @@ __all__ = [
     "Weight",
     "add_cards",
     "build_model",
+    "describe_deck",
     "describe_results",
     "free_id",
     "parse_parameter",

@@ -1,0 +1,102 @@
+"""What a deck holds, in one screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from .casecontrol import CaseControl
+from .grids import read_points
+from .read import Deck, EigenRequest, read_deck
+
+_FORMAT = "Nastran deck"
+_NOT_ELEMENTS = ("CORD", "CSET")
+
+
+def describe_deck(path: Path | str) -> dict[str, Any]:
+    """Say what a deck with all its INCLUDE files, or a part of one, holds.
+
+    Nothing is assembled: numbers that refer to nothing are found by `build_model`.
+
+    Returns
+    -------
+    dict
+        ``path``, ``format``, ``contents`` (files, cards by name, units, eigenvalue request, ...),
+        ``skipped`` (what, line, why of every kind of card that is not used) and ``warnings``.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, a card that is not a card: file, line, field.
+    """
+    deck = read_deck(path)
+    return {
+        "path": str(path),
+        "format": _FORMAT,
+        "contents": _contents(deck),
+        "skipped": list(deck.skipped),
+        "warnings": list(deck.warnings),
+    }
+
+
+def _contents(deck: Deck) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if len(deck.files) > 1:
+        found["files"] = [_shown(f, deck.path) for f in deck.files]
+    if deck.counts.get("GRID"):
+        found["grids"] = deck.counts["GRID"]
+        box = _box(deck)
+        if box is not None:
+            found["bounding_box"] = box
+    elements = {n: k for n, k in deck.counts.items() if _is_element(n)}
+    if elements:
+        found["elements"] = elements
+    found["other_cards"] = {n: k for n, k in deck.counts.items() if n not in (*elements, "GRID")}
+    found["length_unit"] = deck.length_unit or "not declared"
+    if deck.eigen is not None:
+        found["eigenvalue_request"] = _request(deck.eigen)
+    selected = _selected(deck.case)
+    if selected:
+        found["selected_by_case_control"] = selected
+    if deck.params:
+        found["params"] = deck.params
+    return {k: v for k, v in found.items() if v != {}}
+
+
+def _shown(file: Path, main: Path) -> str:
+    try:
+        return str(file.relative_to(main.parent))
+    except ValueError:
+        return str(file)
+
+
+def _box(deck: Deck) -> list[float] | None:
+    """Edge lengths of the box around the grids; None where a coordinate system is elsewhere."""
+    from ...core.errors import InputError
+
+    try:
+        xyz = read_points(deck.bulk).xyz
+    except InputError:  # a part of a deck: the systems may stand in another file
+        return None
+    return [float(edge) for edge in xyz.max(axis=0) - xyz.min(axis=0)]
+
+
+def _is_element(name: str) -> bool:
+    is_one = name.startswith(("C", "R")) and not name.startswith(_NOT_ELEMENTS)
+    return is_one and "SUP" not in name and name not in ("RELEASE", "RFORCE")
+
+
+def _request(eigen: EigenRequest) -> dict[str, Any]:
+    said = {"from_hz": eigen.v1, "to_hz": eigen.v2, "modes": eigen.nd}
+    return {k: v for k, v in said.items() if v is not None} or {"modes": "all"}
+
+
+def _selected(case: CaseControl) -> dict[str, Any]:
+    names = ("subcase", "spc", "mpc", "method", "nsm", "suport1", "temperature")
+    sets = {n: getattr(case, n) for n in names if getattr(case, n)}
+    matrices = {
+        n: [m for m, _ in getattr(case, n)]
+        for n in ("k2gg", "m2gg", "k2pp", "m2pp")
+        if getattr(case, n)
+    }
+    return {**sets, **matrices}
