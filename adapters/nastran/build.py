@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,19 +11,26 @@ import scipy.sparse as sp
 from ...core.arrays import Floats, Ints
 from ...core.assembly import ElementBlock, Evaluate, Matrices
 from ...core.assembly_parameters import parametric_terms
+from ...core.condensation import static_condensation
 from ...core.constraints import Reduction, reduction, unsupported
 from ...core.dofs import Dofs
 from ...core.errors import CheckError, InputError
 from ...core.geometry import Geometry
 from ...core.model import Model, Term
 from ...core.parameter import Parameter
+from .analysis_set import read_analysis_set
 from .constraints import read_constraints
+from .direct import direct_matrices
 from .families import FAMILIES, Context, Group, Settings
 from .grids import Points, read_points
+from .nonstructural import read_nonstructural
 from .parameters import ParameterSpec
 from .read import Deck
 from .support import refuse_unsupported
 from .variation import Variation, read_variation
+
+Pair = tuple[tuple[Term, ...], tuple[Term, ...]]
+"""Terms of stiffness and of mass."""
 
 _SINGULAR = 1e-8
 """EPZERO: smallest stiffness of a grid's direction, relative to its largest."""
@@ -60,9 +67,12 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     refuse_unsupported(deck)
     points = read_points(deck.bulk)
     settings = Settings(
-        k6rot=deck.param("K6ROT", 100.0), coupled=deck.param("COUPMASS", -1.0) > 0.0
+        k6rot=deck.param("K6ROT", 100.0),
+        snorm=deck.param("SNORM", 20.0),
+        coupled=deck.param("COUPMASS", -1.0) > 0.0,
     )
-    context = Context(deck.bulk, points, settings)
+    nonstructural = read_nonstructural(deck, points)
+    context = Context(variation.bulk, points, settings, nonstructural)
     groups = tuple(g for family in FAMILIES.values() for g in family(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
@@ -89,29 +99,41 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
     InputError
         What the deck or the parameters lack: card, file and line.
     """
-    variation = read_variation(deck.bulk, parameters)
+    variation = read_variation(deck, parameters)
     structure = read_structure(deck, variation)
     points = structure.points
     constraints = read_constraints(deck, points)
-    lower = np.array([p.lower for p in variation.parameters])
-    upper = np.array([p.upper for p in variation.parameters])
-    try:
-        stiffness, mass = parametric_terms(structure.blocks, points.n_dof, lower, upper)
-    except CheckError as error:
-        raise InputError(str(error)) from None
-    _check_influence(variation.parameters, (*stiffness, *mass))
+    terms = _terms(deck, structure, variation)
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
-    stiffness, mass, reduced, warnings = _remove_singular(deck, points, stiffness, mass, reduced)
+    terms, reduced, warnings = _remove_singular(deck, points, terms, reduced)
+    terms, expansion, kept, more = _condense(deck, points, terms, reduced)
     return Model(
         geometry=_geometry(deck, structure),
         dofs=_dofs(points),
-        expansion=(_to_basic(points) @ reduced.expansion).tocsr(),
-        stiffness=stiffness,
-        mass=mass,
+        expansion=(to_basic(points) @ expansion).tocsr(),
+        stiffness=terms[0],
+        mass=terms[1],
         parameters=variation.parameters,
-        free_labels=tuple(points.label(d) for d in reduced.kept),
-        warnings=(*deck.warnings, *warnings),
+        free_labels=tuple(points.label(d) for d in kept),
+        warnings=(*deck.warnings, *warnings, *more),
     )
+
+
+def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
+    """Stiffness and mass of the g-set: elements, then direct matrices in the constant term."""
+    n = structure.points.n_dof
+    lower = np.array([p.lower for p in variation.parameters])
+    upper = np.array([p.upper for p in variation.parameters])
+    try:
+        terms = parametric_terms(structure.blocks, n, lower, upper)
+    except CheckError as error:
+        raise InputError(str(error)) from None
+    _check_influence(variation.parameters, (*terms[0], *terms[1]))
+    added = direct_matrices(deck, structure.points)
+    return tuple(
+        tuple(Term(t.matrix + extra, ()) if not t.factors and extra.nnz else t for t in part)
+        for part, extra in zip(terms, added, strict=True)
+    )  # type: ignore[return-value]
 
 
 def _block(group: Group, points: Points, variation: Variation, wtmass: float) -> ElementBlock:
@@ -186,48 +208,61 @@ def _check_influence(parameters: tuple[Parameter, ...], terms: Sequence[Term]) -
             )
 
 
-def _total(terms: tuple[Term, ...], parameters: int) -> sp.csr_matrix:
-    ones = np.ones(parameters)
-    total = terms[0].matrix
+def _remove_singular(
+    deck: Deck, points: Points, terms: Pair, reduced: Reduction
+) -> tuple[Pair, Reduction, tuple[str, ...]]:
+    """Reduce all terms; fix what has no stiffness (AUTOSPC), or neither stiffness nor mass."""
+    terms = _each(terms, reduced.apply)
+    K, M = (_total(part) for part in terms)
+    if not K.nnz:
+        raise InputError(f"{deck.path}: the deck has no element that carries stiffness")
+    triple = np.where(reduced.kept < 6 * len(points.ids), reduced.kept // 3, -1)
+    automatic = deck.params.get("AUTOSPC", "YES") != "NO"
+    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, _SINGULAR)
+    if not len(loose):
+        return terms, reduced, ()
+    left = np.setdiff1d(np.arange(K.shape[0]), loose)
+    terms = _each(terms, lambda A: A[left][:, left].tocsr())
+    return terms, reduced.drop(loose), _loose_warning(points, reduced.kept[loose], automatic)
+
+
+def _condense(
+    deck: Deck, points: Points, terms: Pair, reduced: Reduction
+) -> tuple[Pair, sp.csr_matrix, Ints, tuple[str, ...]]:
+    """Apply static condensation to the analysis set, where the deck asks for it."""
+    chosen = read_analysis_set(deck, points)
+    if chosen is None:
+        return terms, reduced.expansion, reduced.kept, ()
+    kept = np.flatnonzero(chosen[reduced.kept])
+    if not len(kept):
+        raise InputError(f"{deck.path}: ASET and OMIT leave no free degree of freedom")
+    try:
+        T = static_condensation(_total(terms[0]), kept)
+    except InputError as error:
+        raise InputError(f"{deck.path}: ASET and OMIT: {error}") from None
+    terms = _each(terms, lambda A: sp.csr_matrix(T.T @ (A @ T)))
+    warning = (
+        f"{len(reduced.kept) - len(kept)} degrees of freedom were condensed statically to the "
+        f"{len(kept)} of the analysis set (ASET, OMIT)"
+    )
+    if any(t.factors for part in terms for t in part):
+        warning += "; the condensation stays that of the deck when parameters move"
+    expansion = (reduced.expansion @ sp.csr_matrix(T)).tocsr()
+    return terms, expansion, reduced.kept[kept], (warning,)
+
+
+def _each(terms: Pair, change: Callable[[sp.csr_matrix], sp.csr_matrix]) -> Pair:
+    stiffness, mass = (tuple(Term(change(t.matrix), t.factors) for t in part) for part in terms)
+    return stiffness, mass
+
+
+def _total(terms: tuple[Term, ...]) -> sp.csr_matrix:
+    """Sum of the terms at the deck's values."""
+    ones = np.ones(1 + max((f.parameter for t in terms for f in t.factors), default=-1))
+    total = terms[0].coefficient(ones) * terms[0].matrix
     for term in terms[1:]:
         total = total + term.coefficient(ones) * term.matrix
     return total.tocsr()
-
-
-def _remove_singular(
-    deck: Deck,
-    points: Points,
-    stiffness: tuple[Term, ...],
-    mass: tuple[Term, ...],
-    reduced: Reduction,
-) -> tuple[tuple[Term, ...], tuple[Term, ...], Reduction, tuple[str, ...]]:
-    """Reduce all terms; fix what has no stiffness (AUTOSPC), or neither stiffness nor mass."""
-    n_parameter = 1 + max((f.parameter for t in (*stiffness, *mass) for f in t.factors), default=-1)
-    stiffness, mass = (
-        tuple(Term(reduced.apply(t.matrix), t.factors) for t in terms)
-        for terms in (stiffness, mass)
-    )
-    K, M = _total(stiffness, n_parameter), _total(mass, n_parameter)
-    if not K.nnz:
-        raise InputError(f"{deck.path}: the deck has no element that carries stiffness")
-    n_grid = 6 * len(points.ids)
-    in_grid = reduced.kept < n_grid
-    triple = np.where(in_grid, reduced.kept // 3, -1)
-    automatic = deck.params.get("AUTOSPC", "YES") not in ("NO", "NOPRINT,NO")
-    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, _SINGULAR)
-    if not len(loose):
-        return stiffness, mass, reduced, ()
-    left = np.setdiff1d(np.arange(K.shape[0]), loose)
-    stiffness, mass = (
-        tuple(Term(t.matrix[left][:, left].tocsr(), t.factors) for t in terms)
-        for terms in (stiffness, mass)
-    )
-    return (
-        stiffness,
-        mass,
-        reduced.drop(loose),
-        _loose_warning(points, reduced.kept[loose], automatic),
-    )
 
 
 def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ...]:
@@ -247,7 +282,7 @@ def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ..
     return (f"{len(dofs)} degrees of freedom {what}: {'; '.join(parts)}",)
 
 
-def _to_basic(points: Points) -> sp.csr_matrix:
+def to_basic(points: Points) -> sp.csr_matrix:
     """Return basic displacements from those in the displacement systems."""
     n = points.n_dof
     turned = np.flatnonzero(points.rotated)

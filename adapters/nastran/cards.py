@@ -289,8 +289,8 @@ def read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dic
             this = raw._replace(part=part) if part else raw
             card = reader.read(this, fields)
             if kind.id:
-                number = int(getattr(card, kind.id))
                 table = tables.setdefault(raw.name, {})
+                number = _number(kind, card, table, this, files)
                 places = numbered.setdefault(raw.name, {})
                 if number in table:
                     _check_repeated(places[number], number, this, files)
@@ -309,6 +309,19 @@ def _parts(kind: Kind, fields: Fields) -> int:
         return 1
     starts = range(1, len(fields), kind.stride)
     return max(sum(1 for start in starts if fields[start] is not None), 1)
+
+
+def _number(
+    kind: Kind, card: Card, table: dict[int, Card], raw: Raw, files: tuple[Path, ...]
+) -> int:
+    """Return the card's number; where numbers may repeat, a negative one from the second on."""
+    if kind.id != "#":
+        return int(getattr(card, kind.id))
+    text = card[1] if len(card) > 1 else None
+    if text is None or not text.isdigit():
+        at = f"{files[raw.file]} line {raw.line}"
+        raise InputError(f"{at}: {raw.name} {text or ''}: its number must be an integer")
+    return int(text) if int(text) not in table else -1 - len(table)
 
 
 def _check_repeated(first: Raw, number: int, raw: Raw, files: tuple[Path, ...]) -> None:

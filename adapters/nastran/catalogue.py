@@ -13,7 +13,8 @@ class Kind(NamedTuple):
     cls : str
         pyNastran's class, or "" where the raw fields are used as they are.
     id : str
-        Attribute that holds the card's number, "" where numbers may repeat.
+        Attribute that holds the card's number; "" where cards have none of their own; "#" where
+        the first field holds a number that may repeat.
     stride : int
         Fields apart of several properties on one card; 0 where there is one.
     """
@@ -61,12 +62,13 @@ READ: dict[str, Kind] = {
     "PDAMP": Kind("PDAMP", "pid", 2),
     "PVISC": Kind("PVISC", "pid", 4),
     # materials
-    **_same("MAT1 MAT2 MAT8 MAT9 MATT1 MATT2 MATT8 MATT9", "mid"),
+    **_same("MAT1 MAT2 MAT8 MAT9", "mid"),
+    **{name: Kind("", "#") for name in ("MATT1", "MATT2", "MATT8", "MATT9")},
     **_same("TABLEM1 TABLEM2 TABLEM3 TABLEM4", "tid"),
     "TEMP": Kind("", ""),
     "TEMPD": Kind("", ""),
     # mass that belongs to no card of its own
-    **{name: Kind("", "") for name in ("NSM", "NSM1", "NSML", "NSML1", "NSMADD")},
+    **{name: Kind("", "#") for name in ("NSM", "NSM1", "NSML", "NSML1", "NSMADD")},
     # constraints
     **_same("SPC SPC1 SPCADD MPC MPCADD", ""),
     **_same("RBE1 RBE2 RBE3 RBAR RROD", "eid"),

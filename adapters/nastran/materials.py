@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Floats
+from ...core.elements.material import isotropic_solid
 from ...core.errors import InputError
 from .cards import Bulk, Card
 
@@ -45,6 +46,25 @@ class Plane:
     isotropic: bool
 
 
+@dataclass(frozen=True, eq=False)
+class Elastic:
+    """A material in three dimensions.
+
+    Parameters
+    ----------
+    C : (6, 6) float
+        Stresses from strains xx, yy, zz, xy, yz, zx (engineering shears).
+    rho : float
+        Density.
+    isotropic : bool
+        Whether it is the same in all directions.
+    """
+
+    C: Floats
+    rho: float
+    isotropic: bool
+
+
 def isotropic(bulk: Bulk, mid: int | None, asked_by: str) -> Isotropic:
     """Return the constants of a MAT1.
 
@@ -68,6 +88,30 @@ def _constants(bulk: Bulk, card: Card) -> Isotropic:
             "-1 and 0.5 (check E and G where NU is blank)"
         )
     return Isotropic(E, G, nu, rho)
+
+
+def elastic(bulk: Bulk, mid: int, asked_by: str) -> Elastic:
+    """Return a MAT1 or MAT9 in three dimensions, in its own axes.
+
+    Raises
+    ------
+    InputError
+        No such material, or one that is not physical.
+    """
+    found = bulk.find(("MAT1", "MAT9"), int(mid))
+    if found is None:
+        raise InputError(f"{asked_by} refers to material {mid}, but there is no MAT1 or MAT9 {mid}")
+    name, card = found
+    if name == "MAT1":
+        E, _, nu, rho = _constants(bulk, card)
+        if not nu < 0.5:
+            raise InputError(f"{bulk.place(name, int(mid))}: solids need NU below 0.5")
+        return Elastic(isotropic_solid(np.array([E]), np.array([nu]))[0], rho, True)
+    C = np.zeros((6, 6))
+    for i in range(6):
+        for j in range(i, 6):
+            C[i, j] = C[j, i] = float(getattr(card, f"G{i + 1}{j + 1}") or 0.0)
+    return Elastic(C, float(card.rho or 0.0), False)
 
 
 def plane(bulk: Bulk, mid: int, asked_by: str) -> Plane:

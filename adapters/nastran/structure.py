@@ -10,20 +10,18 @@ import scipy.sparse as sp
 from ...core.assembly_parameters import parametric_terms
 from ...core.discovery.structure import Members, Structure, Supports
 from ...core.model import Model
-from .build import build_model, read_structure
-from .build import _to_basic as to_basic
+from .build import build_model, read_structure, to_basic
 from .constraints import read_constraints
 from .grids import Points
 from .parameters import FieldRef, ParameterSpec
 from .read import Deck
 from .variation import read_variation
 
-
-_DOUBTED: dict[str, tuple[tuple[str, ...], float]] = {
-    "PSHELL": (("T",), 0.06),
-    "PBAR": (("I1", "I2"), 0.4),
-    "PELAS": (("K",), 0.4),
-    "MAT1": (("E",), 0.05),
+_DOUBTED: dict[str, tuple[tuple[str, ...], float, tuple[float, float]]] = {
+    "PSHELL": (("T",), 0.06, (0.7, 1.4)),
+    "PBAR": (("I1", "I2"), 0.4, (0.25, 4.0)),
+    "PELAS": (("K",), 0.4, (0.25, 4.0)),
+    "MAT1": (("E",), 0.05, (0.7, 1.4)),
 }
 _ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "K": "k", "E": "e"}
 
@@ -37,7 +35,7 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
         As `build_model`.
     """
     model = build_model(deck, parameters)
-    variation = read_variation(deck.bulk, parameters)
+    variation = read_variation(deck, parameters)
     parts = read_structure(deck, variation)
     displacement = (to_basic(parts.points).T @ model.expansion).tocsr()
     members = tuple(
@@ -46,7 +44,7 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
         if g.shape
     )
     fixed = read_constraints(deck, parts.points).fixed
-    empty = read_structure(deck, read_variation(deck.bulk, ()))
+    empty = read_structure(deck, read_variation(deck, ()))
     stiffness, _ = parametric_terms(empty.blocks, parts.points.n_dof, np.zeros(0), np.zeros(0))
     K = sum((t.matrix for t in stiffness), sp.csr_matrix((parts.points.n_dof,) * 2))
     return Structure(
@@ -67,9 +65,7 @@ def _supports(
     root = (K[held] @ displacement).tocsr()
     live = np.diff(root.indptr) > 0
     held, own, root = held[live], own[live], root[live]
-    return Supports(
-        points.ids[held // 6], held % 6 + 1, points.xyz[held // 6], root, own
-    )
+    return Supports(points.ids[held // 6], held % 6 + 1, points.xyz[held // 6], root, own)
 
 
 def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float, ...]]:
@@ -79,12 +75,11 @@ def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float
     and stiffnesses of springs.
     """
     specs, spreads = [], []
-    for name, (fields, spread) in _DOUBTED.items():
+    for name, (fields, spread, bounds) in _DOUBTED.items():
         for number, card in sorted(deck.bulk.table(name).items()):
             held = tuple(f for f in fields if getattr(card, _ATTRIBUTE[f], None))
             if held:
                 refs = tuple(FieldRef(name, number, f) for f in held)
-                specs.append(ParameterSpec(f"{name} {number} {'+'.join(held)}", refs, 0.25, 4.0))
+                specs.append(ParameterSpec(f"{name} {number} {'+'.join(held)}", refs, *bounds))
                 spreads.append(spread)
     return tuple(specs), tuple(spreads)
-

@@ -15,22 +15,16 @@ _ELEMENTS = frozenset(
     if name[0] == "C" and not name.startswith(_WITHOUT_EFFECT) and name not in SUPPORTED
 )
 _RIGID = frozenset(name for name in READ if name[0] == "R" and name not in RIGID)
-_SETS = ("ASET", "ASET1", "OMIT", "OMIT1")
 
 
 def refuse_unsupported(deck: Deck) -> None:
     """Raise `InputError` for what carries stiffness, mass or constraint and is not supported."""
     refused = list(deck.refused)
-    for name in (*sorted(_ELEMENTS), *sorted(_RIGID), *sorted(_SETS)):
+    for name in (*sorted(_ELEMENTS), *sorted(_RIGID)):
         if deck.bulk.raw.get(name):
             raw = deck.bulk.raw[name][0]
             number = next(iter(deck.bulk.table(name)), "")
             refused.append(f"{deck.bulk.at(raw)}: {name} {number} is not supported yet")
-    if deck.case.nsm is not None:
-        refused.append(f"{deck.path}: case control NSM = {deck.case.nsm} is not supported yet")
-    for name in ("k2gg", "m2gg", "k2pp", "m2pp"):
-        if getattr(deck.case, name):
-            refused.append(f"{deck.path}: case control {name.upper()} is not supported yet")
     if refused:
         more = f" (and {len(refused) - 1} more that are not supported)" if refused[1:] else ""
         raise InputError(refused[0] + more)

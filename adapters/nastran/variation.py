@@ -17,6 +17,8 @@ from ...core.parameter import Parameter
 from .cards import Bulk, Card, CardReader, Fields, fields_of, to_float
 from .fields import STRIDES, after, field_position
 from .parameters import FieldRef, ParameterSpec
+from .read import Deck
+from .thermal import Thermal, read_thermal
 
 Key = tuple[str, int]
 
@@ -42,11 +44,14 @@ class Variation:
         In the order asked for.
     moves : mapping of Key to list
         Fields moved, by card.
+    thermal : Thermal
+        Materials that follow the temperature.
     """
 
     bulk: Bulk
     parameters: tuple[Parameter, ...]
     moves: dict[Key, tuple[_Move, ...]]
+    thermal: Thermal
     _known: dict[bytes, Bulk] = field(default_factory=dict, repr=False)
 
     def acting_on(self, key: Key) -> frozenset[int]:
@@ -85,18 +90,20 @@ class Variation:
             fields = list(fields_of(raw.lines))
             for m in moves:
                 fields[m.index] = repr(m.value * factors[m.index])
-            changed[key] = reader.read(raw, fields)
+            changed[key] = reader.read(raw, self.thermal.fields(self.bulk, key, fields))
         return self.bulk.replaced(changed)
 
 
-def read_variation(bulk: Bulk, specs: Sequence[ParameterSpec]) -> Variation:
-    """Find the fields that parameters move.
+def read_variation(deck: Deck, specs: Sequence[ParameterSpec]) -> Variation:
+    """Find the fields that parameters move, and bring materials to the deck's temperature.
 
     Raises
     ------
     InputError
         A card or field that does not exist, is blank or zero, or that two parameters move.
     """
+    bulk = deck.bulk
+    thermal = read_thermal(deck)
     moves: dict[Key, list[_Move]] = {}
     parameters = []
     taken: dict[tuple[Key, int], str] = {}
@@ -123,7 +130,8 @@ def read_variation(bulk: Bulk, specs: Sequence[ParameterSpec]) -> Variation:
                 getattr(spec, "weight", 1.0),
             )
         )
-    return Variation(bulk, tuple(parameters), {k: tuple(v) for k, v in moves.items()})
+    every = {k: tuple(v) for k, v in moves.items()}
+    return Variation(thermal.applied(bulk), tuple(parameters), every, thermal)
 
 
 def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:

@@ -46,7 +46,7 @@ def weight(deck: Deck) -> Weight:
     InputError
         As `build_model`.
     """
-    structure = read_structure(deck, read_variation(deck.bulk, ()))
+    structure = read_structure(deck, read_variation(deck, ()))
     points = structure.points
     members = [Members(b, np.arange(len(b))) for b in structure.blocks]
     recipe = Recipe(np.ones((1, 0)), np.zeros((0, 1)), np.ones((1, 1)))

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .bars import bars, rods
+from .bushes import bushes
 from .common import Context, Group, Key, Settings
 from .masses import masses
 from .shells import shells
+from .solids import solids
 from .springs import springs
 
 FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
     "shells": shells,
+    "solids": solids,
     "bars": bars,
     "rods": rods,
+    "bushes": bushes,
     "springs": springs,
     "masses": masses,
 }
@@ -22,6 +26,7 @@ FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
 SUPPORTED = frozenset(
     (
         *("CQUAD4", "CTRIA3", "CBAR", "CROD", "CONROD", "CTUBE"),
+        *("CHEXA", "CPENTA", "CTETRA", "CPYRAM", "CBUSH", "CBUSH1D"),
         *("CELAS1", "CELAS2", "CELAS3", "CELAS4"),
         *("CMASS1", "CMASS2", "CMASS3", "CMASS4", "CONM1", "CONM2"),
     )

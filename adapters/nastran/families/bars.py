@@ -20,7 +20,7 @@ from ....core.errors import InputError
 from ..cards import Bulk, Card
 from ..materials import isotropic
 from ..sections import section
-from .common import Context, Group, Key, distinct_properties, numbered
+from .common import Context, Group, Key, distinct_properties, element_sources
 from .lines import line_axes
 
 _RIGID_SHEAR = 1e8
@@ -42,7 +42,7 @@ def bars(context: Context) -> list[Group]:
         context.bulk, BAR_PROPERTIES, "CBAR", ids, np.array([c.pid for c in cards])
     )
     lines = line_axes(context, "CBAR", cards, ids, ends)
-    sources = tuple(_sources(context.bulk, key) for key in keys)
+    of_property = [_sources(context.bulk, key) for key in keys]
 
     def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         table = np.array([_bar_constants(context, bulk, key) for key in keys])
@@ -54,13 +54,15 @@ def bars(context: Context) -> list[Group]:
             pins = lines.pins[rows]
             K = bar_stiffness(xa, xb, v, E, G, A, I1, I2, I12, J, k1, k2, pins[:, :6], pins[:, 6:])
         if wanted[1]:
-            M = bar_mass(xa, xb, v, c[_MASS], context.settings.coupled)
+            mass = c[_MASS] + context.extra_mass(bulk, ids[rows])
+            M = bar_mass(xa, xb, v, mass, context.settings.coupled)
         if lines.offset:
             T = offset_transform(lines.wa[rows], lines.wb[rows])
             K, M = (None if X is None else T.swapaxes(1, 2) @ X @ T for X in (K, M))
         return K, M
 
-    return [Group("CBAR", ids, ends, 6, matrices, sources, of, "line", ends)]
+    sources, source_of = element_sources(context, ids, of_property, of)
+    return [Group("CBAR", ids, ends, 6, matrices, sources, source_of, "line", ends)]
 
 
 def _sources(bulk: Bulk, key: Key) -> frozenset[Key]:
@@ -72,7 +74,7 @@ def _bar_constants(context: Context, bulk: Bulk, key: Key) -> list[float]:
     place = context.bulk.place(*key)
     card = bulk.table(key[0])[key[1]]
     E, G, _, rho = isotropic(bulk, card.mid, place)
-    nsm = float(card.nsm or 0.0) + context.nonstructural.get(key, 0.0)
+    nsm = float(card.nsm or 0.0)
     if key[0] == "PBARL":
         s = section(str(card.Type).upper(), list(card.dim), place)
         sheared = s.I12 == 0.0
@@ -123,7 +125,8 @@ def _rods(
     else:
         pids = np.array([c.pid for c in cards])
         keys, of = distinct_properties(bulk, properties, name, ids, pids)
-    sources, source_of_key = numbered(_sources(bulk, key) for key in keys)
+    of_property = [_sources(bulk, key) for key in keys]
+    sources, source_of = element_sources(context, ids, of_property, of)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         used, position = np.unique(of[rows], return_inverse=True)
@@ -131,17 +134,18 @@ def _rods(
         E, G, A, J, mass = table[position].T
         K = rod_stiffness(xa[rows], xb[rows], E, A, G, J) if wanted[0] else None
         coupled = context.settings.coupled
+        mass = mass + context.extra_mass(values, ids[rows])
         M = rod_mass(xa[rows], xb[rows], mass, coupled) if wanted[1] else None
         return K, M
 
-    return Group(name, ids, ends, 6, matrices, sources, source_of_key[of], "line", ends)
+    return Group(name, ids, ends, 6, matrices, sources, source_of, "line", ends)
 
 
 def _rod_constants(context: Context, bulk: Bulk, key: Key) -> list[float]:
     card = bulk.table(key[0])[key[1]]
     E, G, _, rho = isotropic(bulk, card.mid, context.bulk.place(*key))
     A, J = float(card.A or 0.0), float(card.j or 0.0)
-    nsm = float(card.nsm or 0.0) + context.nonstructural.get(key, 0.0)
+    nsm = float(card.nsm or 0.0)
     return [E, G, A, J, rho * A + nsm]
 
 
@@ -159,7 +163,7 @@ def _tube_constants(context: Context, bulk: Bulk, key: Key) -> list[float]:
             raise InputError(f"{place}: twice the wall thickness exceeds the diameter")
         A += 0.5 * math.pi / 4.0 * (od**2 - inner**2)
         J += 0.5 * math.pi / 32.0 * (od**4 - inner**4)
-    nsm = float(card.nsm or 0.0) + context.nonstructural.get(key, 0.0)
+    nsm = float(card.nsm or 0.0)
     return [E, G, A, J, rho * A + nsm]
 
 

@@ -13,6 +13,7 @@ from ....core.assembly import Matrices
 from ....core.errors import InputError
 from ..cards import Bulk, Card
 from ..grids import Points
+from ..nonstructural import Nonstructural
 
 Key = tuple[str, int]
 """A card by name and number."""
@@ -26,6 +27,7 @@ class Settings:
     """PARAM values that shape element matrices."""
 
     k6rot: float = 100.0
+    snorm: float = 20.0
     coupled: bool = False
 
 
@@ -41,14 +43,18 @@ class Context:
         Grids and scalar points.
     settings : Settings
         PARAM values.
-    nonstructural : mapping of (card, number) to float
-        Mass per area or length that NSM cards add to a property or an element.
+    nonstructural : Nonstructural
+        Mass per area or length that NSM cards add to elements.
     """
 
     bulk: Bulk
     points: Points
     settings: Settings
-    nonstructural: dict[Key, float] = field(default_factory=dict)
+    nonstructural: Nonstructural = field(default_factory=Nonstructural)
+
+    def extra_mass(self, bulk: Bulk, ids: Ints) -> Floats | float:
+        """Mass per area or length that NSM cards add to the elements `ids`."""
+        return self.nonstructural.at(bulk, ids) if self.nonstructural.shares else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +104,18 @@ def numbered(sources: Iterable[frozenset[Key]]) -> tuple[tuple[frozenset[Key], .
     index: dict[frozenset[Key], int] = {}
     of = [index.setdefault(s, len(index)) for s in sources]
     return tuple(index), np.array(of, dtype=np.int64)
+
+
+def element_sources(
+    context: Context, ids: Ints, of_property: Sequence[frozenset[Key]], of: Ints
+) -> tuple[tuple[frozenset[Key], ...], Ints]:
+    """Return the sets of cards that elements take values from: their property's, and NSM cards."""
+    if not context.nonstructural.shares:
+        return tuple(of_property), of
+    return numbered(
+        of_property[int(k)] | context.nonstructural.sources(int(eid))
+        for eid, k in zip(ids, of, strict=True)
+    )
 
 
 def property_of(

@@ -14,7 +14,8 @@ from ....core.elements.shell import ShellSection
 from ....core.errors import InputError
 from ..cards import Bulk, Card
 from ..laminates import Layup, layup
-from .common import Context, Group, Key, distinct_properties
+from .common import Context, Group, Key, distinct_properties, element_sources
+from .normals import shell_normals
 
 SHELL_PROPERTIES = ("PSHELL", "PCOMP", "PCOMPG")
 
@@ -49,8 +50,11 @@ class _Elements:
         thicknesses of their own.
     offset : (n,) float
         ZOFFS.
+    normals : (n, m, 3) float or None
+        Of the grids at the corners, basic frame.
     """
 
+    ids: Ints
     xyz: Floats
     keys: list[Key]
     of: Ints
@@ -58,45 +62,68 @@ class _Elements:
     own: Floats
     share: Floats
     offset: Floats
+    normals: Floats | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Elements of one shape and where they stand."""
+
+    name: str
+    kernel: Kernel
+    cards: list[Card]
+    ids: Ints
+    corners: Ints
+    axes: Floats
 
 
 def shells(context: Context) -> list[Group]:
     """Make the groups of shells."""
-    groups = []
+    found = []
     for name, kernel in KERNELS.items():
         cards = list(context.bulk.table(name).values())
         if cards:
-            groups.append(_group(context, name, cards, kernel))
-    return groups
+            ids = np.array([c.eid for c in cards], dtype=np.int64)
+            corners = context.points.rows([c.nodes for c in cards], name, ids)
+            check_shape(context, name, ids, context.points.xyz[corners])
+            axes = kernel.axes(context.points.xyz[corners])
+            found.append(_Placed(name, kernel, cards, ids, corners, axes))
+    normals = shell_normals(
+        [f.corners for f in found],
+        [f.axes for f in found],
+        len(context.points.ids),
+        context.settings.snorm,
+    )
+    return [_group(context, f, n) for f, n in zip(found, normals, strict=True)]
 
 
-def _group(context: Context, name: str, cards: list[Card], kernel: Kernel) -> Group:
-    bulk, points = context.bulk, context.points
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    corners = points.rows([c.nodes for c in cards], name, ids)
-    xyz = points.xyz[corners]
-    check_shape(context, name, ids, xyz)
+def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
+    bulk = context.bulk
+    name, kernel, cards, ids = placed.name, placed.kernel, placed.cards, placed.ids
+    xyz = context.points.xyz[placed.corners]
     keys, of = distinct_properties(
         bulk, SHELL_PROPERTIES, name, ids, np.array([c.pid for c in cards])
     )
     own, share = _thickness(cards, kernel.corners)
     elements = _Elements(
+        ids,
         xyz,
         keys,
         of,
-        material_angle(context, name, cards, kernel.axes(xyz), xyz),
+        material_angle(context, name, cards, placed.axes, xyz),
         own,
         share,
         np.array([c.zoffset or 0.0 for c in cards], dtype=np.float64),
+        normals,
     )
-    sources = tuple(
-        frozenset([key, *layup(bulk, key, context.bulk.place(*key)).materials]) for key in keys
-    )
+    of_property = [frozenset([key, *layup(bulk, key, bulk.place(*key)).materials]) for key in keys]
+    sources, source_of = element_sources(context, ids, of_property, of)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         return _matrices(context, kernel, elements, values, rows, wanted)
 
-    return Group(name, ids, corners, 6, matrices, sources, of, kernel.shape, corners)
+    corners = placed.corners
+    return Group(name, ids, corners, 6, matrices, sources, source_of, kernel.shape, corners)
 
 
 def _matrices(
@@ -112,8 +139,10 @@ def _matrices(
     offset = elements.offset[rows] + reference
     K = M = None
     if wanted[0]:
-        K = kernel.stiffness(xyz, section, context.settings.k6rot, offset)
+        normals = None if elements.normals is None else elements.normals[rows]
+        K = kernel.stiffness(xyz, section, context.settings.k6rot, offset, normals)
     if wanted[1]:
+        density = density + context.extra_mass(bulk, elements.ids[rows])
         M = kernel.mass(xyz, density, context.settings.coupled)
     return K, M
 
@@ -143,8 +172,7 @@ def sections_of(
     turn = np.where([part.isotropic for part in layups], 0.0, distinct[:, 1])
     if turn.any():
         section = shell.rotate_section(section, turn)
-    extra = np.array([context.nonstructural.get(elements.keys[int(d[0])], 0.0) for d in distinct])
-    density = np.array([part.density for part in layups]) + extra
+    density = np.array([part.density for part in layups])
     reference = np.array([part.offset for part in layups])
     return section.take(position), density[position], reference[position]
 
