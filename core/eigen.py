@@ -17,7 +17,7 @@ from .mechanism import mechanism, strain_free
 from .model import Model
 from .modes import Modes
 from .pencil import Pencil
-from .rigid import rigid_body_modes
+from .rigid import RigidBody, rigid_body
 from .sparse_modes import Request, sparse_modes
 from .spectrum import Spectrum
 
@@ -143,7 +143,9 @@ def solve(
         raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
     pencil = Pencil.of(model, p)
     owner = model if isinstance(model, Model) else None
-    rigid, pieces = rigid_body_modes(owner, pencil) if owner else (np.zeros((pencil.n, 0)), 0)
+    none = np.zeros((pencil.n, 0))
+    body = rigid_body(owner, pencil) if owner else RigidBody(none, none, 0)
+    rigid = body.modes
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
     wanted = n_modes if n_modes is not None or fmax is not None else _DEFAULT_MODES
     chosen = backend or best_backend()
@@ -154,14 +156,13 @@ def solve(
         request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed)
         spectrum = sparse_modes(owner, pencil, rigid, request)
     zero = _without_strain(pencil, spectrum)
-    if zero and owner is not None:
-        raise mechanism(owner, pencil, spectrum.vectors[:, :zero], massless=False)
+    notes = _refuse_mechanism(owner, pencil, body, spectrum.vectors[:, :zero])
     values, vectors = _joined(pencil, rigid, spectrum)
     n_zero = rigid.shape[1] + zero
     keep = len(values) if wanted is None else min(wanted, len(values))
     if limit is not None:
         keep = min(keep, int(np.count_nonzero(values <= limit)))
-    notes = _notes(pencil, pieces, n_zero, wanted, limit, len(values), spectrum.complete)
+    notes += _notes(body.pieces, n_zero, wanted if limit is None else None, len(values))
     X = vectors[:, :keep]
     gram = X.T @ (pencil.M @ X)
     checks = {
@@ -181,7 +182,7 @@ def solve(
         "lapack" if small else chosen,
         time.perf_counter() - began,
         spectrum.sigma,
-        notes,
+        tuple(notes),
         factor,
     )
 
@@ -234,26 +235,33 @@ def _joined(pencil: Pencil, rigid: Floats, spectrum: Spectrum) -> tuple[Floats, 
     return values, vectors
 
 
-def _notes(
-    pencil: Pencil,
-    pieces: int,
-    n_zero: int,
-    wanted: int | None,
-    limit: float | None,
-    found: int,
-    complete: bool,
-) -> tuple[str, ...]:
+def _refuse_mechanism(model: Model | None, pencil: Pencil, body: RigidBody, Z: Floats) -> list[str]:
+    """Raise for motions Z, (n, k), without strain energy that no rigid body makes."""
+    if model is None or not Z.shape[1]:
+        return []
+    nearly, mechanisms, replaced = body.split(pencil, Z)
+    if mechanisms.shape[1]:
+        raise mechanism(model, pencil, mechanisms, body.modes)
+    rows = np.argsort(-np.abs(pencil.K @ replaced).max(axis=1))[:4]
+    return [
+        f"{nearly.shape[1]} of the rigid-body modes are not quite those of a rigid body: springs "
+        "or constraints join grids that are not in one place, near "
+        + ", ".join(pencil.name(int(r)) for r in rows)
+    ]
+
+
+def _notes(pieces: int, n_zero: int, wanted: int | None, found: int) -> list[str]:
     notes = []
     if pieces > 1:
         notes.append(
             f"the model is {pieces} separate free pieces with {n_zero} rigid-body modes in all: "
             "check that nothing is disconnected by mistake"
         )
-    if complete and limit is None and wanted is not None and found < wanted:
+    if wanted is not None and found < wanted:
         notes.append(
             f"{wanted} modes were asked for but the mass matrix allows only {found}: all are given"
         )
-    return tuple(notes)
+    return notes
 
 
 def _verify(checks: dict[str, Any]) -> None:

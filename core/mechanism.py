@@ -111,8 +111,27 @@ def _smallest(scaled: sp.csr_matrix, backend: Backend | None) -> tuple[Floats, F
     return mu, Y @ turn
 
 
-def mechanism(model: Model | None, pencil: Pencil, X: Floats, massless: bool) -> InputError:
-    """Return the error that names where motions without resistance are, X of (n, n_motion)."""
+def mechanism(
+    model: Model | None,
+    pencil: Pencil,
+    X: Floats,
+    rigid: Floats | None = None,
+    *,
+    massless: bool = False,
+) -> InputError:
+    """Return the error that names where motions without resistance are.
+
+    Parameters
+    ----------
+    X : (n, n_motion) float
+        The motions.
+    rigid : (n, n_rigid) float, optional
+        Rigid-body modes: as much of them is taken out as leaves most of the structure at rest.
+    massless : bool
+        Whether the motions have no mass either.
+    """
+    if rigid is not None and rigid.shape[1]:
+        X = _least_motion(X, rigid, _lengths(model, pencil.n))
     count = X.shape[1]
     motions = "a motion" if count == 1 else f"{count} motions"
     without = "neither stiffness nor mass" if massless else "no stiffness"
@@ -120,6 +139,22 @@ def mechanism(model: Model | None, pencil: Pencil, X: Floats, massless: bool) ->
         f"the model is a mechanism: {motions} with {without} besides the rigid-body modes, at "
         f"{where(model, pencil, X)}; constrain these directions or give them stiffness"
     )
+
+
+def _least_motion(X: Floats, rigid: Floats, lengths: Floats) -> Floats:
+    """X less the rigid motions that leave the smallest sum of displacements, (n, n_motion).
+
+    Iteratively reweighted least squares.
+    """
+    scaled, base = X * lengths[:, None], rigid * lengths[:, None]
+    for column in scaled.T:
+        rest = column.copy()
+        for _ in range(30):
+            weight = 1.0 / np.sqrt(np.abs(rest) + 1e-6 * np.abs(column).max())
+            c, *_ = np.linalg.lstsq(base * weight[:, None], column * weight, rcond=None)
+            rest = column - base @ c
+        column[:] = rest
+    return np.asarray(scaled / lengths[:, None])
 
 
 def where(model: Model | None, pencil: Pencil, X: Floats) -> str:

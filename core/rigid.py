@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,9 +18,58 @@ from .pencil import Pencil
 _ROUNDING = 1e-13
 """Row forces this small beside the sum of the magnitudes that make them are rounding."""
 
+_NEARLY = 0.9
+"""Share (M-norm) of a motion that a rigid body explains, for it to count as one."""
 
-def rigid_body_modes(model: Model, pencil: Pencil) -> tuple[Floats, int]:
-    """Rigid-body motions that cost no strain energy.
+
+@dataclass(frozen=True, eq=False)
+class RigidBody:
+    """What a model can do as a rigid body.
+
+    Parameters
+    ----------
+    modes : (n_free, n_rigid) float
+        Motions without strain energy, M-orthonormal.
+    motions : (n_free, k) float
+        All rigid motions, with strain energy or without, of the pieces that nothing holds in
+        translation, M-orthonormal.
+    pieces : int
+        Number of separate pieces that have rigid-body modes.
+    """
+
+    modes: Floats
+    motions: Floats
+    pieces: int
+
+    def split(self, pencil: Pencil, Z: Floats) -> tuple[Floats, Floats, Floats]:
+        """Tell motions that are nearly those of a rigid body from mechanisms.
+
+        Springs or constraint equations between grids that are not in one place resist a rigid
+        rotation, and let the structure turn in another way that costs nothing.
+
+        Parameters
+        ----------
+        Z : (n_free, k) float
+            M-orthonormal motions without strain energy besides `modes`.
+
+        Returns
+        -------
+        nearly, mechanisms : (n_free, .) float
+            Their span divided, M-orthonormal.
+        replaced : (n_free, .) float
+            The rigid motions that `nearly` stand for.
+        """
+        M = pencil.M
+        G = self.motions - self.modes @ (self.modes.T @ (M @ self.motions))
+        value, W = np.linalg.eigh(G.T @ (M @ G))
+        G = G @ W[:, value > 0.5]
+        u, s, vt = np.linalg.svd((M @ Z).T @ G)
+        count = int(np.count_nonzero(s > _NEARLY))
+        return Z @ u[:, :count], Z @ u[:, count:], G @ vt[:count].T
+
+
+def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
+    """Find the rigid-body motions that cost no strain energy.
 
     Each piece of the model (connected through K or M) is given the six motions of a rigid body
     as far as its free degrees of freedom can follow; those combinations u count for which every
@@ -31,30 +81,34 @@ def rigid_body_modes(model: Model, pencil: Pencil) -> tuple[Floats, int]:
     model : Model
     pencil : Pencil
         Its K and M.
-
-    Returns
-    -------
-    V : (n_free, n_rigid) float
-        M-orthonormal.
-    pieces : int
-        Number of separate pieces that have rigid-body motions.
     """
     U, scalar = _geometric(model)
     size = sp.csr_matrix((np.abs(pencil.K.data), pencil.K.indices, pencil.K.indptr), pencil.K.shape)
     force = pencil.K @ U
     noise = max(_ROUNDING, 4.0 * pencil.precision) * (size @ np.abs(U).sum(axis=1))
     mass = pencil.M @ U
-    columns: list[tuple[Ints, Floats]] = []
+    modes: list[tuple[Ints, Floats]] = []
+    motions: list[tuple[Ints, Floats]] = []
     pieces = 0
     for rows in _groups(_pieces(model, pencil)):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
-        found = _strain_free(U[rows, used], mass[rows, used], force[rows, used], noise[rows])
+        u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
+        found = _strain_free(u, mu, ku, noise[rows])
         pieces += found.shape[1] > 0
-        columns += [(rows, v) for v in found.T]
-    V = np.zeros((pencil.n, len(columns)))
-    for j, (rows, v) in enumerate(columns):
-        V[rows, j] = v
-    return V, pieces
+        modes.append((rows, found))
+        if (np.abs(ku[:, :3]) <= noise[rows, None]).all():
+            motions.append((rows, _orthonormal(u, mu)))
+    return RigidBody(_assembled(modes, pencil.n), _assembled(motions, pencil.n), pieces)
+
+
+def _assembled(parts: Sequence[tuple[Ints, Floats]], n: int) -> Floats:
+    """Columns of the pieces in one matrix, (n, sum of columns)."""
+    out = np.zeros((n, sum(v.shape[1] for _, v in parts)), order="F")
+    at = 0
+    for rows, v in parts:
+        out[rows, at : at + v.shape[1]] = v
+        at += v.shape[1]
+    return out
 
 
 def _pieces(model: Model, pencil: Pencil) -> Ints:
@@ -113,8 +167,12 @@ def _strain_free(U: Floats, MU: Floats, KU: Floats, noise: Floats) -> Floats:
     _, _, vt = np.linalg.svd(qr(Z, mode="r")[0][: Z.shape[1]])
     free = np.abs(Z @ vt.T).max(axis=0) <= 1.0
     C = vt.T[:, free]
-    V = U[:, basis] @ C
-    gram = V.T @ (MU[:, basis] @ C)
-    value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
-    kept = value > 1e-12 * np.sum(U[:, basis] * MU[:, basis], axis=0).max(initial=0.0)
-    return np.asarray(V @ (vector[:, kept] / np.sqrt(value[kept])))
+    scale = np.sum(U[:, basis] * MU[:, basis], axis=0).max(initial=0.0)
+    return _orthonormal(U[:, basis] @ C, MU[:, basis] @ C, scale)
+
+
+def _orthonormal(V: Floats, MV: Floats, scale: float = 0.0) -> Floats:
+    """M-orthonormal basis of V; directions of little mass beside `scale` are left out."""
+    value, W = np.linalg.eigh((V.T @ MV + MV.T @ V) / 2.0)
+    kept = value > 1e-12 * max(scale, value.max(initial=0.0))
+    return np.asarray(V @ (W[:, kept] / np.sqrt(value[kept])))

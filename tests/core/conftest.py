@@ -118,13 +118,15 @@ def build_frame(
         named.append(Parameter(f"{kind} {q}", (kind,), (1.0,)))
     stiffness.append(term(total(1, sorted(left[1])) + sp.diags(ground)))
     mass.append(term(total(2, sorted(left[2])) + sp.diags(points)))
-    ids = np.arange(1, n + 1)
-    labels = [f"{i}:{c}" for i in ids for c in range(1, 7)]
-    labels += [f"end of bar {b + 1}:{c}" for b, c in own]
+    twins = sorted({b for b, _ in own})  # a node of its own for each pinned end
+    ids = np.arange(1, n + len(twins) + 1)
+    node = np.concatenate([np.repeat(ids[:n], 6), [n + 1 + twins.index(b) for b, _ in own]])
+    component = np.concatenate([np.tile(np.arange(1, 7), n), [c for _, c in own]])
+    labels = [f"{i}:{c}" for i, c in zip(node.astype(int), component.astype(int), strict=True)]
     return Model(
-        Geometry(ids, xyz),
-        Dofs(np.repeat(ids, 6), np.tile(np.arange(1, 7), n)),
-        sp.identity(size, format="csr")[: 6 * n, keep],
+        Geometry(ids, np.vstack([xyz, *(xyz[[bars[b][0]]] for b in twins)])),
+        Dofs(node.astype(int), component.astype(int)),
+        sp.identity(size, format="csr")[:, keep],
         tuple(stiffness),
         tuple(mass),
         tuple(named),
