@@ -192,9 +192,10 @@ def identify_table(result: Result) -> Table:
     return table
 
 
-def inspect_table(entry: Result) -> RenderableType:
+def inspect_table(entry: Result) -> Table:
     """Return what ``trueup inspect`` found in one file."""
-    table = _titled(f"{entry.get('path', '')}")
+    named = [str(entry[k]) for k in ("path", "format") if entry.get(k)]
+    table = _titled(" · ".join(named))
     table.add_column("what")
     table.add_column("holds", overflow="fold")
     for what, said in _contents(entry.get("contents")):
@@ -205,7 +206,7 @@ def inspect_table(entry: Result) -> RenderableType:
         table.add_row(Text("skipped", style="yellow"), Text(f"{what}: {skipped.get('why', '')}"))
     for warning in reading.texts(entry, "warnings"):
         table.add_row(Text("warning", style="yellow"), Text(warning))
-    return Group(Text(str(entry.get("format", "")), style="dim"), table)
+    return table
 
 
 def _contents(contents: object) -> Iterator[tuple[str, str]]:
@@ -223,12 +224,15 @@ def _contents(contents: object) -> Iterator[tuple[str, str]]:
         yield "", str(contents)
 
 
-def _told(value: object) -> str:
+def _told(value: object, between: str = ", ") -> str:
     if isinstance(value, Mapping):
         inner = {k: v for k, v in value.items() if v is not None}
-        return ", ".join(f"{str(k).replace('_', ' ')} {_told(v)}" for k, v in inner.items())
+        return ", ".join(
+            f"{str(k).replace('_', ' ')} {_told(v, ' × ' if k == 'shape' else ', ')}"
+            for k, v in inner.items()
+        )
     if isinstance(value, list | tuple):
-        return ", ".join(_told(v) for v in value) if value else "none"
+        return between.join(_told(v) for v in value) if value else "none"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return general(value, 6) if isinstance(value, float) else str(value)

@@ -73,12 +73,13 @@ def coarsened(fine: Surface, most: int) -> Surface:
     Rossignac, Borrel (1993), vertex clustering.
     """
     count = len(fine.faces) + len(fine.lines)
-    cells = 3.0 * np.sqrt(max(most, 1))
-    coarse = fine
+    if count <= most or fine.size <= 0.0:
+        return fine
+    coarse, cells, inner = fine, 3.0 * np.sqrt(max(most, 1)), ~_on_edge(fine)
     while count > most and cells >= 2.0:
-        coarse = _clustered(fine, fine.size / cells)
+        coarse = _clustered(fine, fine.size / cells, inner)
         count = len(coarse.faces) + len(coarse.lines)
-        cells *= 0.88
+        cells *= min(0.94, 0.97 * np.sqrt(most / max(count, 1)))  # a surface: cells² of them
     return coarse
 
 
@@ -164,22 +165,19 @@ def _four(corners: Ints) -> Ints:
 
 def _met_once(faces: Ints) -> Ints:
     """Faces that belong to one solid only."""
-    _, first, counts = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
+    keys = _keys(np.sort(faces, axis=1))
+    _, first, counts = np.unique(keys, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[counts == 1])])
 
 
-def _clustered(fine: Surface, pitch: float) -> Surface:
+def _clustered(fine: Surface, pitch: float, inner: Bools) -> Surface:
     cell = np.floor((fine.xyz - fine.xyz.min(axis=0)) / pitch + 0.5).astype(np.int64)
-    _, group = np.unique(cell, axis=0, return_inverse=True)
-    group = np.asarray(group).ravel()
+    _, group = np.unique(_keys(cell), return_inverse=True)
     n = int(group.max()) + 1
     members = np.bincount(group, minlength=n)
     mean = np.stack(
         [np.bincount(group, weights=fine.xyz[:, k], minlength=n) / members for k in range(3)], 1
     )
-    inner = ~_on_edge(fine)
     order = np.lexsort((np.linalg.norm(fine.xyz - mean[group], axis=1), inner, group))
     first = order[np.searchsorted(group[order], np.arange(n))]
     return Surface(
@@ -195,11 +193,24 @@ def _on_edge(mesh: Surface) -> Bools:
     """Nodes on a free edge or on a line."""
     sides = mesh.faces[:, [0, 1, 1, 2, 2, 3, 3, 0]].reshape(-1, 2)
     sides = np.sort(sides[sides[:, 0] != sides[:, 1]], axis=1)
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
+    _, first, counts = np.unique(_keys(sides), return_index=True, return_counts=True)
     found = np.zeros(len(mesh.xyz), bool)
-    found[edges[counts == 1].ravel()] = True
+    found[sides[first[counts == 1]].ravel()] = True
     found[mesh.lines.ravel()] = True
     return found
+
+
+def _keys(rows: Ints) -> Ints:
+    """Return one number a row of non-negative numbers, equal only for equal rows."""
+    keys = np.zeros(len(rows), np.int64)
+    for column in rows.T:
+        keys = np.unique(keys, return_inverse=True)[1].ravel() if _full(keys, column) else keys
+        keys = keys * (int(column.max(initial=0)) + 1) + column
+    return keys
+
+
+def _full(keys: Ints, column: Ints) -> bool:
+    return (int(keys.max(initial=0)) + 1) * (int(column.max(initial=0)) + 1) >= 2**62
 
 
 def _distinct(elements: Ints, corners: int) -> Ints:
@@ -209,5 +220,5 @@ def _distinct(elements: Ints, corners: int) -> Ints:
     ordered = np.sort(elements, axis=1)
     different = 1 + np.count_nonzero(np.diff(ordered, axis=1), axis=1)
     kept = np.flatnonzero(different >= corners)
-    _, first = np.unique(ordered[kept], axis=0, return_index=True)
+    _, first = np.unique(_keys(ordered[kept]), return_index=True)
     return np.asarray(elements[kept[np.sort(first)]])

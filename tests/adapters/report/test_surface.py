@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
 
 from trueup.adapters.report.scene import Mark, scene
 from trueup.adapters.report.surface import (
     Surface,
+    _keys,
     coarsened,
     depth_buffer,
     isometric,
@@ -72,6 +77,14 @@ def test_coarse_meshes_keep_within_the_budget_and_on_the_structure() -> None:
         np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])[:, 2]
     )
     assert area.sum() == pytest.approx(1.0, rel=0.1)
+
+
+@given(hnp.arrays(np.int64, st.tuples(st.integers(0, 12), st.just(4)),
+                  elements=st.one_of(st.integers(0, 2), st.integers(0, 2**20))))  # fmt: skip
+def test_rows_share_a_key_only_when_equal(rows: np.ndarray[Any, Any]) -> None:
+    same = (rows[:, None] == rows[None, :]).all(axis=2)
+    keys = _keys(rows)
+    np.testing.assert_array_equal(keys[:, None] == keys[None, :], same)
 
 
 def test_small_meshes_are_drawn_as_they_are() -> None:
