@@ -37,7 +37,7 @@ class Dataset:
 
 @dataclass(frozen=True)
 class Header:
-    """Dataset 151: where the file comes from."""
+    """Dataset 151 or 2400: where the file comes from."""
 
     name: str
     description: str

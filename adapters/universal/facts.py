@@ -19,6 +19,12 @@ def read_header(source: Source, section: Section) -> Header:
     return Header(lines[0], lines[1], program, " ".join(lines[3].split()[:2]))
 
 
+def read_model_header(source: Source, section: Section) -> Header:
+    """Read dataset 2400: entity name and part number of the model."""
+    lines = [text(line) for line in source.lines(section)] + [""] * 6
+    return Header(lines[1], lines[2], "", " ".join(lines[4].split()[:2]))
+
+
 def read_units(source: Source, section: Section, warnings: list[str]) -> Units:
     """Read dataset 164."""
     lines = source.lines(section)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 
 from ...core.arrays import Floats, Numbers
 from .container import Section
+from .dof_names import dofs_of
 from .fields import NotANumber, integers, numbers_of, text
 from .fixed import block
 from .layout58 import HEADER_LINES, REALS, columns, form, records
@@ -70,10 +69,6 @@ QUANTITIES = {
     23: "sound power",
 }
 _TAIL = 3  # line end and a stray byte between a binary block and the closing -1
-_DOF = re.compile(
-    r"(?<![\w.])(\d+)\s*:?\s*([+-]?)(R?[XYZ])([+-]?)(?![A-Za-z0-9])|(?<![\w.+-])(\d+):([+-]?[1-6])(?!\w)",
-    re.IGNORECASE,
-)
 
 
 @dataclass(frozen=True)
@@ -132,11 +127,13 @@ def read_head(source: Source, section: Section) -> Head58:
             "export or copy the file again",
         )
     ids = tuple(text(line) for line in lines[:5])
-    function, response, reference, names = _dofs(source, section, lines[5])
-    if response[1] == 0 or reference[1] == 0:
-        found = _dofs_by_name(ids, names, response, reference)
-    else:
-        found = response, reference
+    try:
+        function, numbered, named = dofs_of(lines[5], ids)
+    except ValueError:
+        raise source.error(
+            section.line + 6,
+            f"dataset 58: {text(lines[5])!r} does not name a response and a reference",
+        ) from None
     layout = form(lines[6])
     if not layout:
         raise source.error(
@@ -153,7 +150,7 @@ def read_head(source: Source, section: Section) -> Head58:
         section,
         ids,
         function,
-        *found,
+        *named,
         ordinate_type=layout[0],
         n_point=layout[1],
         even=layout[2] != 0,
@@ -163,7 +160,7 @@ def read_head(source: Source, section: Section) -> Head58:
         ordinate=_axis(lines[8]),
         denominator=_axis(lines[9]),
         data_at=data_at,
-        named=found != (response, reference),
+        named=named != numbered,
     )
 
 
@@ -251,59 +248,6 @@ def _binary(source: Source, head: Head58) -> tuple[Floats | None, Floats]:
         numbers.append(decode(raw[:, at : at + width], big, form))
         at += width
     return numbers[0], np.column_stack(numbers[1:])
-
-
-def _dofs(
-    source: Source, section: Section, line: bytes
-) -> tuple[int, tuple[int, int], tuple[int, int], tuple[str, str]]:
-    """Return function type, response, reference and their entity names, by column else by words."""
-    padded = line.ljust(80)
-    cuts = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
-    parts = [padded[a:b].strip() for a, b in pairwise(cuts)]
-    try:
-        numbers = [int(parts[k] or 0) for k in (0, 5, 6, 8, 9)]
-        names = text(parts[4]), text(parts[7])
-    except ValueError:
-        words = line.split()
-        try:
-            numbers = [int(words[k]) for k in (0, 5, 6, 8, 9)]
-            names = text(words[4]), text(words[7])
-        except (ValueError, IndexError):
-            raise source.error(
-                section.line + 6,
-                f"dataset 58: {text(line)!r} does not name a response and a reference",
-            ) from None
-    return numbers[0], (numbers[1], numbers[2]), (numbers[3], numbers[4]), names
-
-
-def _dofs_by_name(
-    ids: tuple[str, ...],
-    names: tuple[str, str],
-    response: tuple[int, int],
-    reference: tuple[int, int],
-) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Fill in a direction that the numbers leave out from the names, where they tell it."""
-    by_entity = [[_dof(m) for m in _DOF.finditer(name)] for name in names]
-    if response[1] == 0 and len(by_entity[0]) == 1:
-        response = by_entity[0][0]
-    if reference[1] == 0 and len(by_entity[1]) == 1:
-        reference = by_entity[1][0]
-    for line in ids:
-        found = [_dof(m) for m in _DOF.finditer(line)]
-        if len(found) == 2:
-            response = response if response[1] else found[0]
-            reference = reference if reference[1] else found[1]
-            break
-    return response, reference
-
-
-def _dof(match: re.Match[str]) -> tuple[int, int]:
-    if match[5]:
-        return int(match[5]), int(match[6])
-    letters = match[3].upper()
-    direction = "XYZ".index(letters[-1]) + (4 if letters[0] == "R" else 1)
-    sign = -1 if "-" in (match[2], match[4]) else 1
-    return int(match[1]), sign * direction
 
 
 def _axis(line: bytes) -> Axis:

@@ -11,7 +11,7 @@ from ...core.errors import InputError
 from .container import Section
 from .content import Dataset, Header, Skipped, Trace, Units, UniversalContent
 from .drawing import Element, drawn_geometry, read_2412
-from .facts import read_header, read_units
+from .facts import read_header, read_model_header, read_units
 from .frames import node_frames
 from .functions import read_head
 from .joining import agreed_units, join_modes
@@ -220,6 +220,11 @@ def _header(source: Source, section: Section, into: _Gathered) -> int:
     return 1
 
 
+def _model_header(source: Source, section: Section, into: _Gathered) -> int:
+    into.headers.append(read_model_header(source, section))
+    return 1
+
+
 def _units(source: Source, section: Section, into: _Gathered) -> int:
     units = read_units(source, section, into.warnings)
     into.units.append((units, f"{source.name} line {section.line}"))
@@ -235,6 +240,7 @@ _READERS: dict[int, _Reader] = {
     82: _traces,
     151: _header,
     164: _units,
+    2400: _model_header,
     2411: _nodes(read_2411),
     2412: _elements,
     2414: _shape(read_2414),

@@ -171,6 +171,26 @@ def test_points_on_one_line_make_no_system(uff, write):
         read_universal(write(uff.dataset(18, *system_18(5, 0, 0, points))))
 
 
+def test_headers_of_151_and_2400(uff, write):
+    lines = [
+        "model.unv",
+        "a wing",
+        "program 1",
+        "21-Nov-26 10:00:00         0",
+        "",
+        "program 2",
+        "",
+    ]
+    text = uff.dataset(151, *lines)
+    text += uff.dataset(2400, "1", "wing", "part 7", "0", "22-Nov-26 11:00:00 0 0 0", "3")
+    found = read_universal(write(text)).headers
+    assert [(h.name, h.description, h.program) for h in found] == [
+        ("model.unv", "a wing", "program 2"),
+        ("wing", "part 7", ""),
+    ]
+    assert found[0].created == "21-Nov-26 10:00:00"
+
+
 def test_axes_that_are_not_orthogonal_are_refused(uff, write):
     skew = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1], [0, 0, 0]]
     with pytest.raises(InputError, match="system 4 are not orthogonal"):

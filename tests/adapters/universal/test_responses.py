@@ -73,6 +73,13 @@ def test_dof_given_only_in_the_name(uff, write, ids, names):
     assert "taken from there (12:+Z/3:-X first)" in content.warnings[0]
 
 
+def test_numbers_written_without_regard_to_columns(uff, write):
+    lines = uff.function_58(DATA, (5, 1), (9, -2)).split("\n")
+    lines[7] = "4 0 1 0 NONE 5 1 NONE 9 -2"
+    frfs = read_universal(write("\n".join(lines))).frfs
+    assert (frfs.responses.labels, frfs.references.labels) == (["5:X"], ["9:Y"])
+
+
 def test_numbers_in_columns_win_over_the_name(uff, write):
     text = uff.function_58(DATA, (5, 1), (9, 2), ids=("12:+Z/3:-X", *["NONE"] * 4))
     assert read_universal(write(text)).frfs.responses.labels == ["5:X"]
