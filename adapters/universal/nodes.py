@@ -180,8 +180,13 @@ def _table(
 
 def _floats(source: Source, section: Section, lines: Sequence[bytes], at: int) -> list[float]:
     try:
-        return list(floats(lines[at : at + 1]))
+        values = floats(lines[at : at + 1])
     except NotANumber as error:
         raise source.error(
             section.line + 1 + at, f"dataset {section.number}: {error.text!r} is not a number"
         ) from None
+    if not np.all(np.abs(values) < 1e100):
+        raise source.error(
+            section.line + 1 + at, f"dataset {section.number} holds a value that is no position"
+        )
+    return list(values)
