@@ -68,6 +68,7 @@ QUANTITIES = {
     22: "sound intensity",
     23: "sound power",
 }
+_ENDS = (b"\n", b"\r")
 _TAIL = 3  # line end and a stray byte between a binary block and the closing -1
 
 
@@ -201,6 +202,8 @@ def check_size(source: Source, head: Head58) -> None:
     room = head.section.end - head.data_at
     if want > room:  # not even one character for each number
         raise ValueError(f"it announces {want} numbers in {room} bytes")
+    if not head.section.closed and source.read(head.section.end - 1, head.section.end) not in _ENDS:
+        raise ValueError("its last line is not whole")
 
 
 def _text(source: Source, head: Head58) -> tuple[Floats | None, Floats]:

@@ -133,6 +133,13 @@ def test_ascii_cut_off(uff, write, keep):
         read_universal(write(text[:keep]))
 
 
+@pytest.mark.parametrize("cut", [2, 3, 6, 12])
+def test_a_last_number_cut_short_is_not_believed(uff, write, cut):
+    text = uff.function_58([1.0, 2.0, 3.0, 4.5678]).removesuffix("\n    -1\n")
+    with pytest.raises(InputError, match="ends inside dataset 58"):
+        read_universal(write(text[:-cut]))
+
+
 def test_vax_floats():
     """F floating 1.0, -2.5, 0.1 and D floating 1.0 of the VAX Architecture Reference Manual."""
     f = [[0x80, 0x40, 0, 0], [0x20, 0xC1, 0, 0], [0xCC, 0x3E, 0xCD, 0xCC], [0, 0, 0, 0]]
