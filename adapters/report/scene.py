@@ -7,11 +7,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
+from ...core.arrays import Bools, Floats, Ints
 from ...core.geometry import Geometry
 from .colour import STEPS
 from .markup import esc, short, svg_text, tag
-from .surface import Surface, View, coarsened, depth_buffer, isometric, surface
+from .surface import (
+    Surface,
+    View,
+    coarsened,
+    depth_buffer,
+    isometric,
+    surface,
+    with_neighbours,
+)
 
 _SHADES = 6
 _SLICES = 48
@@ -43,7 +51,7 @@ def scene(
     values: Floats | None = None,
     width: int = 540,
     height: int = 480,
-    most: int = 900,
+    most: int = 1500,
 ) -> str:
     """Return a figure of the structure from the front, and from behind where that shows more.
 
@@ -65,27 +73,18 @@ def scene(
         return ""
     fine = surface(geometry)
     marks = _nearby(marks, fine)
-    front, hidden = _view(fine, isometric(), marks, values, width, height, most)
-    views = [("", front)]
-    if hidden:
-        behind, _ = _view(fine, isometric(behind=True), marks, values, width, height, most)
-        views = [("front", front), ("behind", behind)]
     told = f"{title}: {len(geometry.ids)} nodes, {len(marks)} marks"
-    pictures = [
-        tag(
-            "svg",
-            body,
-            svg_text(4, 12, f"from the {name}" if name == "front" else f"from {name}")
-            if name
-            else "",
-            class_="scene",
-            viewBox=f"0 0 {page.width} {page.height}",
-            width=page.width,
-            role="img",
-            aria_label=", ".join(t for t in (told, name) if t),
-        )
-        for name, (body, page) in views
-    ]
+    shots = [_shot(fine, isometric(), marks, most)]
+    if not shots[0].visible.all():
+        shots.append(_shot(fine, isometric(behind=True), marks, most))
+    elsewhere = np.any([s.visible for s in shots], axis=0)
+    names = ["from the front", "from behind"] if len(shots) > 1 else [""]
+    pictures = []
+    for shot, name in zip(shots, names, strict=True):
+        shown = [m.role != "sensor" or v or not e
+                 for m, v, e in zip(marks, shot.visible, elsewhere, strict=True)]  # fmt: skip
+        label = ", ".join(t for t in (told, name) if t)
+        pictures.append(_picture(fine, shot, marks, shown, values, label, name, width, height))
     caption = tag("figcaption", tag("b", esc(title)))
     return tag("figure", caption, tag("div", *pictures, class_="row"))
 
@@ -93,7 +92,58 @@ def scene(
 def still(mesh: Surface, title: str, values: Floats, width: int = 480, height: int = 420) -> str:
     """Return one view of a mesh, its faces coloured by values of 0..1 at its rows."""
     plain = replace(mesh, node_of=np.arange(len(mesh.xyz)))
-    (body, page), _ = _view(plain, isometric(), [], values, width, height, len(mesh.faces) + 1)
+    shot = _shot(plain, isometric(), [], len(mesh.faces) + len(mesh.lines))
+    return _picture(plain, shot, [], [], values, title, "", width, height)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shot:
+    """What is seen in one view: the mesh without its hidden faces, and which of the marks."""
+
+    view: View
+    mesh: Surface
+    visible: Bools
+
+
+def _shot(fine: Surface, view: View, marks: Sequence[Mark], most: int) -> _Shot:
+    mesh = coarsened(fine, 2 * most)
+    projected = view.project(mesh.xyz)
+    buffer, seen = depth_buffer(projected, mesh.faces)
+    slack = 0.02 * fine.size
+    if mesh is not fine:  # what was clustered leaves gaps beside what it hides
+        seen = with_neighbours(seen, mesh)
+    lit = buffer.sees(projected[mesh.lines].mean(axis=1), slack)
+    mesh = coarsened(replace(mesh, faces=mesh.faces[seen], lines=mesh.lines[lit]), most)
+    at = np.array([m.xyz for m in marks]).reshape(-1, 3)
+    return _Shot(view, mesh, buffer.sees(view.project(at), slack))
+
+
+def _picture(
+    fine: Surface,
+    shot: _Shot,
+    marks: Sequence[Mark],
+    shown: Sequence[bool],
+    values: Floats | None,
+    label: str,
+    name: str,
+    width: int,
+    height: int,
+) -> str:
+    view = shot.view
+    page = _Page.around(view.project(fine.xyz), marks, view, width, height)
+    drawn = [
+        (visible, _mark(mark, view, page, fine.size))
+        for mark, visible, show in zip(marks, shot.visible, shown, strict=True)
+        if show
+    ]
+    coarse = len(shot.mesh.xyz) < len(fine.xyz)
+    body = tag(
+        "g", _mesh(shot.mesh, view, page, values), class_="coarse mesh" if coarse else "mesh"
+    )
+    hidden = "".join(m for visible, m in drawn if not visible)
+    body += tag("g", hidden, class_="hidden") if hidden else ""
+    body += "".join(m for visible, m in drawn if visible) + _triad(view, page)
+    body += svg_text(4, 12, name) if name else ""
     return tag(
         "svg",
         body,
@@ -101,35 +151,8 @@ def still(mesh: Surface, title: str, values: Floats, width: int = 480, height: i
         viewBox=f"0 0 {page.width} {page.height}",
         width=page.width,
         role="img",
-        aria_label=title,
+        aria_label=label,
     )
-
-
-def _view(
-    fine: Surface,
-    view: View,
-    marks: Sequence[Mark],
-    values: Floats | None,
-    width: int,
-    height: int,
-    most: int,
-) -> tuple[tuple[str, _Page], int]:
-    """Return one view with its page and how many marks the structure hides in it."""
-    projected = view.project(fine.xyz)
-    buffer, seen = depth_buffer(projected, fine.faces)
-    drawn = coarsened(replace(fine, faces=fine.faces[seen]), most)
-    page = _Page.around(projected, marks, view, width, height)
-    slack = 0.02 * fine.size
-    hidden: list[str] = []
-    plain: list[str] = []
-    for mark in marks:
-        visible = bool(buffer.sees(view.project(mark.xyz[None, :]), slack)[0])
-        (plain if visible else hidden).append(_mark(mark, view, page, fine.size))
-    coarse = len(drawn.xyz) < len(fine.xyz)
-    mesh = _mesh(drawn, view, page, values)
-    body = tag("g", mesh, class_="coarse mesh" if coarse else "mesh")
-    body += tag("g", *hidden, class_="hidden") if hidden else ""
-    return (body + "".join(plain) + _triad(view, page), page), len(hidden)
 
 
 def _nearby(marks: Sequence[Mark], mesh: Surface) -> list[Mark]:

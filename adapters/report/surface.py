@@ -159,6 +159,13 @@ def depth_buffer(projected: Floats, faces: Ints, cells: int = 320) -> tuple[Dept
     return buffer, np.asarray(seen)
 
 
+def with_neighbours(chosen: Bools, mesh: Surface) -> Bools:
+    """Return the chosen faces and those that share a node with one, (n_face,)."""
+    touched = np.zeros(len(mesh.xyz), bool)
+    touched[mesh.faces[chosen].ravel()] = True
+    return np.asarray(touched[mesh.faces].any(axis=1))
+
+
 def _four(corners: Ints) -> Ints:
     return np.asarray(corners if corners.shape[1] == 4 else corners[:, [0, 1, 2, 2]])
 

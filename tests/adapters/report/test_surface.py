@@ -19,6 +19,7 @@ from trueup.adapters.report.surface import (
     depth_buffer,
     isometric,
     surface,
+    with_neighbours,
 )
 from trueup.core.geometry import Geometry
 
@@ -128,12 +129,29 @@ def test_faces_that_cannot_be_seen_are_not_drawn() -> None:
     assert "from behind" not in svg
 
 
-def test_what_the_front_hides_is_shown_from_behind() -> None:
-    svg = scene(block(2), "Block", marks=[Mark(np.array([0.0, 1.0, 0.0]), "sensor", "sensor 7")])
+@pytest.mark.parametrize(("role", "faint"), [("sensor", False), ("effect", True)])
+def test_what_the_front_hides_is_shown_from_behind(role: str, faint: bool) -> None:
+    marks = [Mark(np.array([0.0, 1.0, 0.5]), role), Mark(np.array([1.0, 0.0, 0.5]), "sensor")]
+    svg = scene(block(2), "Block", marks=marks)
     assert "from behind" in svg
     front, back = svg.split("<svg")[1:]
-    assert '<g class="hidden">' in front
+    assert ('<g class="hidden">' in front) == faint
     assert '<g class="hidden">' not in back
+    assert back.count("<circle") == 1
+
+
+def test_a_sensor_hidden_from_both_sides_is_shown_faint() -> None:
+    svg = scene(block(2), "Block", marks=[Mark(np.array([0.5, 0.5, 0.5]), "sensor")])
+    assert svg.count('<g class="hidden"><g class="hot sensor">') == 2
+
+
+def test_neighbours_share_a_node() -> None:
+    mesh = sheet(5)
+    chosen = np.zeros(25, bool)
+    chosen[12] = True  # the middle one
+    inside = np.zeros((5, 5), bool)
+    inside[1:4, 1:4] = True
+    np.testing.assert_array_equal(with_neighbours(chosen, mesh), inside.ravel())
 
 
 def test_faces_take_the_colour_of_their_nodes() -> None:
