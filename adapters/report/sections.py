@@ -146,8 +146,7 @@ def parameters(result: Result) -> Section | None:
             reference=1.0, breaks=breaks,
         ),
         charts.lines(
-            "Objective", at, [charts.Series("objective", tuple(objective))], log=steep,
-            breaks=breaks,
+            "Objective", at, _by_stage(objective, at, breaks), log=steep, breaks=breaks,
         ),
         charts.lines(
             "Frequency deviation of each pair", at,
@@ -192,6 +191,20 @@ def _pair_name(result: Result, name: str) -> str:
     else:
         return f"pair {name}"
     return f"{mode} · {hz(known[mode])} Hz" if mode in known else f"test {mode}"
+
+
+def _by_stage(
+    objective: list[float | None], at: list[float], breaks: list[tuple[float, str]]
+) -> list[charts.Series]:
+    """Cut the objective where a stage begins: each stage minimises another one."""
+    starts = [at[0] if at else 0.0, *[x for x, _ in breaks], float("inf")]
+    names = ["first stage" if breaks else "objective", *[name for _, name in breaks]]
+    return [
+        charts.Series(
+            name, tuple(v if a <= x < b else None for v, x in zip(objective, at, strict=True))
+        )
+        for name, (a, b) in zip(names, pairwise(starts), strict=True)
+    ]
 
 
 def _iterations(steps: list[Result]) -> tuple[list[float], list[tuple[float, str]]]:

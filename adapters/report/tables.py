@@ -40,6 +40,7 @@ class Table:
     note: str = ""
 
 
+_UNSURE = " One above half the factor: the data hardly identify the parameter."
 _PAIR = ("analysis mode", "Hz", "deviation %", "MAC %", "rotation °", "cluster")
 
 
@@ -156,10 +157,12 @@ def parameters(result: Result) -> Table | None:
     found = reading.records(result, "parameters")
     if not found:
         return None
-    rows = []
+    rows, unsure = [], False
     for p in found:
         name, cards = str(p.get("name", "")), _joined(p.get("cards"))
-        error = reading.number(p.get("standard_error"))
+        factor, error = (reading.number(p.get(k)) for k in ("factor", "standard_error"))
+        loose = factor is not None and error is not None and error > 0.5 * abs(factor)
+        unsure = unsure or loose
         rows.append(
             (
                 Cell(name),
@@ -167,7 +170,7 @@ def parameters(result: Result) -> Table | None:
                 Cell(_joined(p.get("initial"))),
                 Cell(_joined(p.get("updated"))),
                 Cell(fixed(p.get("factor"), 4)),
-                Cell(MISSING if error is None else f"± {fixed(error, 4)}"),
+                Cell(MISSING if error is None else f"± {fixed(error, 4)}", "poor" if loose else ""),
                 Cell("at bound" if p.get("at_bound") else "", "poor"),
             )
         )
@@ -185,7 +188,7 @@ def parameters(result: Result) -> Table | None:
         "Parameters",
         tuple(columns[k] for k in used),
         tuple(tuple(r[k] for k in used) for r in rows),
-        "The standard error is that of the factor.",
+        "The standard error is that of the factor." + _UNSURE * unsure,
     )
 
 

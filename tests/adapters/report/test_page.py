@@ -95,6 +95,19 @@ def test_three_matrices_of_an_update(update: dict[str, Any]) -> None:
     assert captions[2:5] == ["As measured", "After rotation of close modes", "After updating"]
 
 
+def test_stages_are_counted_through_and_their_objectives_kept_apart(
+    update: dict[str, Any],
+) -> None:
+    for step, (stage, iteration) in zip(update["history"], [(1, 0), (1, 1), (2, 0)], strict=True):
+        step |= {"stage": stage, "iteration": iteration}
+    update["history"].append(update["history"][2] | {"iteration": 1, "objective": 1.0})
+    charts = make_report(update).split('class="lines"')[1:]
+    assert all('data-x="0 1 2 3"' in c for c in charts)
+    assert all(">stage 2</text>" in c for c in charts)
+    assert 'data-names="first stage|stage 2"' in charts[1]
+    assert 'data-v="900 40  |  2 1"' in charts[1]
+
+
 def test_the_page_needs_nothing_else(update: dict[str, Any], cube: Geometry, diff: str) -> None:
     html = make_report(update, diff, cube)
     page = Reader(html)

@@ -58,6 +58,17 @@ def test_parameters(update: dict[str, Any]) -> None:
     ]  # fmt: skip
 
 
+def test_a_parameter_that_the_data_do_not_identify_is_marked(update: dict[str, Any]) -> None:
+    table = tables.parameters(update)
+    assert table is not None
+    assert "hardly identify" not in table.note
+    update["parameters"][0]["standard_error"] = 0.9
+    table = tables.parameters(update)
+    assert table is not None
+    assert [row[5].tone for row in table.rows] == ["poor", ""]
+    assert "hardly identify" in table.note
+
+
 def test_history_takes_lists_and_names_alike(update: dict[str, Any]) -> None:
     by_list = texts(tables.history(update))
     assert by_list[0] == ["0", "900", "6.25", "10.00", "1.0000", "1.0000"]
