@@ -77,15 +77,33 @@ def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order:
         How often displacement is differentiated (0, 1, 2).
     """
     s = 2j * np.pi * frequencies_hz
-    derivative = s**order
+    return _projected(s, s**order, stacked(values), measured.astype(float))
+
+
+def excerpt(data: BandData, lines: slice, functions: Floats) -> BandData:
+    """Restrict a band to some of its lines, with residual terms of their own.
+
+    Parameters
+    ----------
+    data : BandData
+    lines : slice
+    functions : (n_output, n_input, 2 n_line) float
+        Stacked functions over all lines of the band, of which the excerpt is taken.
+    """
+    n_line = len(data.s)
+    halves = functions.reshape(*functions.shape[:2], 2, n_line)[..., lines]
+    y = np.array(halves.reshape(*functions.shape[:2], -1))
+    return _projected(data.s[lines], data.derivative[lines], y, data.weight)
+
+
+def _projected(s: Numbers, derivative: Numbers, y: Floats, weight: Floats) -> BandData:
     powers = np.array([-4, -2, 0, 2])[:, None]
     lines = derivative * (s / np.mean(np.abs(s))) ** powers
     terms = stacked(np.concatenate([lines, 1j * lines])).T
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
-    y = stacked(values)
     y -= (y @ Q) @ Q.T
-    y[~measured] = 0.0
-    return BandData(s, derivative, np.ascontiguousarray(Q), y, measured.astype(float))
+    y[weight == 0.0] = 0.0
+    return BandData(s, derivative, np.ascontiguousarray(Q), y, weight)
 
 
 def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:

@@ -6,22 +6,26 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..arrays import Floats, Numbers
-from .moments import BandData, basis, parts_of, shape_normals
+from .moments import BandData, basis, excerpt, parts_of, shape_normals
 from .refinement import Fit, fit_shapes, refine, solve_shapes
+from .search import strongest_root
 from .stabilisation import MAX_DAMPING, Candidate
 
 _RISK = 0.01  # that noise alone makes one root somewhere in a band
 _MARGIN = 1.5  # beyond what that risk allows, since noise is never quite white
 _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
+_BEYOND_DOUBT = 50.0  # significance above which a root is not tested by refining without it
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
 _ROUNDS = 12  # of trying a root where the residual still shows one
 _FAILURES = 5  # in a row, after which no more is tried
-_PROMISING = 0.6  # significance of a root before it is refined, below which it is not tried
+_NEIGHBOURS = 8.0  # half bandwidths to either side that a trial root is fitted over
+_LEAST_AROUND = 24  # lines to either side that a trial root is fitted over
+_HOPELESS = 0.1  # significance of a root before any refinement, below which it is not tried
+_PROMISING = 0.6  # significance of a root in a fit of the lines around it, to be tried at all
 _TRIAL_ITERATIONS = 10  # after which a root that explains too little is given up
 _AROUND = 4  # lines around a failed trial that are not tried again
 _BACKGROUND = 2  # roots beside or beneath the modes of a band, which a fit may use
-_START_DAMPING = (0.001, 0.003, 0.01, 0.03)
 
 
 def select(
@@ -55,7 +59,7 @@ def select(
         if not open_lines.any() or failed == _FAILURES:
             break
         line, candidate = _from_residual(data, f, state, open_lines)
-        grown = _try(data, f, state, candidate)
+        grown = None if candidate is None else _try(data, f, state, candidate)
         if grown is None:
             failed += 1
             open_lines[max(line - _AROUND, 0) : line + _AROUND + 1] = False
@@ -86,12 +90,17 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
         inverse = solve_shapes(np.tensordot(w, per_input, axes=1), np.eye(2 * m))
         own = inverse.reshape(m, 2, m, 2)[np.arange(m), :, np.arange(m), :]
         lost += np.einsum("oka,kab,okb->k", x[rows], np.linalg.inv(own), x[rows])
-    n_output, n_input = data.weight.shape
-    freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
-    noise = chi2.isf(_RISK / len(f), freedom)
+    noise = _noise_of_one(data, f)
     narrow = -fit.poles.real / np.pi < np.median(np.diff(f))
     margin = np.where(narrow, _MARGIN_OF_SPIKES, _MARGIN)
     return np.asarray(lost / (margin * noise * local_variance(data, f, fit, F)))
+
+
+def _noise_of_one(data: BandData, f: Floats) -> float:
+    """Return what the best pole fitted to unit noise explains, see `significance`."""
+    n_output, n_input = data.weight.shape
+    freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
+    return float(chi2.isf(_RISK / len(f), freedom))
 
 
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
@@ -162,18 +171,40 @@ def complete_participation(data: BandData, poles: Numbers, part: Numbers) -> Num
 
 
 def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
-    """Refine and drop the least credible mode until all stand."""
+    """Refine and drop the least credible mode until all stand.
+
+    `significance` leaves the other poles where they are, which flatters a root that stands close
+    to others; so the weaker ones must also be missed when the others are refined without them.
+    """
+    cleared: set[complex] = set()
     while len(fit.poles):
         fit = refine(data, fit.poles, fit.participation)
         value = significance(data, f, fit)
         if np.count_nonzero(~plausible(f, fit)) > _BACKGROUND:
             value = value * plausible(f, fit)
         worst = int(np.argmin(value))
-        if value[worst] >= 1.0:
+        if value[worst] < 1.0:
+            fit = _without(data, fit, worst)
+            continue
+        F = basis(data, fit.poles, derivative=False)
+        allowed = _MARGIN * _noise_of_one(data, f) * local_variance(data, f, fit, F)
+        for k in np.argsort(value):
+            if value[k] > _BEYOND_DOUBT or complex(fit.poles[k]) in cleared:
+                continue
+            rest = _without(data, fit, int(k))
+            rest = refine(data, rest.poles, rest.participation)
+            if rest.misfit - fit.misfit < allowed[k]:
+                fit = rest
+                break
+            cleared.add(complex(fit.poles[k]))
+        else:
             break
-        keep = np.arange(len(fit.poles)) != worst
-        fit = fit_shapes(data, fit.poles[keep], fit.participation[:, keep])
     return fit
+
+
+def _without(data: BandData, fit: Fit, k: int) -> Fit:
+    keep = np.arange(len(fit.poles)) != k
+    return fit_shapes(data, fit.poles[keep], fit.participation[:, keep])
 
 
 def plausible(f: Floats, fit: Fit) -> Numbers:
@@ -197,35 +228,50 @@ def _try(data: BandData, f: Floats, fit: Fit, candidate: Candidate) -> Fit | Non
         np.column_stack([fit.participation, candidate.participation]),
     )
     grown = fit_shapes(data, np.append(fit.poles, candidate.pole), new)
-    if significance(data, f, grown)[-1] < _PROMISING:
+    if significance(data, f, grown)[-1] < _HOPELESS:
         return None
-    stood = significance(data, f, fit) >= 1.0
     grown = refine(data, grown.poles, grown.participation, max_iterations=_TRIAL_ITERATIONS)
     if not grown.converged:
         if significance(data, f, grown)[-1] < 0.8:
             return None
         grown = refine(data, grown.poles, grown.participation)
-    stands = significance(data, f, grown) >= 1.0
-    background = np.count_nonzero(~plausible(f, grown))
-    if background > max(_BACKGROUND, np.count_nonzero(~plausible(f, fit))):
+    if significance(data, f, grown)[-1] < 1.0:
         return None
-    return grown if stands[-1] and (stands[:-1] | ~stood).all() else None
+    grown = prune(data, f, grown)
+    freedom = max(data.y.size - data.weight.size, 1)
+    gained = (fit.misfit - grown.misfit) * freedom / max(grown.misfit, 1e-300)
+    return grown if gained > 0.5 * _noise_of_one(data, f) else None
 
 
 def _from_residual(
     data: BandData, f: Floats, fit: Fit, open_lines: Numbers
-) -> tuple[int, Candidate]:
-    """Find the line where the residual is strongest, and the root of a single-mode fit there."""
+) -> tuple[int, Candidate | None]:
+    """Find the root that explains most of the residual, and fit it with its neighbours.
+
+    None instead of a root when a fit of the lines around it shows nothing but noise.
+    """
     F = basis(data, fit.poles, derivative=False)
     left = residual_lines(data, fit, F)
     n_line = len(f)
-    lines = (left[..., :n_line] + 1j * left[..., n_line:]).transpose(2, 0, 1)
-    power = np.einsum("foi,foi->f", lines, lines.conj()).real
-    peak = int(np.argmax(np.where(open_lines, power, -1.0)))
-    participation = np.linalg.svd(lines[peak], full_matrices=False)[2][0].conj()
-    only = BandData(data.s, data.derivative, data.residual_terms, left, data.weight)
-    omega = 2.0 * np.pi * f[peak]
-    poles = [omega * complex(-z, np.sqrt(1.0 - z**2)) for z in _START_DAMPING]
-    fits = [fit_shapes(only, np.array([p]), participation[:, None]) for p in poles]
-    best = int(np.argmin([one.misfit for one in fits]))
-    return peak, Candidate(poles[best], participation, 0)
+    line, root = strongest_root(f, left[..., :n_line] + 1j * left[..., n_line:], open_lines)
+    centre = root.pole.imag
+    gap = np.abs(fit.poles.imag - centre)
+    close = gap < _NEIGHBOURS * np.abs(fit.poles.real)
+    decays = [-root.pole.real, *(-fit.poles.real[close])]
+    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
+    reach = max(_NEIGHBOURS * max(decays), _LEAST_AROUND * spacing)
+    near = gap < reach
+    first, last = np.searchsorted(2.0 * np.pi * f, [centre - reach, centre + reach])
+    lines = slice(int(first), int(last))
+    mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
+    functions = left + mine @ F[:, 0, near].reshape(len(F), -1).T
+    local = excerpt(data, lines, functions)
+    best, most = None, _PROMISING
+    for decay in (decays[0], float(np.median(decays))):
+        poles = np.append(fit.poles[near], complex(-decay, centre))
+        part = np.column_stack([fit.participation[:, near], root.participation])
+        trial = refine(local, poles, part, max_iterations=_TRIAL_ITERATIONS)
+        value = float(significance(local, f[lines], trial)[-1])
+        if value > most:
+            best, most = Candidate(complex(trial.poles[-1]), trial.participation[:, -1], 0), value
+    return line, best
