@@ -10,6 +10,10 @@ from .editing.find import free_id
 from .editing.numbers import writable
 from .editing.split import Split, split_property
 from .editing.write import write_deck, write_in_place
+from .matrices.content import DofMap, NastranMatrix
+from .matrices.model import model_of_matrices, stiffness_and_mass
+from .matrices.read import describe_matrices, matrix_file_kind, read_matrices
+from .matrices.write import write_dmig, write_op4
 from .parameters import FieldRef, ParameterSpec, parse_parameter
 from .read import Deck, EigenRequest, read_deck
 from .results.describe import describe_results
@@ -19,26 +23,35 @@ from .weight import Weight, weight
 __all__ = [
     "Deck",
     "DeckText",
+    "DofMap",
     "EigenRequest",
     "FieldRef",
+    "NastranMatrix",
     "ParameterSpec",
     "Split",
     "Weight",
     "add_cards",
     "build_model",
     "describe_deck",
+    "describe_matrices",
     "describe_results",
     "free_id",
+    "matrix_file_kind",
+    "model_of_matrices",
     "parse_parameter",
     "read_deck",
     "read_deck_text",
+    "read_matrices",
     "read_modes",
     "read_value",
     "set_values",
     "split_property",
+    "stiffness_and_mass",
     "unified_diff",
     "weight",
     "writable",
     "write_deck",
+    "write_dmig",
     "write_in_place",
+    "write_op4",
 ]

@@ -1,0 +1,101 @@
+"""A matrix as Nastran exports it, and what its rows are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ....core.arrays import Ints, frozen, require_shape
+from ....core.dofs import Dofs
+
+SQUARE, RECTANGULAR, SYMMETRIC = 1, 2, 6
+
+
+@dataclass(frozen=True, eq=False)
+class DofMap:
+    """Which points and components the rows or columns of a matrix are.
+
+    Parameters
+    ----------
+    point : (n,) int
+        Grid or scalar point.
+    component : (n,) int
+        1 to 6 in the displacement system of a grid, 0 for a scalar point.
+    """
+
+    point: Ints
+    component: Ints
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "point", frozen(self.point, np.int64))
+        object.__setattr__(self, "component", frozen(self.component, np.int64))
+        require_shape(self.component, self.point.shape, "components")
+
+    def __len__(self) -> int:
+        return len(self.point)
+
+    @property
+    def keys(self) -> Ints:
+        """One number a degree of freedom, increasing in Nastran's internal order, (n,)."""
+        return np.asarray(8 * self.point + self.component, np.int64)
+
+    @property
+    def dofs(self) -> Dofs:
+        """The same as neutral degrees of freedom; a scalar point has component 1 and no axis."""
+        scalar = self.component == 0
+        axis = np.array(Dofs(self.point, np.maximum(self.component, 1)).axis)
+        axis[scalar] = 0.0
+        return Dofs(self.point, np.maximum(self.component, 1), axis)
+
+    @classmethod
+    def of_dofs(cls, dofs: Dofs) -> DofMap:
+        """Make a map from what `dofs` gave."""
+        return cls(dofs.node, np.where(dofs.axis.any(axis=1), dofs.component, 0))
+
+    @classmethod
+    def of_keys(cls, keys: Ints) -> DofMap:
+        """Make a map from `keys`."""
+        return cls(keys // 8, keys % 8)
+
+
+@dataclass(frozen=True, eq=False)
+class NastranMatrix:
+    """One matrix of an export.
+
+    Parameters
+    ----------
+    name : str
+        In capitals, as in the file.
+    matrix : (n_row, n_column) sparse csc
+        Real or complex; of a symmetric matrix both triangles.
+    form : int
+        Nastran's: 1 square, 2 rectangular, 6 symmetric, others as in the file.
+    rows, columns : DofMap or None
+        None where the file does not tell.
+    single : bool
+        Whether the file holds it in single precision.
+    """
+
+    name: str
+    matrix: sp.csc_matrix
+    form: int = RECTANGULAR
+    rows: DofMap | None = None
+    columns: DofMap | None = None
+    single: bool = False
+
+
+def symmetrised(matrix: sp.csc_matrix) -> sp.csc_matrix:
+    """Fill in the entries of a symmetric matrix that are given on one side of the diagonal only."""
+    other = matrix.T.tocsc()
+    held = sp.csc_matrix((np.ones(matrix.nnz), matrix.indices, matrix.indptr), matrix.shape)
+    missing = (other - other.multiply(held)).tocsc()
+    return (matrix + missing).tocsc() if missing.count_nonzero() else matrix
+
+
+def guessed_form(matrix: sp.spmatrix) -> int:
+    """Return 6 for a symmetric, 1 for another square, 2 for a rectangular matrix."""
+    if matrix.shape[0] != matrix.shape[1]:
+        return RECTANGULAR
+    return SQUARE if (matrix != matrix.T).nnz else SYMMETRIC

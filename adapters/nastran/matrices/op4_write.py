@@ -1,0 +1,130 @@
+"""Write OUTPUT4 files that Nastran reads with INPUTT4: sparse, double precision."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+import scipy.sparse as sp
+
+from ....core.arrays import Floats, Ints
+from ....core.errors import InputError
+from .columns import expand, runs_of
+from .content import NastranMatrix
+
+_REAL, _COMPLEX = 2, 4
+_WORD = 4
+_HEAD = 3
+"""Words before the strings of a column: ICOL, IROW, NW."""
+_LONGEST_NAME = 8
+_PER_LINE, _WIDTH = 3, 23
+
+
+def op4_binary(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
+    """Yield the bytes of a binary file (bigmat, 32 bit words, little endian).
+
+    Raises
+    ------
+    InputError
+        A name that Nastran does not take.
+    """
+    for m in matrices:
+        matrix, kind = _prepared(m)
+        header = np.zeros(8, "<i4")
+        header[1:5] = m.matrix.shape[1], -m.matrix.shape[0], m.form, kind
+        header[0] = header[7] = 24
+        name = _name(m).ljust(_LONGEST_NAME).encode("ascii")
+        yield header[:5].tobytes() + name + header[7:].tobytes()
+        yield _binary_columns(matrix, kind).tobytes()
+
+
+def op4_formatted(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
+    """Yield the lines of a formatted file (bigmat, 16 digits).
+
+    Raises
+    ------
+    InputError
+        A name that Nastran does not take, a matrix that is too large for the format.
+    """
+    for m in matrices:
+        matrix, kind = _prepared(m)
+        if max(matrix.shape) > 9_999_999:
+            raise InputError(f"matrix {m.name} is too large for formatted OP4: write it in binary")
+        head = "".join(f"{n:8d}" for n in (matrix.shape[1], -matrix.shape[0], m.form, kind))
+        yield f"{head}{_name(m):8}1P,{_PER_LINE}E{_WIDTH}.16\n".encode()
+        yield from _formatted_columns(matrix, kind)
+        yield f"{matrix.shape[1] + 1:8d}{1:8d}{1:8d}\n{1.0:{_WIDTH}.16E}\n".encode()
+
+
+def _name(m: NastranMatrix) -> str:
+    if not (m.name.isascii() and m.name[:1].isalpha() and m.name.isalnum()):
+        raise InputError(
+            f"{m.name!r} is no name for a matrix in Nastran: letters and digits, a letter first"
+        )
+    if len(m.name) > _LONGEST_NAME:
+        raise InputError(f"{m.name!r} is longer than the 8 characters of a matrix name in Nastran")
+    return m.name.upper()
+
+
+def _prepared(m: NastranMatrix) -> tuple[sp.csc_matrix, int]:
+    matrix = sp.csc_matrix(m.matrix, copy=True)
+    matrix.sum_duplicates()
+    matrix.eliminate_zeros()
+    matrix.sort_indices()
+    complex_ = np.iscomplexobj(matrix.data)
+    return matrix, _COMPLEX if complex_ else _REAL
+
+
+def _reals(matrix: sp.csc_matrix, kind: int) -> Floats:
+    dtype = "<c16" if kind == _COMPLEX else "<f8"
+    return np.asarray(np.ascontiguousarray(matrix.data, dtype).view("<f8"))
+
+
+def _binary_columns(matrix: sp.csc_matrix, kind: int) -> Ints:
+    """All records of a matrix after its header, as words."""
+    strings = runs_of(matrix)
+    per_value = 4 if kind == _COMPLEX else 2
+    words_of_string = 2 + strings.length * per_value
+    held, first = np.unique(strings.column, return_index=True)
+    words = np.add.reduceat(words_of_string, first) if len(held) else np.zeros(0, np.int64)
+    record = words + _HEAD + 2  # two marks
+    start = np.cumsum(record) - record
+    total = int(record.sum())
+    out = np.zeros(total + 7, "<i4")
+    size = (words + _HEAD) * _WORD
+    out[start] = out[start + record - 1] = size
+    out[start + 1], out[start + 3] = held + 1, words
+    # strings stand one after another in their record, two marks and three words between columns
+    number = np.searchsorted(held, strings.column)
+    at = np.cumsum(words_of_string) - words_of_string + (_HEAD + 2) * number + 1 + _HEAD
+    out[at], out[at + 1] = strings.length * per_value + 1, strings.row + 1
+    out[expand(at + 2, strings.length * per_value)] = _reals(matrix, kind).view("<i4")
+    out[total:] = 5 * _WORD, matrix.shape[1] + 1, 1, 2, 0, 0x3FF00000, 5 * _WORD
+    return out
+
+
+def _formatted_columns(matrix: sp.csc_matrix, kind: int) -> Iterator[bytes]:
+    strings = runs_of(matrix)
+    complex_ = 2 if kind == _COMPLEX else 1
+    reals = _reals(matrix, kind)
+    held, first = np.unique(strings.column, return_index=True)
+    ends = np.append(first[1:], len(strings.column))
+    for column, a, b in zip(held.tolist(), first.tolist(), ends.tolist(), strict=True):
+        runs = list(
+            zip(
+                strings.row[a:b].tolist(),
+                strings.length[a:b].tolist(),
+                strings.at[a:b].tolist(),
+                strict=True,
+            )
+        )
+        words = sum(2 + 2 * complex_ * length for _, length, _ in runs)
+        lines = [f"{column + 1:8d}{0:8d}{words:8d}"]
+        for row, length, at in runs:
+            lines.append(f"{2 * complex_ * length + 1:8d}{row + 1:8d}")
+            values = reals[complex_ * at : complex_ * (at + length)].tolist()
+            printed = [f"{v:{_WIDTH}.16E}" for v in values]
+            lines += [
+                "".join(printed[k : k + _PER_LINE]) for k in range(0, len(printed), _PER_LINE)
+            ]
+        yield ("\n".join(lines) + "\n").encode()

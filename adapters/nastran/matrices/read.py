@@ -1,0 +1,147 @@
+"""Matrices of any of Nastran's files, with their dof maps as far as they are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....core.errors import InputError
+from ..read import Deck
+from .content import DofMap, NastranMatrix
+from .dmig import read_dmig
+from .dofmaps import deck_maps, map_of_size, read_extrn
+from .op2 import read_op2_matrices
+from .op4 import is_op4, kind_of, list_op4, read_op4
+from .write import MAP
+
+_PUNCH_SUFFIXES = (".pch", ".asm")
+
+
+def read_matrices(path: Path | str, deck: Deck | None = None) -> tuple[NastranMatrix, ...]:
+    """Read all matrices of an OP4, OP2 or DMIG punch file; the kind is told by the contents.
+
+    DMIG and OP2 files say what the rows of their matrices are. Those of an OP4 file are taken from
+    the punch file of an external superelement beside it (same name, ``.pch``), or from the deck:
+    its g-, a- or f-set, by size.
+
+    Parameters
+    ----------
+    path : path
+    deck : Deck, optional
+        Of the run that exported the matrices.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read; stiffness and mass that fit no set of the deck.
+    """
+    path = Path(path)
+    kind = matrix_file_kind(path)
+    if kind == "op4":
+        return _mapped(read_op4(path), path, deck)
+    if kind == "op2":
+        return _mapped(read_op2_matrices(path), path, deck)
+    found = read_dmig(path)
+    if not found:
+        raise InputError(f"{path} holds no DMIG matrices")
+    return found
+
+
+def matrix_file_kind(path: Path) -> str:
+    """Return ``op4``, ``op2`` or ``punch``."""
+    if not path.is_file():
+        raise InputError(f"{path} does not exist or is not a file")
+    if is_op4(path):
+        return "op4"
+    with path.open("rb") as stream:
+        return "op2" if b"\0" in stream.read(1024) else "punch"
+
+
+def _mapped(
+    matrices: Sequence[NastranMatrix], path: Path, deck: Deck | None
+) -> tuple[NastranMatrix, ...]:
+    """Give maps to the square stiffness, mass and damping matrices that have none."""
+    matrices = _with_own_maps(matrices)
+    if all(m.rows is not None or not _is_structural(m) for m in matrices):
+        return tuple(matrices)
+    beside = _extrn_beside(path)
+    sets = {} if deck is None else deck_maps(deck)
+    where = str(beside[0]) if beside else str(deck.path) if deck else ""
+    if beside:
+        sets = {"a": beside[1]}
+    if not sets:
+        return tuple(matrices)
+    result = []
+    for m in matrices:
+        if m.rows is None and _is_structural(m):
+            fitting = map_of_size(sets, m.matrix.shape[0], m.name, where)
+            m = replace(m, rows=fitting, columns=fitting)
+        result.append(m)
+    return tuple(result)
+
+
+def _with_own_maps(matrices: Sequence[NastranMatrix]) -> Sequence[NastranMatrix]:
+    """Take up the maps that `write_op4` has put beside the matrices."""
+    names = [m.name for m in matrices if m.name.startswith(MAP) and m.matrix.shape[1] == 2]
+    if not names:
+        return matrices
+    tables = (m.matrix.toarray() for m in matrices if m.name in names)
+    maps = {len(t): DofMap(t[:, 0].astype(np.int64), t[:, 1].astype(np.int64)) for t in tables}
+    return [
+        replace(m, rows=maps.get(m.matrix.shape[0]), columns=maps.get(m.matrix.shape[1]))
+        for m in matrices
+        if m.name not in names
+    ]
+
+
+def _is_structural(m: NastranMatrix) -> bool:
+    rows, columns = m.matrix.shape
+    return rows == columns > 1 and m.name[:1] in ("K", "M", "B") and m.name[-1:] in "XAGFL"
+
+
+def _extrn_beside(path: Path) -> tuple[Path, DofMap] | None:
+    for suffix in _PUNCH_SUFFIXES:
+        for near in (path.with_suffix(suffix), path.with_suffix(suffix.upper())):
+            if near.is_file() and b"EXTRN" in near.read_bytes():
+                return near, read_extrn(near)
+    return None
+
+
+def describe_matrices(path: Path | str) -> dict[str, Any]:
+    """Say which matrices an OP4 or punch file holds; the numbers of OP4 are not read.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read.
+    """
+    path = Path(path)
+    if matrix_file_kind(path) == "op4":
+        contents = [
+            {"what": "matrix", "name": h.name, "size": _size(h.shape), "form": _FORMS.get(h.form),
+             "numbers": _KINDS[h.kind]}
+            for h in list_op4(path)
+        ]  # fmt: skip
+        form = f"OP4, {kind_of(path)}"
+    else:
+        contents = [
+            {"what": "matrix", "name": m.name, "size": _size(m.matrix.shape),
+             "form": _FORMS.get(m.form), "nonzeros": int(m.matrix.nnz),
+             "points": len(set(m.rows.point.tolist())) if m.rows else None}
+            for m in read_dmig(path)
+        ]  # fmt: skip
+        form = "Nastran punch (DMIG)"
+    return {"path": str(path), "format": form, "contents": contents, "skipped": []}
+
+
+def _size(shape: tuple[int, int]) -> str:
+    return f"{shape[0]} x {shape[1]}"
+
+
+_FORMS = {1: "square", 2: "rectangular", 3: "diagonal", 6: "symmetric", 8: "identity",
+          9: "rectangular"}  # fmt: skip
+_KINDS = {1: "real, single", 2: "real, double", 3: "complex, single", 4: "complex, double"}

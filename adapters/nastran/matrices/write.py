@@ -1,0 +1,93 @@
+"""Write matrices to OP4 or DMIG; the file takes its name only when it is whole."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+
+from ....core.errors import InputError
+from .content import RECTANGULAR, DofMap, NastranMatrix
+from .dmig_write import dmig_text
+from .op4_write import op4_binary, op4_formatted
+
+MAP = "DOFMAP"
+"""Name of the matrix (n, 2) of points and components that stands in an OP4 for its dof map."""
+
+
+def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bool = False) -> None:
+    """Write an OP4 file, sparse ("bigmat") and in double precision.
+
+    OP4 has no place for dof maps: each is added as a matrix DOFMAP (DOFMAP2, ...) of two columns,
+    point and component (0: scalar point), by which `read_matrices` gives it back.
+
+    Parameters
+    ----------
+    path : path
+        Replaced if it exists.
+    matrices : sequence of NastranMatrix
+    formatted : bool
+        As text with 16 decimals instead of binary (32 bit words, little endian).
+
+    Raises
+    ------
+    InputError
+        A name that Nastran does not take, two maps of one size, a file that cannot be written.
+    """
+    write = op4_formatted if formatted else op4_binary
+    _write(Path(path), write([*matrices, *_maps(matrices)]))
+
+
+def write_dmig(path: Path | str, matrices: Sequence[NastranMatrix]) -> None:
+    """Write DMIG cards in large field, as Nastran punches them.
+
+    Raises
+    ------
+    InputError
+        A matrix without dof map, a file that cannot be written.
+    """
+    _write(Path(path), dmig_text(matrices))
+
+
+def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
+    found: dict[int, DofMap] = {}
+    for m in matrices:
+        for kind in (m.rows, m.columns):
+            if kind is None:
+                continue
+            known = found.setdefault(len(kind), kind)
+            if not np.array_equal(known.keys, kind.keys):
+                raise InputError(
+                    f"the rows of matrix {m.name} are other degrees of freedom than those of "
+                    "another matrix of that size: write them to separate files"
+                )
+    return [
+        NastranMatrix(
+            MAP if not k else f"{MAP}{k + 1}",
+            sp.csc_matrix(np.column_stack([m.point, m.component]).astype(np.float64)),
+            RECTANGULAR,
+        )
+        for k, m in enumerate(found.values())
+    ]
+
+
+def _write(target: Path, parts: Iterator[bytes]) -> None:
+    """Write all parts beside the target, then give them its name."""
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    except OSError as error:
+        raise InputError(f"cannot write {target}: {error.strerror or error}") from error
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            for part in parts:
+                stream.write(part)
+        Path(name).chmod(0o644)
+        os.replace(name, target)
+    except OSError as error:
+        raise InputError(f"cannot write {target}: {error.strerror or error}") from error
+    finally:
+        Path(name).unlink(missing_ok=True)
