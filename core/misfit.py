@@ -1,0 +1,232 @@
+"""Where model and test disagree: by mode, by sensor, and spread over the structure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
+from .correlate import Correlation
+from .correlation import realised
+from .errors import InputError
+from .noise import Noise
+
+_SPREAD_NEIGHBOURS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class PairedShapes:
+    """Shapes of the pairs side by side at the sensors, close modes turned onto each other.
+
+    Parameters
+    ----------
+    analysis : (n_sensor, n_pair) float
+        Each scaled to its test shape by least squares (the modal scale factor).
+    test : (n_sensor, n_pair) float
+        In the test's own scale; a principal-phase real part where it was complex.
+    mixing : (n_test, n_pair) float
+        Test shapes that each column of `test` is made of: one, or a cluster turned.
+    """
+
+    analysis: Floats
+    test: Floats
+    mixing: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Misfit:
+    """Disagreement of paired shapes in standard deviations of the measurement.
+
+    Parameters
+    ----------
+    normalised : (n_sensor, n_pair) float
+        (test - analysis) / sigma; about N(0, 1) where nothing but noise differs.
+    by_mode : (n_pair,) float
+        Root mean square over the sensors: 1 is noise alone.
+    by_sensor : (n_sensor,) float
+        Root mean square over the pairs: 1 is noise alone.
+    comac : (n_sensor,) float
+        Coordinate modal assurance criterion, 1 where all pairs agree at a sensor.
+    frequency : (n_pair,) float
+        Deviation over its standard deviation.
+    chi_square, degrees_of_freedom : float, int
+        Sum of squares of `normalised`, and what it would be on average without a misfit.
+    """
+
+    normalised: Floats
+    by_mode: Floats
+    by_sensor: Floats
+    comac: Floats
+    frequency: Floats
+    chi_square: float
+    degrees_of_freedom: int
+
+
+def paired_shapes(
+    found: Correlation, analysis_shapes: Floats, test_shapes: Numbers
+) -> PairedShapes:
+    """Put the shapes of each pair side by side, the way the correlation turned them.
+
+    Parameters
+    ----------
+    found : Correlation
+    analysis_shapes : (n_sensor, n_analysis) float
+        As `correlate` had them.
+    test_shapes : (n_sensor, n_test) float or complex
+        Likewise.
+    """
+    test = realised(test_shapes)
+    a, t = [p.analysis for p in found.pairs], [p.test for p in found.pairs]
+    mixing = np.eye(test.shape[1])[:, t]
+    if found.criteria.rotate == "test":
+        length = np.linalg.norm(test, axis=0)
+        scale = np.divide(1.0, length, out=np.zeros_like(length), where=length > 0)
+        mixing = scale[:, None] * found.transformation[:, t]
+        chosen = analysis_shapes[:, a]
+    elif found.criteria.rotate == "analysis":
+        chosen = (analysis_shapes @ found.transformation)[:, a]
+    else:
+        chosen = analysis_shapes[:, a]
+    turned = test @ mixing
+    power = np.sum(chosen**2, axis=0)
+    scale = np.divide(
+        np.sum(chosen * turned, axis=0), power, out=np.zeros_like(power), where=power > 0
+    )
+    return PairedShapes(frozen(chosen * scale), frozen(turned), frozen(mixing))
+
+
+def misfit(
+    found: Correlation,
+    shapes: PairedShapes,
+    noise: Noise,
+    frequency_sigma: float | Floats = 0.005,
+    sensors: Bools | None = None,
+) -> Misfit:
+    """Measure where paired shapes and frequencies disagree, in units of the noise.
+
+    Parameters
+    ----------
+    found : Correlation
+    shapes : PairedShapes
+        From `paired_shapes`.
+    noise : Noise
+        Of the test shapes: given or estimated (`noise`).
+    frequency_sigma : float or (n_pair,) float
+        Standard deviation of a relative frequency difference: of the measurement, and of what
+        the mesh cannot tell.
+    sensors : (n_sensor,) bool, optional
+        Sensors that count for `by_mode` and `chi_square` (default: those that `noise` does not
+        call outliers); the maps by sensor always cover all.
+
+    Raises
+    ------
+    InputError
+        There are no pairs.
+    """
+    n_pair = len(found.pairs)
+    if n_pair == 0:
+        raise InputError("no pair of modes to compare; lower the MAC limit")
+    require_shape(noise.sigma, (shapes.mixing.shape[0],), "the noise of the test shapes")
+    counted = ~noise.outlier if sensors is None else np.asarray(sensors, bool)
+    sigma = np.sqrt((shapes.mixing**2).T @ noise.sigma**2)
+    z = (shapes.test - shapes.analysis) / sigma
+    # The scale of each shape was fitted: one degree of freedom a pair.
+    inside = np.count_nonzero(counted)
+    share = max(inside - 1, 1)
+    deviation = np.array([p.deviation_percent for p in found.pairs]) / 100.0
+    return Misfit(
+        frozen(z),
+        frozen(np.sqrt(np.sum(z[counted] ** 2, axis=0) / share)),
+        frozen(np.sqrt(np.mean(z**2, axis=1) * inside / share)),
+        frozen(comac(shapes.analysis, shapes.test)),
+        frozen(deviation / frequency_sigma),
+        float(np.sum(z[counted] ** 2)),
+        share * n_pair,
+    )
+
+
+def comac(analysis: Floats, test: Floats) -> Floats:
+    """Coordinate modal assurance criterion of each sensor.
+
+    Parameters
+    ----------
+    analysis, test : (n_sensor, n_pair) float
+        Paired shapes; each test shape is brought to unit length first, so that every pair counts
+        alike.
+
+    Returns
+    -------
+    (n_sensor,) float
+        (sum |a t|)^2 / (sum a^2 sum t^2), NaN where a sensor does not move.
+
+    References
+    ----------
+    Lieven, Ewins (1988), Spatial correlation of mode shapes, the coordinate modal assurance
+    criterion (COMAC), IMAC VI.
+    """
+    length = np.linalg.norm(test, axis=0)
+    length = np.where(length > 0, length, 1.0)
+    a, t = analysis / length, test / length
+    top = np.sum(np.abs(a * t), axis=1) ** 2
+    bottom = np.sum(a**2, axis=1) * np.sum(t**2, axis=1)
+    return np.asarray(np.divide(top, bottom, out=np.full(len(a), np.nan), where=bottom > 0))
+
+
+def spread(
+    values: Floats, sensor_xyz: Floats, grid_xyz: Floats, width: float | None = None
+) -> tuple[Floats, Floats]:
+    """Spread what sensors say over the grids of a model, for a map.
+
+    Averages over the nearest sensors with Gaussian weights of their distance (Nadaraya, 1964;
+    Watson, 1964). A map is a picture of where to look; it locates nothing.
+
+    Parameters
+    ----------
+    values : (n_sensor,) or (n_sensor, k) float
+        One or several maps; NaN where a sensor says nothing.
+    sensor_xyz : (n_sensor, 3) float
+    grid_xyz : (n_grid, 3) float
+        In the same frame and unit.
+    width : float, optional
+        Standard deviation of the weights. Default: the median distance of a sensor position to
+        its third nearest other.
+
+    Returns
+    -------
+    map : (n_grid,) or (n_grid, k) float
+        NaN where no sensor with a value is near.
+    support : (n_grid,) float
+        Distance to the nearest sensor over `width`: large where the map is a guess.
+
+    Raises
+    ------
+    InputError
+        There is no sensor, or the width is not positive.
+    """
+    if not len(sensor_xyz):
+        raise InputError("no sensor to draw a map from")
+    width = _width(sensor_xyz) if width is None else width
+    if not width > 0:
+        raise InputError(f"the width of the map is {width}; it must be positive")
+    table = np.atleast_2d(np.asarray(values, float).T).T
+    k = min(_SPREAD_NEIGHBOURS, len(sensor_xyz))
+    distance, near = cKDTree(sensor_xyz).query(grid_xyz, k=np.arange(1, k + 1))
+    # Relative to the nearest sensor, so that far grids follow it instead of falling to 0 / 0.
+    weight = np.exp(-0.5 * (distance**2 - distance[:, :1] ** 2) / width**2)
+    picked = table[near]
+    known = np.isfinite(picked)
+    total = np.einsum("gk,gkm->gm", weight, known.astype(float))
+    summed = np.einsum("gk,gkm->gm", weight, np.where(known, picked, 0.0))
+    spread_out = np.divide(summed, total, out=np.full_like(summed, np.nan), where=total > 0)
+    shape = (len(grid_xyz), *np.shape(values)[1:])
+    return spread_out.reshape(shape), distance[:, 0] / width
+
+
+def _width(sensor_xyz: Floats) -> float:
+    places = np.unique(sensor_xyz, axis=0)
+    if len(places) < 2:
+        return 1.0
+    neighbours: Ints = np.array([min(4, len(places))])
+    return float(np.median(cKDTree(places).query(places, k=neighbours)[0]))
