@@ -135,7 +135,8 @@ def place_test(
         test.source,
     )
     in_frame = replace(moved, xyz=alignment.apply(moved.xyz))
-    ambiguity = (alignment.ambiguity,) if alignment.ambiguity else ()
+    # An undecided alignment warns of its ambiguity itself.
+    ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
     warnings = (*measurement.warnings, *units.warnings, *alignment.warnings, *ambiguity)
     scaled = replace(alignment, scale=units.factor)
     return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings))
