@@ -289,5 +289,5 @@ def _blurred(peak: _Peak, k: int) -> str:
 def _named(family: Family, k: int) -> str:
     axis = family.axis_of(k)
     axis = axis * np.sign(axis[np.argmax(np.abs(axis))])
-    way = ", ".join(f"{v:.2f}" for v in axis + 0.0)
+    way = ", ".join(f"{v:.2f}" for v in np.round(axis, 2) + 0.0)
     return f"{'a turn about' if family.turning[k] else 'a slide along'} ({way})"

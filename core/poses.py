@@ -19,8 +19,8 @@ class Poses:
     rotation : (k, 3, 3) float
     translation : (k, 3) float
     rms : (k,) float
-        Root mean square distance of the points from the surface, each at most `rigid_fit.CAP` of its
-        size.
+        Root mean square distance of the points from the surface, each at most `rigid_fit.CAP` of
+        its size.
     """
 
     rotation: Floats
