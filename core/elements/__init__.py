@@ -8,9 +8,24 @@ from .bar import (
     rod_mass,
     rod_stiffness,
 )
+from .beam import BeamSections, beam_mass, beam_stiffness
+from .bush import bush_stiffness
+from .curved_shell import (
+    QUAD8_EDGES,
+    TRIA6_EDGES,
+    quad8_axes,
+    quad8_mass,
+    quad8_stiffness,
+    tria6_axes,
+    tria6_mass,
+    tria6_stiffness,
+)
 from .hexa import hexa8_stiffness, hexa20_stiffness
 from .material import isotropic_solid, rotate_material
+from .middle_nodes import drop_middle_nodes, fill_middle_nodes
 from .penta import penta6_stiffness, penta15_stiffness
+from .quadr import quadr_stiffness, triar_stiffness
+from .shear import shear_panel_mass, shear_panel_stiffness
 from .shell import (
     ShellSection,
     corner_normals,
@@ -50,13 +65,21 @@ __all__ = [
     "PENTA15",
     "PYRAMID5",
     "PYRAMID13",
+    "QUAD8_EDGES",
     "TETRA4",
     "TETRA10",
+    "TRIA6_EDGES",
+    "BeamSections",
     "ShellSection",
     "bar_axes",
     "bar_mass",
     "bar_stiffness",
+    "beam_mass",
+    "beam_stiffness",
+    "bush_stiffness",
     "corner_normals",
+    "drop_middle_nodes",
+    "fill_middle_nodes",
     "grid_normals",
     "hexa8_mass",
     "hexa8_stiffness",
@@ -77,10 +100,16 @@ __all__ = [
     "quad4_corner_jacobians",
     "quad4_mass",
     "quad4_stiffness",
+    "quad8_axes",
+    "quad8_mass",
+    "quad8_stiffness",
+    "quadr_stiffness",
     "rod_mass",
     "rod_stiffness",
     "rotate_material",
     "rotate_section",
+    "shear_panel_mass",
+    "shear_panel_stiffness",
     "solid_volume",
     "tetra4_mass",
     "tetra4_stiffness",
@@ -90,4 +119,8 @@ __all__ = [
     "tria3_axes",
     "tria3_mass",
     "tria3_stiffness",
+    "tria6_axes",
+    "tria6_mass",
+    "tria6_stiffness",
+    "triar_stiffness",
 ]

@@ -10,35 +10,34 @@ from .normals import director_slopes, is_warped, normal_map, warp_map
 from .section import ShellSection
 from .transverse_shear import finite_shear, strip_stiffness
 
-_XI = np.array([-1.0, 1.0, 1.0, -1.0])
-_ETA = np.array([-1.0, -1.0, 1.0, 1.0])
+XI = np.array([-1.0, 1.0, 1.0, -1.0])
+ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _G = 1.0 / np.sqrt(3.0)
 # share of the residual flexibility that a linear shear force sees, MacNeal (1978)
-_EPSILON = 0.025
-_RECIPROCAL = ((1.0 - _EPSILON) / _EPSILON) ** 2
+EPSILON = 0.025
 
 
 def _gradients(xi: Floats, eta: Floats) -> Floats:
     """Return the derivatives of the shape functions by xi and eta at some points, (m, 2, 4)."""
-    by_xi = 0.25 * _XI * (1.0 + _ETA * eta[:, None])
-    by_eta = 0.25 * _ETA * (1.0 + _XI * xi[:, None])
+    by_xi = 0.25 * XI * (1.0 + ETA * eta[:, None])
+    by_eta = 0.25 * ETA * (1.0 + XI * xi[:, None])
     return np.stack([by_xi, by_eta], axis=1)
 
 
-_AT_GAUSS = _gradients(_G * _XI, _G * _ETA)
-_AT_CENTRE = _gradients(np.zeros(1), np.zeros(1))[0]
-_AT_NODES = _gradients(_XI, _ETA)
+AT_GAUSS = _gradients(_G * XI, _G * ETA)
+AT_CENTRE = _gradients(np.zeros(1), np.zeros(1))[0]
+AT_NODES = _gradients(XI, ETA)
 # derivatives of the incompatible modes 1 - xi**2 and 1 - eta**2
-_BUBBLES = np.zeros((4, 2, 2))
-_BUBBLES[:, 0, 0] = -2.0 * _G * _XI
-_BUBBLES[:, 1, 1] = -2.0 * _G * _ETA
+BUBBLES = np.zeros((4, 2, 2))
+BUBBLES[:, 0, 0] = -2.0 * _G * XI
+BUBBLES[:, 1, 1] = -2.0 * _G * ETA
 
 _EDGES = ((0, 1), (3, 2), (0, 3), (1, 2))  # two along xi, two along eta
 # shear strains at the Gauss points from the four coefficients of the assumed field
 _SHEAR_FIELD = np.zeros((4, 2, 4))
 _SHEAR_FIELD[:, 0, 0] = _SHEAR_FIELD[:, 1, 2] = 1.0
-_SHEAR_FIELD[:, 0, 1] = _G * _ETA
-_SHEAR_FIELD[:, 1, 3] = _G * _XI
+_SHEAR_FIELD[:, 0, 1] = _G * ETA
+_SHEAR_FIELD[:, 1, 3] = _G * XI
 
 _NODE = 6 * np.arange(4)
 # local freedoms in the order u, two bubbles, v, two bubbles
@@ -69,8 +68,8 @@ def quad4_axes(xyz: Floats) -> Floats:
 
 def quad4_corner_jacobians(xyz: Floats) -> Floats:
     """Parallelogram areas at the corners of the projected quads, (n, 4); <= 0: badly shaped."""
-    local, _ = _flat(xyz, quad4_axes(xyz))
-    J = _AT_NODES @ local[:, None]
+    local, _ = flat(xyz, quad4_axes(xyz))
+    J = AT_NODES @ local[:, None]
     return np.asarray(4.0 * np.linalg.det(J))
 
 
@@ -129,9 +128,9 @@ def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
         Consistent mass of the bilinear shape functions; otherwise a quarter of the mass a grid.
     """
     n = len(xyz)
-    local, _ = _flat(xyz, quad4_axes(xyz))
-    detJ = np.linalg.det(_AT_GAUSS @ local[:, None])
-    shapes = 0.25 * (1.0 + _XI * _G * _XI[:, None]) * (1.0 + _ETA * _G * _ETA[:, None])
+    local, _ = flat(xyz, quad4_axes(xyz))
+    detJ = np.linalg.det(AT_GAUSS @ local[:, None])
+    shapes = 0.25 * (1.0 + XI * _G * XI[:, None]) * (1.0 + ETA * _G * ETA[:, None])
     if coupled:
         m = np.einsum("g...,gi,gj->...ij", (detJ * areal_density[:, None]).T, shapes, shapes)
     else:
@@ -143,7 +142,7 @@ def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
     return M.reshape(n, 24, 24)
 
 
-def _flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
+def flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
     """In-plane positions (n, 4, 2) on the mean plane and heights (n, 4) of the grids above it."""
     local = (xyz - xyz.mean(axis=1, keepdims=True)) @ transpose(axes)
     return local[:, :, :2], local[:, :, 2]
@@ -153,18 +152,18 @@ def _stiffness(
     xyz: Floats, section: ShellSection, k6rot: float, offset: Floats, normals: Floats | None
 ) -> Floats:
     axes = quad4_axes(xyz)
-    local, height = _flat(xyz, axes)
-    J = _AT_GAUSS @ local[:, None]
+    local, height = flat(xyz, axes)
+    J = AT_GAUSS @ local[:, None]
     detJ = np.linalg.det(J)
     inverse = np.linalg.inv(J)
     K = np.zeros((len(xyz), 24, 24))
     _add_plane(K, section, local, detJ, inverse)
-    _add_shear(K, section, local, detJ)
+    add_shear(K, section, local, detJ)
     _add_drilling(K, section.drilling * k6rot * 1e-6, local)
-    return congruent(K, _corner_motions(axes, local, height, offset, normals))
+    return congruent(K, corner_motions(axes, local, height, offset, normals))
 
 
-def _corner_motions(
+def corner_motions(
     axes: Floats, local: Floats, height: Floats, offset: Floats, normals: Floats | None
 ) -> Floats:
     """Motions that the flat element uses from those of the grids, (n, 24, 24)."""
@@ -174,7 +173,7 @@ def _corner_motions(
     warped = is_warped(local, height)
     if not warped and normals is None:
         return T
-    gradients = np.linalg.inv(_AT_NODES @ local[:, None]) @ _AT_NODES
+    gradients = np.linalg.inv(AT_NODES @ local[:, None]) @ AT_NODES
     tilt: Floats | float = 0.0
     if warped:
         W, tilt = warp_map(local, height, gradients)
@@ -192,11 +191,11 @@ def _add_plane(
 ) -> None:
     """Membrane, bending and their coupling, with the incompatible modes condensed."""
     n = len(K)
-    centre = _AT_CENTRE @ local
+    centre = AT_CENTRE @ local
     ratio = np.linalg.det(centre)[:, None] / detJ
     g = np.empty((n, 4, 2, 6))
-    g[..., :4] = inverse @ _AT_GAUSS
-    g[..., 4:] = (np.linalg.inv(centre)[:, None] @ _BUBBLES) * ratio[..., None, None]
+    g[..., :4] = inverse @ AT_GAUSS
+    g[..., 4:] = (np.linalg.inv(centre)[:, None] @ BUBBLES) * ratio[..., None, None]
     B = np.zeros((n, 4, 3, 12))
     B[:, :, 0, :6] = B[:, :, 2, 6:] = g[:, :, 0]
     B[:, :, 1, 6:] = B[:, :, 2, :6] = g[:, :, 1]
@@ -217,12 +216,20 @@ def _add_plane(
     K[:, _BENDING[:, None], _BENDING] += condense(Kb, _PLANE, _INNER) * np.outer(_SIGN, _SIGN)
 
 
-def _add_shear(K: Floats, section: ShellSection, local: Floats, detJ: Floats) -> None:
+def add_shear(
+    K: Floats,
+    section: ShellSection,
+    local: Floats,
+    detJ: Floats,
+    uniform: float = 1.0,
+    epsilon: float = EPSILON,
+) -> None:
     """Edge shears as a linear field, its flexibility raised by the residual bending flexibility.
 
     The field is gamma_x = a0 + a1 eta, gamma_y = a2 + a3 xi in element axes, fixed by the shears
     along the four edges. The residual flexibility belongs to strips along xi and eta whose
-    lengths are the projections dx, dy of the mid-side vectors (MacNeal 1978, equations 26, 27).
+    lengths are the projections dx, dy of the mid-side vectors (MacNeal 1978, equations 26, 27);
+    `uniform` scales it, `epsilon` is the share that a linear shear force sees.
     """
     area = detJ.sum(axis=1)
     along, across = _strips(local)
@@ -236,9 +243,10 @@ def _add_shear(K: Floats, section: ShellSection, local: Floats, detJ: Floats) ->
     H = transpose(P).reshape(1, 4, 4, 2) @ (S[:, None] @ P)
     H = np.einsum("ng,ngij->nij", detJ, H)
     H[~bends] = np.eye(4)
-    ratio = (1.0 - _EPSILON) / _EPSILON * (dx / dy) ** 2
-    x, y = dx**2 / (12.0 * D1), dy**2 / (12.0 * D2)
-    shares = (x, 3.0 * x / (1.0 + ratio), y, 3.0 * y * ratio / (ratio + _RECIPROCAL))
+    x, y = uniform * dx**2 / (12.0 * D1), uniform * dy**2 / (12.0 * D2)
+    share_x = epsilon / (epsilon + (1.0 - epsilon) * (dx / dy) ** 2)
+    share_y = epsilon / (epsilon + (1.0 - epsilon) * (dy / dx) ** 2)
+    shares = (x, 3.0 * share_x * x, y, 3.0 * share_y * y)
     Zb = np.stack(shares, axis=1) / area[:, None]
     C = symmetric(np.linalg.solve(np.eye(4) + H * Zb[:, None, :], H))
     C[~bends] = 0.0
@@ -257,7 +265,7 @@ def _add_shear(K: Floats, section: ShellSection, local: Floats, detJ: Floats) ->
 
 def _strips(local: Floats) -> tuple[Floats, Floats]:
     """Vectors between the middles of opposite sides, along xi and along eta, each (n, 2)."""
-    middle = 2.0 * _AT_CENTRE @ local
+    middle = 2.0 * AT_CENTRE @ local
     return middle[:, 0], middle[:, 1]
 
 
@@ -274,9 +282,9 @@ def edge_shear_operator(edge: Floats, ends: tuple[tuple[int, int], ...], n_node:
 
 def _add_drilling(K: Floats, stiffness: Floats, local: Floats) -> None:
     """Penalty on the difference of the grids' rotation and that of the plane, at each node."""
-    J = _AT_NODES @ local[:, None]
+    J = AT_NODES @ local[:, None]
     area = 4.0 * np.linalg.det(J)
-    g = np.linalg.inv(J) @ _AT_NODES
+    g = np.linalg.inv(J) @ AT_NODES
     r = np.zeros((len(K), 4, 12))
     r[:, :, :4] = 0.5 * g[:, :, 1]
     r[:, :, 4:8] = -0.5 * g[:, :, 0]
