@@ -12,6 +12,7 @@ from .editing.split import Split, split_property
 from .editing.write import write_deck, write_in_place
 from .matrices.content import DofMap, NastranMatrix
 from .matrices.model import model_of_matrices, stiffness_and_mass
+from .matrices.op4 import is_op4, read_op4
 from .matrices.read import describe_matrices, matrix_file_kind, read_matrices
 from .matrices.write import write_dmig, write_op4
 from .parameters import FieldRef, ParameterSpec, parse_parameter
@@ -36,6 +37,7 @@ __all__ = [
     "describe_matrices",
     "describe_results",
     "free_id",
+    "is_op4",
     "matrix_file_kind",
     "model_of_matrices",
     "parse_parameter",
@@ -43,6 +45,7 @@ __all__ = [
     "read_deck_text",
     "read_matrices",
     "read_modes",
+    "read_op4",
     "read_value",
     "set_values",
     "split_property",

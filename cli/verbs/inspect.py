@@ -17,7 +17,7 @@ def inspect(
     json: JsonOption = None,
     quiet: QuietOption = False,
 ) -> None:
-    """Say what is in a deck, a result file or a universal file."""
+    """Say what is in a deck, results, matrices, a universal file or a store."""
     output = Output(json=json, quiet=quiet)
     result: dict[str, Any] = {
         "schema": "trueup/inspect/1",
@@ -25,7 +25,9 @@ def inspect(
     }
     emit_json(result, output)
     if speaks(output):
+        from ..inspecting import condensed
         from ..tables import inspect_table
 
         for entry in result["files"]:
-            stdout().print(inspect_table(entry))
+            stdout().print(f"{entry['path']}: {entry['format']}", markup=False, soft_wrap=True)
+            stdout().print(inspect_table(condensed(entry)))

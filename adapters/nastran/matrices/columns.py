@@ -34,7 +34,7 @@ def expand(starts: Ints, lengths: Ints) -> Ints:
     """Return ``start, start + 1, ...`` of each run, one after another."""
     total = int(lengths.sum())
     before = np.cumsum(lengths) - lengths
-    return np.arange(total) + np.repeat(starts - before, lengths)
+    return np.asarray(np.arange(total) + np.repeat(starts - before, lengths))
 
 
 def assemble(strings: Strings, values: Numbers, shape: tuple[int, int]) -> sp.csc_matrix:

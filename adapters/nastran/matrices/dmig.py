@@ -155,7 +155,7 @@ def _number(field: bytes) -> float:
 
 
 def _general(card: Fields, found: dict[str, _Entries]) -> None:
-    """A column in any form: NAME GJ CJ - G1 C1 A1 B1, then G2 C2 A2 B2 and so on."""
+    """Take a column in any form: NAME GJ CJ - G1 C1 A1 B1, then G2 C2 A2 B2 and so on."""
     entries = found[str(card[1]).upper()]
     column = 8 * int(card[2] or 0) + int(card[3] or 0)
     rest: Fields = list(card[5:])

@@ -42,7 +42,8 @@ def _one(m: NastranMatrix) -> Iterator[bytes]:
     square = m.matrix.shape[0] == m.matrix.shape[1]
     if form != SYMMETRIC and square and m.columns is not None:
         form = _SQUARE if np.array_equal(m.rows.keys, m.columns.keys) else _RECTANGULAR
-    columns = m.columns or DofMap(np.arange(1, m.matrix.shape[1] + 1), np.zeros(m.matrix.shape[1]))
+    number = np.arange(1, m.matrix.shape[1] + 1)
+    columns = m.columns or DofMap(number, np.zeros_like(number))
     matrix = sp.csc_matrix(sp.triu(m.matrix) if form == SYMMETRIC else m.matrix)
     matrix.sort_indices()
     kind = 4 if complex_ else 2

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.arrays import Floats
+from ....core.arrays import Floats, Ints
 from ....core.errors import InputError
 from .columns import Strings, assemble
 from .content import SYMMETRIC, NastranMatrix, symmetrised
@@ -177,7 +177,7 @@ def _columns(lines: _Lines, header: Header, form: _Print) -> tuple[Strings, list
     return Strings(table[:, 0], table[:, 1], table[:, 2], at), ranges
 
 
-def _numbers(lines: _Lines, ranges: list[tuple[int, int]], counts: Floats, form: _Print) -> Floats:
+def _numbers(lines: _Lines, ranges: list[tuple[int, int]], counts: Ints, form: _Print) -> Floats:
     """Read the numbers of some ranges of lines; each range ends in a line that may be short."""
     full = form.per_line * form.width
     parts: list[bytes] = []

@@ -67,7 +67,7 @@ class _File:
         usable = raw[shift : shift + (len(raw) - shift) // word * word]
         self.words = usable.view(f"u{word}")
         self.integers = usable.view(f"{layout.order}i{word}")
-        self.data, self.layout, self.path = memoryview(raw), layout, path
+        self.data, self.layout, self.path = memoryview(raw.data), layout, path
         self._mark = struct.Struct(layout.order + ("i" if layout.mark == 4 else "q"))
         self._three = struct.Struct(layout.order + ("3i" if layout.word == 4 else "3q"))
 

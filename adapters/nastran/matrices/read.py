@@ -16,6 +16,7 @@ from .dmig import read_dmig
 from .dofmaps import deck_maps, map_of_size, read_extrn
 from .op2 import read_op2_matrices
 from .op4 import is_op4, kind_of, list_op4, read_op4
+from .op4_binary import Header
 from .write import MAP
 
 _PUNCH_SUFFIXES = (".pch", ".asm")
@@ -121,21 +122,34 @@ def describe_matrices(path: Path | str) -> dict[str, Any]:
     """
     path = Path(path)
     if matrix_file_kind(path) == "op4":
-        contents = [
-            {"what": "matrix", "name": h.name, "size": _size(h.shape), "form": _FORMS.get(h.form),
-             "numbers": _KINDS[h.kind]}
-            for h in list_op4(path)
-        ]  # fmt: skip
-        form = f"OP4, {kind_of(path)}"
+        form, contents = f"OP4, {kind_of(path)}", [_header(h) for h in list_op4(path)]
     else:
-        contents = [
-            {"what": "matrix", "name": m.name, "size": _size(m.matrix.shape),
-             "form": _FORMS.get(m.form), "nonzeros": int(m.matrix.nnz),
-             "points": len(set(m.rows.point.tolist())) if m.rows else None}
-            for m in read_dmig(path)
-        ]  # fmt: skip
-        form = "Nastran punch (DMIG)"
+        form, contents = "Nastran punch", [_matrix(m) for m in read_dmig(path)]
+        if b"\nEXTRN" in path.read_bytes():
+            contents.insert(0, _superelement(read_extrn(path)))
+        if not contents:
+            raise InputError(f"{path} holds neither DMIG matrices nor an external superelement")
     return {"path": str(path), "format": form, "contents": contents, "skipped": []}
+
+
+def _header(h: Header) -> dict[str, Any]:
+    said = {"size": _size(h.shape), "form": _FORMS.get(h.form), "numbers": _KINDS[h.kind]}
+    return {"what": "matrix", "name": h.name, **said}
+
+
+def _matrix(m: NastranMatrix) -> dict[str, Any]:
+    points = len(np.unique(m.rows.point)) if m.rows else None
+    said = {"size": _size(m.matrix.shape), "form": _FORMS.get(m.form)}
+    return {"what": "matrix", "name": m.name, **said, "nonzeros": m.matrix.nnz, "points": points}
+
+
+def _superelement(there: DofMap) -> dict[str, Any]:
+    return {
+        "what": "external superelement",
+        "dofs": len(there),
+        "grids": len(np.unique(there.point[there.component > 0])),
+        "scalar_points": int((there.component == 0).sum()),
+    }
 
 
 def _size(shape: tuple[int, int]) -> str:

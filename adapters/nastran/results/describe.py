@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from .hdf5 import read_hdf5_tables
-from .modes import is_hdf5_file
-from .op2 import read_op2_tables
+from ..matrices.op2 import read_op2_matrices
+from .modes import OP2, READERS, kind_of_results
 from .table import ModeTable
 
 
 def describe_results(path: Path | str) -> dict[str, Any]:
-    """Say what an OP2 or Nastran HDF5 file holds.
+    """Say what an OP2, a Nastran HDF5, a punch or an F06 file holds.
 
     Returns
     -------
@@ -26,16 +25,23 @@ def describe_results(path: Path | str) -> dict[str, Any]:
         A file that cannot be read.
     """
     path = Path(path)
-    is_hdf5 = is_hdf5_file(path)
-    tables, names = (read_hdf5_tables if is_hdf5 else read_op2_tables)(path)
+    kind = kind_of_results(path)
+    tables, names = READERS[kind](path)
+    matrices = read_op2_matrices(path) if kind == OP2 else ()
+    read = {m.name for m in matrices}
+    contents: dict[str, Any] = {"modes": [_modes(t) for t in tables]}
+    if matrices:
+        contents["matrices"] = {
+            m.name: f"{m.matrix.shape[0]} x {m.matrix.shape[1]}" for m in matrices
+        }
     return {
         "path": str(path),
-        "format": "Nastran HDF5" if is_hdf5 else "Nastran OP2",
-        "contents": {"modes": [_modes(t) for t in tables], "tables": list(names)},
+        "format": kind,
+        "contents": {**contents, "tables": list(names)},
         "skipped": [
-            {"what": name, "line": None, "why": "no modes, eigenvalues or geometry of them"}
+            {"what": name, "line": None, "why": "neither modes nor their eigenvalues"}
             for name in names
-            if not _is_read(name)
+            if not _is_read(name) and name not in read
         ],
     }
 
@@ -55,5 +61,14 @@ def _modes(table: ModeTable) -> dict[str, Any]:
 
 def _is_read(name: str) -> bool:
     starts = ("OUG", "BOUG", "OPHIG", "BOPHIG", "ROUG", "LAMA", "BLAMA", "CLAMA")
-    read = ("NODAL/EIGENVECTOR", "NODAL/EIGENVECTOR_CPLX", "SUMMARY/EIGENVALUE", "DOMAINS")
+    read = (
+        "EIGENVECTOR",
+        "DISPLACEMENTS",
+        "real eigenvalues",
+        "real eigenvectors",
+        "NODAL/EIGENVECTOR",
+        "NODAL/EIGENVECTOR_CPLX",
+        "SUMMARY/EIGENVALUE",
+        "DOMAINS",
+    )
     return name.startswith(starts) or name in read

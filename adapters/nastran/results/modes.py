@@ -13,18 +13,33 @@ from ....core.errors import InputError
 from ....core.modes import Modes
 from ..grids import Points, read_points
 from ..read import Deck
+from .f06 import is_f06, read_f06_tables
 from .hdf5 import grids_with_own_systems, read_hdf5_tables
 from .op2 import read_op2_tables
+from .punch import is_punched_result, read_punch_tables
 from .table import ModeTable
 
 Reader = Callable[[Path], tuple[list[ModeTable], tuple[str, ...]]]
 
+HDF5, OP2, PUNCH, F06 = "Nastran HDF5", "Nastran OP2", "Nastran punch", "Nastran F06"
+
+READERS: dict[str, Reader] = {
+    HDF5: read_hdf5_tables,
+    OP2: read_op2_tables,
+    PUNCH: read_punch_tables,
+    F06: read_f06_tables,
+}
+"""Readers by kind of file: path to tables and the names of all that the file holds."""
+
+_HEAD = 20000
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SAME = 1e-5  # relative difference of eigenvalues that superelements share
 
 
 def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None = None) -> Modes:
-    """Read normal or complex modes from an OP2 or a Nastran HDF5 file.
+    """Read normal or complex modes from an OP2, a Nastran HDF5, a punch or an F06 file.
+
+    Punch and F06 hold seven digits: take them only where there is no OP2 or HDF5.
 
     Frequencies are undamped natural frequencies in Hz, from the eigenvalues. Superelements that
     list the same modes are put together, each mode once. Of a conjugate pair of complex roots the
@@ -53,16 +68,15 @@ def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None =
         file with displacement systems but no deck.
     """
     path = Path(path)
-    is_hdf5 = is_hdf5_file(path)
-    reader: Reader = read_hdf5_tables if is_hdf5 else read_op2_tables
-    tables, names = reader(path)
+    kind = kind_of_results(path)
+    tables, names = READERS[kind](path)
     if not tables:
         held = ", ".join(names[:8]) or "nothing"
         raise InputError(
             f"{path} holds no eigenvectors (it holds {held}): ask Nastran for DISPLACEMENT in "
             "a SOL 103 run"
         )
-    if is_hdf5 and deck is None and len(grids_with_own_systems(path)):
+    if kind == HDF5 and deck is None and len(grids_with_own_systems(path)):
         grid = grids_with_own_systems(path)[0]
         raise InputError(
             f"{path}: grid {grid} has a displacement system of its own: name the deck as well"
@@ -72,8 +86,8 @@ def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None =
     return _modes(table, None if deck is None else read_points(deck.bulk), path)
 
 
-def is_hdf5_file(path: Path) -> bool:
-    """Whether a file starts as HDF5 does.
+def kind_of_results(path: Path) -> str:
+    """Tell the kind of a results file by its contents: a key of `READERS`.
 
     Raises
     ------
@@ -82,9 +96,15 @@ def is_hdf5_file(path: Path) -> bool:
     """
     try:
         with path.open("rb") as stream:
-            return stream.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE
+            head = stream.read(_HEAD)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}") from None
+    if head.startswith(_HDF5_SIGNATURE):
+        return HDF5
+    text = "" if b"\0" in head else head.decode("latin-1")
+    if is_punched_result(text):
+        return PUNCH
+    return F06 if is_f06(text) else OP2
 
 
 def _of_subcase(

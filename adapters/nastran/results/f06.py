@@ -1,0 +1,110 @@
+"""Eigenvectors from the printed output (F06), the last resort: seven digits."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ....core.errors import InputError
+from ..cards import to_float
+from .table import ModeTable
+from .vectors import Vector, tables_of
+
+_VALUE = re.compile(r"\bEIGENVALUE =\s*([-+.\dE]+)")
+_TITLE = re.compile(r"R E A L\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
+_COMPLEX = re.compile(r"C O M P L E X\s+E I G E N V E C T O R")
+_SUBCASE = re.compile(r"\bSUBCASE\s+(\d+)")
+_SUPERELEMENT = re.compile(r"\bSUPERELEMENT\s+(\d+)")
+_ROW = re.compile(r"^[0 ]\s*(\d+)\s+([GS])\s+(\S.*)$")
+_SUMMARY = re.compile(r"R E A L\s+E I G E N V A L U E S")
+_SUMMARY_ROW = re.compile(r"^\s+(\d+)\s+(\d+)" + r"\s+([-+.\dE]+)" * 5 + r"\s*$")
+
+
+def is_f06(text: str) -> bool:
+    """Whether the start of a file is that of Nastran's printed output."""
+    return "N A S T R A N" in text or "EXECUTIVE   CONTROL   ECHO" in text.upper()
+
+
+def read_f06_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
+    """Read all real eigenvectors of an F06.
+
+    Returns
+    -------
+    tables : list of ModeTable
+        In the displacement systems of the grids; eigenvalues and shapes with the seven digits
+        that are printed.
+    names : tuple of str
+        What the file prints, for inspection.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read; a row of an eigenvector that is not one: the line.
+    """
+    try:
+        lines = path.read_text("latin-1").splitlines()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    printed = _Printed(path)
+    for k, line in enumerate(lines):
+        printed.take(line, k)
+    vectors = [v for v in printed.vectors if v.rows]
+    return tables_of(vectors, path, printed.masses), tuple(printed.names)
+
+
+class _Printed:
+    """What has been met so far, line by line."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.names: dict[str, None] = {}
+        self.masses: dict[int, float] = {}
+        self.vectors: list[Vector] = []
+        self._new_page()
+
+    def _new_page(self) -> None:
+        self.reading: Vector | None = None
+        self.in_summary = False
+        self.subcase, self.superelement, self.value = 0, 0, 0.0
+
+    def take(self, line: str, k: int) -> None:
+        if line[:1] == "1":
+            self._new_page()
+        self._take_head(line)
+        if found := _TITLE.search(line):
+            self.names["real eigenvectors"] = None
+            self.reading = Vector(self.subcase, self.superelement, int(found[1]), self.value)
+            self.vectors.append(self.reading)
+        elif self.reading is not None:
+            _add_row(self.reading, line, k, self.path)
+        elif self.in_summary and (found := _SUMMARY_ROW.match(line)):
+            self.masses[int(found[1])] = to_float(found[6])
+
+    def _take_head(self, line: str) -> None:
+        if found := _SUBCASE.search(line[60:]):
+            self.subcase = int(found[1])
+        if found := _SUPERELEMENT.search(line):
+            self.superelement = int(found[1])
+        if _SUMMARY.search(line):
+            self.in_summary, self.names["real eigenvalues"] = True, None
+        elif _COMPLEX.search(line):
+            self.names["complex eigenvectors"] = None
+        elif found := _VALUE.search(line):
+            self.value = to_float(found[1])
+
+
+def _add_row(vector: Vector, line: str, k: int, path: Path) -> None:
+    found = _ROW.match(line)
+    if not found:
+        return
+    try:
+        values = tuple(complex(to_float(v)) for v in found[3].split())
+    except ValueError:
+        raise InputError(f"{path} line {k + 1}: a row of an eigenvector cannot be read") from None
+    point = int(found[1])
+    if found[2] == "S":  # scalar points in a row are numbered one after another
+        vector.rows += [(point + n, True, (v,)) for n, v in enumerate(values)]
+    elif len(values) != 6:
+        raise InputError(f"{path} line {k + 1}: a grid has six components, not {len(values)}")
+    else:
+        vector.rows.append((point, False, values))
