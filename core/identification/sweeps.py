@@ -11,7 +11,9 @@ from .bands import Band
 from .candidates import Candidates
 from .moments import BandData, band_data
 from .refinement import Fit, fit_shapes
-from .selection import plausible, prune, select, significance, start_from
+from .selection import plausible, prune, select
+from .significance import significance
+from .starting import start_from
 from .survey import Survey
 from .synthesis import modal_response
 

@@ -11,7 +11,7 @@ import scipy.optimize
 from ..arrays import Floats, Ints, Numbers
 from .moments import BandData, Normal, normal, turned
 from .refinement import Fit, free_columns, solve_shapes, system_at
-from .selection import residual_lines
+from .significance import residual_lines
 
 _SMOOTHED = 7  # lines over which the noise level is averaged
 _MOST_LAGS = 24

@@ -1,0 +1,100 @@
+"""What a root explains, against what the best root fitted to noise would explain."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import chi2
+
+from ..arrays import Floats
+from .moments import BandData, basis, parts_of, shape_normals
+from .refinement import Fit, solve_shapes
+
+_RISK = 0.01  # that noise alone makes one root somewhere in a band
+_MARGIN = 1.5  # beyond what that risk allows, since noise is never quite white
+_MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
+_DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
+_PRIOR = 16.0  # numbers that the variance of all functions counts for in that of one
+
+
+def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
+    """Compare what each mode explains with what the best pole fitted to noise would explain.
+
+    The sum of squares that would be lost without mode k, the others fitted again, over the
+    variance of the residual around its frequency (output by output), is χ² with 2 n_output
+    degrees of freedom for a pole given beforehand. A free participation makes them about
+    (√(2 n_output) + √(2 n_input − 2))² (the largest eigenvalue of a Wishart matrix) and a free
+    pole 2 more; the best of n lines is allowed for by the risk.
+    """
+    m = len(fit.poles)
+    if m == 0:
+        return np.empty(0)
+    F = basis(data, fit.poles, derivative=False)
+    flat = F.reshape(len(F), 2 * m)
+    per_input = shape_normals((flat.T @ flat).reshape(1, m, 2, 1, m, 2), fit.participation)
+    x = np.stack([fit.shapes.real, fit.shapes.imag], axis=-1)
+    variance = row_variances(data, f, fit, F)
+    lost = np.zeros(m)
+    for w, rows in data.patterns:
+        inverse = solve_shapes(np.tensordot(w, per_input, axes=1), np.eye(2 * m))
+        own = inverse.reshape(m, 2, m, 2)[np.arange(m), :, np.arange(m), :]
+        by_row = np.einsum("oka,kab,okb->ko", x[rows], np.linalg.inv(own), x[rows])
+        lost += np.sum(by_row / variance[:, rows], axis=1)
+    narrow = -fit.poles.real / np.pi < np.median(np.diff(f))
+    margin = np.where(narrow, _MARGIN_OF_SPIKES, _MARGIN)
+    return np.asarray(lost / (margin * best_of_noise(data, f, len(x))))
+
+
+def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:
+    """Return how much of the misfit each root must account for, the others refined without it.
+
+    Outputs of unequal noise count for fewer, (Σ v)²/Σ v² of them (Satterthwaite).
+    """
+    variance = row_variances(data, f, fit, basis(data, fit.poles, derivative=False))
+    total = variance.sum(axis=1)
+    outputs = total**2 / np.sum(variance**2, axis=1)
+    noise = np.array([best_of_noise(data, f, n) for n in outputs])
+    return np.asarray(_MARGIN * noise * total / outputs)
+
+
+def best_of_noise(data: BandData, f: Floats, n_output: float) -> float:
+    """Return what the best pole fitted to unit noise explains, see `significance`."""
+    n_input = data.weight.shape[1]
+    freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
+    return float(chi2.isf(_RISK / len(f), freedom))
+
+
+def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
+    """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
+    model = parts_of(fit.shapes[:, None, :] * fit.participation[None, :, :])
+    left = data.y - model @ F[:, 0].reshape(len(F), 2 * len(fit.poles)).T
+    return np.asarray(left * data.weight[:, :, None])
+
+
+def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
+    """Variance of one real number of the residual around each mode, (n_mode, n_output).
+
+    The inputs of an output count as the mode takes part in them. Few lines make the variance of
+    one function uncertain, so it is drawn towards that of all.
+    """
+    left = residual_lines(data, fit, F)
+    n_line = len(f)
+    power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
+    power /= 2.0 * data.weight.sum()
+    hz = np.abs(fit.poles) / (2.0 * np.pi)
+    half = np.maximum(2.0 * np.abs(fit.poles.real) / np.pi, 6.0 * np.median(np.diff(f)))
+    result = np.empty((len(hz), len(data.weight)))
+    for k in range(len(hz)):
+        mask = np.abs(f - hz[k]) <= half[k]
+        mask[np.argsort(np.abs(f - hz[k]))[:12]] = True
+        near = np.flatnonzero(mask)
+        used = np.count_nonzero(np.abs(hz - hz[k]) <= half[k])
+        spent = max(1.0 - used / len(near) / max(1.0, data.weight.sum(axis=1).mean()), 0.25)
+        here = left[..., np.concatenate([near, near + n_line])]
+        squares = np.einsum("oin,oin->oi", here, here) / (2.0 * len(near) * spent)
+        mean = squares.sum() / data.weight.sum()
+        squares = (squares * 2.0 * len(near) + _PRIOR * mean) / (2.0 * len(near) + _PRIOR)
+        part = data.weight * np.abs(fit.participation[:, k]) ** 2
+        row = np.sum(part * squares, axis=1) / np.maximum(part.sum(axis=1), 1e-300)
+        floor = _DYNAMIC_RANGE**2 * (power[near].mean() + 0.01 * power.mean())
+        result[k] = np.maximum(row, max(floor, 1e-300))
+    return result
