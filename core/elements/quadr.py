@@ -161,7 +161,9 @@ def _add_quad_spin(K: Floats, stiffness: Floats, local: Floats, area: Floats) ->
     M[:, 0, 0], M[:, 0, 1] = -mixed, -p[:, 1] * q[:, 1]
     M[:, 1, 0], M[:, 1, 1] = p[:, 0] * q[:, 0], mixed
     slope = a @ np.linalg.inv(M)  # along xi and eta, from the two components
-    hourglass = 0.25 * XI * ETA
+    pattern = XI * ETA
+    # without what linear displacements put into it (Flanagan, Belytschko 1981)
+    hourglass = 0.25 * (pattern - np.einsum("i,nid,ndj->nj", pattern, local, g))[:, None]
     linear = np.zeros((n, 2, 12))
     linear[:, :, :4] = -slope[:, :, :1] * hourglass
     linear[:, :, 4:8] = -slope[:, :, 1:] * hourglass
@@ -169,7 +171,7 @@ def _add_quad_spin(K: Floats, stiffness: Floats, local: Floats, area: Floats) ->
     weight = (stiffness * area)[:, None, None]
     spin = mean[:, :, None] * mean[:, None, :]
     spin = spin + _LINEAR_SPIN / 3.0 * transpose(linear) @ linear
-    alternating = np.concatenate([np.zeros(8), hourglass])
+    alternating = np.concatenate([np.zeros(8), 0.25 * pattern])
     spin = spin + _ALTERNATING_SPIN * np.outer(alternating, alternating)
     rows = np.concatenate([_NODE4, _NODE4 + 1, _NODE4 + 5])
     K[:, rows[:, None], rows] += weight * spin
