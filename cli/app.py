@@ -36,6 +36,7 @@ def _root(
 
 def _register() -> None:
     from .options import UPDATE, comparing
+    from .verbs.convert import convert
     from .verbs.correlate import correlate
     from .verbs.demo import demo
     from .verbs.inspect import inspect
@@ -44,6 +45,7 @@ def _register() -> None:
     from .verbs.update import update
 
     app.command()(inspect)
+    app.command()(convert)
     app.command()(solve)
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE))

@@ -1,7 +1,7 @@
 """Nastran decks and results."""
 
 from .build import build_model
-from .describe import describe_deck
+from .describe import deck_geometry, describe_deck
 from .editing.add import add_cards
 from .editing.decktext import DeckText, read_deck_text
 from .editing.diff import unified_diff
@@ -11,7 +11,7 @@ from .editing.numbers import writable
 from .editing.split import Split, split_property
 from .editing.write import write_deck, write_in_place
 from .matrices.content import DofMap, NastranMatrix
-from .matrices.model import model_of_matrices, stiffness_and_mass
+from .matrices.model import matrix_of, model_matrices, model_of_matrices, stiffness_and_mass
 from .matrices.op4 import is_op4, read_op4
 from .matrices.read import describe_matrices, matrix_file_kind, read_matrices
 from .matrices.write import write_dmig, write_op4
@@ -33,12 +33,15 @@ __all__ = [
     "Weight",
     "add_cards",
     "build_model",
+    "deck_geometry",
     "describe_deck",
     "describe_matrices",
     "describe_results",
     "free_id",
     "is_op4",
     "matrix_file_kind",
+    "matrix_of",
+    "model_matrices",
     "model_of_matrices",
     "parse_parameter",
     "read_deck",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ...core.errors import InputError
+from ...core.geometry import Geometry
 from .casecontrol import CaseControl
 from .grids import read_points
 from .read import Deck, EigenRequest, read_deck
@@ -37,6 +39,20 @@ def describe_deck(path: Path | str) -> dict[str, Any]:
         "skipped": list(deck.skipped),
         "warnings": list(deck.warnings),
     }
+
+
+def deck_geometry(deck: Deck) -> Geometry:
+    """Return grids and elements of a deck for drawing.
+
+    Elements are left out where the deck has some that trueup does not assemble.
+    """
+    from .build import build_model
+
+    try:
+        return build_model(deck).geometry
+    except InputError:
+        points = read_points(deck.bulk)
+        return Geometry(points.ids, points.xyz, deck.length_unit)
 
 
 def _contents(deck: Deck) -> dict[str, Any]:
@@ -72,8 +88,6 @@ def _shown(file: Path, main: Path) -> str:
 
 def _box(deck: Deck) -> list[float] | None:
     """Edge lengths of the box around the grids; None where a coordinate system is elsewhere."""
-    from ...core.errors import InputError
-
     try:
         xyz = read_points(deck.bulk).xyz
     except InputError:  # a part of a deck: the systems may stand in another file

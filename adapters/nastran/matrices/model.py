@@ -14,7 +14,7 @@ from ....core.geometry import Geometry
 from ....core.model import Model, Term
 from ..grids import Points, read_points
 from ..read import Deck
-from .content import DofMap, NastranMatrix
+from .content import SYMMETRIC, DofMap, NastranMatrix, guessed_form
 
 _NOT_FOUND = np.zeros((0, 3))
 
@@ -167,3 +167,31 @@ def _expanded(there: DofMap, points: Points) -> tuple[Dofs, sp.csr_matrix]:
     ).tocsr()
     matrix.eliminate_zeros()
     return dofs, matrix
+
+
+def model_matrices(model: Model) -> tuple[NastranMatrix, NastranMatrix]:
+    """Return stiffness and mass of an assembled deck as KFF and MFF, on its free dofs.
+
+    Raises
+    ------
+    InputError
+        A model that does not say what its free degrees of freedom are.
+    """
+    if len(model.free_labels) != model.n_free:
+        raise InputError("the model does not name its free degrees of freedom")
+    pairs = np.array([[int(w) for w in label.split(":")] for label in model.free_labels], np.int64)
+    there = DofMap(*pairs.reshape(-1, 2).T)
+    K, M = (
+        NastranMatrix(name, matrix.tocsc(), SYMMETRIC, there, there)
+        for name, matrix in (("KFF", model.K()), ("MFF", model.M()))
+    )
+    return K, M
+
+
+def matrix_of(
+    name: str, matrix: object, rows: Dofs | None = None, columns: Dofs | None = None
+) -> NastranMatrix:
+    """Return an array or sparse matrix, with its degrees of freedom, as a matrix of Nastran's."""
+    sparse = sp.csc_matrix(matrix)
+    row_map, column_map = (None if d is None else DofMap.of_dofs(d) for d in (rows, columns))
+    return NastranMatrix(name, sparse, guessed_form(sparse), row_map, column_map)

@@ -1,0 +1,179 @@
+"""What ``convert`` carries from its sources to its destination, and what it cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..core.errors import InputError
+from ..core.frfs import Frfs
+from ..core.geometry import Geometry
+from ..core.modes import Modes
+from .formats import DECK, OP4, PUNCH, RESULTS, STORE, UNIVERSAL, kind_of_file
+
+KINDS = (DECK, UNIVERSAL, STORE, RESULTS, OP4, PUNCH)
+
+
+@dataclass
+class Cargo:
+    """The neutral content of all sources.
+
+    Parameters
+    ----------
+    geometry : Geometry or None
+    modes, frfs, matrices : dict
+        By name.
+    from_deck : bool
+        Whether the geometry is that of a deck, which goes on holding it.
+    rest : list of str
+        What the sources hold that no part of this can carry, in words.
+    notes : list of str
+        What was assumed or rounded.
+    extras : dict
+        Parts of a store that only a store can hold.
+    """
+
+    geometry: Geometry | None = None
+    modes: dict[str, Modes] = field(default_factory=dict)
+    frfs: dict[str, Frfs] = field(default_factory=dict)
+    matrices: dict[str, Any] = field(default_factory=dict)
+    from_deck: bool = False
+    rest: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    extras: dict[str, Any] = field(default_factory=dict)
+
+    def add(self, part: str, name: str, noun: object) -> None:
+        """Add a noun under a name that is still free."""
+        named: dict[str, object] = getattr(self, part)
+        free, number = name, 2
+        while free in named:
+            free, number = f"{name}_{number}", number + 1
+        named[free] = noun
+
+
+def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Cargo:
+    """Read all sources.
+
+    A deck beside results or matrices gives them geometry and axes; alone, it is assembled.
+
+    Raises
+    ------
+    InputError
+        A source that cannot be read; two decks; two geometries.
+    """
+    kinds = [(path, kind or kind_of_file(path)) for path in sources]
+    decks = [path for path, k in kinds if k == DECK]
+    if len(decks) > 1:
+        raise InputError(f"{decks[1]}: give one deck only; it names its own INCLUDE files")
+    cargo = Cargo()
+    deck = _deck(decks[0], len(kinds) == 1, cargo) if decks else None
+    universal = [path for path, k in kinds if k == UNIVERSAL]
+    if universal:
+        _universal(universal, cargo)
+    for path, k in kinds:
+        if k == RESULTS:
+            _results(path, deck, subcase, cargo)
+        elif k in (OP4, PUNCH):
+            _matrices(path, deck, cargo)
+        elif k == STORE:
+            _store(path, cargo)
+    return cargo
+
+
+def _set_geometry(cargo: Cargo, geometry: Geometry | None, path: Path) -> None:
+    if geometry is None:
+        return
+    if cargo.geometry is not None:
+        raise InputError(f"{path} holds a second geometry: convert the sources one by one")
+    cargo.geometry = geometry
+
+
+def _deck(path: Path, alone: bool, cargo: Cargo) -> Any:
+    from ..adapters.nastran import build_model, deck_geometry, model_matrices, read_deck
+
+    deck = read_deck(path)
+    cargo.notes += deck.warnings
+    cargo.from_deck = True
+    if alone:
+        model = build_model(deck)
+        cargo.notes += [w for w in model.warnings if w not in cargo.notes]
+        cargo.geometry = model.geometry
+        for m in model_matrices(model):
+            cargo.add("matrices", m.name, m)
+    else:
+        cargo.geometry = deck_geometry(deck)
+    return deck
+
+
+def _universal(paths: list[Path], cargo: Cargo) -> None:
+    from ..adapters.universal import read_universal
+
+    content = read_universal(paths)
+    where = ", ".join(p.name for p in paths)
+    _set_geometry(cargo, content.geometry, paths[0])
+    if content.modes is not None:
+        cargo.add("modes", "test", content.modes)
+    if content.frfs is not None:
+        cargo.add("frfs", "test", content.frfs)
+    for kind in dict.fromkeys(f.kind for f in content.functions):
+        count = sum(1 for f in content.functions if f.kind == kind)
+        cargo.rest.append(f"{count} functions of kind {kind} of {where}")
+    cargo.rest += [f"{s.what} of {Path(s.path or paths[0]).name} line {s.line}"
+                   for s in content.skipped]  # fmt: skip
+    cargo.notes += content.warnings
+
+
+def _results(path: Path, deck: Any, subcase: int | None, cargo: Cargo) -> None:
+    from ..adapters.nastran import describe_results, read_matrices, read_modes
+
+    told = describe_results(path)
+    if told["contents"].get("matrices"):
+        for m in read_matrices(path, deck):
+            cargo.add("matrices", m.name, m)
+    if told["contents"]["modes"] or not cargo.matrices:
+        cargo.add("modes", "analysis", read_modes(path, deck, subcase))
+        if deck is None and told["format"] != "Nastran HDF5":
+            cargo.notes.append(
+                f"{path.name}: shapes are taken as along basic axes; name the deck as well where "
+                "grids have displacement systems of their own"
+            )
+    others = [s["what"] for s in told["skipped"]]
+    if others:
+        more = f" and {len(others) - 6} more" if len(others) > 6 else ""
+        cargo.notes.append(f"{path.name}: not read: {', '.join(others[:6])}{more}")
+
+
+def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:
+    from ..adapters.nastran import read_matrices
+
+    for m in read_matrices(path, deck):
+        cargo.add("matrices", m.name, m)
+
+
+def _store(path: Path, cargo: Cargo) -> None:
+    from ..adapters.nastran import matrix_of
+    from ..adapters.store import read_store
+
+    content = read_store(path)
+    _set_geometry(cargo, content.geometry, path)
+    for name, modes in content.modes.items():
+        cargo.add("modes", name, modes)
+    for name, frfs in content.frfs.items():
+        cargo.add("frfs", name, frfs)
+    used = set()
+    for name, matrix in content.matrices.items():
+        rows, columns = (content.dofs.get(f"{side}/{name}") for side in ("rows", "columns"))
+        used |= {f"{side}/{name}" for side in ("rows", "columns")}
+        cargo.add("matrices", name, matrix_of(name, matrix, rows, columns))
+    dofs = {k: v for k, v in content.dofs.items() if k not in used}
+    for key, value in (
+        ("test_geometry", content.test_geometry), ("mac", content.mac), ("dofs", dofs),
+        ("pairs", content.pairs), ("history", content.history),
+    ):  # fmt: skip
+        if value is None or (not isinstance(value, Geometry) and not len(value)):
+            continue
+        if key in cargo.extras:
+            raise InputError(f"{path} holds a second {key.replace('_', ' ')}: convert one store")
+        cargo.extras[key] = value
