@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Floats, Ints
 
-CHUNK = 4096
+CHUNK = 256
 
 
 def in_chunks(n: int, n_dof: int, matrices: Callable[[slice], Floats], size: int = CHUNK) -> Floats:

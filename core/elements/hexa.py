@@ -10,7 +10,7 @@ from .material import strain_transform
 from .solid import displacement_gradients, energy, solid_stiffness, strain_operator
 from .solid_shapes import HEXA8, HEXA20, gauss_line, hexa8, hexa20
 
-_CHUNK = 512
+_CHUNK = 128
 # shear component -> natural direction along which it keeps its variation
 _KEPT = {3: 2, 4: 0, 5: 1}
 
@@ -149,7 +149,7 @@ def hexa20_stiffness(xyz: Floats, C: Floats, integration: str = "reduced") -> Fl
             return energy(strain_operator(g), C[part], detJ)
         return _hexa20(xyz[part], C[part])
 
-    return in_chunks(len(xyz), 60, matrices, _CHUNK // 4)
+    return in_chunks(len(xyz), 60, matrices, _CHUNK // 2)
 
 
 def _hexa20(xyz: Floats, C: Floats) -> Floats:

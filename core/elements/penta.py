@@ -10,7 +10,7 @@ from .material import strain_transform
 from .solid import displacement_gradients, energy, solid_stiffness, strain_operator
 from .solid_shapes import PENTA6, PENTA15, gauss_line, gauss_tria, penta6, penta15
 
-_CHUNK = 512
+_CHUNK = 128
 _AT_CENTRE = penta6(np.array([[1.0 / 3.0, 1.0 / 3.0, 0.0]]))[1][0]
 # middles of the three faces, edges 1-2, 2-3, 3-1
 _FACES = np.array([[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]])
@@ -139,7 +139,7 @@ def penta15_stiffness(xyz: Floats, C: Floats, integration: str = "reduced") -> F
     def matrices(part: slice) -> Floats:
         return _penta15(xyz[part], C[part])
 
-    return in_chunks(len(xyz), 45, matrices, _CHUNK // 4)
+    return in_chunks(len(xyz), 45, matrices, _CHUNK // 2)
 
 
 def _penta15(xyz: Floats, C: Floats) -> Floats:

@@ -18,7 +18,7 @@ from .solid_shapes import (
     Solid,
 )
 
-_CHUNK = 512
+_CHUNK = 128
 
 
 def displacement_gradients(xyz: Floats, derivatives: Floats) -> tuple[Floats, Floats, Floats]:
