@@ -48,11 +48,14 @@ class Structure:
         Elements.
     blocks : tuple of ElementBlock
         The same for assembly: in displacement systems, scaled by WTMASS.
+    notes : tuple of str
+        What is left out.
     """
 
     points: Points
     groups: tuple[Group, ...]
     blocks: tuple[ElementBlock, ...]
+    notes: tuple[str, ...] = ()
 
 
 def read_structure(deck: Deck, variation: Variation) -> Structure:
@@ -76,7 +79,7 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     groups = tuple(g for family in FAMILIES.values() for g in family(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
-    return Structure(points, groups, blocks)
+    return Structure(points, groups, blocks, tuple(context.notes))
 
 
 def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
@@ -115,7 +118,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         mass=terms[1],
         parameters=variation.parameters,
         free_labels=tuple(points.label(d) for d in kept),
-        warnings=(*deck.warnings, *warnings, *more),
+        warnings=(*deck.warnings, *structure.notes, *warnings, *more),
     )
 
 

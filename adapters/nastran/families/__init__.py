@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .bars import bars, rods
+from .beams import beams
 from .bushes import bushes
 from .common import Context, Group, Key, Settings
 from .masses import masses
@@ -16,6 +17,7 @@ FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
     "shells": shells,
     "solids": solids,
     "bars": bars,
+    "beams": beams,
     "rods": rods,
     "bushes": bushes,
     "springs": springs,
@@ -25,7 +27,7 @@ FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
 
 SUPPORTED = frozenset(
     (
-        *("CQUAD4", "CTRIA3", "CBAR", "CROD", "CONROD", "CTUBE"),
+        *("CQUAD4", "CTRIA3", "CBAR", "CBEAM", "CROD", "CONROD", "CTUBE"),
         *("CHEXA", "CPENTA", "CTETRA", "CPYRAM", "CBUSH", "CBUSH1D"),
         *("CELAS1", "CELAS2", "CELAS3", "CELAS4"),
         *("CMASS1", "CMASS2", "CMASS3", "CMASS4", "CONM1", "CONM2"),

@@ -45,12 +45,15 @@ class Context:
         PARAM values.
     nonstructural : Nonstructural
         Mass per area or length that NSM cards add to elements.
+    notes : list of str
+        What families leave out, to be said as warnings.
     """
 
     bulk: Bulk
     points: Points
     settings: Settings
     nonstructural: Nonstructural = field(default_factory=Nonstructural)
+    notes: list[str] = field(default_factory=list)
 
     def extra_mass(self, bulk: Bulk, ids: Ints) -> Floats | float:
         """Mass per area or length that NSM cards add to the elements `ids`."""
