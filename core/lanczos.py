@@ -40,7 +40,7 @@ class BlockLanczos:
     locked : (n, n_locked) float
         M-orthonormal eigenvectors already known; the iteration stays M-orthogonal to them.
     max_basis : int
-        Vectors kept before a restart.
+        Vectors kept before a restart; grows where so many are wanted.
     """
 
     def __init__(
@@ -103,8 +103,14 @@ class BlockLanczos:
         return X
 
     def restart(self, keep: int) -> None:
-        """Shrink the basis to its `keep` best Ritz vectors (call between `ritz` and `advance`)."""
+        """Shrink the basis to its `keep` best Ritz vectors (call between `ritz` and `advance`).
+
+        Where that would leave too little room for progress, the room is doubled instead.
+        """
         keep = min(keep, self.size)
+        if 2 * keep > self._max_basis:
+            self._grow()
+            return
         self._V[:, :keep] = self._V[:, : self.size] @ self._Y[:, :keep]
         self._T[:] = 0.0
         self._T[np.arange(keep), np.arange(keep)] = self._theta[:keep]
@@ -114,6 +120,15 @@ class BlockLanczos:
     def full(self) -> bool:
         """Whether the next block does not fit before a restart."""
         return self.size + self._width > self._max_basis
+
+    def _grow(self) -> None:
+        spare = self._V.shape[1] - self._max_basis
+        self._max_basis *= 2
+        room = self._max_basis + spare
+        V, T = np.empty((len(self._V), room), order="F"), np.zeros((room, room))
+        V[:, : self.size] = self._V[:, : self.size]
+        T[: self.size, : self.size] = self._T[: self.size, : self.size]
+        self._V, self._T = V, T
 
     def _append(self, block: Floats) -> None:
         self._width = block.shape[1]

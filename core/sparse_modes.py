@@ -21,8 +21,11 @@ _FIRST_SHIFT_HZ = 20.0
 _WIDTH = 8
 _GUARD = 4
 _GUARD_TOLERANCE = 1e-3
+_FIRM = 1e-6
 _GAP = 1e-4
-_ATTEMPTS = 4
+_CLEAR = 1e-2
+_ATTEMPTS = 5
+_WIDEST = 64
 
 
 @dataclass(frozen=True)
@@ -78,23 +81,25 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
     found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
     del factor, lanczos  # two factors at a time only where the caller keeps one
+    have = missed = 0
     for attempt in range(1, _ATTEMPTS + 1):
         if not request.keep_factor:
             found = replace(found, factor=None)
         if not request.count:
             return found
         gap = _gap(found, elastic)
-        have = int(np.count_nonzero(found.values < gap[0]))
-        missed = _inertia(pencil, gap, request.backend) - n_rigid - have
-        if missed == 0:
-            return replace(found, missed=0)
-        if missed < 0 or attempt == _ATTEMPTS:
-            break
-        found = _with_missed(pencil, rigid, found, missed, request, attempt)
-    hertz = np.sqrt(gap[0]) / (2.0 * np.pi)
+        if gap is not None:
+            have = int(np.count_nonzero(_estimates(found) < gap[0]))
+            missed = _inertia(pencil, gap, request.backend) - n_rigid - have
+            if missed == 0:
+                return replace(found, missed=0)
+            if missed < 0:
+                break
+        if attempt < _ATTEMPTS:
+            further = max(elastic, have + missed) - len(found.values)
+            found = _with_missed(pencil, rigid, found, max(further, 1), request, attempt)
     raise CheckError(
-        f"{n_rigid + have} modes were found below {hertz:.6g} Hz but the inertia count shows "
-        f"{n_rigid + have + missed}"
+        f"{n_rigid + have} modes were found where the inertia count shows {n_rigid + have + missed}"
     )
 
 
@@ -167,19 +172,20 @@ def _converged(
             loose = int(np.argmin(np.append(residual <= _GUARD_TOLERANCE * theta, False)))
             tight = bool((residual <= request.tolerance * theta)[:elastic].all())
             if lanczos.exhausted:
-                count = int(np.count_nonzero(theta > 1e-12 * theta[0]))
+                firm = loose = int(np.count_nonzero(theta > 1e-12 * theta[0]))
                 break
             values = sigma + 1.0 / theta[:loose]
-            if tight and loose > elastic and _largest_gap(values, elastic)[1] > _GAP:
-                count = loose
+            if tight and loose > elastic and _widest_gap(values, elastic) is not None:
+                firm = max(elastic, int(np.argmax(residual > _FIRM * theta)))
                 break
             if lanczos.full:
                 lanczos.restart(max(elastic, loose) + _GUARD + _WIDTH)
-            check_at = lanczos.size + max(_WIDTH, lanczos.size // 16)
+            check_at = lanczos.size + max(_WIDTH, lanczos.size // 12)
         lanczos.advance()
         lanczos.step()
-    found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(count), theta[:count])
-    return replace(found, complete=lanczos.exhausted)
+    found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(firm), theta[:firm])
+    ahead = sigma + 1.0 / theta[firm : max(loose, firm)]
+    return replace(found, complete=lanczos.exhausted, ahead=ahead)
 
 
 def _refuse_indefinite_mass(pencil: Pencil, steps: int = 40) -> None:
@@ -229,22 +235,29 @@ def _polished(
     return Spectrum(sigma + alpha, Y @ C, residual, sigma, False, None, factor)
 
 
-def _largest_gap(values: Floats, first: int) -> tuple[int, float]:
-    """Where from `first` on two neighbours lie furthest apart, and how far relatively."""
-    ahead = np.diff(values[first - 1 : first + 2 * _GUARD]) / np.abs(
-        values[first : first + 2 * _GUARD]
-    )
-    k = int(np.argmax(ahead))
-    return first + k, float(ahead[k])
+def _widest_gap(values: Floats, first: int) -> int | None:
+    """Position k >= first of a clear gap between values[k - 1] and values[k], else None."""
+    ahead = np.diff(values[first - 1 :]) / np.abs(values[first:])
+    clear = np.flatnonzero(ahead > _CLEAR)
+    if len(clear):
+        return first + int(clear[0])
+    k = int(np.argmax(ahead)) if len(ahead) else 0
+    return first + k if len(ahead) and ahead[k] > _GAP else None
 
 
-def _gap(found: Spectrum, elastic: int) -> tuple[float, float]:
-    """Bounds of an interval without modes, above the first `elastic`."""
-    values = found.values
-    if found.complete or len(values) <= elastic:
+def _estimates(found: Spectrum) -> Floats:
+    return np.concatenate([found.values, found.ahead])
+
+
+def _gap(found: Spectrum, elastic: int) -> tuple[float, float] | None:
+    """Bounds of an interval without modes above the first `elastic`, if there is one in sight."""
+    values = _estimates(found)
+    if found.complete:
         top = abs(values[-1]) - found.sigma
         return 2.0 * top, 4.0 * top
-    k, _ = _largest_gap(values, elastic)
+    k = _widest_gap(values, elastic)
+    if k is None:
+        return None
     wide = values[k] - values[k - 1]
     return float(values[k - 1] + 0.4 * wide), float(values[k - 1] + 0.6 * wide)
 
@@ -266,12 +279,13 @@ def _with_missed(
     request: Request,
     attempt: int,
 ) -> Spectrum:
-    """Search again, M-orthogonally to all that was found, with another start."""
+    """Search again, M-orthogonally to all that was found: another start, as wide as needed."""
     factor = found.factor or factorise(pencil.shifted(found.sigma), True, request.backend)
     locked = np.hstack([rigid, found.vectors])
     rng = np.random.default_rng(request.seed + 1000 * attempt)
-    start = rng.standard_normal((pencil.n, _WIDTH))
-    lanczos = BlockLanczos(factor.solve, pencil.M, start, locked, _room(missed))
+    width = min(missed + _GUARD, _WIDEST) if missed > _GUARD else _WIDTH
+    start = rng.standard_normal((pencil.n, width))
+    lanczos = BlockLanczos(factor.solve, pencil.M, start, locked, _room(missed) + 6 * width)
     lanczos.step()
     further = _converged(pencil, locked, found.sigma, factor, lanczos, missed, request)
     X = np.hstack([found.vectors, further.vectors])
@@ -280,4 +294,4 @@ def _with_missed(
     joined = _polished(
         pencil, rigid, found.sigma, factor, X[:, order], 1.0 / (values[order] - found.sigma)
     )
-    return replace(joined, complete=found.complete and further.complete)
+    return replace(joined, complete=further.complete, ahead=further.ahead)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from .arrays import Floats
 from .factor import Factorisation
@@ -28,6 +30,8 @@ class Spectrum:
         Eigenvalues that the inertia count shows but that are not here; None without a count.
     factor : Factorisation or None
         Of K - sigma M.
+    ahead : (n,) float
+        Rough values of the next eigenvalues, to find a gap.
     """
 
     values: Floats
@@ -37,3 +41,4 @@ class Spectrum:
     complete: bool
     missed: int | None
     factor: Factorisation | None = None
+    ahead: Floats = field(default_factory=lambda: np.zeros(0))

@@ -55,6 +55,17 @@ def test_square_membrane_has_every_repeated_mode(membrane, backend, n):
         assert found.rigid_body_modes == 0
 
 
+@pytest.mark.parametrize("copies", [12, 40])
+def test_more_equal_modes_than_the_block_is_wide(backend, copies):
+    """Identical oscillators side by side; the end of the list may cut their cluster."""
+    K, M = chain(60, ground=1e-3)
+    exact = np.repeat(1e-3 + chain_exact(60), copies)
+    many = sp.block_diag([K] * copies).tocsr(), sp.block_diag([M] * copies).tocsr()
+    for wanted in (copies - 3, 2 * copies):
+        found = solve(many, wanted, backend=backend)
+        np.testing.assert_allclose(found.eigenvalues, exact[:wanted], rtol=1e-9)
+
+
 def test_all_modes_of_a_small_model(membrane):
     K, M, exact = membrane(12)
     found = solve((K, M), 144)
