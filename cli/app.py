@@ -39,6 +39,7 @@ def _register() -> None:
     from .verbs.convert import convert
     from .verbs.correlate import correlate
     from .verbs.demo import demo
+    from .verbs.discover import discover
     from .verbs.inspect import inspect
     from .verbs.report import report
     from .verbs.solve import solve
@@ -49,6 +50,7 @@ def _register() -> None:
     app.command()(solve)
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE))
+    app.command()(comparing(discover))
     app.command()(report)
     app.command()(demo)
 

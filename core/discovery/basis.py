@@ -14,6 +14,7 @@ from ..eigen import Eigensolution
 from ..model import Model, Term
 
 _DEPENDENT = 1e-5
+_CHUNK = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +116,31 @@ def build_basis(
         tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.stiffness),
         tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.mass),
     )
+
+
+def missing_flexibility(
+    model: Model, solution: Eigensolution, basis: Basis, root: sp.csr_matrix
+) -> Floats:
+    """Flexibility of loads that the basis does not have, (n_row,).
+
+    Parameters
+    ----------
+    root : (n_row, n_free) sparse
+        Loads. The flexibility is that of K − σM with the shift of `solution`.
+    """
+    K, M = model.K(), model.M()
+    out = np.empty(root.shape[0])
+    V = basis.vectors
+    A = V.T @ (K @ V) - solution.sigma * (V.T @ (M @ V))
+    for start in range(0, len(out), _CHUNK):
+        rows = root[start : start + _CHUNK]
+        X = _solve(solution, K, M, np.asarray(rows.T.todense()))
+        seen = np.asarray(rows @ V)
+        exact = np.asarray(rows.multiply(X.T).sum(axis=1)).ravel()
+        out[start : start + _CHUNK] = exact - np.einsum(
+            "ij,ij->i", seen, np.linalg.solve(A, seen.T).T
+        )
+    return np.maximum(out, 0.0)
 
 
 def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -> Floats:

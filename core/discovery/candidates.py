@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -59,17 +59,20 @@ class FactorLaw:
 
 @dataclass(frozen=True, eq=False)
 class SpringLaw:
-    """A spring k = e^θ adds k·A to K."""
+    """A spring k = e^θ adds k·A to K; on a basis too stiff by `missing` (n, 1), k / (1 + k·missing)."""
 
+    missing: Floats
     on: str = "K"
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return k."""
-        return np.exp(theta)[:, None]
+        """Return what the spring is worth."""
+        k = np.exp(theta)[:, None]
+        return k / (1.0 + k * self.missing[rows])
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return dk/dθ."""
-        return np.exp(theta)[:, None]
+        """Return its derivative by θ."""
+        k = np.exp(theta)[:, None]
+        return k / (1.0 + k * self.missing[rows]) ** 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +137,24 @@ class Candidates:
         """Return the rows of `root` on the basis, (n, q, r)."""
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
+
+    def on_basis(self, missing: Floats) -> Candidates:
+        """Return the candidates with the law that holds on a basis.
+
+        `missing` (n · q,) is the flexibility of each row that the basis does not have: a
+        coordinate released on a basis that is too stiff by it would give too little.
+        """
+        if isinstance(self.law, SpringLaw):
+            return replace(self, law=SpringLaw(self.law.missing + missing.reshape(-1, 1)))
+        if isinstance(self.law, ReleaseLaw):
+            left = self.law.own - missing.reshape(self.law.own.shape)
+            return replace(self, law=ReleaseLaw(np.maximum(left, 1e-6 * self.law.own)))
+        return self
+
+    @property
+    def needs_flexibility(self) -> bool:
+        """Whether the law depends on what a basis lacks."""
+        return isinstance(self.law, SpringLaw | ReleaseLaw)
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""

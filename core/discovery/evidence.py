@@ -10,6 +10,10 @@ from scipy.optimize import linear_sum_assignment
 from ..arrays import Bools, Floats, Ints
 
 
+_UNSEEN = 1e-10
+"""Squared length at the sensors, relative to the largest, of a mode that they do not see."""
+
+
 @dataclass(frozen=True)
 class Noise:
     """Standard deviations of what a right model would still miss.
@@ -25,12 +29,16 @@ class Noise:
         structure, so that many sensors repeat what few say.
     robust : float
         Misfit of one mode beyond which more of it counts less and less (a mode may be wrong).
+    mixing : float
+        Relative size of the small changes of K that no model has right. Modes whose eigenvalues
+        differ by no more than this turn freely within their subspace.
     """
 
     frequency: float = 0.004
     shape: float = 0.05
     independent: float = 12.0
     robust: float = 40.0
+    mixing: float = 0.006
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,30 +65,98 @@ class Evidence:
         return Evidence(self.frequencies_hz[modes], part / length, self.noise)
 
 
-def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, lengths: Floats) -> Floats:
+def targets(e: Evidence, trend: float) -> Floats:
+    """Eigenvalues at which a model of this mesh should show the test modes, (n_test,).
+
+    The error of a mesh, and of masses lumped on it, grows with the square of the wave number,
+    for bending with the frequency: ln f is taken lower by ``trend`` at the highest test mode and
+    in proportion below.
+    """
+    f = e.frequencies_hz
+    return np.asarray((2.0 * np.pi * f * np.exp(-trend * f / f.max())) ** 2)
+
+
+def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) -> Floats:
+    """MAC of test shapes with analysis modes, close modes counted as a subspace.
+
+    The analysis shapes are made orthonormal at the sensors as far as they mix (Gram-Schmidt with
+    the Gram matrix times `mixing`); then the shares of all modes that mix with one add up: for
+    modes apart this is their MAC, for a repeated eigenvalue that of the test shape with the
+    subspace.
+
+    Parameters
+    ----------
+    eigenvalues : (..., n) float
+    cross : (..., n_test, n) float
+        Test shapes (unit length) times analysis shapes at the sensors.
+    gram : (..., n, n) float
+        Analysis shapes times analysis shapes at the sensors.
+    size : float
+        See `mixing`.
+
+    Returns
+    -------
+    (..., n_test, n) float, 0 to 1
+    """
+    n = gram.shape[-1]
+    diagonal = np.einsum("...ii->...i", gram)
+    seen = diagonal > _UNSEEN * diagonal.max(axis=-1, keepdims=True)
+    scale = np.where(seen, 1.0 / np.sqrt(np.where(seen, diagonal, 1.0)), 0.0)
+    W = mixing(eigenvalues, size)
+    G = W * gram * scale[..., :, None] * scale[..., None, :]
+    G[..., np.arange(n), np.arange(n)] = 1.0 + 1e-6
+    inverse = np.linalg.inv(np.linalg.cholesky(G))
+    c = np.matmul(cross * scale[..., None, :], np.swapaxes(inverse, -1, -2))
+    return np.asarray(np.minimum(np.matmul(c**2, W), 1.0))
+
+
+def mode_costs(
+    e: Evidence, trend: float, eigenvalues: Floats, cross: Floats, gram: Floats
+) -> Floats:
     """Misfit of every test mode with every analysis mode.
 
     Parameters
     ----------
     e : Evidence
-    eigenvalues : (..., n) float
-    cross : (..., n_test, n) float
-        Test shapes times analysis shapes at the sensors.
-    lengths : (..., n) float
-        Squared lengths of the analysis shapes at the sensors.
+    trend : float
+        See `targets`.
+    eigenvalues, cross, gram
+        See `joint_macs`.
 
     Returns
     -------
     (..., n_test, n) float
-        (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c).
+        (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
     """
-    omega2 = (2.0 * np.pi * e.frequencies_hz) ** 2
+    omega2 = targets(e, trend)
     floor = 1e-6 * omega2.min()
     off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
-    macs = cross**2 / np.maximum(lengths, np.finfo(float).tiny)[..., None, :]
     n = e.noise
-    d = (off / n.frequency) ** 2 + n.independent * np.maximum(1.0 - macs, 0.0) / n.shape**2
+    macs = joint_macs(np.maximum(eigenvalues, floor), cross, gram, n.mixing)
+    d = (off / n.frequency) ** 2 + n.independent * (1.0 - macs) / n.shape**2
     return np.asarray(n.robust * np.log1p(d / n.robust))
+
+
+def mixing(eigenvalues: Floats, size: float) -> Floats:
+    """How much of mode l a mode k may hold that a slightly different model would not.
+
+    A relative change ε of the stiffness mixes two modes by ε λ / (λ_k − λ_l). Over changes of the
+    size `size` the share of l that says nothing against k is 1 / (1 + (gap / size)²): all of it
+    for a repeated eigenvalue, nothing for modes far apart.
+
+    Parameters
+    ----------
+    eigenvalues : (..., n) float
+    size : float
+
+    Returns
+    -------
+    (..., n, n) float
+        Symmetric, ones on the diagonal.
+    """
+    log = np.log(np.maximum(eigenvalues, np.finfo(float).tiny))
+    gap = log[..., :, None] - log[..., None, :]
+    return np.asarray(1.0 / (1.0 + (gap / size) ** 2))
 
 
 def matched(costs: Floats) -> tuple[float, Ints]:

@@ -11,14 +11,18 @@ import scipy.linalg as la
 from ..arrays import Floats, Ints
 from .basis import Basis
 from .candidates import Catalogue, Suspect
-from .evidence import Evidence, matched, mode_costs
+from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 
 _DEGENERATE = 2e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter,)."""
+    """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter + 1,).
+
+    The last entry is the trend of the mesh error (see `evidence.targets`), not a parameter of
+    the model.
+    """
 
     spread: Floats
     lower: Floats
@@ -29,7 +33,8 @@ class Prior:
 class Problem:
     """What stays the same while hypotheses compete.
 
-    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r).
+    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r); `modes`
+    eigenpairs are computed, of which the first `columns` may match a test mode.
     """
 
     evidence: Evidence
@@ -39,6 +44,7 @@ class Problem:
     factors: tuple[Floats, ...]
     prior: Prior
     modes: int
+    columns: int
 
     def turned(self, T: Floats) -> Problem:
         """Return the problem on the basis ``vectors @ T``."""
@@ -91,11 +97,14 @@ def solve(
     return values, vectors
 
 
-def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, Ints]:
+def misfit(
+    problem: Problem, trend: float, values: Floats, vectors: Floats
+) -> tuple[float, Ints]:
     """Return the misfit of a solution and its match."""
-    shapes = problem.sensors @ vectors
+    n = min(problem.columns, len(values))
+    shapes = problem.sensors @ vectors[:, :n]
     costs = mode_costs(
-        problem.evidence, values, problem.evidence.shapes.T @ shapes, np.sum(shapes**2, axis=0)
+        problem.evidence, trend, values[:n], problem.evidence.shapes.T @ shapes, shapes.T @ shapes
     )
     return matched(costs)
 
@@ -111,7 +120,7 @@ def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> floa
 def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fit:
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, log_p, suspects)
-    bad, match = misfit(problem, values, vectors)
+    bad, match = misfit(problem, float(log_p[-1]), values, vectors)
     return Fit(
         bad + _prior(problem, log_p, suspects),
         bad,
@@ -193,9 +202,10 @@ def _normal_equations(
     V, lam, k = now.vectors, now.eigenvalues, now.match
     Vk, lk = V[:, k], lam[k]
     n, here = len(k), np.arange(len(k))
-    p = np.exp(now.log_p)
+    p, last = np.exp(now.log_p), len(now.log_p) - 1
     changes: list[tuple[Floats | None, Floats | None]] = [
-        (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q]) for q in active
+        (None, None) if q == last else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
+        for q in active
     ]
     for s in now.suspects:
         law, U = problem.catalogue[s.kind].law, problem.factors[s.kind][s.row]
@@ -215,14 +225,23 @@ def _normal_equations(
         C = np.where(close, 0.0, F / safe)
         C[k, here] = -0.5 * b[k, here]
         dshape[i] = shapes @ C
-    floor = np.maximum(lk, 1e-6 * (2.0 * np.pi * e.frequencies_hz) ** 2)
-    off = 0.5 * np.log(floor / (2.0 * np.pi * e.frequencies_hz) ** 2) / noise.frequency
+    aim = targets(e, float(now.log_p[-1]))
+    floor = np.maximum(lk, 1e-6 * aim)
+    off = 0.5 * np.log(floor / aim) / noise.frequency
     doff = 0.5 * dlam / floor / noise.frequency
+    for i, q in enumerate(active):
+        if q == last:
+            doff[i] = e.frequencies_hz / e.frequencies_hz.max() / noise.frequency
     a = shapes[:, k]
     length = np.maximum(np.linalg.norm(a, axis=0), np.finfo(float).tiny)
     a = a / length
     t = e.shapes
-    scale = np.sqrt(noise.independent) / noise.shape
+    m = min(problem.columns, shapes.shape[1])
+    near = shapes[:, :m]
+    joint = joint_macs(lam[:m], t.T @ near, near.T @ near, noise.mixing)[here, k]
+    own = np.sum(t * a, axis=0) ** 2
+    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, 1e-12))
+    scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)
     rest = (a - t * np.sum(t * a, axis=0)) * scale
     d = dshape / length
     d = d - a * np.einsum("sj,psj->pj", a, d)[:, None]

@@ -38,14 +38,18 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     out = np.empty((len(rows), len(trials)))
     S2 = problem.sensors.T @ problem.sensors
     cross = problem.evidence.shapes.T @ problem.sensors
+    n = min(problem.columns, len(lam))
     for start in range(0, len(rows), _CHUNK):
         part = slice(start, start + _CHUNK)
         u, places = U[part], rows[part]
         for j, theta in enumerate(trials):
             c = law.value(np.full(len(places), theta), places)
             values, Z = _changed(lam, u, c, law.on)
-            lengths = np.einsum("gnm,gnm->gm", Z, S2 @ Z)
-            costs = mode_costs(problem.evidence, values, cross @ Z, lengths)
+            values, Z = values[:, :n], Z[:, :, :n]
+            gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
+            costs = mode_costs(
+                problem.evidence, float(state.log_p[-1]), values, cross @ Z, gram
+            )
             out[part, j] = [matched(x)[0] for x in costs]
     return out
 

@@ -15,8 +15,12 @@ import numpy as np
 
 from ..arrays import Floats, Ints
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, fit
+from .fitting import Fit, Problem, evaluate, fit, solve
 from .scanning import best_apart, scan
+
+
+_NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
+"""Changes of θ tried when a suspect moves to a neighbouring place."""
 
 
 @dataclass(frozen=True)
@@ -53,18 +57,27 @@ class Searcher:
     problem: Problem
     coarse: tuple[Ints, ...]
     active: tuple[int, ...]
+    start: Floats
     size: float
     effort: Effort
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""
-        zero = np.zeros(len(self.problem.prior.spread))
-        return fit(self.problem, zero, (), self.active, iterations=25)
+        return fit(self.problem, self.start, (), self.active, iterations=25)
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
-        """Return the problem on the eigenvectors of a fit, and the fit there."""
-        n = min(self.effort.search_modes, state.vectors.shape[1])
-        small = replace(self.problem.turned(state.vectors[:, :n]), modes=n)
+        """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
+        n = min(self.effort.search_modes, self.problem.basis.size)
+        values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
+        small = replace(self.problem.turned(T[:, :n]), modes=n)
+        rest, stiff = T[:, n:], np.maximum(values[n:], np.finfo(float).tiny)
+        catalogue = tuple(
+            c.on_basis(np.sum((f.reshape(-1, f.shape[-1]) @ rest) ** 2 / stiff, axis=1))
+            if c.needs_flexibility
+            else c
+            for c, f in zip(self.problem.catalogue, self.problem.factors, strict=True)
+        )
+        small = replace(small, catalogue=catalogue)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def branches(
@@ -90,7 +103,7 @@ class Searcher:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small, _ = self.local(state)
         quick = fit(small, state.log_p, suspects, self.active, iterations)
-        return evaluate(self.problem, quick.log_p, quick.suspects)
+        return fit(self.problem, quick.log_p, quick.suspects, self.active, 2)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""
@@ -113,11 +126,13 @@ class Searcher:
         rows = rows[np.argsort(distance[rows], kind="stable")][:160]
         without = evaluate(self.problem, state.log_p, others)
         small, here = self.local(without)
-        score = scan(small, here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
-        for i in np.argsort(score, kind="stable")[:3]:
+        trials = suspect.theta + _NEIGHBOURING
+        score = scan(small, here, suspect.kind, rows, trials)
+        best = score.min(axis=1)
+        for i in np.argsort(best, kind="stable")[:4]:
             if rows[i] == suspect.row:
-                return None
-            moved = replace(suspect, row=int(rows[i]))
+                continue
+            moved = replace(suspect, row=int(rows[i]), theta=float(trials[score[i].argmin()]))
             trial = self.fitted(state, (*state.suspects[:q], moved, *state.suspects[q + 1 :]), 4)
             if trial.objective < state.objective - 0.3:
                 return trial

@@ -16,8 +16,7 @@ import numpy as np
 from ..arrays import Bools, Floats
 
 _WIDTH = 0.3
-_SUSPICIOUS = 9.0
-_AGREES = 6.0
+_SUSPICIOUS = 6.0
 
 
 @dataclass(frozen=True, eq=False)

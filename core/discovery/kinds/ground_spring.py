@@ -20,7 +20,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
     return Candidates(
         kind="ground_spring",
         xyz=xyz[at],
-        law=SpringLaw(),
+        law=SpringLaw(np.zeros((len(at), 1))),
         trials=scale.springs(),
         root=root[live],
         rows_each=1,

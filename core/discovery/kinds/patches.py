@@ -15,7 +15,8 @@ from ..structure import Structure, thinned
 
 _RANK = 36
 _RADII = (0.05, 0.08, 0.13)
-_SPACING = 0.75
+_SPACING = 0.35
+_MOST = 350
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +38,19 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...] = _RA
         xyz = structure.centroids(m)
         tree = cKDTree(xyz)
         for r in radii:
-            for c in thinned(xyz, _SPACING * r * size):
+            for c in _centres(xyz, _SPACING * r * size):
                 rows = np.array(sorted(tree.query_ball_point(xyz[c], r * size)), dtype=np.int64)
                 if len(rows) < 0.5 * len(xyz):
                     out.append(Patch(number, rows, xyz[rows].mean(axis=0), r * size))
     return _distinct(out)
+
+
+def _centres(xyz: Floats, spacing: float) -> Ints:
+    chosen = thinned(xyz, spacing)
+    while len(chosen) > _MOST:
+        spacing *= 1.05 * np.sqrt(len(chosen) / _MOST)
+        chosen = thinned(xyz, spacing)
+    return chosen
 
 
 def _distinct(patches: list[Patch]) -> list[Patch]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats
+from ...arrays import Floats, Ints
 from ..candidates import Candidates, MassLaw
 from ..structure import Structure
 from .scale import Scale
@@ -28,7 +28,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
 
 
 def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, Floats]:
-    """Weights (n_point, n_grid), positions and nearest grid of grids and shell middles."""
+    """Weights (n_point, n_grid), positions, nearest grid: of grids, shell middles, shell edges."""
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
     carries = np.zeros(len(g.ids), bool)
@@ -43,15 +43,21 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, Floats]:
     nearest = [own]
     for m in structure.members:
         if m.shape in {"quad", "tria"}:
-            n, k = m.corners.shape
-            w = sp.csr_matrix(
-                (np.full(n * k, 1.0 / k), (np.repeat(np.arange(n), k), m.corners.ravel())),
-                (n, len(g.ids)),
-            )
-            weights.append(w)
+            weights.append(_means(m.corners, len(g.ids)))
             nearest.append(m.corners[:, 0])
+            edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
+            edges = np.unique(np.sort(edges, axis=1), axis=0)
+            weights.append(_means(edges, len(g.ids)))
+            nearest.append(edges[:, 0])
     P = sp.vstack(weights).tocsr()
     return P, np.asarray(P @ g.xyz), g.ids[np.concatenate(nearest)]
+
+
+def _means(corners: Ints, n_grid: int) -> sp.csr_matrix:
+    """Rows that take the mean of some grids, (n, n_grid)."""
+    n, k = corners.shape
+    where = (np.repeat(np.arange(n), k), corners.ravel())
+    return sp.csr_matrix((np.full(n * k, 1.0 / k), where), (n, n_grid))
 
 
 def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:

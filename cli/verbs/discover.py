@@ -1,0 +1,274 @@
+"""``trueup discover DECK TEST``."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..console import stderr, working
+from ..options import Output
+from ..study import Study
+
+
+def discover(study: Study, output: Output) -> None:
+    """Find where and what the model lacks, or what is wrong in the test."""
+    from ..writing import answer
+
+    result, run = run_discover(study, output)
+    answer(result, output, run)
+
+
+def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
+    """Write the run folder of a discovery; return its result and where it is."""
+    from ...adapters.nastran import parse_parameter, read_deck, weight
+    from ...adapters.nastran.structure import build_structure, known_parameters
+    from ...core import eigen
+    from ...core.comparison import compare, place_test
+    from ...core.discovery.discover import Request
+    from ...core.discovery.discover import discover as find
+    from ...core.results import correlate_tables
+    from ..pipeline import criteria_of, highest_frequency, read_measurement
+    from ..runfolder import refuse_existing, run_folder
+    from ..writing import default_folder, fill_run_folder
+
+    if study.modes is not None:
+        raise InputError("--modes gives fixed modes, which no effect can change; leave it out")
+    assert study.deck is not None
+    run = default_folder(study, "discover")
+    refuse_existing(run, output.force)
+    start = time.perf_counter()
+    measurement = read_measurement(study)
+    top = highest_frequency(measurement, study)
+    with working("reading and placing", output):
+        deck = read_deck(study.deck)
+        known, spread = known_parameters(deck)
+        named = [parse_parameter(p) for p in study.parameters]
+        taken = {f for s in named for f in s.fields}
+        kept = [(s, w) for s, w in zip(known, spread, strict=True) if not taken & set(s.fields)]
+        specs = [*named, *(s for s, _ in kept)]
+        structure = build_structure(deck, specs)
+        model = structure.model
+        solution = eigen.solve(model, fmax=max(1.6 * top / 1.3, top), keep_factor=True)
+        if len(solution.eigenvalues) < 60 < model.n_free // 4:
+            solution = eigen.solve(model, n_modes=60, keep_factor=True)
+        modes = eigen.modes_of(model, solution)
+        geometry = model.geometry
+        if geometry.length_unit is None and deck.length_unit:
+            geometry = replace(geometry, length_unit=deck.length_unit)
+        placed = place_test(
+            geometry, modes, measurement, study.deck_length_unit, motion=model.expansion,
+            seed=study.seed,
+        )
+    before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
+
+    def told(what: str) -> None:
+        if output.verbose:
+            stderr().print(what, markup=False)
+
+    with working("discovering", output):
+        found = find(
+            Request(
+                structure,
+                np.array([*(0.4 for _ in named), *(w for _, w in kept)]),
+                solution,
+                placed,
+                weight(deck).mass,
+            ),
+            told,
+        )
+    with run_folder(run, output.force) as work:
+        with working("completing the deck and solving it again", output):
+            done = complete(study, deck, specs, model, found, placed, work, len(modes))
+        after = done["after"]
+        result = discover_tables(study, found, specs, model, before, after, done)
+        result["seconds"] = time.perf_counter() - start
+        result["warnings"] = [*deck.warnings, *model.warnings, *before.warnings, *found.warnings]
+        result["pairs"] = correlate_tables(after)["pairs"]
+        fill_run_folder(work, study, result, before, after)
+    return result, run
+
+
+def complete(
+    study: Study,
+    deck: Any,
+    specs: list[Any],
+    model: Any,
+    found: Any,
+    placed: Any,
+    work: Path,
+    n_modes: int,
+) -> dict[str, Any]:
+    """Write the completed deck, read it back, solve it in full, correlate it again."""
+    from ...adapters.nastran import (
+        build_model,
+        read_deck,
+        read_deck_text,
+        set_values,
+        unified_diff,
+        write_deck,
+    )
+    from ...adapters.nastran.adopt import adopt
+    from ...core import eigen
+    from ...core.comparison import compare
+    from ..pipeline import criteria_of
+
+    assert study.deck is not None
+    original = read_deck_text(study.deck)
+    text, cards = original, []
+    if found.verdict in {"effect", "parameters_only"}:
+        moved = {
+            ref: value * m.factor
+            for m in found.parameters
+            if m.significant
+            for ref, value in zip(
+                specs[m.number].fields, model.parameters[m.number].deck_values, strict=True
+            )
+        }
+        text = set_values(text, moved)
+    for f in found.findings:
+        adopted = None
+        if f.side == "model" and found.verdict == "effect":
+            adopted = adopt(text, deck, f)
+            text = adopted.deck
+        cards.append(list(adopted.cards) if adopted else [])
+    top = write_deck(text, work / "deck")
+    (work / "changes.diff").write_text(
+        unified_diff(original, text), encoding="utf-8", newline=""
+    )
+    again = build_model(read_deck(top))
+    solution = eigen.solve(again, n_modes=min(n_modes, again.n_free))
+    modes = eigen.modes_of(again, solution)
+    seen = placed
+    if again.dofs.node.shape != model.dofs.node.shape:
+        seen = _on(placed, model, again)
+    sound = _corrected(seen, found)
+    after = compare(
+        again.geometry, modes, sound, criteria_of(study), solution.rigid_body_modes
+    )
+    return {
+        "after": after,
+        "cards": cards,
+        "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
+    }
+
+
+def _on(placed: Any, model: Any, again: Any) -> Any:
+    """Sensor map for a deck that has further grids."""
+    import scipy.sparse as sp
+
+    old = {(int(n), int(c)): i for i, (n, c) in enumerate(zip(model.dofs.node, model.dofs.component, strict=True))}
+    rows, columns = [], []
+    for j, key in enumerate(zip(again.dofs.node, again.dofs.component, strict=True)):
+        i = old.get((int(key[0]), int(key[1])))
+        if i is not None:
+            rows.append(i)
+            columns.append(j)
+    P = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(model.dofs), len(again.dofs)))
+    seen = replace(placed.observation, matrix=(placed.observation.matrix @ P).tocsr())
+    return replace(placed, observation=seen)
+
+
+def _corrected(placed: Any, found: Any) -> Any:
+    """The test as sound sensors would have read it."""
+    from ...core.modes import Modes
+
+    nodes = placed.observation.sensors.node
+    shapes = np.array(placed.test.shapes)
+    for kind, sensors, factor in found.corrected_sensors:
+        rows = [int(np.flatnonzero(nodes == n)[0]) for n in sensors]
+        if kind == "sensor_swap":
+            shapes[rows] = shapes[rows[::-1]]
+        else:
+            shapes[rows] = shapes[rows] / factor
+    t = placed.test
+    return replace(
+        placed,
+        test=Modes(t.frequencies_hz, shapes, t.dofs, t.damping, t.generalized_mass, t.source),
+    )
+
+
+def discover_tables(
+    study: Study,
+    found: Any,
+    specs: list[Any],
+    model: Any,
+    before: Any,
+    after: Any,
+    done: dict[str, Any],
+) -> dict[str, Any]:
+    """Return result.json of a discovery."""
+    from ...core.results import correlation_tables, gap
+
+    out = set(found.held_out_modes)
+
+    def gaps(c: Any) -> dict[str, Any]:
+        return gap(replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 not in out)))
+
+    def held(c: Any) -> dict[str, Any]:
+        return gap(replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 in out)))
+
+    return {
+        "schema": "trueup/discover/1",
+        "input_deck": str(study.deck),
+        "deck": done["deck"],
+        "test": [str(p) for p in study.test],
+        "verdict": found.verdict,
+        "findings": [
+            {
+                "side": f.side,
+                "kind": f.kind,
+                "where": f.where,
+                "magnitude": f.magnitude,
+                "interval": f.interval,
+                "credible_set": list(f.credible_set),
+                "confidence": f.confidence,
+                "cards": cards,
+                "sentence": f.sentence,
+            }
+            for f, cards in zip(found.findings, done["cards"], strict=True)
+        ],
+        "alternatives": [
+            {
+                "kinds": list(a.kinds),
+                "xyz": [list(p) for p in a.places],
+                "times_less_likely": a.times_less_likely,
+                "sentence": a.sentence,
+            }
+            for a in found.alternatives
+        ],
+        "gap": {
+            "before": gaps(before),
+            "after": gaps(after),
+            "held_out": {
+                "test_modes": list(found.held_out_modes),
+                "sensors": list(found.held_out_sensors),
+                "before": held(before),
+                "after": held(after),
+            },
+        },
+        "parameters": [
+            {
+                "name": specs[m.number].name,
+                "cards": list(model.parameters[m.number].handle),
+                "initial": list(model.parameters[m.number].deck_values),
+                "updated": [
+                    v * (m.factor if m.significant else 1.0)
+                    for v in model.parameters[m.number].deck_values
+                ],
+                "factor": m.factor,
+                "standard_error": m.standard_error,
+                "at_bound": False,
+                "adopted": m.significant and found.verdict in {"effect", "parameters_only"},
+            }
+            for m in found.parameters
+        ],
+        "would_decide": list(found.would_decide),
+        "noise_scale": found.noise_scale,
+        "before": correlation_tables(before.correlation, before.test, before.analysis),
+        "after": correlation_tables(after.correlation, after.test, after.analysis),
+    }

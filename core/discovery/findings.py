@@ -1,0 +1,82 @@
+"""What discovery says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is missing in the model or wrong in the test.
+
+    Parameters
+    ----------
+    side : {"model", "test"}
+    kind : str
+        One of the fixed words.
+    where : dict
+        ``grids``, ``elements`` or ``sensors``, ``xyz`` in deck units, ``region`` in words.
+    magnitude : dict
+    interval : tuple of float
+        95 %, of the first magnitude.
+    credible_set : tuple of dict
+        Places that explain the data about as well: ``grids`` or ``elements``, ``xyz``, ``weight``.
+    confidence : float
+        0 to 1.
+    sentence : str
+    """
+
+    side: str
+    kind: str
+    where: dict[str, Any]
+    magnitude: dict[str, Any]
+    interval: tuple[float, float] | None
+    credible_set: tuple[dict[str, Any], ...]
+    confidence: float
+    sentence: str
+    handle: dict[str, Any] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What else was considered and how many times less likely it is."""
+
+    kinds: tuple[str, ...]
+    places: tuple[tuple[float, ...], ...]
+    times_less_likely: float
+    sentence: str
+
+
+@dataclass(frozen=True)
+class MovedParameter:
+    """A known parameter that moved along: its factor, and a standard deviation of the factor."""
+
+    number: int
+    factor: float
+    standard_error: float
+    significant: bool
+
+
+@dataclass(frozen=True)
+class Discovery:
+    """The verdict with everything that led to it.
+
+    `evidence_for` is twice the log of how much more likely the verdict is than the known
+    parameters alone.
+    """
+
+    verdict: str
+    findings: tuple[Finding, ...]
+    alternatives: tuple[Alternative, ...]
+    parameters: tuple[MovedParameter, ...]
+    noise_scale: float
+    objectives: tuple[float, ...]
+    evidence_for: float
+    held_out_modes: tuple[int, ...]
+    held_out_sensors: tuple[int, ...]
+    corrected_sensors: tuple[tuple[str, tuple[int, ...], float], ...]
+    would_decide: tuple[str, ...]
+    warnings: tuple[str, ...]

@@ -1,0 +1,152 @@
+"""Does a richer hypothesis earn its place, how sure is it, and what else could it be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats
+from .candidates import Suspect
+from .evidence import Evidence
+from .fitting import Fit, evaluate
+from .scanning import scan
+from .search import Found, Searcher
+
+_MARGIN = 4.0
+_PER_MODE = 3.0
+_CREDIBLE = 6.0
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """What the search amounts to.
+
+    `scale` multiplies every variance: the misfit that the best hypothesis leaves, per degree of
+    freedom, but at least 1. `accepted` is the number of suspects that earn their place.
+    """
+
+    scale: float
+    accepted: int
+    posterior: float
+    evidence: float
+
+
+def noise_scale(e: Evidence, best: Fit) -> float:
+    """Return how many times the assumed variance the best fit leaves, at least 1."""
+    freedom = _PER_MODE * len(e.frequencies_hz) - len(best.active) - 2 * len(best.suspects)
+    return max(1.0, best.misfit / max(freedom, 1.0))
+
+
+def price(searcher: Searcher, suspect: Suspect) -> float:
+    """Return what a suspect must lower the objective by: twice ln(places) and a margin."""
+    return 2.0 * float(np.log(max(len(searcher.coarse[suspect.kind]), 2))) + _MARGIN
+
+
+def judge(searcher: Searcher, found: Found) -> Judgement:
+    """Choose the number of suspects by penalised likelihood.
+
+    The penalty of a suspect is twice the log of the number of places it could have been at (its
+    prior) and a margin; the noise is scaled by what the best hypothesis leaves.
+    """
+    e = searcher.problem.evidence
+    scale = noise_scale(e, min(found.levels, key=lambda f: f.objective))
+    costs = [
+        f.objective / scale + sum(price(searcher, s) for s in f.suspects) for f in found.levels
+    ]
+    accepted = int(np.argmin(costs))
+    rivals = [
+        (f.objective / scale + sum(price(searcher, s) for s in f.suspects))
+        for level in found.rivals
+        for f in level
+        if not _alike(searcher, f, found.levels[accepted])
+    ]
+    others = np.array([*rivals, *(c for k, c in enumerate(costs) if k < accepted)])
+    weight = float(np.sum(np.exp(-0.5 * (others - costs[accepted])))) if len(others) else 0.0
+    return Judgement(scale, accepted, 1.0 / (1.0 + weight), costs[0] - costs[accepted])
+
+
+def enough(searcher: Searcher) -> object:
+    """Return the rule that ends the search: one more suspect is not worth its price."""
+
+    def rule(previous: Fit, best: Fit) -> bool:
+        scale = noise_scale(searcher.problem.evidence, best)
+        added = max((price(searcher, s) for s in best.suspects), default=0.0)
+        return (previous.objective - best.objective) / scale < added
+
+    return rule
+
+
+def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
+    """Whether a rival says the same as the best, or the same and something more."""
+    catalogue, near = searcher.problem.catalogue, searcher.effort.apart * searcher.size
+    left = list(f.suspects)
+    for s in best.suspects:
+        twin = next(
+            (
+                t
+                for t in left
+                if catalogue[t.kind].kind == catalogue[s.kind].kind
+                and np.linalg.norm(
+                    catalogue[t.kind].xyz[t.row] - catalogue[s.kind].xyz[s.row]
+                ) < 1.5 * near
+            ),
+            None,
+        )
+        if twin is None:
+            return False
+        left.remove(twin)
+    return True
+
+
+def credible_places(
+    searcher: Searcher, best: Fit, number: int, scale: float
+) -> list[tuple[int, float]]:
+    """Return the places of one suspect that explain the data about as well, with weights.
+
+    Every place of its kind is evaluated with all else as fitted; those within a likelihood
+    ratio of exp(3) of the best are kept.
+    """
+    suspect = best.suspects[number]
+    others = best.suspects[:number] + best.suspects[number + 1 :]
+    c = searcher.problem.catalogue[suspect.kind]
+    near = np.flatnonzero(
+        np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1) < 0.12 * searcher.size
+    )[:400]
+    rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
+    without = evaluate(searcher.problem, best.log_p, others)
+    small, here = searcher.local(without)
+    trials = suspect.theta + np.array([-0.3, 0.0, 0.3])
+    score = scan(small, here, suspect.kind, rows, trials).min(axis=1) / scale
+    off = score - score.min()
+    kept = np.flatnonzero(off < _CREDIBLE)
+    kept = kept[np.argsort(off[kept], kind="stable")][:40]
+    weight = np.exp(-0.5 * off[kept])
+    weight = weight / weight.sum()
+    return [(int(rows[i]), float(w)) for i, w in zip(kept, weight, strict=True)]
+
+
+def deviations(best: Fit, scale: float) -> Floats:
+    """Return the standard deviations of the unknowns: active parameters, then magnitudes."""
+    H = best.information
+    if not len(H):
+        return np.zeros(0)
+    return np.asarray(np.sqrt(np.maximum(np.diag(np.linalg.pinv(H)), 0.0) * scale))
+
+
+def held_out(n: int, start: int, every: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Return a mask of what is kept out of the search: every so many, none of the first."""
+    mask = np.zeros(n, bool)
+    mask[start::every] = True
+    return mask
+
+
+def times(value: float) -> float:
+    """Return a likelihood ratio from twice its log, kept finite."""
+    return float(np.exp(min(0.5 * value, 60.0)))
+
+
+def summary(fits: Sequence[Fit]) -> tuple[float, ...]:
+    """Objectives by number of suspects."""
+    return tuple(float(f.objective) for f in fits)
