@@ -155,8 +155,8 @@ def _columns(lines: _Lines, header: Header, form: _Print) -> tuple[Strings, list
         if column > header.shape[1]:
             lines.skip(left, form)
             break
-        if column < 1 or row < 0 or left < 0:
-            raise lines.wrong(f"matrix {header.name} has no column {column}")
+        if column <= (last := runs[-1][0] + 1 if runs else 0) or row < 0 or left < 0:
+            raise lines.wrong(f"column {column} of matrix {header.name} follows column {last}")
         if row > 0:  # counted in numbers; in words of single precision by some programs
             room = (header.shape[0] - row + 1) * complex_
             take(column, row, left // (complex_ if left <= room else words))

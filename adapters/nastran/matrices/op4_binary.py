@@ -154,7 +154,9 @@ def _columns(file: _File, at: int, header: Header) -> tuple[Ints, int]:
         at = end + file.layout.mark
         if column > header.shape[1]:
             return np.array(found, np.int64).reshape(-1, 4), at
-        if column < 1 or row < 0 or start + head + words * file.layout.word > end:
+        last = found[-1][0] if found else 0
+        fits = start + head + words * file.layout.word <= end
+        if column <= last or row < 0 or words < 0 or not fits:
             raise InputError(
                 f"{file.path} is damaged: matrix {header.name} has no column {column} of "
                 f"{words} words from row {row}"

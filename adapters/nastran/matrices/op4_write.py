@@ -108,7 +108,7 @@ def _formatted_columns(matrix: sp.csc_matrix, kind: int) -> Iterator[bytes]:
     complex_ = 2 if kind == _COMPLEX else 1
     reals = _reals(matrix, kind)
     held, first = np.unique(strings.column, return_index=True)
-    ends = np.append(first[1:], len(strings.column))
+    ends = np.append(first, len(strings.column))[1:]
     for column, a, b in zip(held.tolist(), first.tolist(), ends.tolist(), strict=True):
         runs = list(
             zip(
