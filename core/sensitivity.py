@@ -97,7 +97,7 @@ def sensitivities(
     Returns
     -------
     Sensitivities
-        For repeated eigenvalues given by position, `slopes` are for each parameter the
+        For eigenvalues repeated to 1e-5 and given by position, `slopes` are for each parameter the
         eigenvalues, ascending, of the cluster's derivative matrix (Mills-Curran 1988; Dailey
         1989): the slopes of the branches that leave the common value, which in general belong
         to a different rotation of the modes for each parameter. For combinations they are the
