@@ -1,0 +1,133 @@
+"""DMIG in every form it is punched or typed in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trueup.adapters.nastran import DofMap, NastranMatrix, read_matrices, write_dmig
+from trueup.adapters.nastran.matrices.dmig import read_dmig
+from trueup.core.errors import InputError
+
+EXPECTED = np.array([[4.0, -1.5], [-1.5, 7.0]])
+
+FORMS = {
+    "punched, glued, D exponents": (
+        "DMIG    KAAX           0       6       2       0                       2\n"
+        "DMIG*   KAAX                           1               3\n"
+        "*                      1               3 4.000000000D+00\n"
+        "DMIG*   KAAX                           2               3\n"
+        "*                      1               3-1.500000000D+00\n"
+        "*                      2               3 7.000000000D+00\n"
+    ),
+    "lower triangle, free field": (
+        "$ a comment\nDMIG,KAAX,0,6,2,0\nDMIG,KAAX,1,3,,1,3,4.0\n"
+        ",2,3,-1.5\nDMIG,KAAX,2,3,,2,3,7.+0\n"
+    ),
+    "small field with a tagged continuation": (
+        "DMIG    KAAX    0       6       2       0\n"
+        "DMIG    KAAX    1       3               1       3       4.0             +A\n"
+        "+A      2       3       -1.5\n"
+        "DMIG    KAAX    2       3               2       3       7.0\n"
+    ),
+    "CRLF and letterless exponents": (
+        "DMIG    KAAX           0       6       2       0\r\n"
+        "DMIG*   KAAX                           1               3\r\n"
+        "*                      1               3            4.+0\r\n"
+        "*                      2               3          -15.-1\r\n"
+        "DMIG*   KAAX                           2               3\r\n"
+        "*                      2               3           7.0+0\r\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", FORMS.values(), ids=FORMS.keys())
+def test_every_form_gives_the_same_matrix(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "a.pch"
+    path.write_bytes(text.encode())
+    (found,) = read_dmig(path)
+    assert found.name == "KAAX"
+    assert found.rows is not None
+    np.testing.assert_array_equal(found.rows.point, [1, 2])
+    np.testing.assert_array_equal(found.rows.component, [3, 3])
+    np.testing.assert_array_equal(found.matrix.toarray(), EXPECTED)
+
+
+def test_mass_may_name_fewer_degrees_of_freedom_than_stiffness(data: Path) -> None:
+    path = data / "matrices" / "dmig_punch_swept" / "sol103_swept_plane.pch1"
+    found = {m.name: m for m in read_matrices(path)}
+    assert list(found) == ["KAAX", "MAAX", "VAX"]
+    assert found["KAAX"].matrix.shape == (45, 45)
+    assert found["MAAX"].matrix.shape == (41, 41)
+    assert found["VAX"].matrix.shape == (45, 1)
+    assert abs(found["KAAX"].matrix - found["KAAX"].matrix.T).max() == 0.0
+
+
+def test_complex_and_rectangular_matrices(tmp_path: Path) -> None:
+    (tmp_path / "a.pch").write_text(
+        "DMIG    B              0       9       4       0                       2\n"
+        "DMIG*   B                              1               0\n"
+        "*                     11               2 1.000000000D+00-2.000000000D+00\n"
+        "*                    101               0 3.000000000D+00 0.000000000D+00\n"
+    )
+    (found,) = read_dmig(tmp_path / "a.pch")
+    assert found.rows is not None
+    np.testing.assert_array_equal(found.matrix.toarray(), [[1.0 - 2.0j], [3.0]])
+    np.testing.assert_array_equal(found.rows.keys, [8 * 11 + 2, 8 * 101])
+
+
+@st.composite
+def matrices(draw: st.DrawFn) -> NastranMatrix:
+    n = draw(st.integers(1, 6))
+    keys = sorted(draw(st.sets(st.integers(8, 8_000_000), min_size=n, max_size=n)))
+    rows = DofMap.of_keys(np.array([k - k % 8 + k % 7 for k in keys]))
+    rows = DofMap.of_keys(np.unique(rows.keys))
+    n = len(rows)
+    exponent = draw(st.integers(-8, 12))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    A = rng.standard_normal((n, n)) * 10.0**exponent
+    form = draw(st.sampled_from([1, 6]))
+    if draw(st.booleans()):
+        A = A + 1j * rng.standard_normal((n, n))
+    A = A + A.T if form == 6 else A
+    return NastranMatrix("AMAT", sp.csc_matrix(A), form, rows, rows)
+
+
+@given(m=matrices())
+def test_what_is_written_reads_back(
+    tmp_path_factory: pytest.TempPathFactory, m: NastranMatrix
+) -> None:
+    path = tmp_path_factory.mktemp("dmig") / "a.pch"
+    write_dmig(path, [m])
+    assert max(len(x) for x in path.read_text().splitlines()) <= 72
+    (found,) = read_dmig(path)
+    assert found.rows is not None
+    assert m.rows is not None
+    np.testing.assert_array_equal(found.rows.keys, m.rows.keys)
+    np.testing.assert_allclose(found.matrix.toarray(), m.matrix.toarray(), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("DMIG*   K                              1               3\n", "before its header"),
+        ("DMIG    K       0       6       2\nDMIG*   K                              x       3\n",
+         "line 2: this DMIG card cannot be read"),
+        ("nothing\n", "no DMIG"),
+    ],
+)  # fmt: skip
+def test_faults_are_one_sentence_with_the_line(tmp_path: Path, text: str, why: str) -> None:
+    (tmp_path / "a.pch").write_text(text)
+    with pytest.raises(InputError, match=why):
+        read_matrices(tmp_path / "a.pch")
+
+
+def test_a_matrix_without_dof_map_cannot_be_punched(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no dof map"):
+        write_dmig(tmp_path / "a.pch", [NastranMatrix("K", sp.csc_matrix(np.eye(2)))])
+    assert not list(tmp_path.iterdir())
