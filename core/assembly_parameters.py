@@ -17,7 +17,7 @@ from .model import Factor, Term
 _FITTED = 32
 """Elements of a kind that the functions are found on; as many others check them."""
 
-_TOLERANCE = 3e-7
+_TOLERANCE = 1e-7
 _ALLOWED = 1e-6
 
 

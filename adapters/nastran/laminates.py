@@ -26,8 +26,6 @@ class Layup:
         G t.
     density : float
         Mass per area, NSM included.
-    offset : float
-        Of the reference surface from the element's plane, along the normal.
     isotropic : bool
         Whether turning it changes nothing.
     materials : tuple of (card, number)
@@ -40,7 +38,6 @@ class Layup:
     S: Floats
     drilling: float
     density: float
-    offset: float
     isotropic: bool
     materials: tuple[tuple[str, int], ...]
 
@@ -104,7 +101,7 @@ def _pshell(bulk: Bulk, card: Card, place: str, own: float, share: float) -> Lay
     density = first.rho * t + float(card.nsm or 0.0)
     keys = tuple(_key(bulk, mid) for mid in used)
     same = all(m.isotropic for m in used.values())
-    return Layup(A, B, D, S, drilling, density, 0.0, same, keys)
+    return Layup(A, B, D, S, drilling, density, same, keys)
 
 
 def _mid(value: int | None) -> int | None:
@@ -143,9 +140,6 @@ def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
     bottom = -0.5 * total if z0 is None else float(z0)
     low = bottom + np.concatenate([[0.0], np.cumsum(t)[:-1]])
     high = low + t
-    middle = bottom + 0.5 * total
-    # about the laminate's middle: its distance from the element's plane is handed on as offset
-    low, high = low - middle, high - middle
     A = np.einsum("p,pij->ij", high - low, Q)
     B = np.einsum("p,pij->ij", 0.5 * (high**2 - low**2), Q)
     D = np.einsum("p,pij->ij", (high**3 - low**3) / 3.0, Q)
@@ -165,7 +159,7 @@ def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
     drilling = float(A[2, 2]) if A.any() else float(D[2, 2]) * 12.0 / total**2
-    return Layup(A, B, D, S, drilling, density, middle, same, keys)
+    return Layup(A, B, D, S, drilling, density, same, keys)
 
 
 def _plies(card: Card, place: str) -> tuple[Floats, Floats, list[int]]:

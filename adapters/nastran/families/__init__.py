@@ -9,12 +9,14 @@ from .beams import beams
 from .bushes import bushes
 from .common import Context, Group, Key, Settings
 from .masses import masses
+from .panels import panels
 from .shells import shells
 from .solids import solids
 from .springs import springs
 
 FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
     "shells": shells,
+    "panels": panels,
     "solids": solids,
     "bars": bars,
     "beams": beams,
@@ -27,7 +29,8 @@ FAMILIES: dict[str, Callable[[Context], list[Group]]] = {
 
 SUPPORTED = frozenset(
     (
-        *("CQUAD4", "CTRIA3", "CBAR", "CBEAM", "CROD", "CONROD", "CTUBE"),
+        *("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6", "CSHEAR"),
+        *("CBAR", "CBEAM", "CROD", "CONROD", "CTUBE"),
         *("CHEXA", "CPENTA", "CTETRA", "CPYRAM", "CBUSH", "CBUSH1D"),
         *("CELAS1", "CELAS2", "CELAS3", "CELAS4"),
         *("CMASS1", "CMASS2", "CMASS3", "CMASS4", "CONM1", "CONM2"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints
 from ....core.assembly import Matrices
-from ....core.elements.batch import skew
+from ....core.elements.bush import bush_stiffness
 from ....core.errors import InputError
 from ..cards import Bulk, Card, fields_of, to_float
 from .common import Context, Group, Key, distinct_properties
@@ -63,7 +63,9 @@ def _group(
     pids = np.array([c.pid for c in cards])
     keys, of = distinct_properties(bulk, [property_name], name, ids, pids)
     bushes = [_geometry(context, name, c, e) for c, e in zip(cards, ends, strict=True)]
-    D = _relative(bushes, ends.shape[1])
+    axes = np.stack([b.axes for b in bushes])
+    arm_a, arm_b = (np.stack([b.arms[k] for b in bushes]) for k in (0, -1))
+    size = 6 * ends.shape[1]
     _check_axial(context, name, ids, bushes, [values(context, bulk, keys[k]) for k in of])  # type: ignore[operator]
     half = np.array([[0.5, 0.5], [1.0, 0.0]])[int(grounded), : ends.shape[1]]
 
@@ -72,7 +74,7 @@ def _group(
         K = M = None
         if wanted[0]:
             k = np.array([values(context, current, keys[n]) for n in numbers])[position]  # type: ignore[operator]
-            K = D[rows].swapaxes(1, 2) @ (k[:, :, None] * D[rows])
+            K = bush_stiffness(axes[rows], k, arm_a[rows], arm_b[rows])[:, :size, :size]
         if wanted[1]:
             mass = np.array([_mass(current, keys[n]) for n in numbers])[position]
             if mass.any():
@@ -133,19 +135,6 @@ def _vector(context: Context, name: str, card: Card, row: int, place: str) -> Fl
         return None
     x = np.array([to_float(f) if f else 0.0 for f in given])
     return np.asarray(x @ context.points.directions[row])
-
-
-def _relative(bushes: list[_Bush], n_ends: int) -> Floats:
-    """Motion at the spring in element axes, end B relative to end A, (n, 6, 6 n_ends)."""
-    D = np.zeros((len(bushes), 6, 6 * n_ends))
-    R = np.stack([b.axes for b in bushes])
-    for end, sign in zip(range(n_ends), (-1.0, 1.0), strict=False):
-        arm = np.stack([b.arms[end] for b in bushes])
-        first = 6 * end
-        D[:, :3, first : first + 3] = sign * R
-        D[:, :3, first + 3 : first + 6] = -sign * (R @ skew(arm))
-        D[:, 3:, first + 3 : first + 6] = sign * R
-    return D
 
 
 def _check_axial(

@@ -1,4 +1,4 @@
-"""Shells: CQUAD4, CTRIA3."""
+"""Shells: CQUAD4, CTRIA3, CQUADR, CTRIAR, CQUAD8, CTRIA6."""
 
 from __future__ import annotations
 
@@ -7,33 +7,99 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ....core import elements
 from ....core.arrays import Floats, Ints
 from ....core.assembly import Matrices
-from ....core.elements import shell
-from ....core.elements.shell import ShellSection
+from ....core.elements import ShellSection
 from ....core.errors import InputError
 from ..cards import Bulk, Card
 from ..laminates import Layup, layup
 from .common import Context, Group, Key, distinct_properties, element_sources
+from .middle_nodes import by_pattern, kept_nodes, nodes_of, spread
 from .normals import shell_normals
 
 SHELL_PROPERTIES = ("PSHELL", "PCOMP", "PCOMPG")
 
 
+Stiffness = Callable[[Floats, ShellSection, float, Floats, Floats | None], Floats]
+"""Positions, section, K6ROT, offset, grid normals."""
+
+
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """What tells one shell shape from another."""
+    """What tells one shell from another.
+
+    Parameters
+    ----------
+    shape : str
+        For drawing.
+    corners : int
+        Number of corner nodes.
+    edges : (m, 2) int
+        Ends of the edge of each middle node.
+    axes : callable
+        Element axes from positions.
+    stiffness : callable
+        See `Stiffness`.
+    mass : callable
+        From positions, mass per area and whether it is coupled.
+    from_side : bool
+        Whether THETA counts from the side 1-2; otherwise from the element's x axis.
+    """
 
     shape: str
     corners: int
+    edges: Ints
     axes: Callable[[Floats], Floats]
-    stiffness: Callable[..., Floats]
+    stiffness: Stiffness
     mass: Callable[[Floats, Floats, bool], Floats]
+    from_side: bool = True
 
+    @property
+    def curved(self) -> bool:
+        """Whether it has middle nodes, normals of its own, and no offset."""
+        return len(self.edges) > 0
+
+
+def _quadr(
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
+    return elements.quadr_stiffness(xyz, section, offset, normals)
+
+
+def _triar(
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
+    return elements.triar_stiffness(xyz, section, offset, normals)
+
+
+def _quad8(
+    xyz: Floats, section: ShellSection, _k6rot: float, _offset: Floats, _normals: Floats | None
+) -> Floats:
+    return elements.quad8_stiffness(xyz, section)
+
+
+def _tria6(
+    xyz: Floats, section: ShellSection, _k6rot: float, _offset: Floats, _normals: Floats | None
+) -> Floats:
+    return elements.tria6_stiffness(xyz, section)
+
+
+_NO_EDGES = np.zeros((0, 2), dtype=np.int64)
+_QUAD = ("quad", 4, _NO_EDGES, elements.quad4_axes)
+_TRIA = ("tria", 3, _NO_EDGES, elements.tria3_axes)
 
 KERNELS: dict[str, Kernel] = {
-    "CQUAD4": Kernel("quad", 4, shell.quad4_axes, shell.quad4_stiffness, shell.quad4_mass),
-    "CTRIA3": Kernel("tria", 3, shell.tria3_axes, shell.tria3_stiffness, shell.tria3_mass),
+    "CQUAD4": Kernel(*_QUAD, elements.quad4_stiffness, elements.quad4_mass),
+    "CTRIA3": Kernel(*_TRIA, elements.tria3_stiffness, elements.tria3_mass),
+    "CQUADR": Kernel(*_QUAD, _quadr, elements.quad4_mass),
+    "CTRIAR": Kernel(*_TRIA, _triar, elements.tria3_mass),
+    "CQUAD8": Kernel(
+        "quad", 4, elements.QUAD8_EDGES, elements.quad8_axes, _quad8, elements.quad8_mass, False
+    ),
+    "CTRIA6": Kernel(
+        "tria", 3, elements.TRIA6_EDGES, elements.tria6_axes, _tria6, elements.tria6_mass
+    ),
 }
 
 
@@ -52,6 +118,8 @@ class _Elements:
         ZOFFS.
     normals : (n, m, 3) float or None
         Of the grids at the corners, basic frame.
+    spread : (n_node, n_there) float or None
+        All nodes from those that are there (`middle_nodes.spread`).
     """
 
     ids: Ints
@@ -63,6 +131,7 @@ class _Elements:
     share: Floats
     offset: Floats
     normals: Floats | None
+    spread: Floats | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +142,15 @@ class _Placed:
     kernel: Kernel
     cards: list[Card]
     ids: Ints
-    corners: Ints
+    nodes: Ints
+    xyz: Floats
     axes: Floats
+    spread: Floats | None
+
+    @property
+    def corners(self) -> Ints:
+        """Grid rows of the corners, (n, m)."""
+        return self.nodes[:, : self.kernel.corners]
 
 
 def shells(context: Context) -> list[Group]:
@@ -82,85 +158,112 @@ def shells(context: Context) -> list[Group]:
     found = []
     for name, kernel in KERNELS.items():
         cards = list(context.bulk.table(name).values())
-        if cards:
-            ids = np.array([c.eid for c in cards], dtype=np.int64)
-            corners = context.points.rows([c.nodes for c in cards], name, ids)
-            check_shape(context, name, ids, context.points.xyz[corners])
-            axes = kernel.axes(context.points.xyz[corners])
-            found.append(_Placed(name, kernel, cards, ids, corners, axes))
+        for present, members in by_pattern(cards, kernel.corners).items():
+            found.append(_place(context, name, kernel, members, present))
+    flat = [f for f in found if not f.kernel.curved]
     normals = shell_normals(
-        [f.corners for f in found],
-        [f.axes for f in found],
+        [f.corners for f in flat],
+        [f.axes for f in flat],
         len(context.points.ids),
         context.settings.snorm,
     )
-    return [_group(context, f, n) for f, n in zip(found, normals, strict=True)]
+    of = {id(f): n for f, n in zip(flat, normals, strict=True)}
+    return [_group(context, f, of.get(id(f))) for f in found]
+
+
+def _place(
+    context: Context, name: str, kernel: Kernel, cards: list[Card], present: tuple[bool, ...]
+) -> _Placed:
+    ids = np.array([c.eid for c in cards], dtype=np.int64)
+    kept = kept_nodes(present, kernel.corners, kernel.corners + len(kernel.edges))
+    nodes = context.points.rows(nodes_of(cards, kept), name, ids)
+    T = spread(kernel.edges, kept)
+    xyz = context.points.xyz[nodes]
+    xyz = xyz if T is None else T @ xyz
+    check_shape(context, name, ids, xyz[:, : kernel.corners])
+    return _Placed(name, kernel, cards, ids, nodes, xyz, kernel.axes(xyz), T)
 
 
 def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
     bulk = context.bulk
     name, kernel, cards, ids = placed.name, placed.kernel, placed.cards, placed.ids
-    xyz = context.points.xyz[placed.corners]
     keys, of = distinct_properties(
         bulk, SHELL_PROPERTIES, name, ids, np.array([c.pid for c in cards])
     )
     own, share = _thickness(cards, kernel.corners)
-    elements = _Elements(
+    turned = np.array([not layup(bulk, key, bulk.place(*key)).isotropic for key in keys])[of]
+    angle = np.zeros(len(ids))
+    if turned.any():
+        angle[turned] = material_angle(context, placed, np.flatnonzero(turned))
+    facts = _Elements(
         ids,
-        xyz,
+        placed.xyz,
         keys,
         of,
-        material_angle(context, name, cards, placed.axes, xyz),
+        angle,
         own,
         share,
-        np.array([c.zoffset or 0.0 for c in cards], dtype=np.float64),
+        _offsets(context, placed),
         normals,
+        None if placed.spread is None else np.kron(placed.spread, np.eye(6)),
     )
     of_property = [frozenset([key, *layup(bulk, key, bulk.place(*key)).materials]) for key in keys]
     sources, source_of = element_sources(context, ids, of_property, of)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
-        return _matrices(context, kernel, elements, values, rows, wanted)
+        return _matrices(context, kernel, facts, values, rows, wanted)
 
-    corners = placed.corners
-    return Group(name, ids, corners, 6, matrices, sources, source_of, kernel.shape, corners)
+    return Group(
+        name, ids, placed.nodes, 6, matrices, sources, source_of, kernel.shape, placed.corners
+    )
+
+
+def _offsets(context: Context, placed: _Placed) -> Floats:
+    offset = np.array([c.zoffset or 0.0 for c in placed.cards], dtype=np.float64)
+    if placed.kernel.curved and offset.any():
+        bad = int(placed.ids[np.flatnonzero(offset)[0]])
+        place = context.bulk.place(placed.name, bad)
+        raise InputError(f"{place}: ZOFFS is not supported on {placed.name}")
+    return offset
 
 
 def _matrices(
     context: Context,
     kernel: Kernel,
-    elements: _Elements,
+    facts: _Elements,
     bulk: Bulk,
     rows: Ints,
     wanted: tuple[bool, bool],
 ) -> Matrices:
-    section, density, reference = sections_of(context, elements, bulk, rows)
-    xyz = elements.xyz[rows]
-    offset = elements.offset[rows] + reference
+    section, density = sections_of(context, facts, bulk, rows)
+    xyz = facts.xyz[rows]
     K = M = None
     if wanted[0]:
-        normals = None if elements.normals is None else elements.normals[rows]
+        normals = None if facts.normals is None else facts.normals[rows]
+        offset = facts.offset[rows]
         K = kernel.stiffness(xyz, section, context.settings.k6rot, offset, normals)
     if wanted[1]:
-        density = density + context.extra_mass(bulk, elements.ids[rows])
+        density = density + context.extra_mass(bulk, facts.ids[rows])
         M = kernel.mass(xyz, density, context.settings.coupled)
+    T = facts.spread
+    if T is not None:
+        K, M = (None if X is None else T.T @ X @ T for X in (K, M))
     return K, M
 
 
 def sections_of(
-    context: Context, elements: _Elements, bulk: Bulk, rows: Ints
-) -> tuple[ShellSection, Floats, Floats]:
-    """Sections in element axes, mass per area, and the properties' own offset of each element.
+    context: Context, facts: _Elements, bulk: Bulk, rows: Ints
+) -> tuple[ShellSection, Floats]:
+    """Sections in element axes and mass per area of each element.
 
-    Elements with the same property and no thickness or angle of their own share one section.
+    Elements with the same property and no thickness of their own share one layup.
     """
-    e = elements
     distinct, position = _distinct(
-        np.column_stack([e.of[rows], e.angle[rows], e.own[rows], e.share[rows]])
+        np.column_stack([facts.of[rows], facts.own[rows], facts.share[rows]])
     )
     layups: list[Layup] = []
-    for number, _, own, share in distinct:
-        key = elements.keys[int(number)]
+    for number, own, share in distinct:
+        key = facts.keys[int(number)]
         layups.append(layup(bulk, key, context.bulk.place(*key), float(own), float(share)))
     section = ShellSection(
         A=np.array([part.A for part in layups]),
@@ -168,13 +271,11 @@ def sections_of(
         D=np.array([part.D for part in layups]),
         S=np.array([part.S for part in layups]),
         drilling=np.array([part.drilling for part in layups]),
-    )
-    turn = np.where([part.isotropic for part in layups], 0.0, distinct[:, 1])
-    if turn.any():
-        section = shell.rotate_section(section, turn)
-    density = np.array([part.density for part in layups])
-    reference = np.array([part.offset for part in layups])
-    return section.take(position), density[position], reference[position]
+    ).take(position)
+    angle = facts.angle[rows]
+    if angle.any():
+        section = elements.rotate_section(section, angle)
+    return section, np.array([part.density for part in layups])[position]
 
 
 def _distinct(table: Floats) -> tuple[Floats, Ints]:
@@ -200,26 +301,29 @@ def _thickness(cards: list[Card], corners: int) -> tuple[Floats, Floats]:
     return own, share
 
 
-def material_angle(
-    context: Context, name: str, cards: list[Card], axes: Floats, xyz: Floats
-) -> Floats:
-    """Angle from the element's x axis to the material's [rad].
+def material_angle(context: Context, placed: _Placed, rows: Ints) -> Floats:
+    """Angle from the element's x axis to the material's [rad], of the elements `rows`.
 
-    THETA counts from side 1-2; a coordinate system (MCID) from its x axis projected on the
-    element.
+    THETA counts from side 1-2 (CQUAD8: from the element's x axis); a coordinate system (MCID)
+    gives the material's x axis by its own, projected on the element.
     """
+    xyz, axes = placed.xyz[rows], placed.axes[rows]
+    cards = [placed.cards[k] for k in rows]
     side = xyz[:, 1] - xyz[:, 0]
     x, y, z = axes[:, 0], axes[:, 1], axes[:, 2]
-    base = np.arctan2((side * y).sum(axis=1), (side * x).sum(axis=1))
+    base = np.zeros(len(rows))
+    if placed.kernel.from_side:
+        base = np.arctan2((side * y).sum(axis=1), (side * x).sum(axis=1))
     by_system = np.array([isinstance(c.theta_mcid, (int, np.integer)) for c in cards])
     theta = np.radians(
         [0.0 if s else float(c.theta_mcid or 0.0) for c, s in zip(cards, by_system, strict=True)]
     )
     angle: Floats = base + theta
+    centre = xyz[:, : placed.kernel.corners].mean(axis=1)
     for k in np.flatnonzero(by_system):
-        place = context.bulk.place(name, cards[k].eid)
+        place = context.bulk.place(placed.name, cards[k].eid)
         frame = context.points.frames.get(int(cards[k].theta_mcid), place)
-        direction = frame.directions(xyz[k].mean(axis=0, keepdims=True))[0, 0]
+        direction = frame.directions(centre[k : k + 1])[0, 0]
         flat = direction - (direction @ z[k]) * z[k]
         if np.linalg.norm(flat) < 1e-6:
             raise InputError(
@@ -232,14 +336,14 @@ def material_angle(
 def check_shape(context: Context, name: str, ids: Ints, xyz: Floats) -> None:
     """Raise `InputError` for an element without area or with a corner turned inside out."""
     if xyz.shape[1] == 3:
-        smallest = shell.tria3_area(xyz)
+        smallest = elements.tria3_area(xyz)
         scale = np.square(np.linalg.norm(xyz[:, 1] - xyz[:, 0], axis=1))
     else:
         d1, d2 = xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1]
         scale = np.linalg.norm(d1, axis=1) * np.linalg.norm(d2, axis=1)
         flat = np.linalg.norm(np.cross(d1, d2), axis=1) <= 1e-9 * scale
         smallest = np.zeros(len(xyz))
-        smallest[~flat] = shell.quad4_corner_jacobians(xyz[~flat]).min(axis=1)
+        smallest[~flat] = elements.quad4_corner_jacobians(xyz[~flat]).min(axis=1)
     bad = ~(smallest > 1e-6 * scale)
     if bad.any():
         number = int(ids[np.flatnonzero(bad)[0]])

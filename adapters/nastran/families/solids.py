@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from ....core.errors import InputError
 from ..cards import Bulk, Card
 from ..materials import elastic
 from .common import Context, Group, Key, distinct_properties
+from .middle_nodes import by_pattern, kept_nodes, nodes_of, spread
 
 SOLID_PROPERTIES = ("PSOLID",)
 
@@ -99,31 +99,28 @@ def solids(context: Context) -> list[Group]:
     """Make the groups of solids: by card, and by which middle nodes are there."""
     groups = []
     for name, (linear, quadratic) in KERNELS.items():
-        by_pattern: dict[tuple[bool, ...], list[Card]] = {}
-        for card in context.bulk.table(name).values():
-            present = tuple(bool(n) for n in card.nodes[linear.corners :])
-            present = present if any(present) else ()
-            by_pattern.setdefault(present, []).append(card)
-        for present, cards in by_pattern.items():
+        cards = list(context.bulk.table(name).values())
+        for present, members in by_pattern(cards, linear.corners).items():
             kernel = quadratic if present else linear
-            groups.append(_group(context, name, cards, kernel, np.array(present, dtype=bool)))
+            groups.append(_group(context, name, members, kernel, present))
     return groups
 
 
-def _group(context: Context, name: str, cards: list[Card], kernel: Kernel, present: Any) -> Group:
+def _group(
+    context: Context, name: str, cards: list[Card], kernel: Kernel, present: tuple[bool, ...]
+) -> Group:
     bulk, points = context.bulk, context.points
     ids = np.array([c.eid for c in cards], dtype=np.int64)
-    kept = np.concatenate([np.ones(kernel.corners, dtype=bool), present])
-    nodes = [[n for n, keep in zip(c.nodes, kept, strict=False) if keep] for c in cards]
-    rows_of = points.rows(nodes, name, ids)
-    spread = _spread(kernel, kept)
-    xyz = points.xyz[rows_of] if spread is None else spread @ points.xyz[rows_of]
+    kept = kept_nodes(present, kernel.corners, kernel.geometry.nodes)
+    rows_of = points.rows(nodes_of(cards, kept), name, ids)
+    T = spread(kernel.geometry.edges, kept)
+    xyz = points.xyz[rows_of] if T is None else T @ points.xyz[rows_of]
     check_volume(context, name, ids, kernel, xyz)
     pids = np.array([c.pid for c in cards])
     keys, of = distinct_properties(bulk, SOLID_PROPERTIES, name, ids, pids)
     schemes = [_scheme(context, name, kernel, key) for key in keys]
     centre = xyz[:, : kernel.corners].mean(axis=1)
-    full = None if spread is None else np.kron(spread, np.eye(3))
+    full = None if T is None else np.kron(T, np.eye(3))
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         C, rho = _materials(context, values, keys, of[rows], centre[rows])
@@ -139,23 +136,6 @@ def _group(context: Context, name: str, cards: list[Card], kernel: Kernel, prese
     sources = tuple(_sources(context, key) for key in keys)
     corners = rows_of[:, : kernel.corners]
     return Group(name, ids, 2 * rows_of, 3, matrices, sources, of, kernel.shape, corners)
-
-
-def _spread(kernel: Kernel, kept: Any) -> Floats | None:
-    """Displacements of all nodes from those that are there: a missing one halves its edge."""
-    n = kernel.geometry.nodes
-    if kept[:n].all() and len(kept) == n:
-        return None
-    kept = np.concatenate([kept, np.zeros(n - len(kept), dtype=bool)])
-    columns = np.cumsum(kept) - 1
-    T = np.zeros((n, int(kept.sum())))
-    for node in range(n):
-        if kept[node]:
-            T[node, columns[node]] = 1.0
-        else:
-            for end in kernel.geometry.edges[node - kernel.corners]:
-                T[node, columns[end]] += 0.5
-    return T
 
 
 def _stiffness(kernel: Kernel, xyz: Floats, C: Floats, schemes: list[str]) -> Floats:
