@@ -11,6 +11,7 @@ from scipy.linalg import qr
 from scipy.sparse.csgraph import connected_components
 
 from .arrays import Floats, Ints, Numbers
+from .errors import CheckError
 from .factor import factorise
 from .model import Model
 from .pencil import Pencil
@@ -83,6 +84,8 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
         Its K and M.
     """
     U, scalar = _geometric(model)
+    label = _pieces(model, pencil)
+    _follow(pencil, U, scalar & np.isin(label, label[~scalar]))
     size = sp.csr_matrix((np.abs(pencil.K.data), pencil.K.indices, pencil.K.indptr), pencil.K.shape)
     force = pencil.K @ U
     noise = max(_ROUNDING, 4.0 * pencil.precision) * (size @ np.abs(U).sum(axis=1))
@@ -90,7 +93,7 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     modes: list[tuple[Ints, Floats]] = []
     motions: list[tuple[Ints, Floats]] = []
     pieces = 0
-    for rows in _groups(_pieces(model, pencil)):
+    for rows in _groups(label):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
         found = _strain_free(u, mu, ku, noise[rows])
@@ -154,6 +157,20 @@ def _geometric(model: Model) -> tuple[Floats, Numbers]:
     U = factorise(normal + sp.diags(idle.astype(float))).solve(T.T @ R)
     touches_grid = np.asarray(abs(T[~is_scalar]).sum(axis=0)).ravel() > 0.0
     return U, ~touches_grid
+
+
+def _follow(pencil: Pencil, U: Floats, followers: Numbers) -> None:
+    """Let scalar points of a piece with grids follow its motions without strain, in place."""
+    if not followers.any():
+        return
+    rows = sp.csr_matrix(pencil.K)[np.flatnonzero(followers)]
+    own = rows[:, np.flatnonzero(followers)]
+    loose = sp.diags((own.diagonal() == 0.0).astype(float))
+    moved = np.where(followers[:, None], 0.0, U[:, :6])
+    try:
+        U[followers, :6] = -factorise(own + loose).solve(rows @ moved)
+    except CheckError:
+        return  # they hang together by themselves: no motion of the grids is theirs
 
 
 def _strain_free(U: Floats, MU: Floats, KU: Floats, noise: Floats) -> Floats:

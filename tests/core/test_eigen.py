@@ -221,6 +221,26 @@ def test_scalar_points(backend):
     assert solve(scalar_model(*chain(20, ground=1e-9)), 3).rigid_body_modes == 0
 
 
+@pytest.mark.parametrize("bars", [24, 120])
+def test_scalar_point_hung_on_a_free_structure_follows_it(ring, bars):
+    """An absorber as a deck has it: a spring from a grid to a scalar point with a mass."""
+    model = ring(bars)
+    n = model.n_free
+    spring = sp.csr_matrix((400.0 * np.array([1, -1, -1, 1]), ([8, 8, n, n], [8, n, 8, n])))
+    K = sp.block_diag([model.K(), [[0.0]]]) + spring
+    M = sp.block_diag([model.M(), [[0.01]]])
+    hung = Model(
+        model.geometry,
+        Dofs(np.append(model.dofs.node, 9999), np.append(model.dofs.component, 1)),
+        sp.identity(n + 1, format="csr"),
+        (Term(K.tocsr()),), (Term(M.tocsr()),), (), (*model.free_labels, "9999"),
+    )  # fmt: skip
+    found = solve(hung, 10)
+    assert found.rigid_body_modes == 6
+    assert found.warnings == ()
+    assert 20.0 < found.frequencies_hz[6] < 40.0
+
+
 @pytest.mark.parametrize("digits", [10, None])
 def test_matrices_of_limited_precision_keep_their_rigid_body_modes(ring, digits):
     """As read from a punch file with ten digits, or from single precision."""
