@@ -222,6 +222,6 @@ def _moved(data: BandData, fit: Fit, step: Floats) -> tuple[Fit, Floats]:
     decay, omega = -fit.poles.real, fit.poles.imag
     reach = 2.0 * decay + 1e-3 * omega
     decay = decay * np.exp(np.clip(-pole[:, 0] / decay, -_FACTOR, _FACTOR))
-    omega = omega + np.clip(pole[:, 1], -reach, reach)
+    omega = np.maximum(omega + np.clip(pole[:, 1], -reach, reach), 0.5 * omega)
     poles = -np.maximum(decay, _LEAST_DAMPING * omega) + 1j * omega
     return _with_shapes(data, poles, fit.participation + (part[:, 0] + 1j * part[:, 1]).T)

@@ -14,6 +14,10 @@ from .starting import complete_participation
 
 _BEYOND_DOUBT = 50.0  # significance above which a root is not tested by refining without it
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
+_ONE_SHAPE = 0.95  # MAC above which two close roots have one shape
+_TELLING = 5  # outputs below which shapes tell nothing
+_SPLIT_WIDTHS = 6.0  # half bandwidths, and
+_SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
 _ROUNDS = 12  # of trying a root where the residual still shows one
 _FAILURES = 5  # in a row, after which no more is tried
 _NEIGHBOURS = 8.0  # half bandwidths to either side that a trial root is fitted over
@@ -97,8 +101,48 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
                 break
             cleared.add(complex(fit.poles[k]))
         else:
-            break
+            doubles = split_roots(f, fit, value)
+            if not doubles.any():
+                break
+            strength = np.where(doubles, _strength(fit), np.inf)
+            fit = _without(data, fit, int(np.argmin(strength)))
     return fit
+
+
+def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
+    """Roots that repeat the shape of a stronger one close by, (n_mode,) bool.
+
+    Two modes do not have one shape. Leakage, a frequency that moves from reference to reference
+    or with the level, split one mode into several roots of its shape; the strongest stays.
+
+    Parameters
+    ----------
+    value : (n_mode,) float
+        Significance: the noise in a shape of little significance lowers its MAC.
+    """
+    m = len(fit.poles)
+    double = np.zeros(m, bool)
+    if m < 2 or len(fit.shapes) < _TELLING:
+        return double
+    mode = plausible(f, fit)
+    unit = fit.shapes / np.maximum(np.linalg.norm(fit.shapes, axis=0), 1e-300)
+    noise = 1.0 / np.maximum(2.0 * value, 1.0)
+    attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
+    alike = np.abs(unit.conj().T @ unit) ** 2 > _ONE_SHAPE * attainable
+    strength = _strength(fit)
+    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
+    for a in range(m):
+        gap = np.abs(fit.poles.imag - fit.poles[a].imag)
+        width = np.maximum(np.abs(fit.poles.real), np.abs(fit.poles[a].real))
+        weaker = alike[a] & (strength < strength[a]) & mode & mode[a]
+        double |= weaker & (gap < _SPLIT_WIDTHS * width + _SPLIT_LINES * spacing)
+    return double
+
+
+def _strength(fit: Fit) -> Floats:
+    """Energy of each mode by itself."""
+    residues = np.sum(np.abs(fit.shapes) ** 2, axis=0) * np.sum(np.abs(fit.participation) ** 2, 0)
+    return np.asarray(residues / np.abs(fit.poles.real))
 
 
 def _without(data: BandData, fit: Fit, k: int) -> Fit:
@@ -163,7 +207,8 @@ def _from_residual(
         poles = np.append(fit.poles[near], complex(-decay, centre))
         part = np.column_stack([fit.participation[:, near], root.participation])
         trial = refine(local, poles, part, max_iterations=_TRIAL_ITERATIONS)
-        value = float(significance(local, f[lines], trial)[-1])
+        values = significance(local, f[lines], trial)
+        value = 0.0 if split_roots(f, trial, values)[-1] else float(values[-1])
         if value > most:
             best, most = trial, value
     if best is None:

@@ -10,9 +10,10 @@ from .moments import BandData, basis, parts_of, shape_normals
 from .refinement import Fit, solve_shapes
 
 _RISK = 0.01  # that noise alone makes one root somewhere in a band
-_MARGIN = 1.5  # beyond what that risk allows, since noise is never quite white
+_MARGIN = 2.0  # beyond what that risk allows, since noise is never quite white
 _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
+_LISTENED = 200  # functions enough to tell the colour of the residual
 _PRIOR = 16.0  # numbers that the variance of all functions counts for in that of one
 
 
@@ -78,6 +79,7 @@ def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     """
     left = residual_lines(data, fit, F)
     n_line = len(f)
+    inflation = colour(left, f, fit)
     power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
     power /= 2.0 * data.weight.sum()
     hz = np.abs(fit.poles) / (2.0 * np.pi)
@@ -96,5 +98,30 @@ def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
         part = data.weight * np.abs(fit.participation[:, k]) ** 2
         row = np.sum(part * squares, axis=1) / np.maximum(part.sum(axis=1), 1e-300)
         floor = _DYNAMIC_RANGE**2 * (power[near].mean() + 0.01 * power.mean())
-        result[k] = np.maximum(row, max(floor, 1e-300))
+        result[k] = np.maximum(row * inflation[k], max(floor, 1e-300))
     return result
+
+
+def colour(left: Floats, f: Floats, fit: Fit) -> Floats:
+    """Compare the residual's energy along each mode's decay with that of white noise, (n_mode,).
+
+    Over time (the inverse transform of the lines) white noise is even. What windows, leakage or
+    a faulty model leave stands in the beginning, where the modes are, and so looks like modes:
+    its variance counts by the energy that a filter matched to the mode's decay would collect.
+
+    Parameters
+    ----------
+    left : (n_output, n_input, 2 n_line) float
+        Residual, stacked.
+    """
+    n_line = len(f)
+    functions = left.reshape(-1, 2, n_line)
+    functions = functions[:: max(1, len(functions) // _LISTENED)]
+    over_time = np.fft.ifft(functions[:, 0] + 1j * functions[:, 1], axis=1)
+    energy = np.sum(np.abs(over_time) ** 2, axis=0)
+    mean = float(energy.mean())
+    if mean <= 0.0:
+        return np.ones(len(fit.poles))
+    time = np.arange(n_line) / (f[-1] - f[0]) * (n_line - 1) / n_line
+    envelope = np.exp(2.0 * np.outer(fit.poles.real, time))
+    return np.asarray(np.maximum(envelope @ energy / envelope.sum(axis=1) / mean, 1.0))
