@@ -40,6 +40,7 @@ def _register() -> None:
     from .verbs.correlate import correlate
     from .verbs.demo import demo
     from .verbs.discover import discover
+    from .verbs.export_runs import export_runs
     from .verbs.inspect import inspect
     from .verbs.report import report
     from .verbs.solve import solve
@@ -47,6 +48,7 @@ def _register() -> None:
 
     app.command()(inspect)
     app.command()(convert)
+    app.command("export-runs")(export_runs)
     app.command()(solve)
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE))

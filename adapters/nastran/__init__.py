@@ -14,6 +14,7 @@ from .matrices.content import DofMap, NastranMatrix
 from .matrices.model import matrix_of, model_matrices, model_of_matrices, stiffness_and_mass
 from .matrices.op4 import is_op4, read_op4
 from .matrices.read import describe_matrices, matrix_file_kind, read_matrices
+from .matrices.runs import read_runs, write_runs
 from .matrices.write import write_dmig, write_op4
 from .parameters import FieldRef, ParameterSpec, parse_parameter
 from .read import Deck, EigenRequest, read_deck
@@ -49,6 +50,7 @@ __all__ = [
     "read_matrices",
     "read_modes",
     "read_op4",
+    "read_runs",
     "read_value",
     "set_values",
     "split_property",
@@ -60,4 +62,5 @@ __all__ = [
     "write_dmig",
     "write_in_place",
     "write_op4",
+    "write_runs",
 ]
