@@ -19,7 +19,7 @@ from ..editing.edit import set_values
 from ..editing.numbers import writable
 from ..editing.write import write_deck
 from ..parameters import ParameterSpec, parse_parameter
-from ..read import read_deck
+from ..read import Deck, read_deck
 from .content import NastranMatrix
 from .design import Design, design_of
 from .model import model_of_matrices, stiffness_and_mass
@@ -111,7 +111,7 @@ def read_runs(folder: Path | str) -> Model:
     points = np.array([run["factors"] for run in index["runs"]])
     if points.shape != design.points.shape or not np.allclose(points, design.points, rtol=1e-12):
         raise InputError(f"{folder / INDEX}: the runs are not those of its parameters; write anew")
-    pairs = [_matrices_of(top) for top in tops]
+    pairs = [_matrices_of(top, deck) for top in tops]
     stiffness, mass = [p[0] for p in pairs], [p[1] for p in pairs]
     frame = model_of_matrices(stiffness, mass, deck)
     exact = _as_written(design)
@@ -143,7 +143,7 @@ def _index(folder: Path) -> dict[str, Any]:
     return index
 
 
-def _matrices_of(top: Path) -> tuple[NastranMatrix, NastranMatrix]:
+def _matrices_of(top: Path, deck: Deck) -> tuple[NastranMatrix, NastranMatrix]:
     found = sorted(p for p in top.parent.iterdir() if _holds_matrices(p))
     if not found:
         raise InputError(
@@ -155,7 +155,7 @@ def _matrices_of(top: Path) -> tuple[NastranMatrix, NastranMatrix]:
             f"{top.parent} has several files with matrices ({found[0].name}, {found[1].name}): "
             "keep one"
         )
-    return stiffness_and_mass(read_matrices(found[0], read_deck(top)))
+    return stiffness_and_mass(read_matrices(found[0], deck))
 
 
 def _holds_matrices(path: Path) -> bool:
