@@ -9,6 +9,7 @@ import scipy.linalg
 import scipy.optimize
 
 from ..arrays import Floats, Ints, Numbers
+from .clustered import widened
 from .moments import BandData, Normal, normal, turned
 from .refinement import Fit, free_columns, solve_shapes, system_at
 from .significance import residual_lines
@@ -43,6 +44,7 @@ def errors(data: BandData, fit: Fit) -> Errors:
     The sandwich estimator S⁻¹ (Σ Jᵀ C J) S⁻¹, S the reduced normal matrix: C is taken from the
     residual, as a variance per function times a level per line (corrected for what the fit
     takes out of each line), with the correlation that neighbouring lines of the residual have.
+    The poles' errors are widened where responses or references contradict each other.
 
     References
     ----------
@@ -64,6 +66,7 @@ def errors(data: BandData, fit: Fit) -> Errors:
     inverse[np.ix_(columns, columns)] = _inverse(S[np.ix_(columns, columns)])
     cov = inverse @ meat @ inverse
     poles = np.stack([cov[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] for k in range(m)])
+    poles = widened(poles, data, fit, F, T, inverse)
     part = np.diag(cov)[2 * m :].reshape(m, 2, n_input).sum(axis=1).T
     shapes = _shape_errors(fit, n, noisy, T, inverse, cov)
     return Errors(poles, np.sqrt(np.maximum(part, 0.0)), shapes)
