@@ -50,7 +50,8 @@ def read_sections(path: Path) -> Sections:
         A file that cannot be read, an INCLUDE that names no file or includes itself.
     """
     files: list[Path] = []
-    lines = _expand(Path(path), files, (), None)
+    lines: list[Line] = []
+    _expand(Path(path), files, (), None, lines)
     marks = {"CEND": -1, "BEGIN": -1}
     for k, line in enumerate(lines):
         head = line.text[:80].split("$", 1)[0].upper().split()
@@ -99,17 +100,23 @@ def _read_text(path: Path, asked: str) -> list[str]:
 
 
 def _expand(
-    path: Path, files: list[Path], parents: tuple[Path, ...], asked: str | None
-) -> list[Line]:
+    path: Path, files: list[Path], parents: tuple[Path, ...], asked: str | None, lines: list[Line]
+) -> bool:
+    """Append the lines of a file and of what it includes; return whether ENDDATA was met.
+
+    Nastran reads nothing after it: an INCLUDE down there may name a file that does not exist.
+    """
     texts = _read_text(path, "" if asked is None else f"{asked}: ")
     file = len(files)
     files.append(path)
     parents = (*parents, path.resolve())
-    lines: list[Line] = []
     k = 0
     while k < len(texts):
-        if texts[k][:7].upper() != "INCLUDE" or texts[k][7:8].isalnum():
+        head = texts[k][:7].upper()
+        if head != "INCLUDE" or texts[k][7:8].isalnum():
             lines.append(Line(texts[k], file, k + 1))
+            if head == "ENDDATA":
+                return True
             k += 1
             continue
         here = f"{path} line {k + 1}"
@@ -117,6 +124,7 @@ def _expand(
         child = locate_include(name, path, files[0], here)
         if child.resolve() in parents:
             raise InputError(f"{here}: INCLUDE {name!r} includes itself")
-        lines.extend(_expand(child, files, parents, here))
+        if _expand(child, files, parents, here, lines):
+            return True
         k += used
-    return lines
+    return False
