@@ -39,8 +39,11 @@ _ERRORS = {
 }
 
 
-class NotDefinite(Exception):
+class NotDefinite(CheckError):
     """A matrix promised to be positive definite met a zero or negative pivot."""
+
+    def __init__(self) -> None:
+        super().__init__("a matrix that should be positive definite is not")
 
 
 def _candidates() -> Iterator[Path]:
@@ -125,11 +128,6 @@ class Pardiso:
         """Number of pivots that were too small and were replaced."""
         return int(self._iparm[13])
 
-    @property
-    def entries(self) -> int:
-        """Entries stored in the factor."""
-        return int(self._iparm[17])
-
     def solve(self, b: Numbers) -> Floats:
         """Return the solution of A x = b for b of shape (n, n_rhs), Fortran order."""
         b = np.asfortranarray(b, np.float64)
@@ -168,7 +166,6 @@ def _settings(integer: type[np.signedinteger[Any]]) -> Numbers:
     iparm[0] = 1  # the values below, not the defaults
     iparm[1] = 2  # METIS ordering
     iparm[9] = 13  # replace pivots below 1e-13 (the matrix comes scaled)
-    iparm[17] = -1  # report the entries of the factor
     iparm[20] = 1  # 1x1 and 2x2 pivots
     iparm[34] = 1  # indices start at zero
     return iparm

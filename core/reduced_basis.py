@@ -16,6 +16,8 @@ from .model import Model, Term
 _DEPENDENT = 1e-10
 """Energy beside the largest below which a direction is dependent on the others."""
 
+_BLOCK = 64
+
 
 def static_answers(
     model: Model,
@@ -25,6 +27,7 @@ def static_answers(
     targets: Sequence[int] | Ints,
     parameters: Sequence[int],
     most: int,
+    least: float,
 ) -> Floats:
     """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi.
 
@@ -39,6 +42,8 @@ def static_answers(
         Of A = K - sigma M.
     most : int
         Most vectors kept.
+    least : float
+        Least energy of those kept, beside that of a mode, for a factor moved by one.
 
     Returns
     -------
@@ -49,24 +54,28 @@ def static_answers(
     span = solution.eigenvalues - solution.sigma
     X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
     weight = 1.0 / np.sqrt(span[chosen])
-
-    def loads(i: int) -> Floats:
-        return np.asarray((model.dK(i, p0) @ X - (model.dM(i, p0) @ X) * lam) * weight)
-
     n, m = X.shape
-    S = np.empty((n, m * len(parameters)), order="F")
-    for k, i in enumerate(parameters):
-        S[:, k * m : (k + 1) * m] = factor.solve(loads(i))
-    energy = np.empty((S.shape[1],) * 2)
-    modal = np.empty((len(span), S.shape[1]))
-    for k, i in enumerate(parameters):
-        F = loads(i)
-        energy[:, k * m : (k + 1) * m] = S.T @ F
-        modal[:, k * m : (k + 1) * m] = (solution.vectors.T @ F) / span[:, None]
+    group = max(1, _BLOCK // max(m, 1))
+    groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
+    ends = np.cumsum([0] + [m * len(g) for g in groups])
+
+    def loads(members: Sequence[int]) -> Floats:
+        parts = [model.dK(i, p0) @ X - (model.dM(i, p0) @ X) * lam for i in members]
+        return np.hstack([part * weight for part in parts])
+
+    S = np.empty((n, ends[-1]), order="F")
+    energy = np.zeros((ends[-1],) * 2)
+    modal = np.empty((len(span), ends[-1]))
+    for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
+        F = loads(members)
+        S[:, start:end] = factor.solve(F)
+        energy[:end, start:end] = S[:, :end].T @ F
+        energy[start:end, :start] = energy[:start, start:end].T
+        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
     energy -= modal.T @ (span[:, None] * modal)
     value, W = np.linalg.eigh((energy + energy.T) / 2.0)
     best = np.argsort(-value)[:most]
-    best = best[value[best] > _DEPENDENT * max(value.max(initial=0.0), 0.0)]
+    best = best[value[best] > max(least, _DEPENDENT * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
     return np.asarray(S @ W - solution.vectors @ (modal @ W))
 

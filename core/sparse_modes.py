@@ -25,6 +25,7 @@ _FIRM = 1e-6
 _GAP = 1e-4
 _CLEAR = 1e-2
 _ATTEMPTS = 5
+_SHIFTS = 6
 _WIDEST = 64
 
 
@@ -112,17 +113,12 @@ def _started(
     hertz = _FIRST_SHIFT_HZ
     first = (2.0 * np.pi * hertz) ** 2 if request.limit is None else 0.05 * request.limit
     sigma = -float(np.clip(first, pencil.least_shift, 0.1 * typical))
-    try:
-        factor = factorise(pencil.shifted(sigma), True, request.backend)
-    except NotDefinite:
-        diagnose(model, pencil, sigma, request.backend)
-        raise CheckError("the stiffness is too badly conditioned to factorise") from None
+    factor = _definite(model, pencil, sigma, request.backend)
     refuse_unresisted(model, pencil, sigma, factor)
     rng = np.random.default_rng(request.seed)
-    for _ in range(6):
+    for attempt in range(_SHIFTS):
         start = rng.standard_normal((pencil.n, min(_WIDTH, pencil.n)))
-        room = _room(elastic)
-        lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, room)
+        lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, _room(elastic))
         lanczos.step()
         for _ in range(2):
             if lanczos.exhausted:
@@ -130,11 +126,29 @@ def _started(
             lanczos.advance()
             lanczos.step()
         better = _better_shift(sigma, lanczos.ritz()[0], elastic)
-        if better is None or -better < pencil.least_shift:
+        if better is None or -better < pencil.least_shift or attempt == _SHIFTS - 1:
             break
         sigma = better
-        factor.refactorise(pencil.shifted(sigma))
+        factor = _definite(model, pencil, sigma, request.backend, factor)
     return sigma, factor, lanczos
+
+
+def _definite(
+    model: Model | None,
+    pencil: Pencil,
+    sigma: float,
+    backend: Backend,
+    old: Factorisation | None = None,
+) -> Factorisation:
+    """Factor of K - sigma M, on the pattern of an old one; `InputError` where it has none."""
+    try:
+        if old is None:
+            return factorise(pencil.shifted(sigma), True, backend)
+        old.refactorise(pencil.shifted(sigma))
+    except NotDefinite:
+        diagnose(model, pencil, sigma, backend)
+        raise CheckError("the stiffness is too badly conditioned to factorise") from None
+    return old
 
 
 def _room(elastic: int) -> int:
