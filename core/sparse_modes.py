@@ -17,16 +17,16 @@ from .model import Model
 from .pencil import Pencil
 from .spectrum import Spectrum
 
-_FIRST_SHIFT_HZ = 20.0
-_WIDTH = 8
-_GUARD = 4
-_GUARD_TOLERANCE = 1e-3
-_FIRM = 1e-6
-_GAP = 1e-4
-_CLEAR = 1e-2
-_ATTEMPTS = 5
-_SHIFTS = 6
-_WIDEST = 64
+_FIRST_SHIFT_HZ = 20.0  # a guess, bettered when the first Ritz values are seen
+_SHIFTS = 6  # guesses at most
+_WIDTH = 8  # of the block: what one pass through the factor serves best
+_WIDEST = 64  # of the block, when many equal modes were missed
+_GUARD = 4  # modes above the wanted ones, in the room of the basis
+_GUARD_TOLERANCE = 1e-3  # Ritz residual at which a value helps to find a gap
+_FIRM = 1e-6  # Ritz residual up to which guards are kept as modes
+_GAP = 1e-4  # least relative gap for an inertia count
+_CLEAR = 1e-2  # a gap that needs no better one
+_ATTEMPTS = 5  # searches for missed modes, the first included
 
 
 @dataclass(frozen=True)
