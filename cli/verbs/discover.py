@@ -14,6 +14,8 @@ from ..console import stderr, working
 from ..options import Output
 from ..study import Study
 
+_ADOPTED = ("effect", "parameters_only")
+
 
 def discover(study: Study, output: Output) -> None:
     """Find where and what the model lacks, or what is wrong in the test."""
@@ -120,11 +122,10 @@ def complete(
     assert study.deck is not None
     original = read_deck_text(study.deck)
     text, cards = original, []
-    if found.verdict in {"effect", "parameters_only"}:
+    if found.verdict in _ADOPTED:
         moved = {
             ref: value * m.factor
             for m in found.parameters
-            if m.significant
             for ref, value in zip(
                 specs[m.number].fields, model.parameters[m.number].deck_values, strict=True
             )
@@ -257,13 +258,13 @@ def discover_tables(
                 "cards": list(model.parameters[m.number].handle),
                 "initial": list(model.parameters[m.number].deck_values),
                 "updated": [
-                    v * (m.factor if m.significant else 1.0)
+                    v * (m.factor if found.verdict in _ADOPTED else 1.0)
                     for v in model.parameters[m.number].deck_values
                 ],
                 "factor": m.factor,
                 "standard_error": m.standard_error,
                 "at_bound": False,
-                "adopted": m.significant and found.verdict in {"effect", "parameters_only"},
+                "significant": m.significant,
             }
             for m in found.parameters
         ],

@@ -144,12 +144,20 @@ class Candidates:
         `missing` (n · q,) is the flexibility of each row that the basis does not have: a
         coordinate released on a basis that is too stiff by it would give too little.
         """
-        if isinstance(self.law, SpringLaw):
-            return replace(self, law=SpringLaw(self.law.missing + missing.reshape(-1, 1)))
-        if isinstance(self.law, ReleaseLaw):
-            left = self.law.own - missing.reshape(self.law.own.shape)
-            return replace(self, law=ReleaseLaw(np.maximum(left, 1e-6 * self.law.own)))
-        return self
+        every = np.arange(len(self))
+        return replace(self, law=self.law_at(every, missing.reshape(len(self), -1)))
+
+    def law_at(self, rows: Ints, missing: Floats | None) -> Law:
+        """Return the law of some rows alone, on a basis that lacks `missing` (n, q)."""
+        law = self.law
+        if isinstance(law, SpringLaw):
+            lost = law.missing[rows]
+            return SpringLaw(lost if missing is None else lost + missing)
+        if isinstance(law, ReleaseLaw):
+            own = law.own[rows]
+            left = own if missing is None else np.maximum(own - missing, 1e-6 * own)
+            return ReleaseLaw(left)
+        return law
 
     @property
     def needs_flexibility(self) -> bool:

@@ -10,10 +10,11 @@ import scipy.linalg as la
 
 from ..arrays import Floats, Ints
 from .basis import Basis
-from .candidates import Catalogue, Suspect
+from .candidates import Catalogue, Law, Suspect
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 
 _DEGENERATE = 2e-3
+_FIRST = np.zeros(1, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +47,34 @@ class Problem:
     modes: int
     columns: int
 
-    def turned(self, T: Floats) -> Problem:
-        """Return the problem on the basis ``vectors @ T``."""
+    turn: Floats | None = None
+    rest: Floats | None = None
+
+    def turned(self, T: Floats, rest: Floats | None = None) -> Problem:
+        """Return the problem on the basis ``vectors @ T``.
+
+        Parameters
+        ----------
+        T : (r, s) float
+        rest : (r, r - s) float, optional
+            What T leaves out, each vector divided by the root of its eigenvalue, so that the
+            static response that is lost can be put back into the laws.
+        """
         return replace(
             self,
             basis=self.basis.turned(T),
             sensors=self.sensors @ T,
-            factors=tuple(f @ T for f in self.factors),
+            turn=T if self.turn is None else self.turn @ T,
+            rest=rest,
         )
+
+    def part(self, kind: int, rows: Ints) -> tuple[Floats, Law]:
+        """Return rows (n, q, r) of some candidates on the basis, and their law there."""
+        c, U = self.catalogue[kind], self.factors[kind][rows]
+        missing = None
+        if self.rest is not None and c.needs_flexibility:
+            missing = np.sum((U @ self.rest) ** 2, axis=-1)
+        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +100,8 @@ def _matrices(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> t
     p = np.exp(log_p)
     K, M = problem.basis.K(p), problem.basis.M(p)
     for s in suspects:
-        law = problem.catalogue[s.kind].law
-        U = problem.factors[s.kind][s.row]
-        c = law.value(np.array([s.theta]), np.array([s.row]))[0]
+        rows, law = problem.part(s.kind, np.array([s.row]))
+        U, c = rows[0], law.value(np.array([s.theta]), _FIRST)[0]
         target = K if law.on == "K" else M
         target += (U.T * c) @ U
     return K, M
@@ -208,8 +228,9 @@ def _normal_equations(
         for q in active
     ]
     for s in now.suspects:
-        law, U = problem.catalogue[s.kind].law, problem.factors[s.kind][s.row]
-        A = (U.T * law.slope(np.array([s.theta]), np.array([s.row]))[0]) @ U
+        rows, law = problem.part(s.kind, np.array([s.row]))
+        U = rows[0]
+        A = (U.T * law.slope(np.array([s.theta]), _FIRST)[0]) @ U
         changes.append((A, None) if law.on == "K" else (None, A))
     shapes = problem.sensors @ V
     dlam = np.zeros((len(changes), n))

@@ -15,8 +15,9 @@ from .scanning import scan
 from .search import Found, Searcher
 
 _MARGIN = 4.0
-_PER_MODE = 3.0
+_PER_MODE = 5.0
 _CREDIBLE = 6.0
+_MOST_NOISE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +69,14 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
 
 
 def enough(searcher: Searcher) -> object:
-    """Return the rule that ends the search: one more suspect is not worth its price."""
+    """Return the rule that ends the search: one more suspect is not worth its price.
+
+    What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
+    the assumed one here; `judge` weighs again with what the best hypothesis leaves.
+    """
 
     def rule(previous: Fit, best: Fit) -> bool:
-        scale = noise_scale(searcher.problem.evidence, best)
+        scale = min(noise_scale(searcher.problem.evidence, best), _MOST_NOISE)
         added = max((price(searcher, s) for s in best.suspects), default=0.0)
         return (previous.objective - best.objective) / scale < added
 

@@ -33,7 +33,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     (n, n_trial) float
         The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
     """
-    law, U = problem.catalogue[kind].law, problem.factors[kind][rows]
+    U, law = problem.part(kind, rows)
     lam = np.maximum(state.eigenvalues, 0.0)
     out = np.empty((len(rows), len(trials)))
     S2 = problem.sensors.T @ problem.sensors
@@ -41,7 +41,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     n = min(problem.columns, len(lam))
     for start in range(0, len(rows), _CHUNK):
         part = slice(start, start + _CHUNK)
-        u, places = U[part], rows[part]
+        u = U[part]
+        places = np.arange(len(U))[part]
         for j, theta in enumerate(trials):
             c = law.value(np.full(len(places), theta), places)
             values, Z = _changed(lam, u, c, law.on)

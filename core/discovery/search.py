@@ -69,15 +69,8 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         n = min(self.effort.search_modes, self.problem.basis.size)
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
-        small = replace(self.problem.turned(T[:, :n]), modes=n)
-        rest, stiff = T[:, n:], np.maximum(values[n:], np.finfo(float).tiny)
-        catalogue = tuple(
-            c.on_basis(np.sum((f.reshape(-1, f.shape[-1]) @ rest) ** 2 / stiff, axis=1))
-            if c.needs_flexibility
-            else c
-            for c, f in zip(self.problem.catalogue, self.problem.factors, strict=True)
-        )
-        small = replace(small, catalogue=catalogue)
+        rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
+        small = replace(self.problem.turned(T[:, :n], rest), modes=n)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def branches(
@@ -99,9 +92,15 @@ class Searcher:
                 out.append((float(best[i]), Suspect(kind, int(rows[i]), theta)))
         return sorted(out, key=lambda b: b[0])
 
-    def fitted(self, state: Fit, suspects: Sequence[Suspect], iterations: int = 6) -> Fit:
+    def fitted(
+        self,
+        state: Fit,
+        suspects: Sequence[Suspect],
+        iterations: int = 6,
+        small: Problem | None = None,
+    ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
-        small, _ = self.local(state)
+        small = small or self.local(state)[0]
         quick = fit(small, state.log_p, suspects, self.active, iterations)
         return fit(self.problem, quick.log_p, quick.suspects, self.active, 2)
 
@@ -129,7 +128,7 @@ class Searcher:
         trials = suspect.theta + _NEIGHBOURING
         score = scan(small, here, suspect.kind, rows, trials)
         best = score.min(axis=1)
-        for i in np.argsort(best, kind="stable")[:4]:
+        for i in np.argsort(best, kind="stable")[:3]:
             if rows[i] == suspect.row:
                 continue
             moved = replace(suspect, row=int(rows[i]), theta=float(trials[score[i].argmin()]))
@@ -177,8 +176,9 @@ class Searcher:
             progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
             grown: list[Fit] = []
             for state in beam:
-                for _, branch in self.branches(state, kinds, self.effort.branches)[:10]:
-                    grown.append(self.fitted(state, (*state.suspects, branch), 5))
+                small = self.local(state)[0]
+                for _, branch in self.branches(state, kinds, self.effort.branches)[:8]:
+                    grown.append(self.fitted(state, (*state.suspects, branch), 5, small))
             chosen = self._distinct(sorted(grown, key=lambda f: f.objective))
             beam = sorted(
                 (self.refined(f) for f in chosen[: self.effort.beam]), key=lambda f: f.objective
@@ -197,7 +197,7 @@ class Searcher:
                 break
             strong = {
                 s.kind for f in (*beam, *chosen[:8]) for s in f.suspects
-                if f.objective < best.objective + 0.5 * (previous.objective - best.objective)
+                if f.objective < best.objective + 0.6 * (previous.objective - best.objective)
             }
             kinds = sorted(strong) or everything
         return Found(tuple(levels), tuple(rivals))

@@ -31,8 +31,21 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
         where=where_of(structure, patches),
         typical=float(np.log(0.05 * scale.mass)),
         spread=1.5,
-        extra={"structure": structure, "patches": patches, "share": _share},
+        extra={
+            "structure": structure,
+            "patches": patches,
+            "share": _share,
+            "areas": np.array([_area(structure, p) for p in patches]),
+        },
     )
+
+
+def _area(structure: Structure, patch: Patch) -> float:
+    """Area of the shell elements of a patch."""
+    x = structure.model.geometry.xyz[structure.members[patch.member].corners[patch.rows]]
+    last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
+    diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
+    return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
 
 
 def _share(patch: Patch, M: Floats) -> Any:

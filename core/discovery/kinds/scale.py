@@ -27,10 +27,10 @@ class Scale:
     size: float
     omega2: float
 
-    def masses(self, count: int = 4) -> Floats:
+    def masses(self, count: int = 3) -> Floats:
         """Trial masses, ln."""
-        return np.log(self.mass * np.geomspace(0.006, 0.12, count))
+        return np.log(self.mass * np.geomspace(0.01, 0.09, count))
 
-    def springs(self, count: int = 5) -> Floats:
+    def springs(self, count: int = 3) -> Floats:
         """Trial stiffnesses, ln."""
-        return np.log(self.mass * self.omega2 * np.geomspace(1e-3, 1.0, count))
+        return np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count))
