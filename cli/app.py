@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Annotated
 
@@ -63,7 +64,10 @@ _register()
 def run() -> int:
     """Run the command line and return the exit status.
 
-    0 done; 1 the input is at fault; 2 wrong usage; 3 the work did not meet its own check.
+    0 done; 1 the input is at fault; 2 wrong usage; 3 the work did not meet its own check. No
+    exception leaves here: what trueup raises on purpose is said in its own sentence, anything
+    else in one that tells it apart from a fault of the user's, with status 1. With
+    TRUEUP_TRACEBACK set, the traceback of either comes before the sentence.
     """
     from ..core.errors import CheckError, TrueupError
 
@@ -71,16 +75,35 @@ def run() -> int:
         app()
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 0
-    except CheckError as failed:
-        sys.stderr.write(f"trueup: {failed}\n")
-        return 3
-    except TrueupError as fault:
-        sys.stderr.write(f"trueup: {fault}\n")
-        return 1
     except BrokenPipeError:
         sys.stderr.close()
         return 0
+    except CheckError as failed:
+        return _say(str(failed), 3)
+    except TrueupError as fault:
+        return _say(str(fault), 1)
     except MemoryError:
-        sys.stderr.write("trueup: the machine's memory does not suffice for this model\n")
-        return 1
+        return _say("the machine's memory does not suffice for this model", 1)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return _say(f"{where}{error.strerror or error}", 1)
+    except Exception as error:  # noqa: BLE001 - the one place where anything may arrive
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        return _say(
+            f"a fault of trueup's own, not of your input as far as it can tell ({what}); set "
+            f"{_TRACEBACK}=1, run it again and report what is printed",
+            1,
+        )
     return 0
+
+
+_TRACEBACK = "TRUEUP_TRACEBACK"
+
+
+def _say(sentence: str, status: int) -> int:
+    if os.environ.get(_TRACEBACK):
+        import traceback
+
+        traceback.print_exc()
+    sys.stderr.write(f"trueup: {sentence}\n")
+    return status
