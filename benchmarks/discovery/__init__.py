@@ -1,0 +1,1 @@
+"""Cases with hidden truth by an independent solver, and what `discover` makes of them."""

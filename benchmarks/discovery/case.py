@@ -1,0 +1,134 @@
+"""One case from one seed: what it is, deck, test and truth on disk."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import calculix, hide, measure
+from .deck import write_deck
+from .mesh import Ints, Mesh, mesh
+from .structures import STRUCTURES
+
+SCENARIOS = (
+    ("effect", 8),
+    ("effect+scatter", 6),
+    ("two effects", 3),
+    ("nothing", 3),
+    ("scatter", 5),
+    ("fault", 4),
+    ("effect+fault", 2),
+)
+"""What a case hides, and how often."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What one case is made of; `kinds` and `faults` are the hidden ones, in order."""
+
+    seed: int
+    structure: str
+    scenario: str
+    kinds: tuple[str, ...]
+    faults: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Return a folder name that says what is hidden."""
+        hidden = [*self.kinds, *self.faults] or [self.scenario]
+        return f"{self.seed:04d}_{self.structure}_" + "_".join(hidden)
+
+
+def plan(seed: int) -> Plan:
+    """Return the plan of a seed: structures in turn, scenarios and kinds at random."""
+    rng = np.random.default_rng([seed, 1])
+    name = list(STRUCTURES)[seed % len(STRUCTURES)]
+    s = STRUCTURES[name](np.random.default_rng([seed, 2]))
+    weights = np.array([w for _, w in SCENARIOS], dtype=float)
+    scenario = SCENARIOS[int(rng.choice(len(SCENARIOS), p=weights / weights.sum()))][0]
+    n = 2 if scenario == "two effects" else 1 if "effect" in scenario else 0
+    kinds = tuple(str(k) for k in rng.choice(hide.possible(s), size=n, replace=False))
+    faults: tuple[str, ...] = ()
+    if "fault" in scenario:
+        choice = ["sensor_polarity", "sensor_gain", "sensor_swap"]
+        choice += ["sensor_axis"] * (s.axes != "normal")
+        size = 1 if "effect" in scenario else int(rng.integers(1, 3))
+        faults = tuple(str(k) for k in rng.choice(choice, size=size, replace=False))
+    return Plan(seed, name, scenario, kinds, faults)
+
+
+def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None) -> Path:
+    """Write deck, test and truth of a plan into folder/NAME and return that folder.
+
+    Raises
+    ------
+    calculix.CalculixError
+        If CalculiX does not give the modes.
+    """
+    place = folder / p.name
+    if (place / "truth.json").exists():
+        return place
+    s = STRUCTURES[p.structure](np.random.default_rng([p.seed, 2]))
+    rng = np.random.default_rng([p.seed, 3])
+    fine = mesh(s, 2, True)
+    bare = calculix.solve(s, fine, hide.joined([], {}), cache, s.modes)
+    scene = hide.Scene(s, fine, bare, rng)
+    drawn = [hide.KINDS[k](scene) for k in p.kinds]
+    factors: dict[int, float] = {}
+    if p.scenario in ("effect+scatter", "scatter") or (
+        p.scenario in ("fault", "two effects", "effect+fault") and rng.random() < 0.5
+    ):
+        factors = hide.scatter(scene)
+    truth = hide.joined([t for t, _ in drawn], factors)
+    modes = calculix.solve(s, fine, truth, cache, s.modes)
+    test = measure.measure(s, fine, truth, modes, noise or measure.Noise(), rng)
+    hurt: set[int] = set()
+    faults = []
+    for kind in p.faults:
+        test, entry = measure.fault(test, fine, kind, rng, hurt)
+        faults.append(entry)
+    rotation, shift = np.eye(3), np.zeros(3)
+    if rng.random() < 0.2:
+        rotation = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+        shift = np.array([200.0, 160.0, -300.0])
+    deck = write_deck(place, s, mesh(s, 1, False))
+    measure.write_test(place / f"{deck.stem}_test.unv", s, test, rotation, shift)
+    record = {
+        "case": p.name,
+        "scenario": p.scenario,
+        "structure": p.structure,
+        "dimension": s.size,
+        "scatter": {s.wording[g]: f for g, f in factors.items()},
+        "effects": [e for _, e in drawn],
+        "faults": faults,
+        "freq_hz": test.hz.tolist(),
+        "exact_hz": modes.hz.tolist(),
+        "bare_hz": bare.hz.tolist(),
+        "damping": test.damping.tolist(),
+        "units": "mm t N s",
+        "frame": {"rotation": rotation.tolist(), "shift": shift.tolist(), "scale": 0.001},
+        "sensors": int(test.nodes.size),
+        "modes": int(modes.hz.size),
+        "visibility": visibility(fine, test.nodes, bare, modes),
+    }
+    (place / "truth.json").write_text(json.dumps(record, indent=1))
+    return place
+
+
+def visibility(
+    m: Mesh,
+    nodes: Ints,
+    a: calculix.Modes,
+    b: calculix.Modes,
+) -> dict[str, float]:
+    """Return how much what is hidden changes: largest frequency shift [%] and smallest MAC."""
+    x, y = (q.shapes[nodes].reshape(3 * nodes.size, -1) for q in (a, b))
+    mac = (x.T @ y) ** 2 / np.outer(np.sum(x**2, axis=0), np.sum(y**2, axis=0))
+    shift = 100.0 * np.abs(b.hz / a.hz - 1.0)
+    return {
+        "largest_shift_percent": float(shift.max()),
+        "smallest_mac": float(mac.max(axis=0).min()),
+    }

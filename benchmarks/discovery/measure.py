@@ -1,0 +1,173 @@
+"""A modal test of the truth: sensors, noise, faults, and the universal file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .calculix import Modes
+from .mesh import Floats, Ints, Mesh, Structure
+from .truth import Truth
+
+Entry = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Scatter of shapes (of their rms), gains and frequencies (relative), and positions [mm]."""
+
+    shape: float = 0.02
+    gain: float = 0.01
+    frequency: float = 0.001
+    position: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Test:
+    """A measured survey in the deck's frame: labels, xyz [mm], shapes (sensor, 3, mode)."""
+
+    labels: Ints
+    xyz: Floats
+    nodes: Ints
+    hz: Floats
+    damping: Floats
+    shapes: Floats
+
+
+def sensors(s: Structure, m: Mesh, rng: np.random.Generator) -> Ints:
+    """Return random corner nodes, apart from each other by a fortieth of the structure."""
+    free = rng.permutation(np.setdiff1d(m.corners, m.clamped))
+    wanted = int(rng.integers(*s.sensors))
+    chosen: list[int] = []
+    for node in free:
+        gap = np.linalg.norm(m.xyz[chosen] - m.xyz[node], axis=1) if chosen else np.array([np.inf])
+        if gap.min() > s.size / 40.0:
+            chosen.append(int(node))
+        if len(chosen) == wanted:
+            break
+    return np.array(sorted(chosen))
+
+
+def channels(s: Structure, m: Mesh, nodes: Ints) -> Floats:
+    """Return unit directions (sensor, channel, 3) of what each sensor measures."""
+    if s.axes == "normal":
+        p = m.normals()[nodes]
+        lost = np.linalg.norm(p, axis=1) < 0.5
+        p[lost] = (0.0, 0.0, 1.0)
+        return p[:, None, :]
+    rows = np.eye(3)[["xyz".index(c) for c in s.axes]]
+    return np.tile(rows, (nodes.size, 1, 1))
+
+
+def damped(t: Truth, modes: Modes, rng: np.random.Generator) -> Floats:
+    """Return damping ratios: 0.2 to 1.2 % at random and what dashpots add (first order)."""
+    z = rng.uniform(0.002, 0.012, modes.hz.size)
+    for node, c, damping in t.dampers:
+        z = z + damping * modes.shapes[node, c - 1] ** 2 / (4.0 * np.pi * modes.hz)
+    return np.asarray(z)
+
+
+def measure(
+    s: Structure, m: Mesh, t: Truth, modes: Modes, noise: Noise, rng: np.random.Generator
+) -> Test:
+    """Measure the truth."""
+    nodes = sensors(s, m, rng)
+    d = channels(s, m, nodes)
+    y = np.einsum("sci,sim->scm", d, modes.shapes[nodes])
+    rms = np.sqrt(np.mean(y**2, axis=(0, 1)))
+    y = y * (1.0 + noise.gain * rng.standard_normal(y.shape[:2])[:, :, None])
+    y = y + noise.shape * rms * rng.standard_normal(y.shape)
+    y = y * rng.choice([-1.0, 1.0], size=y.shape[2])
+    start = int(rng.choice([1, 101, 1001]))
+    return Test(
+        start + np.arange(nodes.size),
+        m.xyz[nodes] + noise.position * rng.standard_normal((nodes.size, 3)),
+        nodes,
+        modes.hz * (1.0 + noise.frequency * rng.standard_normal(modes.hz.size)),
+        damped(t, modes, rng),
+        np.einsum("sci,scm->sim", d, y),
+    )
+
+
+def _loud(test: Test) -> Ints:
+    level = np.sum(test.shapes**2, axis=(1, 2))
+    return np.flatnonzero(level > np.median(level) * 0.5)
+
+
+def fault(
+    test: Test, m: Mesh, kind: str, rng: np.random.Generator, hurt: set[int]
+) -> tuple[Test, Entry]:
+    """Return the test with one more fault, at sensors that move and are not in `hurt`."""
+    y = test.shapes.copy()
+    candidates = [int(i) for i in _loud(test) if int(i) not in hurt]
+    i = int(rng.choice(candidates))
+    entry: Entry = {
+        "kind": kind,
+        "sensor": i,
+        "node": int(test.labels[i]),
+        "xyz": m.xyz[test.nodes[i]].tolist(),
+    }
+    if kind == "sensor_polarity":
+        y[i] *= -1.0
+    elif kind == "sensor_gain":
+        factor = float(rng.choice([0.5, 0.6, 1.5, 1.8]))
+        y[i] *= factor
+        entry["factor"] = factor
+    elif kind == "sensor_axis":
+        angle = float(rng.choice([30.0, 45.0, 90.0]))
+        c, q = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        y[i] = np.array([[c, q, 0.0], [-q, c, 0.0], [0.0, 0.0, 1.0]]) @ y[i]
+        entry["angle_deg"] = angle
+    elif kind == "sensor_swap":
+        flat = y.reshape(y.shape[0], -1)
+        unit = flat / np.linalg.norm(flat, axis=1)[:, None]
+        alike = unit @ unit[i]
+        others = [j for j in candidates if j != i and abs(alike[j]) < 0.6]
+        j = int(rng.choice(others or [k for k in candidates if k != i]))
+        y[[i, j]] = y[[j, i]]
+        entry |= {"other": j, "other_node": int(test.labels[j])}
+        hurt.add(j)
+    hurt.add(i)
+    return replace(test, shapes=y), entry
+
+
+def _block(number: int, body: str) -> str:
+    return f"    -1\n{number:6d}\n{body}    -1\n"
+
+
+def write_test(path: Path, s: Structure, test: Test, rotation: Floats, shift: Floats) -> None:
+    """Write datasets 151, 164, 15 and 55 in metres; positions are 0.001·(R·x + shift)."""
+    stamp = "01-Jan-26 00:00:00"
+    out = _block(
+        151,
+        f"{s.title}\nmodal test\nmodal\n{stamp}           0         0         0\n"
+        f"{stamp}\nmodal\n{stamp}\n",
+    )
+    one = "   1.0000000000000000D+00"
+    out += _block(
+        164,
+        f"{1:10d}{'  SI: Meter (newton)':20s}{1:10d}\n{one * 3}\n   2.7314999999999998D+02\n",
+    )
+    place = 1e-3 * (test.xyz @ rotation.T + shift)
+    out += _block(
+        15,
+        "".join(
+            f"{label:10d}{0:10d}{0:10d}{11:10d}{p[0]:13.5E}{p[1]:13.5E}{p[2]:13.5E}\n"
+            for label, p in zip(test.labels, place, strict=True)
+        ),
+    )
+    y = 1e-3 * np.einsum("ij,sjm->sim", rotation, test.shapes)
+    for k, (hz, zeta) in enumerate(zip(test.hz, test.damping, strict=True)):
+        head = f"{s.title}\nmode {k + 1}\nNONE\nNONE\nNONE\n"
+        head += "".join(f"{v:10d}" for v in (1, 2, 2, 12, 2, 3)) + "\n"
+        head += "".join(f"{v:10d}" for v in (2, 4, 1, k + 1)) + "\n"
+        head += "".join(f"{v:13.5e}" for v in (hz, 1.0, zeta, 0.0)) + "\n"
+        rows = "".join(
+            f"{label:10d}\n" + "".join(f"{v:13.5e}" for v in vector) + "\n"
+            for label, vector in zip(test.labels, y[:, :, k], strict=True)
+        )
+        out += _block(55, head + rows)
+    path.write_text(out)

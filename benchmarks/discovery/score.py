@@ -1,0 +1,171 @@
+"""Hold a result of `discover` against the truth that was hidden."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+Json = dict[str, Any]
+
+MASSES = {"point_mass", "distributed_mass", "tuned_absorber"}
+PLACE = 0.1
+"""A place is right within this part of the structure's largest dimension."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """One hidden effect or fault and the finding that comes nearest; `found` is '' if none."""
+
+    kind: str
+    found: str
+    placed: bool
+    distance: float | None
+    ratio: float | None
+    in_interval: bool | None
+    in_credible: bool | None
+    confidence: float | None
+    solved: bool
+
+
+@dataclass(frozen=True)
+class Score:
+    """What one case came to; `false_alarms` are kinds named that are not there."""
+
+    expected: str
+    verdict: str
+    solved: bool
+    safe: bool
+    named: tuple[Named, ...]
+    false_alarms: tuple[tuple[str, float], ...]
+
+
+def expected_verdicts(truth: Json) -> tuple[str, ...]:
+    """Return the verdicts that are right; a coarse mesh alone may ask for parameters."""
+    if truth["effects"]:
+        return ("effect",)
+    if truth["faults"]:
+        return ("test_fault",)
+    return ("parameters_only",) if truth["scatter"] else ("no_gap", "parameters_only")
+
+
+def _spot(effect: Json) -> tuple[list[float] | None, float]:
+    if "truth_node_xyz" in effect:
+        return effect["truth_node_xyz"], 0.0
+    if "box_lo" in effect:
+        lo, hi = effect["box_lo"], effect["box_hi"]
+        half = max(abs(b - a) for a, b in zip(lo, hi, strict=True)) / 2.0
+        return [(a + b) / 2.0 for a, b in zip(lo, hi, strict=True)], half
+    return None, 0.0
+
+
+def _middle(xyz: Any) -> list[float] | None:
+    if not xyz:
+        return None
+    if isinstance(xyz[0], (list, tuple)):
+        return [sum(c) / len(c) for c in zip(*xyz, strict=True)]
+    return [float(c) for c in xyz]
+
+
+def _gap(effect: Json, finding: Json) -> float | None:
+    spot, half = _spot(effect)
+    got = _middle((finding.get("where") or {}).get("xyz"))
+    return None if spot is None or got is None else max(0.0, math.dist(spot, got) - half)
+
+
+def _credible(effect: Json, finding: Json, size: float) -> bool:
+    for place in finding.get("credible_set") or []:
+        if (place.get("kind") or finding.get("kind")) != effect["kind"]:
+            continue
+        gap = _gap(effect, {"where": {"xyz": place.get("xyz")}})
+        if gap is not None and gap <= PLACE * size:
+            return True
+    return False
+
+
+def _effect(effect: Json, finding: Json, size: float) -> Named:
+    kind = effect["kind"]
+    gap = _gap(effect, finding)
+    placed = gap is not None and gap <= PLACE * size
+    key = next((k for k in ("mass", "factor", "stiffness", "damping") if k in effect), None)
+    got = (finding.get("magnitude") or {}).get(key)
+    got = got[0] if isinstance(got, list) and got else got
+    ratio = got / effect[key] if key and got else None
+    interval = finding.get("interval")
+    if isinstance(interval, dict):
+        interval = interval.get(key)
+    right = finding.get("kind") == kind
+    inside = None
+    if right and key and isinstance(interval, (list, tuple)) and len(interval) == 2:
+        inside = bool(interval[0] <= effect[key] <= interval[1])
+    tolerance = 1.3 if kind in MASSES else 2.0
+    sized = ratio is not None and 1.0 / tolerance <= ratio <= tolerance
+    return Named(
+        kind,
+        str(finding.get("kind")),
+        placed,
+        None if gap is None else gap / size,
+        ratio if right else None,
+        inside,
+        (right and placed) or _credible(effect, finding, size),
+        finding.get("confidence"),
+        right and placed and sized,
+    )
+
+
+def _fault(fault: Json, findings: list[Json]) -> tuple[Named, Json | None]:
+    nodes = {fault["node"], fault.get("other_node", fault["node"])}
+    for f in findings:
+        sensors = set((f.get("where") or {}).get("sensors") or [])
+        if sensors & nodes:
+            right = f.get("kind") == fault["kind"]
+            gain = (f.get("magnitude") or {}).get("factor")
+            ratio = gain / fault["factor"] if right and gain and "factor" in fault else None
+            named = Named(
+                fault["kind"],
+                str(f.get("kind")),
+                True,
+                None,
+                ratio,
+                None,
+                None,
+                f.get("confidence"),
+                right,
+            )
+            return named, f
+    return Named(fault["kind"], "", False, None, None, None, None, None, False), None
+
+
+def score(truth: Json, result: Json) -> Score:
+    """Return what a result is worth against the truth."""
+    size = float(truth["dimension"])
+    findings = result.get("findings") or []
+    model = [f for f in findings if f.get("side") == "model"]
+    test = [f for f in findings if f.get("side") == "test"]
+    expected = expected_verdicts(truth)
+    named: list[Named] = []
+    for effect in truth["effects"]:
+        if not model:
+            named.append(Named(effect["kind"], "", False, None, None, None, None, None, False))
+            continue
+        tries = [_effect(effect, f, size) for f in model]
+        best = max(
+            range(len(tries)),
+            key=lambda i: (tries[i].solved, tries[i].found == effect["kind"], tries[i].placed),
+        )
+        named.append(tries[best])
+        model.pop(best)
+    for fault in truth["faults"]:
+        hit, finding = _fault(fault, test)
+        named.append(hit)
+        if finding is not None:
+            test.remove(finding)
+    false = [(str(f.get("kind")), float(f.get("confidence") or 0.0)) for f in (*model, *test)]
+    verdict = str(result.get("verdict"))
+    solved = verdict in expected and all(n.solved for n in named) and not false
+    held = all(n.in_credible for n in named if n.kind not in _FAULTS)
+    safe = solved or (verdict == "undecided" and held)
+    return Score("/".join(expected), verdict, solved, safe, tuple(named), tuple(false))
+
+
+_FAULTS = {"sensor_polarity", "sensor_gain", "sensor_swap", "sensor_axis"}
