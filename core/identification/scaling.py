@@ -60,7 +60,9 @@ def driving_points(outputs: Dofs, inputs: Dofs) -> Floats:
     return factors
 
 
-def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats) -> Scaling:
+def scale(
+    poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats, inputs: Dofs
+) -> Scaling:
     """Find modal masses from the driving points, after checking them by reciprocity.
 
     A normal mode has l = φ/(2 j ω_d m) at the point it is driven at; the modal mass m is the
@@ -75,6 +77,8 @@ def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Float
         Physical units (shape times participation is displacement per force).
     points : (n_input, n_output) float
         From `driving_points`.
+    inputs : Dofs
+        For messages.
 
     References
     ----------
@@ -91,9 +95,9 @@ def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Float
     level = np.abs(poles) ** 2 / np.abs(poles.real)
     exchanged, now, then = _exchange(at, part, level)
     if exchanged:
-        names = ", ".join(str(int(driven[k]) + 1) for k in exchanged)
+        names = ", ".join(inputs.take(driven[exchanged]).labels)
         return Scaling(none, (
-            f"references number {names} seem to stand under each other's name: reciprocity fails "
+            f"references {names} seem to stand under each other's name: reciprocity fails "
             f"as they are ({100 * now:.0f} % difference) and holds when they are exchanged "
             f"({100 * then:.0f} %); modal masses are withheld",))  # fmt: skip
     if now > _UNRECIPROCAL:

@@ -80,30 +80,46 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
     measured = _measured(values, responses, references, name, warnings)
+    noise, rms = _noise_and_size(values, measured)
+    quiet = measured & (noise > _NOISE_ONLY * rms)
+    _name_functions(quiet, "holds nothing but noise", responses, references, name, warnings)
+    measured &= ~quiet
     if not measured.any():
         reason = f": {warnings[-1]}" if warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
     rows, columns = measured.any(axis=1), measured.any(axis=0)
     rows, columns = _one_component(measured, rows, columns, responses, references, warnings)
     values, measured = values[rows][:, columns], measured[rows][:, columns]
+    noise, rms = noise[rows][:, columns], rms[rows][:, columns]
     responses = responses.take(np.flatnonzero(rows))
     references = references.take(np.flatnonzero(columns))
     roving = len(references) > len(responses)
     if roving:
         values, measured = np.ascontiguousarray(values.transpose(1, 0, 2)), measured.T
+        noise, rms = noise.T, rms.T
         responses, references = references, responses
         warnings.append(
             f"{name} has more references than responses ({len(responses)} and {len(references)}):"
             " taken as a roving-hammer survey, shapes are given at the references by reciprocity"
         )
     values[~measured] = 0.0
-    output_weight, input_weight = _weights(values, measured, responses, warnings)
+    output_weight, input_weight = _weights(measured, noise, rms)
     values *= output_weight[:, None, None]
     values *= input_weight[None, :, None]
     return Survey(
         f, values, measured, output_weight, input_weight, responses, references, roving,
         frfs.quantity, frfs.source, tuple(warnings),
     )  # fmt: skip
+
+
+def _noise_and_size(values: Numbers, measured: Numbers) -> tuple[Floats, Floats]:
+    """Noise and rms of each function, (n_response, n_reference); 1 where not measured."""
+    noise, rms = np.ones(measured.shape), np.ones(measured.shape)
+    for o in np.flatnonzero(measured.any(axis=1)):
+        row = values[o, measured[o]][None]
+        noise[o, measured[o]] = noise_levels(row)[0]
+        rms[o, measured[o]] = np.sqrt(np.mean(np.abs(row[0]) ** 2, axis=1))
+    return noise, rms
 
 
 def noise_levels(values: Numbers) -> Floats:
@@ -218,20 +234,8 @@ def _one_component(
     return best
 
 
-def _weights(
-    values: Numbers, measured: Numbers, outputs: Dofs, warnings: list[str]
-) -> tuple[Floats, Floats]:
+def _weights(measured: Numbers, noise: Floats, rms: Floats) -> tuple[Floats, Floats]:
     """One over the noise of each function, as a product of output and input weights."""
-    noise = noise_levels(values)
-    rms = np.sqrt(np.mean(np.abs(values) ** 2, axis=2))
-    empty = np.where(measured, noise, 0.0) > _NOISE_ONLY * rms
-    quiet = np.flatnonzero((empty | ~measured).all(axis=1))
-    if len(quiet):
-        labels = ", ".join(outputs.take(quiet[:5]).labels)
-        warnings.append(
-            f"{len(quiet)} response(s) ({labels}{', ...' if len(quiet) > 5 else ''}) hold little "
-            "but noise: kept, their shape values are uncertain"
-        )
     with np.errstate(divide="ignore"):
         level = np.log(np.hypot(noise, _MODEL_ERROR * rms))
     level[~measured] = np.nan

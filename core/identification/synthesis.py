@@ -66,6 +66,8 @@ def modal_response(
     near = s**d / (s - poles[:, None])
     far = s**d / (s - poles.conj()[:, None])
     n_mode = len(poles)
-    residues = (shapes[:, None, :] * participation[None, :, :]).reshape(-1, n_mode)
+    residues = (shapes[:, None, :] * participation[None, :, :]).reshape(
+        len(shapes) * len(participation), n_mode
+    )
     values = residues @ near + residues.conj() @ far
     return np.asarray(values.reshape(len(shapes), len(participation), len(s)))
