@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import struct
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.errors import InputError
+from ..results.op2file import read_op2_file
 from .content import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
 
 _GRID = 1
@@ -28,33 +26,9 @@ def read_op2_matrices(path: Path | str) -> tuple[NastranMatrix, ...]:
         The file cannot be read as OP2.
     """
     path = Path(path)
-    model = _read(path)
+    model = read_op2_file(path, ("eqexin",))
     g_set = _g_set(model.op2_results.eqexin)
     return tuple(_matrix(m, g_set) for _, m in sorted(model.matrices.items()))
-
-
-def _read(path: Path) -> Any:
-    from cpylog import SimpleLogger
-    from pyNastran.op2.errors import FatalError, FortranMarkerError
-    from pyNastran.op2.op2 import OP2
-
-    model = OP2(log=SimpleLogger("critical", log_func=lambda *_: None))
-    model.include_exclude_results(include_results=["eqexin"])
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            model.read_op2(str(path), build_dataframe=False)
-    except OSError as error:
-        if error.errno is not None:
-            raise InputError(f"cannot read {path}: {error.strerror}") from None
-        raise InputError(f"{path} is not an OP2 file: a binary Nastran file is expected") from None
-    except (
-        ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RuntimeError,
-        SyntaxError, TypeError, ValueError, struct.error, FatalError, FortranMarkerError,
-    ) as error:  # fmt: skip
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
-        raise InputError(f"{path} cannot be read as OP2, it may be cut short: {reason}") from None
-    return model
 
 
 def _g_set(eqexin: Any) -> DofMap | None:

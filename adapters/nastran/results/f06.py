@@ -70,6 +70,12 @@ class _Printed:
     def take(self, line: str, k: int) -> None:
         if line[:1] == "1":
             self._new_page()
+        try:
+            self._take(line, k)
+        except ValueError:
+            raise InputError(f"{self.path} line {k + 1}: a number cannot be read") from None
+
+    def _take(self, line: str, k: int) -> None:
         self._take_head(line)
         if found := _TITLE.search(line):
             self.names["real eigenvectors"] = None

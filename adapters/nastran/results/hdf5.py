@@ -46,7 +46,7 @@ def read_hdf5_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     except OSError as error:
         reason = error.strerror if error.errno else "it is not HDF5, or is cut short"
         raise InputError(f"cannot read {path}: {reason}") from None
-    except (KeyError, ValueError) as error:
+    except (KeyError, ValueError, RuntimeError, TypeError) as error:
         raise InputError(f"{path} is not laid out as Nastran's HDF5 results: {error}") from None
 
 

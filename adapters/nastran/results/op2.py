@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-import struct
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
-from ....core.errors import InputError
+from .op2file import read_op2_file
 from .table import ModeTable
 
 _GRID, _SCALAR = 1, 2
@@ -38,7 +36,7 @@ def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     InputError
         The file cannot be read as OP2.
     """
-    model = _read(path)
+    model = read_op2_file(path, (*_KINDS, _SUMMARY))
     tables: list[ModeTable] = []
     for kind in _KINDS:
         found = model.get_result(kind)
@@ -48,31 +46,6 @@ def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
             break
     names = [t.decode("latin-1") if isinstance(t, bytes) else str(t) for t in model.table_names]
     return tables, tuple(dict.fromkeys(n.strip() for n in names))
-
-
-def _read(path: Path) -> Any:
-    from cpylog import SimpleLogger
-    from pyNastran.op2.errors import FatalError, FortranMarkerError
-    from pyNastran.op2.op2 import OP2
-
-    log = SimpleLogger("critical", log_func=lambda *_: None)
-    model = OP2(log=log)
-    model.include_exclude_results(include_results=[*_KINDS, _SUMMARY])
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            model.read_op2(str(path), build_dataframe=False)
-    except OSError as error:
-        if error.errno is not None:
-            raise InputError(f"cannot read {path}: {error.strerror}") from None
-        raise InputError(f"{path} is not an OP2 file: a binary Nastran file is expected") from None
-    except (
-        ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError, RuntimeError,
-        SyntaxError, TypeError, ValueError, struct.error, FatalError, FortranMarkerError,
-    ) as error:  # fmt: skip
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
-        raise InputError(f"{path} cannot be read as OP2, it may be cut short: {reason}") from None
-    return model
 
 
 def _table(key: Any, vectors: Any, summaries: Any) -> ModeTable:
