@@ -235,8 +235,8 @@ def _told(
     gained = (zero.objective - null.objective) / verdict.scale
     matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
     warnings = tuple(
-        f"sensor {int(nodes[f.sensors[0]])} reads {f.factor:.2f} times what all the others say, "
-        "as if its values had been counted twice; they were divided by it for the search"
+        f"sensor {int(nodes[f.sensors[0]])} reads twice what all the others say, as if two "
+        "measurements of it had been added up; its values were halved for the search"
         for f in faults
         if f.kind == "doubled"
     )

@@ -38,7 +38,7 @@ class Noise:
     shape: float = 0.05
     independent: float = 12.0
     robust: float = 40.0
-    mixing: float = 0.006
+    mixing: float = 0.012
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     The analysis shapes are made orthonormal at the sensors as far as they mix (Gram-Schmidt with
     the Gram matrix times `mixing`); then the shares of all modes that mix with one add up: for
     modes apart this is their MAC, for a repeated eigenvalue that of the test shape with the
-    subspace.
+    subspace; never less than the MAC.
 
     Parameters
     ----------
@@ -106,8 +106,9 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     G = W * gram * scale[..., :, None] * scale[..., None, :]
     G[..., np.arange(n), np.arange(n)] = 1.0 + 1e-6
     inverse = np.linalg.inv(np.linalg.cholesky(G))
-    c = np.matmul(cross * scale[..., None, :], np.swapaxes(inverse, -1, -2))
-    return np.asarray(np.minimum(np.matmul(c**2, W), 1.0))
+    own = cross * scale[..., None, :]
+    c = np.matmul(own, np.swapaxes(inverse, -1, -2))
+    return np.asarray(np.minimum(np.maximum(np.matmul(c**2, W), own**2), 1.0))
 
 
 def mode_costs(

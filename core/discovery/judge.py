@@ -14,7 +14,7 @@ from .fitting import Fit, evaluate
 from .scanning import scan
 from .search import Found, Searcher
 
-_MARGIN = 4.0
+_MARGIN = 8.0
 _PER_MODE = 5.0
 _CREDIBLE = 6.0
 _MOST_NOISE = 3.0

@@ -17,6 +17,8 @@ from ..arrays import Bools, Floats
 
 _WIDTH = 0.3
 _SUSPICIOUS = 6.0
+_LEFT = 0.45
+_SMALLEST_GAIN = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,12 +138,12 @@ def _explained(y: Floats, said: Prediction, masked: Bools) -> tuple[Fault, ...]:
             continue
         factor, deviation, left = _best(y[i], said, i)
         own = _chi(y[i], said, i)
-        if left > 0.25 * own:
+        if left > _LEFT * own or abs(factor - 1.0) < max(_SMALLEST_GAIN, 4.0 * deviation):
             continue
         if abs(factor + 1.0) < 0.25:
             kind = "sensor_polarity"
         elif abs(factor - 2.0) < max(0.12, 3.0 * deviation):
-            kind = "doubled"
+            kind, factor = "doubled", 2.0
         else:
             kind = "sensor_gain"
         single.append(Fault(kind, (i,), factor, deviation, own / max(left, 1e-9)))
