@@ -146,7 +146,7 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     said = f"the test is about {times} than the model ({_sizes(surface, test, deck, measured)})"
     if low <= ratio <= high and not sure:
         return replace(units, warnings=(f"{said}; check the length units of both",))
-    if better is None and ratio < low:
+    if better is None and low / 10 <= ratio < low:
         return replace(units, warnings=(f"{said}; check the length units of both",))
     advice = (
         f"if the deck is in {better}, say so with --deck-length-unit {better}; else the test's "

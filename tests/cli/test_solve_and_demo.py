@@ -1,0 +1,139 @@
+"""``trueup solve`` and ``trueup demo`` as a user calls them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from trueup.adapters.store import read_store
+from trueup.adapters.universal import read_universal
+
+Call = Callable[..., Any]
+
+BEAM = """SOL 103
+CEND
+METHOD = 1
+SPC = 1
+BEGIN BULK
+EIGRL,1,,,4
+{grids}
+{bars}
+PBAR,1,1,1.-4,1.-9,4.-9,1.-9
+MAT1,1,2.1+11,,.3,7850.
+SPC1,1,123456,1
+SPC1,1,1345,2,THRU,{last}
+ENDDATA
+"""
+
+
+@pytest.fixture(scope="module")
+def beam(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cantilever of 1 m that bends in one plane, lumped masses."""
+    n = 40
+    grids = "\n".join(f"GRID,{i + 1},,{i / n},0.,0." for i in range(n + 1))
+    bars = "\n".join(f"CBAR,{i},1,{i},{i + 1},0.,1.,0." for i in range(1, n + 1))
+    path = tmp_path_factory.mktemp("beam") / "beam.bdf"
+    path.write_text(BEAM.format(grids=grids, bars=bars, last=n + 1))
+    return path
+
+
+def bernoulli(count: int) -> Any:
+    """Frequencies of a cantilever: roots of cos x cosh x = -1."""
+    roots = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.995540735])[:count]
+    return roots**2 / (2.0 * np.pi) * np.sqrt(2.1e11 * 1e-9 / (7850.0 * 1e-4))
+
+
+def test_a_cantilever_has_its_closed_form_frequencies(call: Call, beam: Path) -> None:
+    said = call("solve", beam, "--json", "-")
+    assert said.status == 0, said.err
+    result = json.loads(said.out)
+    assert result["schema"] == "trueup/solve/1"
+    assert result["rigid_body_modes"] == 0
+    assert result["mass"] == pytest.approx(0.785)
+    assert result["centre_of_gravity"] == pytest.approx([0.5, 0.0, 0.0])
+    assert result["checks"]["missed"] == 0
+    hz = [m["frequency_hz"] for m in result["modes"]]
+    assert len(hz) == 4
+    np.testing.assert_allclose(hz, bernoulli(4), rtol=5e-3)
+    assert [m["generalized_mass"] for m in result["modes"]] == pytest.approx([1.0] * 4)
+
+
+def test_rigid_body_modes_come_first(call: Call, duct: Path) -> None:
+    said = call("solve", duct / "duct.bdf", "-n", 9, "--json", "-")
+    assert said.status == 0, said.err
+    result = json.loads(said.out)
+    assert result["rigid_body_modes"] == 6
+    hz = [m["frequency_hz"] for m in result["modes"]]
+    assert len(hz) == 9
+    assert max(hz[:6]) < 1e-3 * hz[6]
+    assert hz[6:] == sorted(hz[6:])
+
+
+def test_fmax_gives_all_modes_up_to_it(call: Call, beam: Path) -> None:
+    said = call("solve", beam, "--fmax", bernoulli(4)[2] + 10.0, "--json", "-")
+    assert len(json.loads(said.out)["modes"]) == 3
+
+
+@pytest.mark.parametrize("suffix", ["h5", "unv"])
+def test_modes_are_written(call: Call, beam: Path, tmp_path: Path, suffix: str) -> None:
+    out = tmp_path / f"modes.{suffix}"
+    said = call("solve", beam, "--out", out, "--quiet")
+    assert (said.status, said.out, said.err) == (0, "", "")
+    modes = read_store(out).modes["analysis"] if suffix == "h5" else read_universal([out]).modes
+    np.testing.assert_allclose(modes.frequencies_hz, bernoulli(4), rtol=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("-n", 0), "-n is 0; ask for at least one mode"),
+        (("--fmax", -3), "--fmax is -3.0; give a frequency above 0 Hz"),
+        (("--out", "modes.xyz"), "modes are written as .h5 or .unv"),
+        (("--out", "nowhere/modes.h5"), "the folder nowhere does not exist"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(
+    call: Call, beam: Path, words: tuple[object, ...], sentence: str
+) -> None:
+    said = call("solve", beam, *words)
+    assert said.status == 1
+    assert sentence in said.sentence
+
+
+def test_an_unknown_demo_is_refused(call: Call, tmp_path: Path) -> None:
+    said = call("demo", "duckt", "--out", tmp_path / "d")
+    assert said.status == 1
+    assert "there is no demo 'duckt'; there are: duct" in said.sentence
+    assert not (tmp_path / "d").exists()
+
+
+@pytest.mark.slow
+def test_the_demo_shows_the_paper(
+    call: Call, duct: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = call("demo")
+    assert said.status == 0, said.err
+    folder = tmp_path / "trueup-demo-duct"
+    for path in duct.iterdir():
+        assert (folder / path.name).read_bytes() == path.read_bytes()
+    runs = sorted((folder / "runs").iterdir())
+    results = [json.loads((r / "result.json").read_text()) for r in runs]
+    assert [r["schema"].split("/")[1] for r in results] == ["correlate"] * 2 + ["update"] * 3
+    gaps = [r.get("after", r)["summary"] for r in results]
+    assert gaps[1]["pairs"] >= 2 * gaps[0]["pairs"]
+    for gap in gaps[2:]:
+        assert gap["mean_abs_deviation_percent"] < 0.3 * gaps[1]["mean_abs_deviation_percent"]
+    for run in runs:
+        assert (run / "report.html").is_file()
+    assert "What each step brought" in said.out
+    again = call("demo")
+    assert again.status == 1
+    assert "exists; give --force" in again.sentence
+    shutil.rmtree(folder)
