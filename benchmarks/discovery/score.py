@@ -49,7 +49,7 @@ def expected_verdicts(truth: Json) -> tuple[str, ...]:
     return ("parameters_only",) if truth["scatter"] else ("no_gap", "parameters_only")
 
 
-def _spot(effect: Json) -> tuple[list[float] | None, float]:
+def spot_of(effect: Json) -> tuple[list[float] | None, float]:
     if "truth_node_xyz" in effect:
         return effect["truth_node_xyz"], 0.0
     if "box_lo" in effect:
@@ -68,7 +68,7 @@ def _middle(xyz: Any) -> list[float] | None:
 
 
 def _gap(effect: Json, finding: Json) -> float | None:
-    spot, half = _spot(effect)
+    spot, half = spot_of(effect)
     got = _middle((finding.get("where") or {}).get("xyz"))
     return None if spot is None or got is None else max(0.0, math.dist(spot, got) - half)
 

@@ -1,0 +1,114 @@
+"""Ask why a case was missed: the true hypothesis' objective beside the one that was chosen.
+
+``python -m benchmarks.discovery.diagnose CASE_FOLDER...``: the search runs as it is; then the true
+effects are fitted at the candidates nearest to their places. Where the truth fits better than what
+was chosen, the search lost it; where it fits worse, the catalogue, the mesh or the evidence did.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .run import say
+from .score import spot_of
+
+
+class _Stop(Exception):  # noqa: N818
+    """Carries what the search had when it was judged."""
+
+
+def searched(place: Path) -> tuple[Any, Any, Any]:
+    """Return searcher, hypotheses and judgement of a case."""
+    from trueup.cli.options import Output
+    from trueup.cli.study import Study
+    from trueup.cli.verbs.discover import run_discover
+    from trueup.core.discovery import discover as engine
+
+    test = next(place.glob("*_test.unv"))
+    deck = place / test.name.replace("_test.unv", ".bdf")
+    caught: list[Any] = []
+    honest = engine.judge
+
+    def judge(searcher: Any, found: Any) -> Any:
+        caught.extend((searcher, found, honest(searcher, found)))
+        raise _Stop
+
+    engine.judge = judge
+    try:
+        with tempfile.TemporaryDirectory() as out:
+            study = Study(deck=deck, test=(test,), deck_length_unit="mm", out=Path(out) / "run")
+            run_discover(study, Output(quiet=True))
+    except _Stop:
+        pass
+    finally:
+        engine.judge = honest
+    return caught[0], caught[1], caught[2]
+
+
+def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
+    """Return suspects of the true kind and size at the places nearest to the true one."""
+    from trueup.core.discovery.candidates import Suspect
+
+    spot, _ = spot_of(effect)
+    value = next((effect[k] for k in ("mass", "factor", "stiffness", "damping") if k in effect), 1)
+    for number, c in enumerate(searcher.problem.catalogue):
+        if c.kind != effect["kind"]:
+            continue
+        rows = np.argsort(np.linalg.norm(c.xyz - np.array(spot), axis=1), kind="stable")
+        wanted = effect.get("components")
+        if wanted and len(wanted) == 1:
+            own = [c.where[int(r)].get("components") for r in rows]
+            rows = rows[[o is None or list(o) == wanted for o in own]]
+        return [Suspect(number, int(r), math.log(value)) for r in rows[:count]]
+    return []
+
+
+def describe(searcher: Any, fit: Any) -> str:
+    """Return objective and suspects of a fit in one line."""
+    words = []
+    for s in fit.suspects:
+        c = searcher.problem.catalogue[s.kind]
+        x = ", ".join(f"{v:.0f}" for v in c.xyz[s.row])
+        words.append(
+            f"{c.kind} ({x}) {math.exp(s.theta):.4g} {c.where[s.row].get('components', '')}"
+        )
+    return f"{fit.objective:8.1f}  " + "; ".join(words)
+
+
+def explain(place: Path) -> None:
+    """Print what was chosen and how the truth fits."""
+    from trueup.core.discovery.fitting import fit
+
+    truth = json.loads((place / "truth.json").read_text())
+    searcher, found, verdict = searched(place)
+    say(f"== {place.name}: noise scale {verdict.scale:.2f}, posterior {verdict.posterior:.2f}")
+    for k, level in enumerate(found.levels):
+        mark = "chosen" if k == verdict.accepted else "level "
+        say(f"  {mark} {k}  {describe(searcher, level)}")
+    effects = truth["effects"]
+    places = [nearest(searcher, e, 12 if len(effects) == 1 else 4) for e in effects]
+    for e, p in zip(effects, places, strict=True):
+        if not p:
+            say(f"  the catalogue has no {e['kind']}")
+    tries = [
+        fit(searcher.problem, found.levels[0].log_p, combination, searcher.active, 15)
+        for combination in itertools.product(*[p for p in places if p])
+        if combination
+    ]
+    if tries:
+        say(f"  truth     {describe(searcher, min(tries, key=lambda f: float(f.objective)))}")
+    names = {k: truth[k] for k in ("effects", "scatter", "faults")}
+    say("  hidden    " + json.dumps(names)[:700])
+
+
+if __name__ == "__main__":
+    for argument in sys.argv[1:]:
+        explain(Path(argument))
