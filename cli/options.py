@@ -118,7 +118,8 @@ def comparing(
         )
         study = merge(read_study(study_file) if study_file else Study(), given)
         if study.deck is None or not study.test:
-            raise InputError("give DECK and TEST, or a study file (--study) that names both")
+            raise typer.BadParameter("give DECK and TEST, or a study file (--study) naming both")
+        _refuse_nonsense(study)
         verb(study, output)
 
     def keyword(name: str, annotation: Any, default: Any = None) -> inspect.Parameter:
@@ -145,3 +146,17 @@ def comparing(
     command.__signature__ = inspect.Signature(signature)  # type: ignore[attr-defined]
     command.__annotations__ = {p.name: p.annotation for p in signature}
     return command
+
+
+def _refuse_nonsense(study: Study) -> None:
+    """Raise `InputError` for values that no run accepts, before any file is read."""
+    from ..core.residuals import KINDS, Weights
+    from .pipeline import criteria_of
+
+    criteria_of(study)
+    Weights(study.frequency_sigma, study.shape_sigma, study.regularisation)
+    for kind in (study.residuals, *(s.residuals for s in study.stages)):
+        if kind not in KINDS:
+            raise InputError(f"residuals is '{kind}'; give one of {', '.join(KINDS)}")
+    if min(study.max_iterations, *(s.max_iterations for s in study.stages), 1) < 1:
+        raise InputError("max_iterations must be at least 1")

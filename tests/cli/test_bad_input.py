@@ -65,8 +65,7 @@ def test_nan_in_a_shape(call: Call, inputs: Path) -> None:
     edit(inputs / "duct_test.unv", lambda t: t.replace("  2.50239e-03", "          NaN", 1))
     sentence = refused(call, inputs)
     assert "duct_test.unv" in sentence
-    assert re.search(r"NaN|not finite|not a number", sentence)
-    assert re.search(r"line \d+|node \d+|mode \d+", sentence)
+    assert re.search(r"line \d+: .* not a finite number at node 2;", sentence)
 
 
 def test_a_test_with_no_geometry(call: Call, inputs: Path) -> None:
@@ -80,7 +79,7 @@ def test_a_test_with_no_geometry(call: Call, inputs: Path) -> None:
 
 
 def test_a_test_a_thousand_times_too_small(call: Call, inputs: Path) -> None:
-    """Millimetres already taken for metres: dataset 164 and the deck's unit cannot both be right."""
+    """Dataset 164 says millimetres where the numbers are metres."""
     scale = "   1.0000000000000000D+00"
     edit(inputs / "duct_test.unv", lambda t: t.replace(scale, "   1.0000000000000000D+03", 1))
     sentence = refused(call, inputs, "--deck-length-unit", "mm")
@@ -100,7 +99,7 @@ def test_a_deck_unit_that_cannot_be_right(call: Call, inputs: Path) -> None:
         ("PBAR 99 I1", "there is no PBAR 99 in the deck; the deck has PBAR 11"),
         ("PBAR 11 QQ", "PBAR has no value 'QQ': it has A, I1, I2"),
         ("flange", "parameter 'flange' lacks"),
-        ("PBAR 11 I1 [2, 1]", "PBAR 11 I1 [2, 1]"),
+        ("PBAR 11 I1 [2, 1]", "the bounds [2, 1] are factors on the deck's value"),
         ("PWHAT 11 I1", "PWHAT"),
     ],
 )
@@ -114,26 +113,40 @@ def test_an_update_of_nothing(call: Call, inputs: Path) -> None:
     assert "no parameter is named" in refused(call, inputs, verb="update")
 
 
+HINGED = """SOL 103
+CEND
+METHOD = 1
+SPC = 1
+BEGIN BULK
+EIGRL,1,,,4
+GRID,1,,0.,0.,0.
+GRID,2,,.1,0.,0.
+GRID,3,,.2,0.,0.
+GRID,74,,.3,0.,0.
+CBAR,1,1,1,2,0.,1.,0.
+CBAR,2,1,2,3,0.,1.,0.
+CBAR,3,1,3,74,0.,1.,0.
+,5
+PBAR,1,1,1.-4,1.-9,4.-9,1.-9
+MAT1,1,2.1+11,,.3,7850.
+SPC1,1,123456,1
+ENDDATA
+"""
+
+
 @pytest.mark.parametrize("verb", ["correlate", "solve"])
 def test_a_free_mechanism(call: Call, inputs: Path, verb: str) -> None:
-    """A bar hung on one grid by a pinned end turns about itself without any stiffness."""
-    edit(
-        inputs / "mesh.bdf",
-        lambda t: (
-            t
-            + "GRID,99001,,0.,0.,2000.\nGRID,99002,,0.,100.,2000.\n"
-            + "CBAR,99001,11,99001,99002,1.,0.,0.\n,456\n"
-        ),
-    )
+    """The last bar of a cantilever hangs on a hinge (pin flag 5) and turns freely."""
+    (inputs / "duct.bdf").write_text(HINGED)
     if verb == "solve":
-        said = call("solve", inputs / "duct.bdf", "-n", 12, "--out", inputs.parent / "m.h5")
-        if said.status == 0:  # a loose piece is a rigid body of its own, and is said to be one
-            assert "pieces" in said.err
-            return
+        said = call("solve", inputs / "duct.bdf", "--out", inputs.parent / "modes.h5")
+        assert said.status == 1, said.out
         sentence = said.sentence
+        assert not (inputs.parent / "modes.h5").exists()
     else:
         sentence = refused(call, inputs)
-    assert "9900" in sentence
+    assert "mechanism" in sentence
+    assert re.search(r"\b74:", sentence)
 
 
 STUDY = 'deck = "duct.bdf"\ntest = ["duct_test.unv"]\n'
@@ -220,12 +233,12 @@ def failing(error: BaseException) -> typer.Typer:
 @pytest.mark.parametrize(
     ("error", "sentence"),
     [
-        (ZeroDivisionError("float division\nby zero"), "(ZeroDivisionError: float division by zero)"),
+        (ZeroDivisionError("division\nby zero"), "(ZeroDivisionError: division by zero)"),
         (AssertionError(), "(AssertionError:"),
         (MemoryError(), "memory does not suffice"),
         (PermissionError(13, "Permission denied", "/x/y"), "/x/y: Permission denied"),
     ],
-)  # fmt: skip
+)
 def test_no_exception_ever_shows_a_traceback(
     call: Call, monkeypatch: pytest.MonkeyPatch, error: BaseException, sentence: str
 ) -> None:

@@ -170,17 +170,21 @@ def test_masses_first_works_off_its_stages_in_order(call: Call, duct: Path, tmp_
 
 
 @pytest.mark.slow
-def test_frequencies_and_shapes_together_pair_more_modes(
+def test_frequencies_and_shapes_together_close_the_gap_of_both(
     call: Call, duct: Path, tmp_path: Path
 ) -> None:
-    """§3.3, rotated at every iteration."""
+    """§3.3, rotated at every iteration. What the duct lacks does not sit on its rims, so their
+    densities help little; standard errors say so."""
     said = call("update", "--study", duct / "both.toml", "--out", tmp_path / "run", "--json", "-")
     assert said.status == 0, said.err
     result = json.loads(said.out)
     before, after = (result[k]["summary"] for k in ("before", "after"))
-    assert after["pairs"] > before["pairs"]
+    assert after["pairs"] >= before["pairs"]
+    assert after["mean_mac"] >= before["mean_mac"] - 1e-3
     assert after["mean_abs_deviation_percent"] < 0.3 * before["mean_abs_deviation_percent"]
-    assert any(p["factor"] != 1.0 for p in result["parameters"][2:])
+    flanges, rims = result["parameters"][:2], result["parameters"][2:]
+    assert all(p["factor"] != 1.0 for p in rims)
+    assert max(p["standard_error"] for p in flanges) < min(p["standard_error"] for p in rims)
 
 
 def test_the_three_strategies_of_the_paper_are_study_files(duct: Path) -> None:
