@@ -93,10 +93,12 @@ def read_study(path: Path) -> Study:
 
 def merge(study: Study, options: Mapping[str, Any]) -> Study:
     """Return the study with the options that were given on the command line on top."""
-    given = {k: v for k, v in options.items() if v is not None and v != () and v != []}
-    return dataclasses.replace(
-        study, **{k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
-    )
+    given: dict[str, Any] = {
+        k: tuple(v) if isinstance(v, list) else v
+        for k, v in options.items()
+        if v is not None and v != () and v != []
+    }
+    return dataclasses.replace(study, **given)
 
 
 def study_toml(study: Study) -> str:
