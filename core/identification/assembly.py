@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats, Numbers
+from ..geometry import Geometry
 from ..modes import Modes
 from .bands import cmif
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
@@ -62,7 +63,10 @@ def _collect(fits: tuple[BandFit, ...]) -> _Table:
 
 
 def assemble(
-    survey: Survey, fits: tuple[BandFit, ...], charts: tuple[Chart, ...]
+    survey: Survey,
+    fits: tuple[BandFit, ...],
+    charts: tuple[Chart, ...],
+    geometry: Geometry | None = None,
 ) -> Identification:
     """Bring the modes of all bands into physical units, judge them, find their scale.
 
@@ -72,6 +76,8 @@ def assemble(
     fits : tuple of BandFit
     charts : tuple of Chart
         Stabilisation of each band.
+    geometry : Geometry, optional
+        For driving points under two numbers.
     """
     t = _collect(fits)
     hz = np.abs(t.poles) / (2.0 * np.pi)
@@ -87,7 +93,7 @@ def assemble(
     shape_std = np.sqrt(np.maximum(variance, 0.0)) / survey.output_weight[:, None]
     size, real_size = _largest(shapes, shape_std), _largest(real, shape_std)
     shape_std = shape_std / real_size
-    points = driving_points(survey.outputs, survey.inputs)
+    points = driving_points(survey.outputs, survey.inputs, geometry)
     scaling = scale(t.poles, shapes, participation, points, survey.inputs)
     shapes, participation = shapes / size, participation * size
     warnings = [*survey.warnings, *(scaling.warnings if len(hz) else ())]

@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import Floats
 from ..errors import InputError
 from ..frfs import Frfs
+from ..geometry import Geometry
 from .assembly import assemble
 from .bands import Band, cmif, peaks, split
 from .candidates import propose
@@ -22,6 +23,7 @@ def identify(
     fmin: float | None = None,
     fmax: float | None = None,
     max_order: int | None = None,
+    geometry: Geometry | None = None,
 ) -> Identification:
     """Identify modes from frequency responses, close pairs included, without anybody's help.
 
@@ -39,6 +41,8 @@ def identify(
         Range to use [Hz]; default: all lines above 0 Hz.
     max_order : int, optional
         Highest order of the denominator polynomial; default: from the peaks in each band.
+    geometry : Geometry, optional
+        Tells driving points whose response and reference go by two node numbers.
 
     Returns
     -------
@@ -68,7 +72,7 @@ def identify(
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
     charts = tuple(p.chart for p in proposals)
-    return assemble(survey, fits, charts)
+    return assemble(survey, fits, charts, geometry)
 
 
 def _count(lines: Floats, band: Band) -> int:

@@ -68,12 +68,13 @@ def multivariate_indicator(values: Numbers, order: int) -> Floats:
     phase, quadrature = (lines.imag, lines.real) if order == 1 else (lines.real, lines.imag)
     a = phase.transpose(0, 2, 1) @ phase
     b = a + quadrature.transpose(0, 2, 1) @ quadrature
-    n = b.shape[1]
-    trace = np.trace(b, axis1=1, axis2=2) / n
-    factor = np.linalg.cholesky(b + (1e-9 * trace + _TINY)[:, None, None] * np.eye(n))
-    half = np.linalg.solve(factor, a)
-    ratio = np.linalg.solve(factor, half.transpose(0, 2, 1))
-    return np.asarray(np.clip(np.linalg.eigvalsh(ratio)[:, 0], 0.0, 1.0))
+    value, vector = np.linalg.eigh(b)
+    excited = value > 1e-9 * value[:, -1:]
+    root = np.where(excited, 1.0 / np.sqrt(np.where(excited, value, 1.0)), 0.0)
+    turned = root[:, :, None] * vector.transpose(0, 2, 1)
+    ratio = turned @ a @ turned.transpose(0, 2, 1)
+    idle = np.eye(b.shape[1]) * ~excited[:, :, None]
+    return np.asarray(np.clip(np.linalg.eigvalsh(ratio + idle)[:, 0], 0.0, 1.0))
 
 
 def correlation(measured: Numbers, synthesised: Numbers) -> float:

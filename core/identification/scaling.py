@@ -6,14 +6,17 @@ from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ..arrays import Floats, Numbers
+from ..arrays import Floats, Ints, Numbers
 from ..dofs import Dofs
+from ..geometry import Geometry
 
 _MISALIGNED = 0.03  # largest part of a reference direction that the responses do not span
 _IN_PHASE = np.cos(np.radians(45.0))
 _UNRECIPROCAL = 0.3  # relative difference of H_ij and H_ji above which scaling is withheld
 _MOST_PERMUTED = 6
+_COINCIDENT = 1e-6  # of the size of the geometry: nodes this close are one point
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,12 +34,14 @@ class Scaling:
     warnings: tuple[str, ...]
 
 
-def driving_points(outputs: Dofs, inputs: Dofs) -> Floats:
+def driving_points(outputs: Dofs, inputs: Dofs, geometry: Geometry | None = None) -> Floats:
     """Express each input direction in the outputs measured at its node.
 
     Parameters
     ----------
     outputs, inputs : Dofs
+    geometry : Geometry, optional
+        Nodes at one position are then one point, under whatever number.
 
     Returns
     -------
@@ -45,11 +50,11 @@ def driving_points(outputs: Dofs, inputs: Dofs) -> Floats:
         Translations are not mixed with rotations. Outputs listed twice share the factor.
     """
     factors = np.full((len(inputs), len(outputs)), np.nan)
+    at_output = _points(outputs, geometry)
+    at_input = _points(inputs, geometry)
     for i in range(len(inputs)):
         rotation = inputs.component[i] > 3
-        rows = np.flatnonzero(
-            (outputs.node == inputs.node[i]) & ((outputs.component > 3) == rotation)
-        )
+        rows = np.flatnonzero((at_output == at_input[i]) & ((outputs.component > 3) == rotation))
         if not len(rows):
             continue
         axes = outputs.axis[rows].T
@@ -58,6 +63,19 @@ def driving_points(outputs: Dofs, inputs: Dofs) -> Floats:
             factors[i] = 0.0
             factors[i, rows] = c
     return factors
+
+
+def _points(dofs: Dofs, geometry: Geometry | None) -> Ints:
+    """Node number of each dof, the first of all nodes at its position, (n,)."""
+    if geometry is None or not len(geometry.ids):
+        return dofs.node
+    rows = geometry.index_of(dofs.node)
+    tree = cKDTree(geometry.xyz)
+    reach = _COINCIDENT * max(geometry.size, 1e-300)
+    number = dofs.node.copy()
+    for k in np.flatnonzero(rows >= 0):
+        number[k] = geometry.ids[tree.query_ball_point(geometry.xyz[rows[k]], reach)].min()
+    return number
 
 
 def scale(

@@ -20,6 +20,7 @@ class Truth:
     frequencies_hz: np.ndarray
     damping: np.ndarray
     shapes: np.ndarray
+    mass: np.ndarray  # modal mass for the shapes as they are
     noise_std: np.ndarray  # (n_response, n_reference, 1) of real and imaginary part together
 
 
@@ -72,7 +73,7 @@ def make_survey(
     dofs = Dofs(node, np.full(n_response, 3))
     frfs = Frfs(lines, dofs, dofs.take(references), values, quantity, f"survey {seed}")
     n = len(inside)
-    return frfs, Truth(inside, zeta[:n], shapes[:, :n], noise * rms)
+    return frfs, Truth(inside, zeta[:n], shapes[:, :n], mass[:n], noise * rms)
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,235 @@
+"""Surveys of known truth: every mode found, nothing else, with honest errors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trueup.core.dofs import Dofs
+from trueup.core.identification import identify
+
+
+def subspace_mac(a, b):
+    """Smallest squared cosine between two subspaces."""
+    qa, qb = np.linalg.qr(a)[0], np.linalg.qr(b)[0]
+    return float(np.linalg.svd(qa.conj().T @ qb)[1].min() ** 2)
+
+
+def mac(a, b):
+    return np.abs(np.vdot(a, b)) ** 2 / (np.vdot(a, a).real * np.vdot(b, b).real)
+
+
+def assert_found(result, truth, frequency=1e-3, damping=0.1, shape=0.99):
+    order = np.argsort(truth.frequencies_hz)
+    assert result.modes.frequencies_hz == pytest.approx(truth.frequencies_hz[order], rel=frequency)
+    assert result.modes.damping == pytest.approx(truth.damping[order], rel=damping)
+    rows = result.modes.dofs.node - 1
+    for k, j in enumerate(order):
+        assert mac(result.modes.shapes[:, k], truth.shapes[rows, j]) > shape
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+def test_any_quantity_gives_the_same_modes_and_masses(survey, quantity):
+    frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000, quantity=quantity)
+    result = identify(frfs)
+    assert_found(result, truth)
+    assert result.quality.min() > 0.99
+    assert result.remarks == ("",) * 6
+    assert not result.close_pair_possible.any()
+    order = np.argsort(truth.frequencies_hz)
+    mass = (truth.mass / np.abs(truth.shapes).max(axis=0) ** 2)[order]
+    assert result.real_modes.generalized_mass == pytest.approx(mass, rel=0.02)
+    assert np.abs(result.real_modes.shapes).max(axis=0) == pytest.approx(np.ones(6))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"noise": 0.0},
+        {"noise": 0.1},
+        {"noise": 0.03, "noise_kind": "multiplicative"},
+        {"missing": 0.3, "n_reference": 3},
+        {"damping": (0.01, 0.05)},
+        {"damping": (0.0005, 0.002)},
+        {"n_response": 6},
+        {"n_reference": 1},
+        {"complexity": 0.3},
+        {"n_line": 300},
+    ],
+    ids=str,
+)
+def test_every_mode_and_nothing_else(survey, options):
+    frfs, truth = survey(12, **{"n_mode": 6, "n_response": 20, "n_line": 1000, **options})
+    assert_found(identify(frfs), truth)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"n_mode": 30},
+        {"n_mode": 20, "n_reference": 1},
+        {"n_mode": 40, "n_reference": 3, "noise": 0.05, "band": (20, 200), "n_line": 2000},
+        {"n_mode": 12, "missing": 0.3, "n_reference": 3},
+        {"n_mode": 30, "band": (2, 500), "n_line": 6000},
+    ],
+    ids=str,
+)
+def test_dense_and_wide_surveys(survey, seed, options):
+    frfs, truth = survey(200 + seed, **options)
+    result = identify(frfs)
+    order = np.argsort(truth.frequencies_hz)
+    assert result.modes.frequencies_hz == pytest.approx(truth.frequencies_hz[order], rel=1e-3)
+    off = (result.modes.frequencies_hz - truth.frequencies_hz[order]) / result.frequency_std
+    assert np.sqrt(np.mean(off**2)) < 2.0
+
+
+@pytest.mark.parametrize("apart", [0.003, 0.0])
+def test_a_pair_is_separated_by_two_references(survey, apart):
+    """Roots 0.3 % apart (and equal ones) at 0.5 % damping, two references, 1 % noise."""
+    frfs, truth = survey(
+        21,
+        frequencies=[50.0, 50.0 * (1 + apart)],
+        damping=(0.005, 0.005),
+        noise=0.01,
+        n_response=20,
+        band=(42, 58),
+        n_line=500,
+    )
+    result = identify(frfs)
+    assert len(result.modes) == 2
+    assert result.modes.frequencies_hz == pytest.approx(truth.frequencies_hz, rel=2e-4)
+    assert subspace_mac(result.modes.shapes, truth.shapes) > 0.999
+    assert subspace_mac(result.real_modes.shapes, truth.shapes) > 0.999
+    assert not result.close_pair_possible.any()
+
+
+def test_one_reference_says_that_a_pair_may_hide(survey):
+    frfs, _ = survey(
+        21,
+        frequencies=[50.0, 50.0],
+        damping=(0.005, 0.005),
+        n_reference=1,
+        n_response=20,
+        band=(42, 58),
+        n_line=500,
+    )
+    result = identify(frfs)
+    assert len(result.modes) == 1
+    assert result.close_pair_possible.all()
+    assert any("close pair may hide" in w for w in result.warnings)
+
+
+def test_references_that_see_one_and_the_same_count_as_one(survey):
+    frfs, _ = survey(22, n_mode=4, n_response=15, n_line=600)
+    values = np.array(frfs.values)
+    rng = np.random.default_rng(0)
+    e = rng.standard_normal(values[:, 0].shape) + 1j * rng.standard_normal(values[:, 0].shape)
+    values[:, 1] = 2.0 * values[:, 0] + 0.01 * np.abs(values[:, 0]).mean() * e
+    result = identify(replace(frfs, values=values))
+    assert result.close_pair_possible.all()
+    assert any("same combination" in w for w in result.warnings)
+
+
+def test_roving_hammer_gives_the_same_modes(survey):
+    frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
+    roving = replace(
+        frfs,
+        values=frfs.values.transpose(1, 0, 2),
+        responses=frfs.references,
+        references=frfs.responses,
+    )
+    result = identify(roving)
+    assert_found(result, truth)
+    assert np.isfinite(result.real_modes.generalized_mass).all()
+
+
+def test_references_under_each_others_name_are_named(survey):
+    frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
+    result = identify(replace(frfs, references=frfs.references.take(np.array([1, 0]))))
+    assert_found(result, truth)
+    assert np.isnan(result.real_modes.generalized_mass).all()
+    assert any("under each other's name" in w for w in result.warnings)
+
+
+def test_a_response_listed_twice_and_one_reversed(survey):
+    """The same sensor measured again, and another mounted backwards (its axis says so)."""
+    frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
+    values = np.concatenate([frfs.values, frfs.values[:1]])
+    values[4] *= -1.0
+    axis = np.tile([0.0, 0.0, 1.0], (16, 1))
+    axis[4] *= -1.0
+    node = np.append(frfs.responses.node, 1)
+    result = identify(replace(frfs, values=values, responses=Dofs(node, np.full(16, 3), axis)))
+    assert result.modes.frequencies_hz == pytest.approx(truth.frequencies_hz, rel=1e-3)
+    straight = result.real_modes.shapes * axis[:, 2:]
+    for k in range(5):
+        assert mac(straight[:15, k], truth.shapes[:, k]) > 0.999
+    assert result.real_modes.shapes[15] == pytest.approx(result.real_modes.shapes[0], abs=1e-3)
+
+
+def test_a_line_without_modes_gives_none():
+    """The mass line of a free body with 1 % noise: no mode, and it says so."""
+    from trueup.core.frfs import Frfs
+
+    f = np.linspace(10.0, 100.0, 600)
+    rng = np.random.default_rng(0)
+    e = rng.standard_normal((8, 2, 600)) + 1j * rng.standard_normal((8, 2, 600))
+    values = rng.standard_normal((8, 2, 1)) * (1.0 + 0.3 * (f / 100.0) ** 2) + 0.01 * e
+    dofs = Dofs(np.arange(1, 9), np.full(8, 3))
+    result = identify(Frfs(f, dofs, dofs.take(np.array([0, 7])), values))
+    assert len(result.modes) == 0
+    assert result.warnings == ("no mode stands out of the noise",)
+    assert result.synthesised().values == pytest.approx(values, abs=0.06)
+
+
+def test_synthesised_functions_leave_the_noise(survey):
+    frfs, truth = survey(14, n_mode=8, n_response=15, noise=0.03)
+    made = identify(frfs).synthesised()
+    assert made.values.shape == frfs.values.shape
+    left = np.sqrt(np.mean(np.abs(made.values - frfs.values) ** 2, axis=2))
+    assert left == pytest.approx(truth.noise_std[:, :, 0], rel=0.1)
+    elsewhere = identify(frfs).synthesised(np.array([30.0, 50.0]))
+    assert elsewhere.values.shape == (15, 2, 2)
+
+
+def test_standard_errors_cover_the_truth(survey):
+    off = []
+    for seed in range(4):
+        frfs, truth = survey(40 + seed, n_mode=6, n_response=15, n_line=800, noise=0.05)
+        result = identify(frfs)
+        order = np.argsort(truth.frequencies_hz)
+        off += list(
+            (result.modes.frequencies_hz - truth.frequencies_hz[order]) / result.frequency_std
+        )
+        off += list((result.modes.damping - truth.damping[order]) / result.damping_std)
+        for k, j in enumerate(order):
+            t = truth.shapes[:, j].real
+            phi, std = result.real_modes.shapes[:, k], result.shape_std[:, k]
+            t = t * (phi @ t) / (t @ t)
+            off += list((phi - t) / std)
+    assert 0.85 < np.sqrt(np.mean(np.square(off))) < 1.2
+
+
+def test_a_permuted_result_is_another_result(survey):
+    """Guards the tests above: shapes in another order must not pass for the truth."""
+    frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000)
+    result = identify(frfs)
+    wrong = replace(truth, shapes=truth.shapes[::-1])
+    with pytest.raises(AssertionError):
+        assert_found(result, wrong)
+
+
+def test_chart_and_indicator_fit_together(survey):
+    frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000)
+    result = identify(frfs)
+    chart = result.chart
+    assert len(chart.order) == len(chart.frequency_hz) == len(chart.damping) == len(chart.stable)
+    for f in truth.frequencies_hz:
+        near = np.abs(chart.frequency_hz - f) < 0.002 * f
+        assert np.count_nonzero(near & chart.stable) > 5
+    assert result.cmif.values.shape == (1000, 2)
+    assert result.cmif.values[:, 0] == pytest.approx(
+        np.linalg.norm(frfs.values, 2, axis=(0, 1)), rel=1e-6
+    )

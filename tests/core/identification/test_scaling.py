@@ -1,0 +1,109 @@
+"""Modal mass from driving points of any direction, and references under the wrong name."""
+
+import numpy as np
+import pytest
+
+from trueup.core.dofs import Dofs
+from trueup.core.geometry import Geometry
+from trueup.core.identification.scaling import driving_points, scale
+from trueup.core.identification.shapes import real_shapes, turned_to_principal_phase
+from trueup.core.identification.synthesis import poles_from
+
+POLES = poles_from(np.array([10.0, 17.0, 31.0]), np.array([0.01, 0.02, 0.005]))
+MASS = np.array([2.0, 0.5, 7.0])
+
+
+def structure(n_node=4):
+    """Shapes at three basic directions of each node, and what a unit force there excites."""
+    shapes = np.random.default_rng(0).standard_normal((3 * n_node, 3))
+    dofs = Dofs(np.repeat(np.arange(1, n_node + 1), 3), np.tile([1, 2, 3], n_node))
+    return dofs, shapes, shapes / (2j * POLES.imag * MASS)
+
+
+def test_modal_mass_of_plain_driving_points():
+    dofs, shapes, part = structure()
+    drive = np.array([2, 7])
+    points = driving_points(dofs, dofs.take(drive))
+    found = scale(POLES, shapes, part[drive], points, dofs.take(drive))
+    assert found.modal_mass == pytest.approx(MASS)
+    assert found.warnings == ()
+
+
+def test_a_force_askew_is_met_by_three_responses():
+    dofs, shapes, part = structure()
+    axis = np.array([0.6, 0.0, 0.8])
+    inputs = Dofs([2], [3], [axis])
+    points = driving_points(dofs, inputs)
+    found = scale(POLES, shapes, (axis @ part[3:6])[None], points, inputs)
+    assert found.modal_mass == pytest.approx(MASS)
+
+
+def test_a_force_that_the_responses_do_not_span_has_no_driving_point():
+    dofs, _, _ = structure()
+    in_plane = dofs.take(np.flatnonzero(dofs.component < 3))
+    assert np.isnan(driving_points(in_plane, Dofs([2], [3]))).all()
+    assert np.isnan(driving_points(dofs, Dofs([2], [5]))).all()
+
+
+def test_a_response_mounted_backwards_counts_with_its_sign():
+    dofs, shapes, part = structure()
+    backwards = Dofs(dofs.node, dofs.component, -dofs.axis)
+    inputs = dofs.take(np.array([4]))
+    points = driving_points(backwards, inputs)
+    assert scale(POLES, -shapes, part[[4]], points, inputs).modal_mass == pytest.approx(MASS)
+
+
+def test_nodes_at_one_position_are_one_point():
+    dofs, shapes, part = structure()
+    xyz = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [1, 0, 0]], float)
+    geometry = Geometry([1, 2, 3, 4, 99], xyz)
+    inputs = Dofs([99], [1])
+    points = driving_points(dofs, inputs, geometry)
+    found = scale(POLES, shapes, part[[3]], points, inputs)
+    assert found.modal_mass == pytest.approx(MASS)
+    assert np.isnan(driving_points(dofs, inputs)).all()
+
+
+def test_no_driving_point_is_said():
+    dofs, shapes, part = structure()
+    inputs = Dofs([99], [1])
+    found = scale(POLES, shapes, part[[0]], driving_points(dofs, inputs), inputs)
+    assert np.isnan(found.modal_mass).all()
+    assert "no driving point" in found.warnings[0]
+
+
+def test_exchanged_references_are_named():
+    dofs, shapes, part = structure()
+    inputs = dofs.take(np.array([2, 7, 9]))
+    points = driving_points(dofs, inputs)
+    found = scale(POLES, shapes, part[[7, 2, 9]], points, inputs)
+    assert np.isnan(found.modal_mass).all()
+    assert "references 1:Z, 3:Y seem to stand under each other's name" in found.warnings[0]
+
+
+def test_a_reversed_force_is_named():
+    dofs, shapes, part = structure()
+    inputs = dofs.take(np.array([2]))
+    found = scale(POLES, shapes, -part[[2]], driving_points(dofs, inputs), inputs)
+    assert np.isnan(found.modal_mass).all()
+    assert "wrong sign" in found.warnings[0]
+
+
+def test_real_shapes_of_a_lone_mode_is_its_real_part():
+    shape = np.random.default_rng(0).standard_normal((8, 1)) * np.exp(2.1j)
+    turned = turned_to_principal_phase(shape)
+    assert np.abs(turned.imag).max() < 1e-12
+    largest = turned[np.argmax(np.abs(turned))]
+    assert largest.real > 0.0
+    assert real_shapes(np.array([5.0]), turned, np.ones(8)) == pytest.approx(turned.real)
+
+
+def test_real_shapes_of_a_mixed_pair_span_the_real_pair():
+    """Any complex mixture of two real shapes; here one with nearly parallel real parts."""
+    pair = np.linalg.qr(np.random.default_rng(0).standard_normal((12, 2)))[0]
+    mixture = pair @ np.array([[1.0, 1.0], [0.6j, -0.6j]])
+    turned = turned_to_principal_phase(mixture)
+    assert np.linalg.svd(turned.real)[1][1] < 1e-9
+    real = real_shapes(np.array([50.0, 50.01]), turned, np.ones(12))
+    assert np.linalg.svd(pair.T @ np.linalg.qr(real)[0])[1] == pytest.approx([1.0, 1.0])
+    assert np.linalg.svd(real)[1][1] > 0.5
