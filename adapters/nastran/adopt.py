@@ -65,36 +65,17 @@ def _grid_xyz(deck: Deck, grid: int) -> np.ndarray[Any, Any]:
     return np.asarray(points.xyz[row])
 
 
-def _nearest(deck: Deck, xyz: Any, candidates: list[int]) -> tuple[int, Any]:
-    from .grids import read_points
-
-    points = read_points(deck.bulk)
-    carries = np.isin(points.ids, list(_connected(deck, candidates)))
-    distance = np.linalg.norm(points.xyz - np.asarray(xyz), axis=1)
-    distance[~carries] = np.inf
-    row = int(np.argmin(distance))
-    offset = np.asarray(xyz) - points.xyz[row]
-    return int(points.ids[row]), np.where(np.abs(offset) < 1e-6 * (1 + np.abs(xyz)), 0.0, offset)
-
-
-def _connected(deck: Deck, candidates: list[int]) -> set[int]:
-    """Grids of the elements that hold one of the candidates."""
-    out = set(candidates)
-    for name in ("CQUAD4", "CTRIA3", "CBAR", "CBEAM", "CROD", "CQUAD8", "CTRIA6", "CHEXA", "CTETRA"):
-        for card in deck.bulk.table(name).values():
-            nodes = [n for n in card.node_ids if n]
-            if set(nodes) & set(candidates):
-                out |= set(nodes)
-    return out
-
-
 def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    grid, offset = _nearest(deck, finding.where["xyz"], finding.where["grids"])
-    number = free_id(text, "element")
-    row: Row = ["CONM2", number, grid, None, float(finding.magnitude["mass"])]
-    if np.any(offset):
-        row += [float(np.round(v, 6)) for v in offset]
-    return Adopted(add_cards(text, [row], _note(finding), ("GRID", grid)), (_shown(row),))
+    """Put the mass on the grids named, in equal parts.
+
+    An offset CONM2 would hang on the drilling stiffness of a shell, which is next to nothing.
+    """
+    grids, number = finding.where["grids"], free_id(text, "element")
+    part = float(finding.magnitude["mass"]) / len(grids)
+    rows: list[Row] = [["CONM2", number + i, g, None, part] for i, g in enumerate(grids)]
+    return Adopted(
+        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
+    )
 
 
 def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
@@ -150,9 +131,7 @@ def _distributed_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
 
 def _joint(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     """Put a coincident grid at a beam's end: rigid in translation, sprung in rotation."""
-    return _detached(
-        text, deck, finding, [int(e) for e in finding.where["elements"]], [4, 5, 6]
-    )
+    return _detached(text, deck, finding, [int(e) for e in finding.where["elements"]], [4, 5, 6])
 
 
 def _support(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
@@ -195,7 +174,9 @@ def _detached(
 
 
 def _shown(row: Row) -> str:
-    return ",".join("" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row)
+    return ",".join(
+        "" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row
+    )
 
 
 _WRITERS: dict[str, Callable[[DeckText, Deck, Finding], Adopted]] = {

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from ...core.assembly_parameters import parametric_terms
 from ...core.discovery.structure import Members, Structure, Supports
-from ...core.model import Model
+from ...core.model import Model, Term
 from .build import build_model, read_structure, to_basic
 from .constraints import read_constraints
 from .grids import Points
@@ -44,28 +44,48 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
         if g.shape
     )
     fixed = read_constraints(deck, parts.points).fixed
-    empty = read_structure(deck, read_variation(deck, ()))
-    stiffness, _ = parametric_terms(empty.blocks, parts.points.n_dof, np.zeros(0), np.zeros(0))
-    K = sum((t.matrix for t in stiffness), sp.csr_matrix((parts.points.n_dof,) * 2))
+    lower = np.array([q.lower for q in model.parameters])
+    upper = np.array([q.upper for q in model.parameters])
+    stiffness, _ = parametric_terms(parts.blocks, parts.points.n_dof, lower, upper)
     return Structure(
-        model, members, displacement, _supports(parts.points, K, displacement, fixed, model)
+        model, members, displacement, _supports(parts.points, stiffness, displacement, fixed, model)
     )
 
 
 def _supports(
-    points: Points, K: sp.csr_matrix, displacement: sp.csr_matrix, fixed: object, model: Model
+    points: Points,
+    stiffness: Sequence[Term],
+    displacement: sp.csr_matrix,
+    fixed: object,
+    model: Model,
 ) -> Supports | None:
     held = np.asarray(fixed)
     held = np.flatnonzero(held) if held.dtype == bool else held
     held = held[held < 6 * len(points.ids)]
-    own = K.diagonal()[held]
-    held, own = held[own > 0.0], own[own > 0.0]
     if not len(held):
         return None
-    root = (K[held] @ displacement).tocsr()
-    live = np.diff(root.indptr) > 0
-    held, own, root = held[live], own[live], root[live]
-    return Supports(points.ids[held // 6], held % 6 + 1, points.xyz[held // 6], root, own)
+    p = model.deck_point
+    K = sum(
+        (t.coefficient(p) * t.matrix[held] for t in stiffness[1:]),
+        stiffness[0].coefficient(p) * stiffness[0].matrix[held],
+    )
+    diagonal = np.array([t.matrix.diagonal()[held] for t in stiffness])
+    own = np.array([t.coefficient(p) for t in stiffness]) @ diagonal
+    slopes = np.array(
+        [[t.coefficient_derivative(p, k) for t in stiffness] for k in range(len(p))]
+    ).reshape(len(p), len(stiffness))
+    root = (K @ displacement).tocsr()
+    live = (np.diff(root.indptr) > 0) & (own > 0.0)
+    if not live.any():
+        return None
+    return Supports(
+        points.ids[held[live] // 6],
+        held[live] % 6 + 1,
+        points.xyz[held[live] // 6],
+        root[live],
+        own[live],
+        (slopes @ diagonal[:, live]).T / own[live, None],
+    )
 
 
 def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float, ...]]:

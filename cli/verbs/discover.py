@@ -63,7 +63,11 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         if geometry.length_unit is None and deck.length_unit:
             geometry = replace(geometry, length_unit=deck.length_unit)
         placed = place_test(
-            geometry, modes, measurement, study.deck_length_unit, motion=model.expansion,
+            geometry,
+            modes,
+            measurement,
+            study.deck_length_unit,
+            motion=model.expansion,
             seed=study.seed,
         )
     before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
@@ -138,9 +142,7 @@ def complete(
             text = adopted.deck
         cards.append(list(adopted.cards) if adopted else [])
     top = write_deck(text, work / "deck")
-    (work / "changes.diff").write_text(
-        unified_diff(original, text), encoding="utf-8", newline=""
-    )
+    (work / "changes.diff").write_text(unified_diff(original, text), encoding="utf-8", newline="")
     again = build_model(read_deck(top))
     solution = eigen.solve(again, n_modes=min(n_modes, again.n_free))
     modes = eigen.modes_of(again, solution)
@@ -148,9 +150,7 @@ def complete(
     if again.dofs.node.shape != model.dofs.node.shape:
         seen = _on(placed, model, again)
     sound = _corrected(seen, found)
-    after = compare(
-        again.geometry, modes, sound, criteria_of(study), solution.rigid_body_modes
-    )
+    after = compare(again.geometry, modes, sound, criteria_of(study), solution.rigid_body_modes)
     return {
         "after": after,
         "cards": cards,
@@ -162,7 +162,10 @@ def _on(placed: Any, model: Any, again: Any) -> Any:
     """Sensor map for a deck that has further grids."""
     import scipy.sparse as sp
 
-    old = {(int(n), int(c)): i for i, (n, c) in enumerate(zip(model.dofs.node, model.dofs.component, strict=True))}
+    old = {
+        (int(n), int(c)): i
+        for i, (n, c) in enumerate(zip(model.dofs.node, model.dofs.component, strict=True))
+    }
     rows, columns = [], []
     for j, key in enumerate(zip(again.dofs.node, again.dofs.component, strict=True)):
         i = old.get((int(key[0]), int(key[1])))
@@ -208,10 +211,16 @@ def discover_tables(
     out = set(found.held_out_modes)
 
     def gaps(c: Any) -> dict[str, Any]:
-        return gap(replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 not in out)))
+        return gap(
+            replace(
+                c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 not in out)
+            )
+        )
 
     def held(c: Any) -> dict[str, Any]:
-        return gap(replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 in out)))
+        return gap(
+            replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 in out))
+        )
 
     return {
         "schema": "trueup/discover/1",

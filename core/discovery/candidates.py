@@ -77,23 +77,36 @@ class SpringLaw:
 
 @dataclass(frozen=True, eq=False)
 class ReleaseLaw:
-    """A connection that was rigid gets the stiffness k = e^θ.
+    """A connection that was rigid gets the stiffness k = f e^θ.
 
-    Each freed coordinate, condensed, takes q qᵀ / (k + d) from K, with q the forces that its
-    unit displacement puts on the rest and d its own stiffness. `own` (n, q) holds d.
+    Each freed coordinate, condensed, takes f q qᵀ / (e^θ + d) from K, with q the forces that its
+    unit displacement puts on the rest and d its own stiffness, both for the deck as it is, and f
+    the factor by which the known parameters change them: a release all but cancels d, so that it
+    has to follow. `own` (n, q) holds d, `elasticity` (n, q, n_parameter) ∂ln d/∂ln p, `log_p`
+    (n_parameter,) where the parameters stand.
     """
 
     own: Floats
+    elasticity: Floats
+    log_p: Floats
     on: str = "K"
 
+    def factor(self, rows: Ints) -> Floats:
+        """Return f, (n, q)."""
+        return np.asarray(np.exp(self.elasticity[rows] @ self.log_p))
+
     def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return −1/(k + d)."""
-        return -1.0 / (np.exp(theta)[:, None] + self.own[rows])
+        """Return −f/(e^θ + d)."""
+        return -self.factor(rows) / (np.exp(theta)[:, None] + self.own[rows])
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return the derivative by θ."""
         k = np.exp(theta)[:, None]
-        return k / (k + self.own[rows]) ** 2
+        return self.factor(rows) * k / (k + self.own[rows]) ** 2
+
+    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
+        """Return the derivative by ln p of a known parameter."""
+        return self.elasticity[rows, :, parameter] * self.value(theta, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +160,8 @@ class Candidates:
         every = np.arange(len(self))
         return replace(self, law=self.law_at(every, missing.reshape(len(self), -1)))
 
-    def law_at(self, rows: Ints, missing: Floats | None) -> Law:
-        """Return the law of some rows alone, on a basis that lacks `missing` (n, q)."""
+    def law_at(self, rows: Ints, missing: Floats | None, log_p: Floats | None = None) -> Law:
+        """Return the law of some rows alone, on a basis that lacks `missing` (n, q), at `log_p`."""
         law = self.law
         if isinstance(law, SpringLaw):
             lost = law.missing[rows]
@@ -156,7 +169,8 @@ class Candidates:
         if isinstance(law, ReleaseLaw):
             own = law.own[rows]
             left = own if missing is None else np.maximum(own - missing, 1e-6 * own)
-            return ReleaseLaw(left)
+            at = law.log_p if log_p is None else log_p[: len(law.log_p)]
+            return ReleaseLaw(left, law.elasticity[rows], at)
         return law
 
     @property

@@ -31,6 +31,7 @@ from .judge import (
 from .kinds import KINDS
 from .kinds.scale import Scale
 from .places import region
+from .polish import polished
 from .search import Effort, Found, Searcher
 from .sensors import Fault, find_faults
 from .structure import Structure, thinned
@@ -104,12 +105,12 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
         faults, sound = merged, corrected(shapes, merged)
         problem, null, zero = _prepared(request, sound, noise, ~modes_out, ~sensors_out)
     progress("making the catalogue of effects")
-    searcher = _searcher(request, problem, null)
-    found = searcher.run(enough(searcher), progress)  # type: ignore[arg-type]
-    verdict = judge(searcher, found)
-    return _told(
-        request, searcher, found, verdict, zero, faults, (modes_out, sensors_out)
-    )
+    made = _catalogue(request, problem)
+    searcher = _searcher(request, problem, null, made)
+    found = searcher.run(enough(searcher), progress)
+    progress("weighing the best hypotheses on bases of their own")
+    found, verdict = _weighed(request, searcher, made, found, ~sensors_out)
+    return _told(request, searcher, found, verdict, zero, faults, (modes_out, sensors_out))
 
 
 def corrected(shapes: Floats, faults: tuple[Fault, ...]) -> Floats:
@@ -147,9 +148,7 @@ def _prepared(
         np.append(np.log([q.lower for q in model.parameters]), -_TREND[1]),
         np.append(np.log([q.upper for q in model.parameters]), _TREND[1]),
     )
-    problem = Problem(
-        e, basis, observed, (), (), prior, min(basis.size, _RITZ), targets + 4
-    )
+    problem = Problem(e, basis, observed, (), (), prior, min(basis.size, _RITZ), targets + 4)
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
@@ -161,16 +160,45 @@ def _mode_shapes(request: Request, problem: Problem, state: Fit) -> tuple[Floats
     return everywhere @ state.vectors, state.eigenvalues
 
 
-def _searcher(request: Request, problem: Problem, null: Fit) -> Searcher:
-    """Put the catalogue on the leading vectors of the fitted state."""
-    model, structure = request.structure.model, request.structure
-    size = model.geometry.size
+def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
+    """Return every kind of effect at every place."""
+    hz = problem.evidence.frequencies_hz
     scale = Scale(
-        request.mass, size, float((2.0 * np.pi * np.median(problem.evidence.frequencies_hz)) ** 2)
+        request.mass,
+        request.structure.model.geometry.size,
+        float((2.0 * np.pi * np.median(hz)) ** 2),
     )
+    made = (make(request.structure, scale) for make in KINDS.values())
+    return [c for c in made if c is not None]
+
+
+def _weighed(
+    request: Request, searcher: Searcher, made: list[Candidates], found: Found, sensors: Any
+) -> tuple[Found, Judgement]:
+    """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again."""
+    model = request.structure.model
+    observation = (request.placed.observation.matrix @ model.expansion).tocsr()[sensors]
+    top = float(request.placed.test.frequencies_hz.max()) * 1.25
+    hz = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) / (2.0 * np.pi)
+    modes = int(np.count_nonzero(hz < top)) + 8
+    levels = list(found.levels)
+    done: set[int] = set()
+    verdict = judge(searcher, found)
+    while verdict.accepted and {verdict.accepted, verdict.accepted - 1} - done:
+        for k in {verdict.accepted, verdict.accepted - 1} - done:
+            levels[k] = polished(model, made, observation, searcher.problem, levels[k], modes)
+            done.add(k)
+        kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
+        verdict, found = judge(searcher, kept), kept
+    return found, verdict
+
+
+def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidates]) -> Searcher:
+    """Put the catalogue on the leading vectors of the fitted state."""
+    model = request.structure.model
+    size = model.geometry.size
     small = problem.turned(null.vectors)
     small = replace(small, modes=min(80, small.basis.size))
-    made = [c for c in (make(structure, scale) for make in KINDS.values()) if c is not None]
     catalogue = [
         c.on_basis(missing_flexibility(model, request.solution, small.basis, c.root))
         if c.needs_flexibility and len(c) * c.rows_each <= 3000
@@ -179,9 +207,7 @@ def _searcher(request: Request, problem: Problem, null: Fit) -> Searcher:
     ]
     factors = tuple(c.factors(small.basis) for c in catalogue)
     small = replace(small, catalogue=tuple(catalogue), factors=factors, turn=None)
-    coarse = tuple(
-        _coarse(c, f, small, size) for c, f in zip(catalogue, factors, strict=True)
-    )
+    coarse = tuple(_coarse(c, f, small, size) for c, f in zip(catalogue, factors, strict=True))
     active = tuple(range(len(problem.prior.spread)))
     return Searcher(small, coarse, active, null.log_p, size, request.effort)
 
@@ -314,7 +340,14 @@ def _fault(f: Fault, nodes: Any, xyz: Floats) -> Finding:
     if magnitude:
         interval = (f.factor - 1.96 * f.deviation, f.factor + 1.96 * f.deviation)
     return Finding(
-        "test", f.kind, where, magnitude, interval, (), sure, test_sentence(f.kind, sensors, f.factor)
+        "test",
+        f.kind,
+        where,
+        magnitude,
+        interval,
+        (),
+        sure,
+        test_sentence(f.kind, sensors, f.factor),
     )
 
 
@@ -369,9 +402,7 @@ def _alternatives(
     if verdict.accepted:
         ratio = times(cost(found.levels[0]) - cost(best))
         out.append(
-            Alternative(
-                (), (), ratio, f"the known parameters alone: {ratio:.3g} times less likely"
-            )
+            Alternative((), (), ratio, f"the known parameters alone: {ratio:.3g} times less likely")
         )
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[:8]
 

@@ -9,7 +9,6 @@ from scipy.optimize import linear_sum_assignment
 
 from ..arrays import Bools, Floats, Ints
 
-
 _UNSEEN = 1e-10
 """Squared length at the sensors, relative to the largest, of a mode that they do not see."""
 

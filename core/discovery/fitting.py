@@ -10,7 +10,7 @@ import scipy.linalg as la
 
 from ..arrays import Floats, Ints
 from .basis import Basis
-from .candidates import Catalogue, Law, Suspect
+from .candidates import Catalogue, Law, ReleaseLaw, Suspect
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 
 _DEGENERATE = 2e-3
@@ -68,13 +68,13 @@ class Problem:
             rest=rest,
         )
 
-    def part(self, kind: int, rows: Ints) -> tuple[Floats, Law]:
-        """Return rows (n, q, r) of some candidates on the basis, and their law there."""
+    def part(self, kind: int, rows: Ints, log_p: Floats) -> tuple[Floats, Law]:
+        """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
         c, U = self.catalogue[kind], self.factors[kind][rows]
         missing = None
         if self.rest is not None and c.needs_flexibility:
             missing = np.sum((U @ self.rest) ** 2, axis=-1)
-        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing)
+        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing, log_p)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +96,13 @@ class Fit:
     active: tuple[int, ...]
 
 
-def _matrices(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> tuple[Floats, Floats]:
+def _matrices(
+    problem: Problem, log_p: Floats, suspects: Sequence[Suspect]
+) -> tuple[Floats, Floats]:
     p = np.exp(log_p)
     K, M = problem.basis.K(p), problem.basis.M(p)
     for s in suspects:
-        rows, law = problem.part(s.kind, np.array([s.row]))
+        rows, law = problem.part(s.kind, np.array([s.row]), log_p)
         U, c = rows[0], law.value(np.array([s.theta]), _FIRST)[0]
         target = K if law.on == "K" else M
         target += (U.T * c) @ U
@@ -117,9 +119,7 @@ def solve(
     return values, vectors
 
 
-def misfit(
-    problem: Problem, trend: float, values: Floats, vectors: Floats
-) -> tuple[float, Ints]:
+def misfit(problem: Problem, trend: float, values: Floats, vectors: Floats) -> tuple[float, Ints]:
     """Return the misfit of a solution and its match."""
     n = min(problem.columns, len(values))
     shapes = problem.sensors @ vectors[:, :n]
@@ -214,9 +214,7 @@ def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) ->
     return evaluate(problem, log_p, suspects)
 
 
-def _normal_equations(
-    problem: Problem, now: Fit, active: Sequence[int]
-) -> tuple[Floats, Floats]:
+def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
     """Hessian and gradient of half the objective, robust weights included."""
     e, noise = problem.evidence, problem.evidence.noise
     V, lam, k = now.vectors, now.eigenvalues, now.match
@@ -224,13 +222,21 @@ def _normal_equations(
     n, here = len(k), np.arange(len(k))
     p, last = np.exp(now.log_p), len(now.log_p) - 1
     changes: list[tuple[Floats | None, Floats | None]] = [
-        (None, None) if q == last else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
+        (None, None)
+        if q == last
+        else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
         for q in active
     ]
     for s in now.suspects:
-        rows, law = problem.part(s.kind, np.array([s.row]))
-        U = rows[0]
-        A = (U.T * law.slope(np.array([s.theta]), _FIRST)[0]) @ U
+        rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
+        U, theta = rows[0], np.array([s.theta])
+        A = (U.T * law.slope(theta, _FIRST)[0]) @ U
+        if isinstance(law, ReleaseLaw):
+            for i, q in enumerate(active):
+                before = changes[i][0]
+                if before is not None:
+                    follows = (U.T * law.by_parameter(theta, _FIRST, q)[0]) @ U
+                    changes[i] = (before + follows, changes[i][1])
         changes.append((A, None) if law.on == "K" else (None, A))
     shapes = problem.sensors @ V
     dlam = np.zeros((len(changes), n))
@@ -272,7 +278,10 @@ def _normal_equations(
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
     spread = np.concatenate(
-        [problem.prior.spread[list(active)], [problem.catalogue[s.kind].spread for s in now.suspects]]
+        [
+            problem.prior.spread[list(active)],
+            [problem.catalogue[s.kind].spread for s in now.suspects],
+        ]
     )
     mean = np.concatenate(
         [np.zeros(len(active)), [problem.catalogue[s.kind].typical for s in now.suspects]]

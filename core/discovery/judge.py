@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,7 +68,7 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     return Judgement(scale, accepted, 1.0 / (1.0 + weight), costs[0] - costs[accepted])
 
 
-def enough(searcher: Searcher) -> object:
+def enough(searcher: Searcher) -> Callable[[Fit, Fit], bool]:
     """Return the rule that ends the search: one more suspect is not worth its price.
 
     What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
@@ -93,9 +93,8 @@ def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
                 t
                 for t in left
                 if catalogue[t.kind].kind == catalogue[s.kind].kind
-                and np.linalg.norm(
-                    catalogue[t.kind].xyz[t.row] - catalogue[s.kind].xyz[s.row]
-                ) < 1.5 * near
+                and np.linalg.norm(catalogue[t.kind].xyz[t.row] - catalogue[s.kind].xyz[s.row])
+                < 1.5 * near
             ),
             None,
         )

@@ -25,7 +25,9 @@ def region(geometry: Geometry, xyz: Floats) -> str:
     a, b = ((1, 2), (2, 0), (0, 1))[axis]
     angle = float(np.degrees(np.arctan2(xyz[b], xyz[a]))) % 360.0
     radius = float(np.hypot(xyz[a], xyz[b]))
-    return f"near grid {nearest} (θ = {angle:.0f}°, r = {radius:.4g}, {'xyz'[axis]} = {xyz[axis]:.4g})"
+    return (
+        f"near grid {nearest} (θ = {angle:.0f}°, r = {radius:.4g}, {'xyz'[axis]} = {xyz[axis]:.4g})"
+    )
 
 
 def _round_axis(xyz: Floats) -> int | None:

@@ -33,7 +33,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     (n, n_trial) float
         The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
     """
-    U, law = problem.part(kind, rows)
+    U, law = problem.part(kind, rows, state.log_p)
     lam = np.maximum(state.eigenvalues, 0.0)
     out = np.empty((len(rows), len(trials)))
     S2 = problem.sensors.T @ problem.sensors
@@ -48,9 +48,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
             values, Z = _changed(lam, u, c, law.on)
             values, Z = values[:, :n], Z[:, :, :n]
             gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
-            costs = mode_costs(
-                problem.evidence, float(state.log_p[-1]), values, cross @ Z, gram
-            )
+            costs = mode_costs(problem.evidence, float(state.log_p[-1]), values, cross @ Z, gram)
             out[part, j] = [matched(x)[0] for x in costs]
     return out
 

@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..arrays import Bools, Floats, Ints
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, fit, solve
 from .scanning import best_apart, scan
-
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Changes of θ tried when a suspect moves to a neighbouring place."""
@@ -27,8 +26,8 @@ _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 class Effort:
     """How wide the search looks."""
 
-    beam: int = 4
-    branches: int = 5
+    beam: int = 3
+    branches: int = 4
     most: int = 4
     search_modes: int = 56
     apart: float = 0.08
@@ -73,9 +72,7 @@ class Searcher:
         small = replace(self.problem.turned(T[:, :n], rest), modes=n)
         return small, evaluate(small, state.log_p, state.suspects)
 
-    def branches(
-        self, state: Fit, kinds: Sequence[int], count: int
-    ) -> list[tuple[float, Suspect]]:
+    def branches(self, state: Fit, kinds: Sequence[int], count: int) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind by exact evaluation."""
         small, here = self.local(state)
         out: list[tuple[float, Suspect]] = []
@@ -84,6 +81,7 @@ class Searcher:
             if not len(rows):
                 continue
             score = scan(small, here, kind, rows, c.trials)
+            score[self._taken(state, kind, rows)] = np.inf
             prior = ((c.trials - c.typical) / c.spread) ** 2
             total = score + prior[None, :]
             best = total.min(axis=1)
@@ -91,6 +89,16 @@ class Searcher:
                 theta = float(c.trials[total[i].argmin()])
                 out.append((float(best[i]), Suspect(kind, int(rows[i]), theta)))
         return sorted(out, key=lambda b: b[0])
+
+    def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
+        """Places too near to a suspect of the same kind to be a second one, (n,)."""
+        xyz = self.problem.catalogue[kind].xyz
+        taken = np.zeros(len(rows), bool)
+        for s in state.suspects:
+            if s.kind == kind:
+                apart = np.linalg.norm(xyz[rows] - xyz[s.row], axis=1)
+                taken |= apart < self.effort.apart * self.size
+        return taken
 
     def fitted(
         self,
@@ -124,6 +132,9 @@ class Searcher:
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
         rows = rows[np.argsort(distance[rows], kind="stable")][:160]
         without = evaluate(self.problem, state.log_p, others)
+        rows = rows[~self._taken(without, suspect.kind, rows)]
+        if not len(rows):
+            return None
         small, here = self.local(without)
         trials = suspect.theta + _NEIGHBOURING
         score = scan(small, here, suspect.kind, rows, trials)
@@ -141,7 +152,7 @@ class Searcher:
         """Take each suspect out in turn and look for a better one anywhere."""
         moved = True
         rounds = 0
-        while moved and rounds < 3:
+        while moved and rounds < 2:
             moved, rounds = False, rounds + 1
             for q in range(len(state.suspects)):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
@@ -177,7 +188,7 @@ class Searcher:
             grown: list[Fit] = []
             for state in beam:
                 small = self.local(state)[0]
-                for _, branch in self.branches(state, kinds, self.effort.branches)[:8]:
+                for _, branch in self.branches(state, kinds, self.effort.branches)[:7]:
                     grown.append(self.fitted(state, (*state.suspects, branch), 5, small))
             chosen = self._distinct(sorted(grown, key=lambda f: f.objective))
             beam = sorted(
@@ -196,7 +207,9 @@ class Searcher:
             if enough(previous, best):
                 break
             strong = {
-                s.kind for f in (*beam, *chosen[:8]) for s in f.suspects
+                s.kind
+                for f in (*beam, *chosen[:8])
+                for s in f.suspects
                 if f.objective < best.objective + 0.6 * (previous.objective - best.objective)
             }
             kinds = sorted(strong) or everything

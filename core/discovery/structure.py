@@ -58,6 +58,8 @@ class Supports:
         Forces on the free degrees of freedom of a unit displacement of each.
     own : (n,) float
         Stiffness of each, all else fixed.
+    elasticity : (n, n_parameter) float
+        ∂ln own/∂ln p.
     """
 
     grid: Ints
@@ -65,6 +67,7 @@ class Supports:
     xyz: Floats
     root: sp.csr_matrix
     own: Floats
+    elasticity: Floats
 
 
 @dataclass(frozen=True, eq=False)

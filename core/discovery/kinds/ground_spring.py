@@ -25,7 +25,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
         root=root[live],
         rows_each=1,
         where=tuple(
-            {"grids": [int(grids[i])], "components": [int(c)]}
+            {"grids": grids[i], "components": [int(c)]}
             for i, c in zip(at, live % 3 + 1, strict=True)
         ),
         typical=float(np.log(0.03 * scale.mass * scale.omega2)),

@@ -11,13 +11,14 @@ from ..structure import Members, Structure
 from .scale import Scale
 
 _KINK = 0.98
+_STEP = 0.01
 
 
 def candidates(structure: Structure, scale: Scale) -> Candidates | None:
     """Give each beam end that meets others a finite rotational stiffness, all axes alike."""
     beams = [m for m in structure.members if m.shape == "line" and m.block.width == 6]
     ends = _joints(structure, beams)
-    roots, own, xyz, where = [], [], [], []
+    roots, own, xyz, where, elastic = [], [], [], [], []
     p = np.ones(len(structure.model.parameters))
     for m, chosen in zip(beams, ends, strict=True):
         if not len(chosen):
@@ -31,6 +32,8 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
         d, R = np.linalg.eigh(D)
         stiff = d[:, 0] > 1e-9 * d[:, -1]
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
+        turning = turning[stiff]
+        elastic.append(_elasticity(m, chosen[:, 0], turning, R, d, p))
         at = m.coordinates(chosen[:, 0])
         roots.append(_rows(np.matmul(Q, R), at, structure))
         own.append(d)
@@ -51,7 +54,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
     return Candidates(
         kind="joint_flexibility",
         xyz=np.concatenate(xyz),
-        law=ReleaseLaw(stiffness),
+        law=ReleaseLaw(stiffness, np.concatenate(elastic), np.zeros(len(p))),
         trials=typical + np.log([0.003, 0.03, 0.3, 3.0]),
         root=sp.vstack(roots).tocsr(),
         rows_each=3,
@@ -59,6 +62,21 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
         typical=typical - 1.0,
         spread=2.5,
     )
+
+
+def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: Floats) -> Floats:
+    """∂ln d/∂ln p of the rotational stiffness of beam ends, (n, 3, n_parameter)."""
+    out = np.zeros((*d.shape, len(p)))
+    for k in range(len(p)):
+        moved = p.copy()
+        moved[k] += _STEP
+        K, _ = m.matrices(rows, moved)
+        assert K is not None
+        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
+        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
+        new = np.einsum("nia,nij,nja->na", R, D, R)
+        out[:, :, k] = np.log(new / d) / np.log1p(_STEP)
+    return out
 
 
 def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
@@ -80,7 +98,10 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
             along[a].append(direction)
             along[b].append(-direction)
     kinked = np.array(
-        [c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -_KINK for c, d in zip(count, along, strict=True)]
+        [
+            c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -_KINK
+            for c, d in zip(count, along, strict=True)
+        ]
     )
     joint = ((count >= 3) | kinked) & ~shelled
     return [np.argwhere(joint[m.corners]) for m in beams]

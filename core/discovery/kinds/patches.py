@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ...arrays import Floats, Ints
 from ..basis import Basis
 from ..candidates import Candidates
-from ..structure import Structure, thinned
+from ..structure import Members, Structure, thinned
 
 _RANK = 36
 _RADII = (0.05, 0.08, 0.13)
@@ -70,22 +70,34 @@ class PatchCandidates(Candidates):
         motion = np.asarray(structure.displacement @ basis.vectors)
         q = min(_RANK, basis.size)
         out = np.zeros((len(self), q, basis.size))
-        for i, patch in enumerate(self.extra["patches"]):
-            A = np.zeros((basis.size, basis.size))
-            member = structure.members[patch.member]
-            X = self._matrices(patch)
-            u = motion[member.coordinates(patch.rows)]
-            A = np.einsum("nir,nij,njs->rs", u, X, u, optimize=True)
-            values, vectors = np.linalg.eigh(A)
-            out[i] = (vectors[:, -q:] * np.sqrt(np.maximum(values[-q:], 0.0))).T
+        for number, member in enumerate(structure.members):
+            own = [i for i, p in enumerate(self.extra["patches"]) if p.member == number]
+            if not own:
+                continue
+            used = np.unique(np.concatenate([self.extra["patches"][i].rows for i in own]))
+            X = self._matrices(member, used)
+            place = np.full(len(member.ids), -1, np.int64)
+            place[used] = np.arange(len(used))
+            at = member.coordinates(used)
+            for i in own:
+                patch: Patch = self.extra["patches"][i]
+                rows = place[patch.rows]
+                u = motion[at[rows]]
+                Xu = np.matmul(X[rows], u)
+                A = u.reshape(-1, basis.size).T @ Xu.reshape(-1, basis.size)
+                values, vectors = np.linalg.eigh(A * self._share(patch, X[rows]))
+                root = vectors[:, -q:] * np.sqrt(np.maximum(values[-q:], 0.0))
+                out[i] = root.T
         return out
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""
         structure: Structure = self.extra["structure"]
         patch = self.extra["patches"][row]
-        at = structure.members[patch.member].coordinates(patch.rows)
-        X = self._matrices(patch)
+        member = structure.members[patch.member]
+        at = member.coordinates(patch.rows)
+        X = self._matrices(member, patch.rows)
+        X = X * self._share(patch, X)
         m = at.shape[1]
         n = structure.displacement.shape[0]
         A = sp.csr_matrix(
@@ -94,21 +106,19 @@ class PatchCandidates(Candidates):
         D = structure.displacement
         return (D.T @ A @ D).tocsr()
 
-    def _matrices(self, patch: Patch) -> Floats:
+    def _matrices(self, member: Members, rows: Ints) -> Floats:
         structure: Structure = self.extra["structure"]
-        member = structure.members[patch.member]
-        p = np.ones(len(structure.model.parameters))
-        K, M = member.matrices(patch.rows, p)
-        if self.law.on == "K":
-            assert K is not None
-            return K
-        assert M is not None
-        per_area = self.extra["share"](patch, M)
-        return np.asarray(M * per_area)
+        K, M = member.matrices(rows, np.ones(len(structure.model.parameters)))
+        X = K if self.law.on == "K" else M
+        assert X is not None
+        return X
+
+    def _share(self, patch: Patch, X: Floats) -> float:
+        """Return the factor that gives a patch of masses unit mass; 1 for stiffness."""
+        share = self.extra.get("share")
+        return 1.0 if share is None else float(share(patch, X))
 
 
 def where_of(structure: Structure, patches: list[Patch]) -> tuple[dict[str, list[int]], ...]:
     """Element numbers of each patch."""
-    return tuple(
-        {"elements": structure.members[p.member].ids[p.rows].tolist()} for p in patches
-    )
+    return tuple({"elements": structure.members[p.member].ids[p.rows].tolist()} for p in patches)

@@ -21,14 +21,14 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
         trials=scale.masses(),
         root=translations(structure, points),
         rows_each=3,
-        where=tuple({"grids": [int(g)]} for g in grids),
+        where=tuple({"grids": g} for g in grids),
         typical=float(np.log(0.03 * scale.mass)),
         spread=1.5,
     )
 
 
-def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, Floats]:
-    """Weights (n_point, n_grid), positions, nearest grid: of grids, shell middles, shell edges."""
+def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:
+    """Weights (n_point, n_grid), positions and grids of grids, shell middles and shell edges."""
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
     carries = np.zeros(len(g.ids), bool)
@@ -39,18 +39,18 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, Floats]:
         if m.shape:
             used[m.corners.ravel()] = True
     own = np.flatnonzero(carries & used)
-    weights = [sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))]
-    nearest = [own]
+    weights = [
+        sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
+    ]
     for m in structure.members:
         if m.shape in {"quad", "tria"}:
             weights.append(_means(m.corners, len(g.ids)))
-            nearest.append(m.corners[:, 0])
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)
             weights.append(_means(edges, len(g.ids)))
-            nearest.append(edges[:, 0])
     P = sp.vstack(weights).tocsr()
-    return P, np.asarray(P @ g.xyz), g.ids[np.concatenate(nearest)]
+    grids = [g.ids[c].tolist() for c in np.split(P.indices, P.indptr[1:-1])]
+    return P, np.asarray(P @ g.xyz), grids
 
 
 def _means(corners: Ints, n_grid: int) -> sp.csr_matrix:

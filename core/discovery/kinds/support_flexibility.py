@@ -18,7 +18,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
     return Candidates(
         kind="support_flexibility",
         xyz=s.xyz,
-        law=ReleaseLaw(s.own[:, None]),
+        law=ReleaseLaw(s.own[:, None], s.elasticity[:, None, :], np.zeros(s.elasticity.shape[1])),
         trials=typical + np.log([0.003, 0.03, 0.3, 3.0]),
         root=s.root,
         rows_each=1,

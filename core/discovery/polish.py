@@ -1,0 +1,151 @@
+"""Fit a hypothesis once more on a basis made for it alone.
+
+The basis of the search is the same for every place, so it lacks what a heavy mass or a stiff
+spring does in its own neighbourhood. Here the modes are those of the model with the effects in
+it, and the static response to each effect and each parameter is added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats
+from ..eigen import solve
+from ..factor import factorise
+from ..model import Model
+from .basis import Basis, ReducedTerm
+from .candidates import Candidates, Suspect
+from .fitting import Fit, Problem, fit
+
+_DEPENDENT = 1e-6
+_CHANGED = 0.03
+
+
+def polished(
+    model: Model,
+    catalogue: Sequence[Candidates],
+    observation: sp.csr_matrix,
+    problem: Problem,
+    state: Fit,
+    modes: int,
+    rounds: int = 1,
+) -> Fit:
+    """Return the fit with parameters and magnitudes fitted on a basis of its own.
+
+    Parameters
+    ----------
+    model : Model
+    catalogue : sequence of Candidates
+        As made, their laws not yet fitted to any basis.
+    observation : (n_sensor, n_free) sparse
+        Sensors of the evidence.
+    problem : Problem
+        Evidence and priors.
+    state : Fit
+        From the search.
+    modes : int
+        Modes of the completed model to compute.
+    rounds : int
+        At most; ends when no magnitude moves by more than a few per cent.
+    """
+    for _ in range(rounds):
+        basis, chosen = _own_basis(model, catalogue, state, modes)
+        own = replace(
+            problem,
+            basis=basis,
+            sensors=np.asarray(observation @ basis.vectors),
+            catalogue=tuple(c for c, _ in chosen),
+            factors=tuple(U for _, U in chosen),
+            modes=min(basis.size, max(modes, problem.columns)),
+            turn=None,
+            rest=None,
+        )
+        suspects = [Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects)]
+        new = fit(own, state.log_p, suspects, tuple(range(len(state.log_p))), 20)
+        moved = [abs(a.theta - b.theta) for a, b in zip(new.suspects, state.suspects, strict=True)]
+        state = replace(
+            new,
+            suspects=tuple(
+                replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
+            ),
+        )
+        if max(moved, default=0.0) < _CHANGED:
+            break
+    return state
+
+
+def _own_basis(
+    model: Model, catalogue: Sequence[Candidates], state: Fit, modes: int
+) -> tuple[Basis, list[tuple[Candidates, Floats]]]:
+    p = np.exp(state.log_p)
+    K, M = model.K(p), model.M(p)
+    loads = []
+    for s in state.suspects:
+        c = catalogue[s.kind]
+        A = c.full(s.row)
+        if c.rows_each:
+            root = c.root[s.row * c.rows_each : (s.row + 1) * c.rows_each]
+            value = c.law.value(np.array([s.theta]), np.array([s.row]))[0]
+            change = (root.T @ sp.diags(np.broadcast_to(value, c.rows_each)) @ root).tocsr()
+            loads.append(root.T.toarray())
+        else:
+            change = float(c.law.value(np.array([s.theta]), np.array([s.row]))[0, 0]) * A
+            loads.append(A)
+        if c.law.on == "K":
+            K = (K + change).tocsr()
+        else:
+            M = (M + change).tocsr()
+    solution = solve((K, M), n_modes=modes, count=False)
+    phi = solution.vectors
+    targets = min(modes, phi.shape[1])
+    A = factorise((K + _shift(solution.eigenvalues) * M).tocsr(), definite=True)
+    local = [x if isinstance(x, np.ndarray) else x @ phi[:, :targets] for x in loads]
+    V = np.asarray(phi)
+    if local:
+        V = np.hstack([V, _beside(A.solve(np.ascontiguousarray(np.hstack(local))), V, M, 1e-13)])
+    sides = [model.dK(k, p) @ phi[:, :targets] for k in range(len(model.parameters))]
+    if sides:
+        X = A.solve(np.ascontiguousarray(np.hstack(sides)))
+        V = np.hstack([V, _beside(X, V, M, _DEPENDENT)])
+    basis = Basis(
+        V,
+        np.zeros((0, V.shape[1])),
+        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.stiffness),
+        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.mass),
+    )
+    chosen = []
+    for s in state.suspects:
+        c = catalogue[s.kind]
+        if c.rows_each:
+            U = np.asarray(c.root[s.row * c.rows_each : (s.row + 1) * c.rows_each] @ V)
+        else:
+            values, vectors = np.linalg.eigh(V.T @ (c.full(s.row) @ V))
+            U = (vectors * np.sqrt(np.maximum(values, 0.0))).T
+        one = replace(
+            c,
+            xyz=c.xyz[[s.row]],
+            law=c.law_at(np.array([s.row]), None),
+            where=(c.where[s.row],),
+        )
+        chosen.append((one, U[None]))
+    return basis, chosen
+
+
+def _shift(eigenvalues: Floats) -> float:
+    positive = eigenvalues[eigenvalues > 1e-6 * eigenvalues.max()]
+    return 0.25 * float(positive.min())
+
+
+def _beside(X: Floats, phi: Floats, M: sp.csr_matrix, least: float) -> Floats:
+    """M-orthonormal basis of what X adds to the M-orthonormal vectors phi."""
+    for _ in range(2):
+        X = X - phi @ (phi.T @ (M @ X))
+    length = np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0))
+    X = X[:, length > 0.0] / length[length > 0.0]
+    values, vectors = np.linalg.eigh(X.T @ (M @ X))
+    keep = values > least * values[-1]
+    return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))
