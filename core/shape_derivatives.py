@@ -115,6 +115,8 @@ class ShapeDerivatives:
 
     def _outside(self, cluster: Ints, r: Floats, lam: Floats) -> Floats:
         """(K - lam M)^-1 r on the complement of the known modes; one lam a column."""
+        if self._X.shape[0] == self._X.shape[1]:  # all modes are known: nothing is left of r
+            return np.zeros_like(r)
         factor, s = self._factor(cluster, r.shape[1])
         z = np.zeros_like(r)
         for first in range(0, r.shape[1], _BLOCK):

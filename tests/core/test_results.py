@@ -1,0 +1,97 @@
+"""Tables of result.json: counted from 1, plain values, nothing lost."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from trueup.core.correlate import Criteria, correlate
+from trueup.core.dofs import Dofs
+from trueup.core.modes import Modes
+from trueup.core.parameter import Parameter
+from trueup.core.results import correlation_tables, gap, history_tables, parameter_tables
+from trueup.core.updating import Iteration, Updated
+
+ANGLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+
+
+@pytest.fixture
+def found():
+    """Two pairs of a ring, spun, and one test mode that nothing explains."""
+    shapes = np.column_stack([f(n * ANGLE) for n in (2, 3) for f in (np.cos, np.sin)])
+    shapes /= np.sqrt(12.0)
+    hz = np.array([10.0, 10.0, 30.0, 30.0])
+    c, s = np.cos(0.6), np.sin(0.6)
+    test = np.column_stack([shapes[:, :2] @ [[c, -s], [s, c]], shapes[:, 2:], np.cos(9 * ANGLE)])
+    test_hz = np.array([9.8, 10.2, 29.0, 31.0, 40.0])
+    dofs = Dofs(np.arange(24), np.ones(24, int))
+    c = correlate(hz, shapes, test_hz, test, Criteria())
+    return c, Modes(test_hz, test, dofs), Modes(hz, shapes, dofs)
+
+
+def test_modes_count_from_one(found):
+    c, test, analysis = found
+    tables = correlation_tables(c, test, analysis)
+    assert [p["test"] for p in tables["pairs"]] == [1, 2, 3, 4]
+    assert sorted(p["analysis"] for p in tables["pairs"]) == [1, 2, 3, 4]
+    assert tables["unpaired_test"] == [5]
+    assert tables["unpaired_analysis"] == []
+    assert tables["mac"]["test"] == [1, 2, 3, 4, 5]
+    assert tables["mac"]["analysis"] == [1, 2, 3, 4]
+    ids = {k["id"]: k for k in tables["clusters"]}
+    assert ids[1] == {"id": 1, "analysis": [1, 2], "test": [1, 2]}
+    assert all(p["analysis"] in ids[p["cluster"]]["analysis"] for p in tables["pairs"])
+    assert tables["pairs"][0]["deviation_percent"] == pytest.approx(100 * 0.2 / 9.8)
+
+
+def test_the_tables_are_plain_and_keep_every_digit(found):
+    c, test, analysis = found
+    tables = correlation_tables(c, test, analysis)
+    back = json.loads(json.dumps(tables, allow_nan=False))
+    assert back == tables
+    np.testing.assert_array_equal(back["mac_rotated"]["values"], c.mac_rotated)
+    np.testing.assert_array_equal(back["test_hz"], test.frequencies_hz)
+
+
+def test_the_gap_in_four_figures(found):
+    c, _, _ = found
+    off = [abs(p.deviation_percent) for p in c.pairs]
+    told = gap(c)
+    assert told["pairs"] == 4
+    assert told["mean_abs_deviation_percent"] == pytest.approx(np.mean(off))
+    assert told["worst_deviation_percent"] == max(off)
+    assert told["mean_mac"] == pytest.approx(1.0)
+
+
+def test_the_gap_without_pairs_is_empty_not_zero(found):
+    _, test, analysis = found
+    none = correlate(analysis.frequencies_hz, analysis.shapes, 9 * test.frequencies_hz, test.shapes)
+    assert gap(none) == {
+        "pairs": 0, "mean_abs_deviation_percent": None, "worst_deviation_percent": None,
+        "mean_mac": None,
+    }  # fmt: skip
+
+
+def test_parameters_and_history_in_words_of_the_deck(found):
+    history = (Iteration(0, 0, 5.0, np.array([1.0, 1.0]), np.array([3.0, np.nan])),)
+    done = Updated(
+        np.array([1.5, 0.2]), np.array([0.1, np.nan]), np.array([False, True]), None, None,
+        history, 3, "", (),
+    )  # fmt: skip
+    parameters = (
+        Parameter("ring", ("PBAR 11 I1", "PBAR 11 I2"), (9000.0, 8000.0)),
+        Parameter("skin", ("PSHELL 1 T",), (1.6,)),
+    )
+    rows = parameter_tables(parameters, done, [[13500.0, 12000.0], [0.32]])
+    assert rows[0] == {
+        "name": "ring", "cards": ["PBAR 11 I1", "PBAR 11 I2"], "initial": [9000.0, 8000.0],
+        "updated": [13500.0, 12000.0], "factor": 1.5, "standard_error": 0.1, "at_bound": False,
+    }  # fmt: skip
+    assert rows[1]["standard_error"] is None
+    assert rows[1]["at_bound"] is True
+    assert history_tables(history) == [
+        {"iteration": 0, "stage": 1, "objective": 5.0, "factors": [1.0, 1.0],
+         "deviations_percent": [3.0, None]},
+    ]  # fmt: skip

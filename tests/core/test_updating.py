@@ -1,0 +1,271 @@
+"""Updating: known changes are recovered, and everything the update says of itself is true."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core import updating
+from trueup.core.correlate import Criteria
+from trueup.core.dofs import Dofs
+from trueup.core.eigen import solve
+from trueup.core.errors import InputError
+from trueup.core.geometry import Geometry
+from trueup.core.model import Model, Term, proportional
+from trueup.core.parameter import Parameter
+from trueup.core.residuals import Weights
+from trueup.core.updating import Stage, Target, update
+
+N = 8
+
+
+def chain(groups, kinds=None, n=N, stiffness=1e4, mass=2.0, **limits) -> Model:
+    """Masses in a row on springs, the first one to ground; each group of springs (or masses)
+    is a parameter."""
+    kinds = kinds or ["k"] * len(groups)
+
+    def spring(i):
+        K = sp.lil_matrix((n, n))
+        K[i, i] = stiffness
+        if i:
+            K[i - 1, i - 1], K[i - 1, i], K[i, i - 1] = stiffness, -stiffness, -stiffness
+        return K.tocsr()
+
+    def point(i):
+        return sp.csr_matrix(([mass], ([i], [i])), (n, n))
+
+    terms = {"k": [], "m": []}
+    for which, part in (("k", spring), ("m", point)):
+        left = set(range(n))
+        for q, (group, kind) in enumerate(zip(groups, kinds, strict=True)):
+            if kind == which and group:
+                terms[which].append(Term(sum(part(i) for i in group), (proportional(q, 0.1, 10),)))
+                left -= set(group)
+        if left:
+            terms[which].append(Term(sum(part(i) for i in left)))
+    return Model(
+        Geometry(np.arange(1, n + 1), np.outer(np.arange(n), [1.0, 0.0, 0.0])),
+        Dofs(np.arange(1, n + 1), np.ones(n, int)),
+        sp.identity(n, format="csr"),
+        tuple(terms["k"]),
+        tuple(terms["m"]),
+        tuple(Parameter(f"{k}{q}", (k,), (1.0,), **limits) for q, k in enumerate(kinds)),
+    )
+
+
+def measured(model: Model, truth, modes=slice(0, 6), noise=0.0, seed=0, sensors=None) -> Target:
+    """What a test of the model with other factors gives, shapes scaled at random."""
+    sensors = sp.identity(model.n_free, format="csr") if sensors is None else sensors
+    solution = solve(model, n_modes=min(model.n_free, 30), p=np.array(truth, float))
+    rng = np.random.default_rng(seed)
+    chosen = np.arange(len(solution.eigenvalues))[modes]
+    hz = np.sqrt(np.maximum(solution.eigenvalues, 0.0))[chosen] / (2.0 * np.pi)
+    shapes = np.asarray(sensors @ solution.vectors[:, chosen])
+    return Target(
+        hz * (1.0 + noise * rng.standard_normal(len(hz))),
+        shapes * rng.uniform(0.1, 10.0, len(hz)) * rng.choice([-1, 1], len(hz)),
+        sensors,
+    )
+
+
+HALVES = (range(4), range(4, 8))
+
+
+@pytest.mark.parametrize("residuals", ["frequencies", "shapes", "both"])
+def test_changed_springs_are_found_again(residuals):
+    model, truth = chain(HALVES), [1.3, 0.8]
+    if residuals == "shapes":  # shapes say nothing of the common scale
+        model, truth = chain(HALVES[:1]), [1.3]
+    stage = Stage(tuple(range(len(truth))), residuals, 12)
+    done = update(model, measured(model, truth), [stage], n_modes=8, tolerance=1e-6)
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-5)
+    assert done.after.objective < 1e-6
+    assert done.warnings == ()
+
+
+def test_about_five_iterations_are_enough():
+    model, truth = chain(HALVES), [1.4, 0.75]
+    done = update(model, measured(model, truth), [Stage((0, 1))], n_modes=8)
+    assert len(done.history) - 1 <= 5
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-3)
+    assert done.stopped == "factors moved less than 0.001"
+
+
+def test_a_ring_of_repeated_modes_is_updated_through_its_clusters(ring):
+    """All pairs of the deck are repeated; in the test sectors differ, which splits and turns
+    them."""
+    n = 20
+    model = ring(n, parameters=[("E", [0, 1, 2, 9, 10]), ("rho", [4, 5, 6])])
+    truth = [1.25, 1.3]
+    target = measured(model, truth, slice(6, 18))
+    start = solve(model, n_modes=20)
+    elastic = start.eigenvalues[6:18].reshape(-1, 2)
+    assert (elastic[:, 1] / elastic[:, 0] - 1.0 < 1e-8).all()
+    done = update(model, target, [Stage((0, 1))], Criteria(cluster_width=0.02), n_modes=24,
+                  tolerance=1e-5)  # fmt: skip
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-3)
+    assert len(done.after.correlation.pairs) == 12
+
+
+@pytest.mark.parametrize("weight", [1.0, 4.0])
+@pytest.mark.parametrize("regularisation", [0.0, 100.0, 1e4])
+def test_one_step_of_one_spring_is_that_of_equation_four(regularisation, weight):
+    """λ = p k/m against λ_t = p_t k/m: g = 1/(2σ p_t), r = g (p − p_t), Δp = −g r/(g² + w)."""
+    model = chain([range(1)], n=1)
+    model = replace(model, parameters=(replace(model.parameters[0], weight=weight),))
+    target, p_t, sigma = measured(model, [1.2], slice(0, 1)), 1.2, 0.02
+    done = update(model, target, [Stage((0,), "frequencies", 1)], n_modes=1,
+                  weights=Weights(sigma, 0.1, regularisation))  # fmt: skip
+    g = 1.0 / (2.0 * sigma * p_t)
+    step = g**2 * (p_t - 1.0) / (g**2 + regularisation * weight)
+    assert done.factors[0] == pytest.approx(1.0 + step, rel=1e-6)
+    assert done.history[0].objective == pytest.approx((g * (1.0 - p_t)) ** 2, rel=1e-9)
+
+
+def test_regularisation_damps_the_steps_not_the_answer():
+    model, truth = chain(HALVES), [1.3, 0.8]
+    done = update(model, measured(model, truth), [Stage((0, 1), "both", 60)], n_modes=8,
+                  weights=Weights(regularisation=2000.0), tolerance=1e-7)  # fmt: skip
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-4)
+
+
+def test_a_factor_stays_within_its_bounds_and_says_so():
+    model = chain(HALVES)
+    tight, free = model.parameters
+    model = replace(model, parameters=(replace(tight, lower=0.9, upper=1.1), free))
+    done = update(model, measured(model, [1.3, 1.0]), [Stage((0, 1))], n_modes=8)
+    assert done.factors[0] == pytest.approx(1.1, abs=1e-12)
+    assert done.at_bound.tolist() == [True, False]
+    assert all(0.9 <= h.factors[0] <= 1.1 for h in done.history)
+
+
+def test_stages_move_their_own_parameters_in_order():
+    model, truth = chain(HALVES), [1.3, 0.8]
+    seen = []
+    done = update(
+        model, measured(model, truth), [Stage((1,), "shapes", 3), Stage((0,), "frequencies", 4)],
+        n_modes=8, progress=seen.append,
+    )  # fmt: skip
+    assert tuple(seen) == done.history
+    assert [h.iteration for h in done.history] == list(range(len(seen)))
+    assert {h.stage for h in done.history} == {0, 1}
+    first = [h for h in done.history if h.stage == 0]
+    assert all(h.factors[0] == 1.0 for h in first)
+    assert all(h.factors[1] == first[-1].factors[1] for h in done.history if h.stage == 1)
+    assert done.factors[0] != 1.0
+
+
+def test_only_the_named_test_modes_count():
+    """A test mode that is wrong does not disturb when it is left out."""
+    model, truth = chain(HALVES), [1.2, 0.9]
+    target = measured(model, truth)
+    wrong = replace(target, frequencies_hz=target.frequencies_hz * [1, 1, 1.08, 1, 1, 1])
+    kept = replace(wrong, modes=(0, 1, 3, 4, 5))
+    off = update(model, wrong, [Stage((0, 1))], n_modes=8, tolerance=1e-6)
+    done = update(model, kept, [Stage((0, 1))], n_modes=8, tolerance=1e-6)
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-4)
+    assert abs(off.factors - truth).max() > 0.01
+
+
+def test_the_history_is_what_happened():
+    model = chain(HALVES)
+    target = measured(model, [1.3, 0.8])
+    done = update(model, target, [Stage((0, 1))], n_modes=8)
+    objectives = [h.objective for h in done.history]
+    assert objectives == sorted(objectives, reverse=True)
+    assert done.history[0].factors.tolist() == [1.0, 1.0]
+    np.testing.assert_array_equal(done.history[-1].factors, done.factors)
+    for state, entry in ((done.before, done.history[0]), (done.after, done.history[-1])):
+        for p in state.correlation.pairs:
+            assert entry.deviations_percent[p.test] == pytest.approx(p.deviation_percent)
+
+
+def test_every_full_order_solve_is_counted(monkeypatch):
+    calls = []
+
+    def counted(*words, **options):
+        calls.append(1)
+        return solve(*words, **options)
+
+    monkeypatch.setattr(updating, "solve", counted)
+    model = chain(HALVES)
+    done = update(model, measured(model, [1.3, 0.8]), [Stage((0, 1))], n_modes=8)
+    assert done.eigensolutions == len(calls)
+
+
+def test_the_standard_error_is_the_scatter_of_repeated_tests():
+    """One factor on every spring: λ ~ p, so n frequencies with noise σ give p within 2σ/√n."""
+    model, sigma = chain([range(N)]), 0.004
+    runs = [
+        update(model, measured(model, [1.1], noise=sigma, seed=s),
+               [Stage((0,), "frequencies")], n_modes=8, tolerance=1e-6)
+        for s in range(40)
+    ]  # fmt: skip
+    found = np.array([r.factors[0] for r in runs])
+    said = np.array([r.standard_error[0] for r in runs])
+    expected = 1.1 * 2.0 * sigma / np.sqrt(6)
+    assert np.std(found) == pytest.approx(expected, rel=0.25)
+    assert np.sqrt(np.mean(said**2)) == pytest.approx(expected, rel=0.15)
+
+
+def test_what_the_test_cannot_tell_is_said():
+    """All stiffness and all mass: their common scale leaves everything the same."""
+    model = chain([range(N), range(N)], ["k", "m"])
+    done = update(model, measured(model, [1.2, 1.0]), [Stage((0, 1))], n_modes=8)
+    assert np.isnan(done.standard_error).all()
+    assert len(done.warnings) == 1
+    assert "does not determine k0 and m1" in done.warnings[0]
+    assert done.factors[0] / done.factors[1] == pytest.approx(1.2, rel=1e-3)
+
+
+def test_a_parameter_without_any_effect_is_said():
+    model = chain([range(4), []])
+    done = update(model, measured(model, [1.2, 1.0]), [Stage((0, 1))], n_modes=8)
+    assert done.factors == pytest.approx([1.2, 1.0], rel=1e-3)
+    assert np.isnan(done.standard_error[1])
+    assert np.isfinite(done.standard_error[0])
+    assert "does not determine k1: a change leaves" in done.warnings[0]
+
+
+def test_parameters_outside_all_stages_keep_the_deck():
+    model = chain(HALVES)
+    done = update(model, measured(model, [1.2, 1.0]), [Stage((0,))], n_modes=8)
+    assert done.factors[1] == 1.0
+    assert np.isnan(done.standard_error[1])
+
+
+@pytest.mark.parametrize("missing", [1, 2])
+def test_unmeasured_sensors_do_not_matter(missing):
+    model, truth = chain(HALVES), [1.3, 0.8]
+    rows = np.arange(0, N, missing)
+    sensors = sp.identity(N, format="csr")[rows]
+    target = measured(model, truth, slice(0, 3), sensors=sensors)
+    done = update(model, target, [Stage((0, 1))], n_modes=8, tolerance=1e-6)
+    np.testing.assert_allclose(done.factors, truth, rtol=1e-4)
+
+
+def test_a_test_that_pairs_with_nothing_is_refused():
+    model = chain(HALVES)
+    target = measured(model, [1.0, 1.0])
+    far = replace(target, frequencies_hz=target.frequencies_hz * 50.0)
+    with pytest.raises(InputError, match="no test mode pairs with the model"):
+        update(model, far, [Stage((0, 1))], n_modes=8)
+
+
+def test_stages_that_make_no_sense_are_refused():
+    model = chain(HALVES)
+    with pytest.raises(InputError, match="names no parameter"):
+        Stage(())
+    with pytest.raises(InputError, match="give one of frequencies, shapes, both"):
+        Stage((0,), "everything")
+    with pytest.raises(InputError, match="parameter 7 of 2"):
+        update(model, measured(model, [1.0, 1.0]), [Stage((7,))], n_modes=8)
+
+
+def test_a_model_that_fits_stays_as_it_is():
+    model = chain(HALVES)
+    done = update(model, measured(model, [1.0, 1.0]), [Stage((0, 1))], n_modes=8)
+    np.testing.assert_allclose(done.factors, 1.0, atol=1e-9)
