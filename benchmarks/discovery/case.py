@@ -76,7 +76,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
     fine = mesh(s, 2, True)
     bare = calculix.solve(s, fine, hide.joined([], {}), cache, s.modes)
     scene = hide.Scene(s, fine, bare, rng)
-    drawn = [hide.KINDS[k](scene) for k in p.kinds]
+    drawn = [_noticed(k, scene, cache) for k in p.kinds]
     factors: dict[int, float] = {}
     if p.scenario in ("effect+scatter", "scatter") or (
         p.scenario in ("fault", "two effects", "effect+fault") and rng.random() < 0.5
@@ -91,7 +91,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
         test, entry = measure.fault(test, fine, kind, rng, hurt)
         faults.append(entry)
     rotation, shift = np.eye(3), np.zeros(3)
-    if rng.random() < 0.2:
+    if s.turned and rng.random() < 0.3:
         rotation = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
         shift = np.array([200.0, 160.0, -300.0])
     deck = write_deck(place, s, mesh(s, 1, False))
@@ -116,6 +116,19 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
     }
     (place / "truth.json").write_text(json.dumps(record, indent=1))
     return place
+
+
+def _noticed(kind: str, scene: hide.Scene, cache: Path) -> tuple[hide.Truth, hide.Entry]:
+    """Draw an effect until it alone moves some mode by 1.5 % (a damper always counts)."""
+    s, m = scene.structure, scene.mesh
+    for _ in range(6):
+        truth, entry = hide.KINDS[kind](scene)
+        if truth.dampers:
+            break
+        alone = calculix.solve(s, m, hide.joined([truth], {}), cache, s.modes)
+        if np.max(np.abs(alone.hz / scene.modes.hz - 1.0)) > 0.015:
+            break
+    return truth, entry
 
 
 def visibility(

@@ -21,7 +21,7 @@ from .run import say
 from .score import spot_of
 
 
-class _Stop(Exception):  # noqa: N818
+class _Stop(Exception):
     """Carries what the search had when it was judged."""
 
 
@@ -64,9 +64,9 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
             continue
         rows = np.argsort(np.linalg.norm(c.xyz - np.array(spot), axis=1), kind="stable")
         wanted = effect.get("components")
-        if wanted and len(wanted) == 1:
+        if wanted:
             own = [c.where[int(r)].get("components") for r in rows]
-            rows = rows[[o is None or list(o) == wanted for o in own]]
+            rows = rows[[not o or list(o) == wanted for o in own]]
         return [Suspect(number, int(r), math.log(value)) for r in rows[:count]]
     return []
 
@@ -97,7 +97,7 @@ def explain(place: Path) -> None:
     places = [nearest(searcher, e, 12 if len(effects) == 1 else 4) for e in effects]
     for e, p in zip(effects, places, strict=True):
         if not p:
-            say(f"  the catalogue has no {e['kind']}")
+            say(f"  the catalogue has no {e['kind']} {e.get('components', '')}")
     tries = [
         fit(searcher.problem, found.levels[0].log_p, combination, searcher.active, 15)
         for combination in itertools.product(*[p for p in places if p])

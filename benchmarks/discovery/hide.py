@@ -170,7 +170,7 @@ def support_flexibility(scene: Scene) -> tuple[Truth, Entry]:
     half = 0.2 * float(np.ptp(p[:, axis]))
     near = m.clamped[level & (np.abs(p[:, axis] - middle) <= half)]
     first = (2.0 * np.pi * scene.modes.hz[1]) ** 2
-    k = float(rng.uniform(0.3, 1.0) * scene.mass * first)
+    k = float(rng.uniform(0.03, 0.3) * scene.mass * first)
     box = {"box_lo": m.xyz[near].min(0).tolist(), "box_hi": m.xyz[near].max(0).tolist()}
     entry = {"kind": "support_flexibility", **box, "components": [c], "stiffness": k}
     springs = tuple((int(n), c, k / near.size) for n in near)

@@ -87,7 +87,8 @@ class Structure:
 
     `clamped` says of points (n, 3) which are held; `axes` are the measured directions ("normal"
     to the surface, or letters of "xyz"); `wording` names the scalable properties
-    for the truth file.
+    for the truth file; `turned` where the places of the sensors tell how they
+    are turned, so that the test may come in a frame of its own.
     """
 
     name: str
@@ -102,6 +103,7 @@ class Structure:
     clamped: Callable[[Floats], NDArray[np.bool_]] | None = None
     axes: str = "normal"
     sensors: tuple[int, int] = (30, 50)
+    turned: bool = False
     wording: dict[int, str] = field(default_factory=dict)
 
 

@@ -50,6 +50,7 @@ def expected_verdicts(truth: Json) -> tuple[str, ...]:
 
 
 def spot_of(effect: Json) -> tuple[list[float] | None, float]:
+    """Return where an effect is [mm] and half the extent of a region."""
     if "truth_node_xyz" in effect:
         return effect["truth_node_xyz"], 0.0
     if "box_lo" in effect:

@@ -170,6 +170,7 @@ def tower(rng: np.random.Generator) -> Structure:
         clamped=lambda p: p[:, 2] < 1e-6,
         axes="xy",
         sensors=(26, 40),
+        turned=True,
         wording={1: "col", 2: "beam", 3: "brace"},
     )
 
@@ -193,6 +194,7 @@ def frame(rng: np.random.Generator) -> Structure:
         clamped=lambda p: p[:, 2] < 1e-6,
         axes="xyz",
         sensors=(20, 32),
+        turned=True,
         wording={1: "col", 2: "beam", 3: "jib"},
     )
 
@@ -237,6 +239,7 @@ def bracket(rng: np.random.Generator) -> Structure:
         12,
         clamped=lambda p: p[:, 2] < 1e-6,
         sensors=(28, 44),
+        turned=True,
         wording={1: "wall", 2: "shelf", 11: "edge"},
     )
 
