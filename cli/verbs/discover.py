@@ -178,7 +178,7 @@ def _on(placed: Any, model: Any, again: Any) -> Any:
 
 
 def _corrected(placed: Any, found: Any) -> Any:
-    """The test as sound sensors would have read it."""
+    """Return the test as sound sensors would have read it."""
     from ...core.modes import Modes
 
     nodes = placed.observation.sensors.node

@@ -16,10 +16,13 @@ from .basis import Basis
 class Law(Protocol):
     """How the magnitude enters: the matrix of an effect is ``value(θ) · A`` with θ = ln size."""
 
-    on: str
+    @property
+    def on(self) -> str:
+        """Which matrix it changes, ``K`` or ``M``."""
+        ...
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the factors on the q rows of the candidates `rows` at `theta` (n,): (n, q or 1)."""
+        """Return the factors on the q rows of `rows` at `theta` (n,): (n, q or 1)."""
         ...
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
@@ -35,11 +38,11 @@ class MassLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
-        return np.exp(theta)[:, None]
+        return np.asarray(np.exp(theta)[:, None])
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
-        return np.exp(theta)[:, None]
+        return np.asarray(np.exp(theta)[:, None])
 
 
 @dataclass(frozen=True)
@@ -50,16 +53,19 @@ class FactorLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return f − 1."""
-        return np.expm1(theta)[:, None]
+        return np.asarray(np.expm1(theta)[:, None])
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return df/dθ."""
-        return np.exp(theta)[:, None]
+        return np.asarray(np.exp(theta)[:, None])
 
 
 @dataclass(frozen=True, eq=False)
 class SpringLaw:
-    """A spring k = e^θ adds k·A to K; on a basis too stiff by `missing` (n, 1), k / (1 + k·missing)."""
+    """A spring k = e^θ adds k·A to K.
+
+    On a basis that lacks the flexibility `missing` (n, 1) it is worth k / (1 + k·missing).
+    """
 
     missing: Floats
     on: str = "K"
@@ -67,12 +73,12 @@ class SpringLaw:
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return what the spring is worth."""
         k = np.exp(theta)[:, None]
-        return k / (1.0 + k * self.missing[rows])
+        return np.asarray(k / (1.0 + k * self.missing[rows]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return its derivative by θ."""
         k = np.exp(theta)[:, None]
-        return k / (1.0 + k * self.missing[rows]) ** 2
+        return np.asarray(k / (1.0 + k * self.missing[rows]) ** 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,16 +103,16 @@ class ReleaseLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return −f/(e^θ + d)."""
-        return -self.factor(rows) / (np.exp(theta)[:, None] + self.own[rows])
+        return np.asarray(-self.factor(rows) / (np.exp(theta)[:, None] + self.own[rows]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return the derivative by θ."""
         k = np.exp(theta)[:, None]
-        return self.factor(rows) * k / (k + self.own[rows]) ** 2
+        return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)
 
     def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
         """Return the derivative by ln p of a known parameter."""
-        return self.elasticity[rows, :, parameter] * self.value(theta, rows)
+        return np.asarray(self.elasticity[rows, :, parameter] * self.value(theta, rows))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,7 @@ class Request:
     solution: Eigensolution
     placed: Placed
     mass: float
-    effort: Effort = Effort()
+    effort: Effort = field(default_factory=Effort)
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -266,7 +266,8 @@ def _told(
         for f in faults
         if f.kind == "doubled"
     )
-    word, decide = "no_gap", ()
+    word = "no_gap"
+    decide: tuple[str, ...] = ()
     if findings and verdict.posterior >= _SURE:
         word = "effect"
     elif findings:

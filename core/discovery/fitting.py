@@ -122,10 +122,10 @@ def solve(
 def misfit(problem: Problem, trend: float, values: Floats, vectors: Floats) -> tuple[float, Ints]:
     """Return the misfit of a solution and its match."""
     n = min(problem.columns, len(values))
-    shapes = problem.sensors @ vectors[:, :n]
-    costs = mode_costs(
-        problem.evidence, trend, values[:n], problem.evidence.shapes.T @ shapes, shapes.T @ shapes
-    )
+    shapes = np.asarray(problem.sensors @ vectors[:, :n])
+    cross = np.asarray(problem.evidence.shapes.T @ shapes)
+    gram = np.asarray(shapes.T @ shapes, dtype=float)
+    costs = mode_costs(problem.evidence, trend, values[:n], cross, gram)
     return matched(costs)
 
 

@@ -72,7 +72,7 @@ def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats
 
 
 def best_apart(xyz: Floats, score: Floats, distance: float, count: int) -> list[int]:
-    """Indices of the best scores that are at least `distance` apart, best first."""
+    """Return indices of the best scores that are at least `distance` apart, best first."""
     kept: list[int] = []
     for i in np.argsort(score, kind="stable"):
         if not np.isfinite(score[i]):

@@ -200,8 +200,8 @@ class Searcher:
                 beam[0] = self.reconsidered(beam[0], kinds)
             beam = self._distinct(sorted(beam, key=lambda f: f.objective))
             best = beam[0]
-            rest = [f for f in (*beam[1:], *chosen[self.effort.beam :])]
-            rivals.append(tuple(rest[:12]))
+            rest = (*beam[1:], *chosen[self.effort.beam :])
+            rivals.append(rest[:12])
             previous = levels[-1]
             levels.append(best)
             if enough(previous, best):

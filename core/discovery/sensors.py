@@ -122,7 +122,8 @@ def find_faults(
 
 def _explained(y: Floats, said: Prediction, masked: Bools) -> tuple[Fault, ...]:
     rows = [int(i) for i in np.flatnonzero(masked)]
-    swaps, used = [], set()
+    swaps: list[Fault] = []
+    used: set[int] = set()
     for i in rows:
         for j in rows:
             if i < j and not {i, j} & used:
@@ -158,6 +159,6 @@ def _best(reading: Floats, said: Prediction, i: int) -> tuple[float, float, floa
     """Factor on the prediction that explains a reading best, its deviation, the misfit left."""
     w = 1.0 / said.deviation[i] ** 2
     square = float(np.sum(w * said.mean[i] ** 2))
-    factor = float(np.sum(w * said.mean[i] * reading)) / max(square, np.finfo(float).tiny)
+    factor = float(np.sum(w * said.mean[i] * reading)) / max(square, float(np.finfo(float).tiny))
     left = float(np.sum(w * (reading - factor * said.mean[i]) ** 2))
     return factor, float(np.sqrt(max(left / max(len(reading) - 1, 1), 1.0) / square)), left

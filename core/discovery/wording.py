@@ -15,8 +15,8 @@ _SAYS = {
     "stiffness",
     "ground_spring": "A spring to ground of about {stiffness:.3g} (deck units) in direction "
     "{components} is missing {region}: it",
-    "support_flexibility": "The support gives {region}, direction {components}, with a stiffness of "
-    "about {stiffness:.3g} (deck units): it",
+    "support_flexibility": "The support gives {region}, direction {components}, with a stiffness "
+    "of about {stiffness:.3g} (deck units): it",
     "joint_flexibility": "The joint gives {region} with a rotational stiffness of about "
     "{stiffness:.3g} (deck units): it",
 }

@@ -80,7 +80,7 @@ def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: 
 
 
 def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
-    """Element rows and ends (n, 2) where a beam meets anything but its own straight continuation."""
+    """Element rows and ends (n, 2) where a beam meets more than its own continuation."""
     n = len(structure.model.geometry.ids)
     count = np.zeros(n, np.int64)
     along: list[list[Floats]] = [[] for _ in range(n)]

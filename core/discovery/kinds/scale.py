@@ -29,8 +29,8 @@ class Scale:
 
     def masses(self, count: int = 3) -> Floats:
         """Trial masses, ln."""
-        return np.log(self.mass * np.geomspace(0.01, 0.09, count))
+        return np.asarray(np.log(self.mass * np.geomspace(0.01, 0.09, count)))
 
     def springs(self, count: int = 3) -> Floats:
         """Trial stiffnesses, ln."""
-        return np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count))
+        return np.asarray(np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count)))
