@@ -65,6 +65,13 @@ _DUCT = (
         "5_both",
         {},
     ),
+    Step(
+        "Discover: what the model lacks, put into the deck, flanges fitted along",
+        "discover.toml",
+        "discover",
+        "6_discover",
+        {},
+    ),
 )
 _DEMOS = {"duct": _DUCT}
 
@@ -98,9 +105,10 @@ def demo(
 
 def _verbs() -> dict[str, Callable[[Study, Output], tuple[dict[str, Any], Path]]]:
     from .correlate import run_correlate
+    from .discover import run_discover
     from .update import run_update
 
-    return {"correlate": run_correlate, "update": run_update}
+    return {"correlate": run_correlate, "update": run_update, "discover": run_discover}
 
 
 def _copy(name: str, folder: Path, force: bool) -> None:
@@ -124,9 +132,11 @@ def _copy(name: str, folder: Path, force: bool) -> None:
 
 
 def _show(console: Any, step: Step, result: dict[str, Any], run: Path) -> None:
-    from ..tables import pairs_table, parameters_table
+    from ..tables import findings_table, pairs_table, parameters_table
 
     console.rule(step.says)
+    if "findings" in result:
+        console.print(findings_table(result))
     if "parameters" in result:
         console.print(parameters_table(result))
     console.print(pairs_table(result.get("after", result)))

@@ -1,0 +1,88 @@
+"""Discovery from the command line on cases whose hidden truth is known."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+CASES = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "cases"
+
+pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="../shared/data is absent")
+
+
+def discovered(case, stem, tmp_path):
+    from trueup.cli.app import app
+
+    folder, out = CASES / case, tmp_path / "run"
+    app(
+        [
+            "discover",
+            str(folder / f"{stem}.bdf"),
+            str(folder / f"{stem}_test.unv"),
+            "--deck-length-unit",
+            "mm",
+            "--out",
+            str(out),
+            "--quiet",
+        ],
+        standalone_mode=False,
+    )
+    return json.loads((out / "result.json").read_text()), out
+
+
+def test_a_soft_joint_is_found_named_sized_and_put_into_the_deck(tmp_path):
+    result, out = discovered("tower_joint", "tower", tmp_path)
+    assert result["verdict"] == "effect"
+    (finding,) = result["findings"]
+    assert finding["kind"] == "joint_flexibility"
+    assert finding["where"]["xyz"] == [400.0, 0.0, 1000.0]
+    assert 2e5 < finding["magnitude"]["stiffness"] < 8e5
+    low, high = finding["interval"]
+    assert low < 4e5 < high
+    gap = result["gap"]
+    assert gap["after"]["pairs"] >= gap["before"]["pairs"]
+    assert gap["after"]["mean_abs_deviation_percent"] < 0.3
+    assert gap["held_out"]["after"]["mean_abs_deviation_percent"] < 0.3
+    changes = (out / "changes.diff").read_text()
+    assert "+CELAS2" in changes
+    assert "+RBE2" in changes
+    assert (out / "report.html").is_file()
+
+
+def test_parameters_alone_are_enough_where_nothing_is_missing(tmp_path):
+    result, _ = discovered("tower_frame", "tower", tmp_path)
+    assert result["verdict"] == "parameters_only"
+    assert result["findings"] == []
+    gap = result["gap"]
+    assert (
+        gap["held_out"]["after"]["mean_abs_deviation_percent"]
+        < gap["held_out"]["before"]["mean_abs_deviation_percent"]
+    )
+
+
+@pytest.mark.slow
+def test_sensors_wired_backwards_and_swapped_are_named_and_nothing_else(tmp_path):
+    result, _ = discovered("wheel_faults", "wheel", tmp_path)
+    assert result["verdict"] == "test_fault"
+    named = {(f["kind"], f["where"]["sensors"][0]) for f in result["findings"]}
+    assert named == {("sensor_polarity", 109), ("sensor_swap", 119)}
+
+
+@pytest.mark.slow
+def test_a_hidden_mass_is_found_within_a_mesh_step_and_a_tenth(tmp_path):
+    result, _ = discovered("wheel_mass", "wheel", tmp_path)
+    (finding,) = result["findings"]
+    assert finding["kind"] == "point_mass"
+    x, y, z = finding["where"]["xyz"]
+    assert abs(x - 172.5) + abs(y - 338.6) + abs(z) < 40.0
+    assert finding["magnitude"]["mass"] == pytest.approx(8e-4, rel=0.15)
+
+
+@pytest.mark.slow
+def test_a_spring_to_ground_that_no_rigid_model_has_is_found(tmp_path):
+    result, _ = discovered("panel_spring", "panel", tmp_path)
+    (finding,) = result["findings"]
+    assert finding["kind"] == "ground_spring"
+    assert finding["where"]["xyz"] == [750.0, 450.0, 0.0]
+    assert finding["magnitude"]["components"] == [3]
+    assert finding["magnitude"]["stiffness"] == pytest.approx(15.0, rel=0.1)

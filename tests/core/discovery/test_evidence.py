@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+
+from trueup.core.discovery.evidence import Evidence, Noise, joint_macs, matched, mixing, mode_costs
+
+RNG = np.random.default_rng(0)
+SHAPES = np.linalg.qr(RNG.normal(size=(30, 4)))[0]
+
+
+def macs(eigenvalues, test, size=0.012):
+    return joint_macs(np.asarray(eigenvalues), test.T @ SHAPES, SHAPES.T @ SHAPES, size)
+
+
+def test_modes_far_apart_count_by_their_own_mac():
+    np.testing.assert_allclose(macs([1.0, 2.0, 4.0, 9.0], SHAPES), np.eye(4), atol=1e-3)
+
+
+def test_a_repeated_pair_counts_as_its_subspace():
+    turned = (SHAPES[:, :2] @ [[0.6, -0.8], [0.8, 0.6]])[:, :1]
+    got = macs([1.0, 1.0, 4.0, 9.0], turned)
+    np.testing.assert_allclose(got[0, :2], 1.0, atol=1e-5)
+
+
+def test_a_joint_mac_is_never_below_the_mac():
+    A = RNG.normal(size=(30, 6))
+    t = RNG.normal(size=(30, 3))
+    t /= np.linalg.norm(t, axis=0)
+    lam = np.sort(RNG.uniform(1.0, 1.1, 6))
+    own = (t.T @ A) ** 2 / np.sum(A**2, axis=0)
+    assert np.all(joint_macs(lam, t.T @ A, A.T @ A, 0.012) >= own - 1e-9)
+
+
+def test_mixing_is_half_where_the_gap_is_the_size():
+    assert mixing(np.array([1.0, np.exp(0.02)]), 0.02)[0, 1] == pytest.approx(0.5)
+
+
+def test_a_perfect_model_costs_nothing_and_matches_in_order():
+    e = Evidence(np.array([1.0, 2.0, 3.0, 4.0]), SHAPES, Noise())
+    lam = (2.0 * np.pi * e.frequencies_hz) ** 2
+    total, match = matched(mode_costs(e, 0.0, lam, SHAPES.T @ SHAPES, SHAPES.T @ SHAPES))
+    assert total == pytest.approx(0.0, abs=1e-2)
+    assert match.tolist() == [0, 1, 2, 3]
+
+
+def test_a_trend_shifts_the_highest_mode_by_itself():
+    e = Evidence(np.array([1.0, 2.0, 3.0, 4.0]), SHAPES, Noise())
+    lam = (2.0 * np.pi * e.frequencies_hz * np.exp(-0.02 * e.frequencies_hz / 4.0)) ** 2
+    cross = SHAPES.T @ SHAPES
+    assert matched(mode_costs(e, 0.02, lam, cross, cross))[0] == pytest.approx(0.0, abs=1e-2)
+    assert matched(mode_costs(e, 0.0, lam, cross, cross))[0] > 10.0
+
+
+def test_parts_of_the_evidence_have_unit_shapes():
+    e = Evidence(np.arange(1.0, 5.0), SHAPES, Noise()).take(np.array([0, 2]), np.arange(20))
+    np.testing.assert_allclose(np.linalg.norm(e.shapes, axis=0), 1.0)

@@ -1,0 +1,27 @@
+import numpy as np
+import pytest
+import scipy.linalg as la
+
+from trueup.core.discovery.scanning import _changed, best_apart
+
+RNG = np.random.default_rng(1)
+LAM = np.sort(RNG.uniform(1.0, 50.0, 12))
+U = RNG.normal(size=(5, 3, 12)) * 0.4
+
+
+@pytest.mark.parametrize("on", ["K", "M"])
+def test_every_place_is_an_exact_solution_of_the_changed_eigenproblem(on):
+    c = np.array([0.3, 1.0, 2.0, 0.1, 5.0])[:, None] * np.ones(3)
+    values, Z = _changed(LAM, U, c, on)
+    for g in range(5):
+        change = (U[g].T * c[g]) @ U[g]
+        K = np.diag(LAM) + (change if on == "K" else 0.0)
+        M = np.eye(12) + (change if on == "M" else 0.0)
+        expected, vectors = la.eigh(K, M)
+        np.testing.assert_allclose(values[g], expected, rtol=1e-9)
+        np.testing.assert_allclose(np.abs(Z[g].T @ M @ vectors), np.eye(12), atol=1e-6)
+
+
+def test_the_best_places_are_apart():
+    xyz = np.array([[0.0, 0, 0], [0.1, 0, 0], [5.0, 0, 0], [5.1, 0, 0]])
+    assert best_apart(xyz, np.array([2.0, 1.0, 4.0, 3.0]), 1.0, 5) == [1, 3]
