@@ -42,6 +42,7 @@ def _register() -> None:
     from .verbs.demo import demo
     from .verbs.discover import discover
     from .verbs.export_runs import export_runs
+    from .verbs.identify import identify
     from .verbs.inspect import inspect
     from .verbs.report import report
     from .verbs.solve import solve
@@ -51,6 +52,7 @@ def _register() -> None:
     app.command()(convert)
     app.command("export-runs")(export_runs)
     app.command()(solve)
+    app.command()(identify)
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE))
     app.command()(comparing(discover))

@@ -34,13 +34,14 @@ def criteria_of(study: Study) -> Criteria:
 
 
 def read_measurement(study: Study) -> Measurement:
-    """Read the test files of a study."""
+    """Read the test files of a study; modes are identified where it holds responses only."""
     from ..adapters.universal import read_test
+    from .identifying import with_modes
 
     missing = [str(p) for p in study.test if not p.is_file()]
     if missing:
         raise InputError(f"{missing[0]} does not exist or is not a file")
-    return read_test(list(study.test))
+    return with_modes(read_test(list(study.test)))
 
 
 def read_analysis(study: Study, fmax: float) -> Analysis:
@@ -76,7 +77,8 @@ def read_analysis_modes(path: Path, deck: Any) -> Modes:
 def highest_frequency(measurement: Measurement, study: Study) -> float:
     """Return the frequency up to which analysis modes could pair with the test, Hz."""
     if measurement.modes is None or not len(measurement.modes):
-        raise InputError(f"{study.test[0]}: the test holds no modes")
+        found = "" if measurement.frfs is None else " (none stands out of its responses)"
+        raise InputError(f"{study.test[0]}: the test holds no modes{found}")
     return float(measurement.modes.frequencies_hz.max() * (1.0 + study.frequency_tolerance))
 
 

@@ -19,7 +19,12 @@ def default_folder(study: Study, verb: str) -> Path:
     if study.out is not None:
         return study.out
     assert study.deck is not None
-    base = Path(f"{study.deck.stem}_{verb}")
+    return free_folder(f"{study.deck.stem}_{verb}")
+
+
+def free_folder(name: str) -> Path:
+    """Return a folder of this name in the current one, numbered if that is taken."""
+    base = Path(name)
     path, number = base, 2
     while path.exists():
         path, number = Path(f"{base}_{number}"), number + 1

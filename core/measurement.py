@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .arrays import Floats
 from .errors import InputError
 from .frfs import Frfs
 from .geometry import Geometry
@@ -27,6 +28,10 @@ class Measurement:
         Unit of positions and displacements; None where the source does not say.
     warnings : tuple of str
         What was left out or assumed.
+    frequency_std, damping_std : (n_mode,) float or None
+        Standard errors of `modes` [Hz; fraction of critical] where they were identified here.
+    shape_std : (n_dof, n_mode) float or None
+        Standard errors of the shapes, in their scale.
 
     Raises
     ------
@@ -39,6 +44,9 @@ class Measurement:
     frfs: Frfs | None = None
     length_unit: str | None = None
     warnings: tuple[str, ...] = ()
+    frequency_std: Floats | None = None
+    damping_std: Floats | None = None
+    shape_std: Floats | None = None
 
     def __post_init__(self) -> None:
         if self.modes is None and self.frfs is None:

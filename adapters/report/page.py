@@ -77,7 +77,7 @@ def make_report(
     head = (
         '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<title>{esc(' · '.join(t for t in ('trueup', name or kind) if t))}</title>"
-        f"<style>{_style()}</style>"
+        f"<style>{style()}</style>"
     )
     tip = '<div id="tip" role="status" hidden></div>'
     moving = "" if shapes is None else _asset("viewer.js")
@@ -156,7 +156,8 @@ def _warnings(warnings: Sequence[str]) -> str:
     return tag("div", tag("b", "Warnings"), shown, more, class_="warnings", role="note")
 
 
-def _style() -> str:
+def style() -> str:
+    """Return the style sheet of the pages, light and dark."""
     ramp = "".join(f".c{k}{{fill:var(--c{k})}}" for k in range(colour.STEPS))
     ramp += "".join(f".f{k}{{fill:var(--f{k})}}" for k in range(6))
     dark = colour.variables(dark=True)

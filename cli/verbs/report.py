@@ -20,6 +20,11 @@ def report(
 ) -> None:
     """Make the report of a run folder again."""
     result = read_result(run)
+    if result["schema"].startswith("trueup/identify/"):
+        raise InputError(
+            f"{run} is the run folder of an identification; its page is stabilisation.html, which "
+            "identify makes again"
+        )
     page = render(run, result)
     handle, name = tempfile.mkstemp(prefix=".report.", dir=run)
     with os.fdopen(handle, "w", encoding="utf-8") as stream:

@@ -1,0 +1,211 @@
+"""``trueup identify`` and FRFs in place of modes, as a user calls them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from trueup.adapters.store import read_store
+from trueup.adapters.universal import read_universal, write_universal
+from trueup.core.dofs import Dofs
+from trueup.core.frfs import Frfs
+from trueup.core.geometry import Geometry
+
+DATA = Path(__file__).parents[3] / "shared" / "data"
+GARTEUR = DATA / "uff" / "garteur_frf_1995.uff"
+HZ, DAMPING = np.array([20.0, 50.0, 80.0]), np.array([0.01, 0.005, 0.02])
+NODES = np.array([1, 2, 3, 4])
+SHAPES = np.array([[1.0, 1.0, 1.0], [0.5, -0.5, -1.0], [-0.4, -0.9, 0.6], [0.8, 0.3, -0.2]])
+
+Call = Callable[..., Any]
+
+
+def survey() -> Frfs:
+    """Accelerances of three modes of unit modal mass at four sensors, driven at the first two."""
+    rng = np.random.default_rng(5)
+    f = np.linspace(5.0, 100.0, 800)
+    s = 2j * np.pi * f
+    w = 2.0 * np.pi * HZ
+    gain = s**2 / (s**2 + 2.0 * (DAMPING * w)[:, None] * s + (w**2)[:, None])
+    values = np.einsum("ok,ik,kl->oil", SHAPES, SHAPES[:2], gain)
+    noise = rng.standard_normal(values.shape) + 1j * rng.standard_normal(values.shape)
+    values = values + 0.002 * np.sqrt(np.mean(np.abs(values) ** 2)) * noise
+    dofs = Dofs(NODES, np.full(4, 3))
+    return Frfs(f, dofs, dofs.take(np.array([0, 1])), values)
+
+
+def geometry() -> Geometry:
+    return Geometry(NODES, np.array([[0.0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 2, 0]]), "m")
+
+
+@pytest.fixture
+def frf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "survey.unv"
+    write_universal(path, geometry=geometry(), frfs=survey())
+    return path
+
+
+def test_modes_of_known_functions(frf: Path, call: Call) -> None:
+    before = frf.read_bytes()
+    answer = call("identify", frf, "--json", "-")
+    assert answer.status == 0
+    result = json.loads(answer.out)
+    assert result["schema"] == "trueup/identify/1"
+    modes = result["modes"]
+    assert [m["frequency_hz"] for m in modes] == pytest.approx(HZ, rel=1e-4)
+    assert [m["damping_ratio"] for m in modes] == pytest.approx(DAMPING, rel=1e-2)
+    for m, hz, zeta in zip(modes, HZ, DAMPING, strict=True):
+        assert 0.0 < m["frequency_std"] < 1e-3 * hz
+        assert abs(m["frequency_hz"] - hz) < 5.0 * m["frequency_std"]
+        assert abs(m["damping_ratio"] - zeta) < 5.0 * m["damping_std"]
+        assert m["mpc"] > 0.99
+        assert m["mpd"] < 5.0
+        assert m["quality"] > 0.99
+        assert m["generalized_mass"] == pytest.approx(1.0, rel=0.05)
+        assert m["close_pair_possible"] is False
+    assert [r["node"] for r in result["references"]] == [1, 2]
+    assert result["responses"] == [{"node": int(n), "direction": "+Z"} for n in NODES]
+    assert result["bands"][0]["low_hz"] == pytest.approx(5.0)
+    assert result["bands"][-1]["high_hz"] == pytest.approx(100.0)
+    assert frf.read_bytes() == before
+
+
+def test_the_run_folder(frf: Path, call: Call, result_of: Callable[[Path], Any]) -> None:
+    assert call("identify", frf, "--quiet").out == ""
+    run = Path("survey_identify")
+    assert {p.name for p in run.iterdir()} == {
+        "modes.unv", "modes_complex.unv", "result.h5", "result.json", "stabilisation.html"
+    }  # fmt: skip
+    hz = [m["frequency_hz"] for m in result_of(run)["modes"]]
+    content = read_universal([run / "modes.unv"])
+    assert content.modes is not None
+    assert content.modes.frequencies_hz == pytest.approx(hz, rel=1e-6)
+    assert content.length_unit == "m"
+    vertical = content.modes.dofs.component == 3
+    mac = np.abs(np.sum(content.modes.shapes[vertical] * SHAPES, axis=0)) ** 2
+    mac /= np.sum(content.modes.shapes[vertical] ** 2, axis=0) * np.sum(SHAPES**2, axis=0)
+    assert mac.min() > 0.999
+    told = read_universal([run / "modes_complex.unv"]).modes
+    assert told is not None
+    assert told.is_complex
+    store = read_store(run / "result.h5")
+    assert set(store.modes) == {"test", "complex"}
+    assert store.matrices["shape_std"].shape == store.modes["test"].shapes.shape
+    assert "3 modes between 5 and 100 Hz" in (run / "stabilisation.html").read_text()
+    assert call("identify", frf, "--quiet").status == 0
+    assert Path("survey_identify_2").is_dir()
+    assert "stabilisation.html" in call("report", run).sentence
+
+
+@pytest.mark.parametrize("suffix", ["unv", "h5"])
+def test_only_the_modes(frf: Path, call: Call, suffix: str) -> None:
+    target = Path(f"modes.{suffix}")
+    answer = call("identify", frf, "--fmin", 35, "--fmax", 95, "--out", target)
+    assert answer.status == 0
+    assert "2 modes between 35" in answer.out
+    assert not Path("survey_identify").exists()
+    modes = read_store(target).modes["test"] if suffix == "h5" else read_universal([target]).modes
+    assert modes is not None
+    assert modes.frequencies_hz == pytest.approx(HZ[1:], rel=1e-3)
+    assert "--force" in call("identify", frf, "--out", target).sentence
+
+
+def test_a_poor_mode_is_kept_and_marked(frf: Path, call: Call) -> None:
+    answer = call("identify", frf, "--fmax", 80.5)
+    assert answer.status == 0
+    assert "1 marked as poor" in answer.out
+    assert "at the edge of the measured range" in answer.err
+
+
+def test_one_reference_warns_of_pairs(frf: Path, call: Call) -> None:
+    f = survey()
+    one = replace(f, references=f.references.take(np.array([0])), values=f.values[:, :1])
+    write_universal(frf, geometry=geometry(), frfs=one)
+    answer = call("identify", frf)
+    assert "a close pair may hide" in answer.out
+    assert "one reference cannot tell" in " ".join(answer.err.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--fmin", 60, "--fmax", 40], "empty"),
+        (["--fmin", 200], "frequency line"),
+        (["--max-order", 1], "order"),
+        (["--out", "nowhere/modes.unv"], "does not exist"),
+        (["--out", "survey.unv"], "input itself"),
+    ],
+)
+def test_options_that_cannot_be(frf: Path, call: Call, options: list[Any], said: str) -> None:
+    answer = call("identify", frf, *options)
+    assert answer.status == 1
+    assert said in answer.sentence
+    assert not Path("survey_identify").exists()
+
+
+def test_files_without_frequency_responses(frf: Path, call: Call) -> None:
+    assert "does not exist" in call("identify", "absent.unv").sentence
+    write_universal(frf, geometry=geometry())
+    said = call("identify", frf).sentence
+    assert "survey.unv" in said
+    assert "no frequency response" in said
+
+
+def test_dead_and_coherence_like_channels_are_named(frf: Path, call: Call) -> None:
+    values = survey().values.copy()
+    values[2] = 0.25
+    values[3] = np.abs(np.sin(np.arange(values.shape[2])))
+    write_universal(frf, geometry=geometry(), frfs=replace(survey(), values=values))
+    answer = call("identify", frf)
+    said = " ".join(answer.err.split())
+    assert answer.status == 0
+    assert "3:+Z/1:+Z, 3:+Z/2:+Z is the same at every line (a dead channel): left out" in said
+    assert "4:+Z/1:+Z, 4:+Z/2:+Z is real and between 0 and 1 (a coherence" in said
+    write_universal(frf, geometry=geometry(), frfs=replace(survey(), values=values * 0 + 1))
+    assert "no frequency response that can be fitted" in call("identify", frf).sentence
+
+
+@pytest.mark.skipif(not GARTEUR.exists(), reason=f"real data absent: {GARTEUR.name}")
+def test_garteur_frfs_correlate_in_one_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: Call
+) -> None:
+    """Rigid-body and suspension modes of the model pair with none of the nine elastic ones."""
+    monkeypatch.chdir(tmp_path)
+    deck = DATA / "nastran" / "garteur" / "garteur_fem.bdf"
+    answer = call(
+        "correlate", deck, GARTEUR, DATA / "uff" / "garteur_geometry.unv", "--json", "-", "--quiet"
+    )
+    assert answer.status == 0
+    result = json.loads(answer.out)
+    hz = [p["test_hz"] for p in result["pairs"]]
+    known = [6.5, 16.4, 33.5, 34.0, 36.1, 49.4, 50.2, 55.6, 64.2]
+    assert hz == pytest.approx(known, rel=5e-3)
+    assert min(p["analysis"] for p in result["pairs"]) > 6
+    assert min(p["mac"] for p in result["pairs"]) > 0.8
+    assert any("one reference cannot tell" in w for w in result["warnings"])
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not DATA.is_dir(), reason="real data absent")
+def test_duct_frfs_pair_as_its_modes_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: Call
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    case = DATA / "cases" / "duct"
+    pairs = []
+    for test in ("duct_frf.unv", "duct_test.unv"):
+        answer = call("correlate", case / "duct.bdf", case / test, "--json", "-", "--quiet")
+        assert answer.status == 0
+        found = [p for p in json.loads(answer.out)["pairs"] if p["test_hz"] < 260.0]
+        pairs.append({p["analysis"]: p["test_hz"] for p in found})
+    both = set(pairs[0]) & set(pairs[1])
+    assert len(both) >= 8
+    for analysis in both:
+        assert pairs[0][analysis] == pytest.approx(pairs[1][analysis], rel=5e-3)
