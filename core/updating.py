@@ -18,7 +18,6 @@ from .model import Model
 from .residuals import KINDS, Residuals, Weights, eigenvalue_residuals, shape_residuals
 from .sensitivity import sensitivities
 
-
 _UNIDENTIFIABLE = 1e-4
 
 

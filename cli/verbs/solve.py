@@ -26,9 +26,8 @@ def solve(
     verbose: VerboseOption = False,
 ) -> None:
     """Find the normal modes with the embedded solver."""
-    from ...adapters.nastran import build_model, read_deck
+    from ...adapters.nastran import build_model, read_deck, weight
     from ...core import eigen
-    from ...adapters.nastran import weight
 
     output = Output(json=json, quiet=quiet, verbose=verbose)
     _check(number, fmax, out)
