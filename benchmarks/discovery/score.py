@@ -137,12 +137,18 @@ def _fault(fault: Json, findings: list[Json]) -> tuple[Named, Json | None]:
     return Named(fault["kind"], "", False, None, None, None, None, None, False), None
 
 
+def _sensor_key(finding: Json) -> tuple[str, tuple[int, ...]]:
+    """Return what makes two findings one: a fault named for each axis of a sensor."""
+    sensors = (finding.get("where") or {}).get("sensors") or []
+    return str(finding.get("kind")), tuple(sorted(sensors))
+
+
 def score(truth: Json, result: Json) -> Score:
     """Return what a result is worth against the truth."""
     size = float(truth["dimension"])
     findings = result.get("findings") or []
     model = [f for f in findings if f.get("side") == "model"]
-    test = [f for f in findings if f.get("side") == "test"]
+    test = list({_sensor_key(f): f for f in findings if f.get("side") == "test"}.values())
     expected = expected_verdicts(truth)
     named: list[Named] = []
     for effect in truth["effects"]:
