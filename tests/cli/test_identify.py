@@ -71,7 +71,7 @@ def test_modes_of_known_functions(frf: Path, call: Call) -> None:
         assert m["generalized_mass"] == pytest.approx(1.0, rel=0.05)
         assert m["close_pair_possible"] is False
     assert [r["node"] for r in result["references"]] == [1, 2]
-    assert result["responses"] == [{"node": int(n), "direction": "+Z"} for n in NODES]
+    assert result["responses"] == [{"node": int(n), "direction": "Z"} for n in NODES]
     assert result["bands"][0]["low_hz"] == pytest.approx(5.0)
     assert result["bands"][-1]["high_hz"] == pytest.approx(100.0)
     assert frf.read_bytes() == before
@@ -166,8 +166,8 @@ def test_dead_and_coherence_like_channels_are_named(frf: Path, call: Call) -> No
     answer = call("identify", frf)
     said = " ".join(answer.err.split())
     assert answer.status == 0
-    assert "3:+Z/1:+Z, 3:+Z/2:+Z is the same at every line (a dead channel): left out" in said
-    assert "4:+Z/1:+Z, 4:+Z/2:+Z is real and between 0 and 1 (a coherence" in said
+    assert "3:Z/1:Z, 3:Z/2:Z is the same at every line (a dead channel): left out" in said
+    assert "4:Z/1:Z, 4:Z/2:Z is real and between 0 and 1 (a coherence" in said
     write_universal(frf, geometry=geometry(), frfs=replace(survey(), values=values * 0 + 1))
     assert "no frequency response that can be fitted" in call("identify", frf).sentence
 
@@ -197,15 +197,14 @@ def test_garteur_frfs_correlate_in_one_command(
 def test_duct_frfs_pair_as_its_modes_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: Call
 ) -> None:
+    """Every mode of the modal test (0.1 % noise) that pairs is paired when identified here, too."""
     monkeypatch.chdir(tmp_path)
     case = DATA / "cases" / "duct"
-    pairs = []
+    paired = []
     for test in ("duct_frf.unv", "duct_test.unv"):
         answer = call("correlate", case / "duct.bdf", case / test, "--json", "-", "--quiet")
         assert answer.status == 0
-        found = [p for p in json.loads(answer.out)["pairs"] if p["test_hz"] < 260.0]
-        pairs.append({p["analysis"]: p["test_hz"] for p in found})
-    both = set(pairs[0]) & set(pairs[1])
-    assert len(both) >= 8
-    for analysis in both:
-        assert pairs[0][analysis] == pytest.approx(pairs[1][analysis], rel=5e-3)
+        paired.append(np.array([p["test_hz"] for p in json.loads(answer.out)["pairs"]]))
+    assert len(paired[1]) >= 10
+    for hz in paired[1]:
+        assert np.abs(paired[0] / hz - 1.0).min() < 5e-3
