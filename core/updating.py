@@ -264,12 +264,20 @@ class _Problem:
         if residuals != "shapes":
             parts.append(eigenvalue_residuals(pairs, values, slopes, self.weights.frequency))
         if residuals != "frequencies" and shapes is not None:
-            test = realised(self.target.shapes)[:, [q.test for q in pairs]]
+            test = self._test_shapes(state.correlation)[:, [q.test for q in pairs]]
             analysis = np.asarray(self.target.sensors @ (state.solution.vectors @ T))
             parts.append(shape_residuals(analysis, shapes, test, self.weights.shape))
         return Residuals(
             np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
         )
+
+    def _test_shapes(self, c: Correlation) -> Floats:
+        """Real test shapes as the pairs see them: turned where the test is the side to turn."""
+        shapes = realised(self.target.shapes)
+        if self.criteria.rotate != "test":
+            return shapes
+        size = np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
+        return np.asarray((shapes / size) @ c.transformation)
 
     def _turned(self, c: Correlation, pairs: Sequence[Pair]) -> Floats:
         n = c.mac.shape[1]

@@ -110,6 +110,22 @@ def test_a_ring_of_repeated_modes_is_updated_through_its_clusters(ring):
     assert len(done.after.correlation.pairs) == 12
 
 
+@pytest.mark.parametrize("rotate", ["analysis", "test"])
+def test_either_side_may_be_turned(ring, rotate):
+    """Deck and test are perfect rings; the test's shapes were spun within their pairs."""
+    n = 20
+    model = ring(n, parameters=[("E", range(n))])
+    target = measured(model, [1.1], slice(6, 18))
+    c, s = np.cos(0.7), np.sin(0.7)
+    spun = target.shapes / np.linalg.norm(target.shapes, axis=0)
+    spun = spun @ np.kron(np.eye(6), [[c, -s], [s, c]])
+    done = update(model, replace(target, shapes=spun), [Stage((0,))], Criteria(rotate=rotate),
+                  n_modes=24, tolerance=1e-6)  # fmt: skip
+    assert done.factors[0] == pytest.approx(1.1, rel=1e-4)
+    assert len(done.after.correlation.pairs) == 12
+    assert done.after.objective < 1e-4
+
+
 @pytest.mark.parametrize("weight", [1.0, 4.0])
 @pytest.mark.parametrize("regularisation", [0.0, 100.0, 1e4])
 def test_one_step_of_one_spring_is_that_of_equation_four(regularisation, weight):
@@ -269,3 +285,15 @@ def test_a_model_that_fits_stays_as_it_is():
     model = chain(HALVES)
     done = update(model, measured(model, [1.0, 1.0]), [Stage((0, 1))], n_modes=8)
     np.testing.assert_allclose(done.factors, 1.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("rotate", ["analysis", "test", "none"])
+def test_residuals_and_objective_speak_of_the_same_shapes(ring, rotate):
+    """The squared residuals of a linearisation add up to the objective of its pairs."""
+    model = ring(20, parameters=[("E", [0, 1, 2, 9, 10]), ("rho", [4, 5, 6])])
+    target = measured(model, [1.25, 1.3], slice(6, 18))
+    problem = updating._Problem(model, target, Criteria(rotate=rotate, mac_min=0.3), Weights(), 24)
+    state = problem.evaluate(np.ones(2), "shapes")
+    missing = 12 - len(state.correlation.pairs)
+    lin = problem.linearise(state, [0, 1], "shapes")
+    assert np.sum(lin.values**2) + missing * 0.7 / 0.1**2 == pytest.approx(state.objective)
