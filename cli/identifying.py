@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..core.dofs import Dofs
 from ..core.errors import InputError
 from ..core.measurement import Measurement
 
 if TYPE_CHECKING:
-    from ..adapters.universal import UniversalContent
+    from ..adapters.universal import Function, UniversalContent
     from ..core.identification import Identification
 
 
@@ -57,12 +59,7 @@ def read_responses(paths: Sequence[Path]) -> UniversalContent:
     content = read_universal(list(paths))
     if content.frfs is None:
         names = " and ".join(content.files)
-        said = [
-            f.kind
-            if f.kind != "frequency response"
-            else f"frequency response of {f.quantity} per {f.per}"
-            for f in content.functions
-        ]
+        said = [_kind(f) for f in content.functions]
         held = [f"{said.count(kind)} × {kind}" for kind in dict.fromkeys(said)]
         held += ["mode shapes"] if content.modes is not None else []
         held += [f"{s.what} (line {s.line}: {s.why})" for s in content.skipped[:1]]
@@ -72,6 +69,14 @@ def read_responses(paths: Sequence[Path]) -> UniversalContent:
             "give the file that holds them"
         )
     return content
+
+
+def _kind(function: Function) -> str:
+    """What a function is and, for one called a frequency response, why it is none to use."""
+    if function.kind != "frequency response":
+        return function.kind
+    real = "" if np.iscomplexobj(function.values) else "real "
+    return f"{real}frequency response of {function.quantity} per {function.per}"
 
 
 def identify_tables(found: Identification) -> dict[str, Any]:

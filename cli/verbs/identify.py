@@ -126,7 +126,7 @@ def _write_modes(
         write_store(
             path,
             geometry=content.geometry,
-            modes={"test": found.real_modes, "complex": found.modes},
+            modes={"test": found.real_modes, "test_complex": found.modes},
             matrices={"shape_std": found.shape_std},
         )
         return

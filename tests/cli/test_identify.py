@@ -96,7 +96,7 @@ def test_the_run_folder(frf: Path, call: Call, result_of: Callable[[Path], Any])
     assert told is not None
     assert told.is_complex
     store = read_store(run / "result.h5")
-    assert set(store.modes) == {"test", "complex"}
+    assert set(store.modes) == {"test", "test_complex"}
     assert store.matrices["shape_std"].shape == store.modes["test"].shapes.shape
     assert "3 modes between 5 and 100 Hz" in (run / "stabilisation.html").read_text()
     assert call("identify", frf, "--quiet").status == 0
