@@ -72,7 +72,7 @@ def read_responses(paths: Sequence[Path]) -> UniversalContent:
 
 
 def _kind(function: Function) -> str:
-    """What a function is and, for one called a frequency response, why it is none to use."""
+    """Say what a function is; of one called a frequency response, why it cannot be used."""
     if function.kind != "frequency response":
         return function.kind
     real = "" if np.iscomplexobj(function.values) else "real "
