@@ -102,4 +102,13 @@ def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float
                 refs = tuple(FieldRef(name, number, f) for f in held)
                 specs.append(ParameterSpec(f"{name} {number} {'+'.join(held)}", refs, *bounds))
                 spreads.append(spread)
-    return tuple(specs), tuple(spreads)
+    used = _used(deck, specs)
+    return tuple(specs[k] for k in used), tuple(spreads[k] for k in used)
+
+
+def _used(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
+    """Numbers of the parameters on which at least one element depends."""
+    parts = read_structure(deck, read_variation(deck, specs))
+    return sorted(
+        {k for b in parts.blocks for i in np.unique(b.depends_of) for k in b.depends[int(i)]}
+    )

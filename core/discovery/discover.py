@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from ..arrays import Floats
 from ..comparison import Placed
 from ..correlation import realised
 from ..eigen import Eigensolution
+from ..errors import TrueupError
 from .basis import build_basis, missing_flexibility
 from .candidates import Candidates, Suspect
 from .evidence import Evidence, Noise
@@ -175,7 +177,11 @@ def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
 def _weighed(
     request: Request, searcher: Searcher, made: list[Candidates], found: Found, sensors: Any
 ) -> tuple[Found, Judgement]:
-    """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again."""
+    """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again.
+
+    A hypothesis whose completed model does not solve (a release larger than what is there) stays
+    as the search left it.
+    """
     model = request.structure.model
     observation = (request.placed.observation.matrix @ model.expansion).tocsr()[sensors]
     top = float(request.placed.test.frequencies_hz.max()) * 1.25
@@ -186,7 +192,8 @@ def _weighed(
     verdict = judge(searcher, found)
     while verdict.accepted and {verdict.accepted, verdict.accepted - 1} - done:
         for k in {verdict.accepted, verdict.accepted - 1} - done:
-            levels[k] = polished(model, made, observation, searcher.problem, levels[k], modes)
+            with suppress(TrueupError):
+                levels[k] = polished(model, made, observation, searcher.problem, levels[k], modes)
             done.add(k)
         kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
         verdict, found = judge(searcher, kept), kept
