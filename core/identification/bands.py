@@ -11,6 +11,7 @@ from scipy.signal import find_peaks
 from ..arrays import Floats, Ints, Numbers
 
 MAX_PEAKS = 10  # in one band
+_MAX_LINES = 2000  # in the core of one band
 _MIN_LINES = 96  # a band is not split below twice this
 _MARGIN = 0.25  # of the core's width, on either side
 _PROMINENCE_DB = 1.0
@@ -97,8 +98,13 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
 def _cuts(valley: Floats, lines: Ints, a: int, b: int) -> list[int]:
     inside = lines[(lines > a) & (lines < b)]
     low, high = a + _MIN_LINES, b - _MIN_LINES
-    if len(inside) <= MAX_PEAKS or low >= high:
+    few = len(inside) <= MAX_PEAKS
+    if (few and b - a <= _MAX_LINES) or low >= high:
         return []
+    if few:
+        low, high = a + (b - a) // 3, b - (b - a) // 3
+        cut = low + int(np.argmin(valley[low:high]))
+        return [*_cuts(valley, lines, a, cut), cut, *_cuts(valley, lines, cut, b)]
     quarter = len(inside) // 4
     low, high = max(low, int(inside[quarter])), min(high, int(inside[-quarter - 1]))
     if low >= high:

@@ -22,7 +22,7 @@ _RIDGE = 1e-12  # relative, on the normal matrices of the shapes
 _STUCK = 1e8  # of the damping of the iteration: no step helps any more
 _FACTOR = 1.5  # largest change of the logarithm of a decay rate in one step
 _LEAST_DAMPING = 1e-6
-_SMALL = 1e-9  # relative decrease of the misfit that ends the iteration
+_SMALL = 1e-3  # decrease of the misfit, over its mean per number, that ends the iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +113,7 @@ def refine(
             converged = True
             break
         decrease = fit.misfit - trial.misfit
-        converged = decrease <= _SMALL * trial.misfit + floor
+        converged = decrease <= _SMALL * trial.misfit / data.y.size + floor
         fit, projections, mu = trial, of_trial, max(mu / 10.0, 1e-9)
     return Fit(fit.poles, fit.participation, fit.shapes, fit.misfit, count, bool(converged))
 

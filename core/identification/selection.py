@@ -15,6 +15,8 @@ from .starting import complete_participation
 _BEYOND_DOUBT = 50.0  # significance above which a root is not tested by refining without it
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 _ONE_SHAPE = 0.95  # MAC above which two close roots have one shape
+_ONE_PARTICIPATION = 0.9  # MAC below which their participations contradict that
+_SATELLITE = 0.2  # of the strength of a root: what a satellite has at most
 _TELLING = 5  # outputs below which shapes tell nothing
 _SPLIT_WIDTHS = 6.0  # half bandwidths, and
 _SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
@@ -80,40 +82,84 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
     `significance` leaves the other poles where they are, which flatters a root that stands close
     to others; so the weaker ones must also be missed when the others are refined without them.
     """
-    cleared: set[complex] = set()
+    tested = np.zeros(len(fit.poles), bool)
     while len(fit.poles):
         fit = refine(data, fit.poles, fit.participation)
         value = significance(data, f, fit)
         if np.count_nonzero(~plausible(f, fit)) > _BACKGROUND:
             value = value * plausible(f, fit)
-        worst = int(np.argmin(value))
-        if value[worst] < 1.0:
-            fit = _without(data, fit, worst)
-            continue
-        allowed = allowance(data, f, fit)
-        for k in np.argsort(value):
-            if value[k] > _BEYOND_DOUBT or complex(fit.poles[k]) in cleared:
-                continue
-            rest = _without(data, fit, int(k))
-            rest = refine(data, rest.poles, rest.participation)
-            if rest.misfit - fit.misfit < allowed[k]:
-                fit = rest
-                break
-            cleared.add(complex(fit.poles[k]))
-        else:
+        drop = int(np.argmin(value))
+        if value[drop] >= 1.0:
+            doubtful = np.flatnonzero((value < _BEYOND_DOUBT) & ~tested)
+            missed = [k for k in doubtful if not _is_missed(data, f, fit, int(k))]
+            tested[doubtful] = True
             doubles = split_roots(f, fit, value)
-            if not doubles.any():
+            if missed:
+                drop = int(missed[int(np.argmin(value[missed]))])
+            elif doubles.any():
+                drop = int(np.argmin(np.where(doubles, _strength(fit), np.inf)))
+            else:
                 break
-            strength = np.where(doubles, _strength(fit), np.inf)
-            fit = _without(data, fit, int(np.argmin(strength)))
+        keep = np.arange(len(fit.poles)) != drop
+        fit = fit_shapes(data, fit.poles[keep], fit.participation[:, keep])
+        tested = tested[keep]
     return fit
 
 
-def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
-    """Roots that repeat the shape of a stronger one close by, (n_mode,) bool.
+def _is_missed(data: BandData, f: Floats, fit: Fit, k: int) -> bool:
+    """Tell whether the lines around a root are explained worse when its neighbours replace it."""
+    poles, part = fit.poles, fit.participation
+    local, near, lines = _around(data, f, fit, residual_of(data, fit), complex(poles[k]))
+    near[k] = True
+    with_it = refine(local, poles[near], part[:, near], max_iterations=_TRIAL_ITERATIONS)
+    place = int(np.count_nonzero(near[:k]))
+    allowed = allowance(local, f[lines], with_it)[place]
+    near[k] = False
+    without = refine(local, poles[near], part[:, near], max_iterations=_TRIAL_ITERATIONS)
+    return bool(without.misfit - with_it.misfit >= allowed)
 
-    Two modes do not have one shape. Leakage, a frequency that moves from reference to reference
-    or with the level, split one mode into several roots of its shape; the strongest stays.
+
+def residual_of(data: BandData, fit: Fit) -> Floats:
+    """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
+    return residual_lines(data, fit, basis(data, fit.poles, derivative=False))
+
+
+def _around(
+    data: BandData, f: Floats, fit: Fit, left: Floats, pole: complex
+) -> tuple[BandData, Numbers, slice]:
+    """Cut out the lines around a pole, with the residual and the modes that stand there.
+
+    Returns
+    -------
+    local : BandData
+        What `left` and the near modes make of the lines.
+    near : (n_mode,) bool
+    lines : slice
+    """
+    centre = pole.imag
+    gap = np.abs(fit.poles.imag - centre)
+    close = gap < _NEIGHBOURS * np.abs(fit.poles.real)
+    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
+    widest = max([-pole.real, *(-fit.poles.real[close])])
+    reach = max(_NEIGHBOURS * widest, _LEAST_AROUND * spacing)
+    near = gap < reach
+    first, last = np.searchsorted(2.0 * np.pi * f, [centre - reach, centre + reach])
+    first, last = max(int(last) - _LEAST_AROUND, 0) if last - first < _LEAST_AROUND else first, last
+    lines = slice(int(first), int(max(last, first + _LEAST_AROUND)))
+    F = basis(data, fit.poles[near], derivative=False)
+    mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
+    functions = left + mine @ F.reshape(len(F), -1).T
+    return excerpt(data, lines, functions), near, lines
+
+
+def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
+    """Roots that repeat a stronger one close by, (n_mode,) bool.
+
+    Leakage splits one mode into a strong root and weak satellites of the same shape. A frequency
+    that moves from reference to reference splits it into roots of one shape but different
+    participation, which no structure has: a driving point is a sensor, too. Two modes that the
+    sensors cannot tell apart (sparse sensors alias) agree in both and are of like strength; they
+    stay.
 
     Parameters
     ----------
@@ -129,12 +175,15 @@ def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
     noise = 1.0 / np.maximum(2.0 * value, 1.0)
     attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
     alike = np.abs(unit.conj().T @ unit) ** 2 > _ONE_SHAPE * attainable
+    part = fit.participation / np.linalg.norm(fit.participation, axis=0)
+    contradict = np.abs(part.conj().T @ part) ** 2 < _ONE_PARTICIPATION * attainable
     strength = _strength(fit)
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     for a in range(m):
         gap = np.abs(fit.poles.imag - fit.poles[a].imag)
         width = np.maximum(np.abs(fit.poles.real), np.abs(fit.poles[a].real))
         weaker = alike[a] & (strength < strength[a]) & mode & mode[a]
+        weaker &= contradict[a] | (strength < _SATELLITE * strength[a])
         double |= weaker & (gap < _SPLIT_WIDTHS * width + _SPLIT_LINES * spacing)
     return double
 
@@ -170,7 +219,11 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
         if significance(data, f, grown)[-1] < 0.8:
             return None
         grown = refine(data, grown.poles, grown.participation)
-    if significance(data, f, grown)[-1] < 1.0:
+    value = significance(data, f, grown)
+    new = len(grown.poles) - 1
+    if value[new] < 1.0 or split_roots(f, grown, value)[new]:
+        return None
+    if value[new] < _BEYOND_DOUBT and not _is_missed(data, f, grown, new):
         return None
     grown = prune(data, f, grown)
     freedom = max(data.y.size - data.weight.size, 1)
@@ -186,22 +239,13 @@ def _from_residual(
     None instead of the roots with the new one (last) when a fit of the lines around it shows
     nothing but noise.
     """
-    F = basis(data, fit.poles, derivative=False)
-    left = residual_lines(data, fit, F)
+    left = residual_of(data, fit)
     n_line = len(f)
     line, root = strongest_root(f, left[..., :n_line] + 1j * left[..., n_line:], open_lines)
     centre = root.pole.imag
-    gap = np.abs(fit.poles.imag - centre)
-    close = gap < _NEIGHBOURS * np.abs(fit.poles.real)
+    close = np.abs(fit.poles.imag - centre) < _NEIGHBOURS * np.abs(fit.poles.real)
     decays = [-root.pole.real, *(-fit.poles.real[close])]
-    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
-    reach = max(_NEIGHBOURS * max(decays), _LEAST_AROUND * spacing)
-    near = gap < reach
-    first, last = np.searchsorted(2.0 * np.pi * f, [centre - reach, centre + reach])
-    lines = slice(int(first), int(last))
-    mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
-    functions = left + mine @ F[:, 0, near].reshape(len(F), -1).T
-    local = excerpt(data, lines, functions)
+    local, near, lines = _around(data, f, fit, left, root.pole)
     best, most = None, _PROMISING
     for decay in (decays[0], float(np.median(decays))):
         poles = np.append(fit.poles[near], complex(-decay, centre))
