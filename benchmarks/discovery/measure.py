@@ -27,7 +27,10 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class Test:
-    """A measured survey in the deck's frame: labels, xyz [mm], shapes (sensor, 3, mode)."""
+    """A measured survey in the deck's frame: labels, xyz [mm], shapes (sensor, 3, mode).
+
+    `directions` (sensor, channel, 3) is what each measures along.
+    """
 
     labels: Ints
     xyz: Floats
@@ -35,6 +38,7 @@ class Test:
     hz: Floats
     damping: Floats
     shapes: Floats
+    directions: Floats
 
 
 def sensors(s: Structure, m: Mesh, rng: np.random.Generator) -> Ints:
@@ -89,6 +93,7 @@ def measure(
         modes.hz * (1.0 + noise.frequency * rng.standard_normal(modes.hz.size)),
         damped(t, modes, rng),
         np.einsum("sci,scm->sim", d, y),
+        d,
     )
 
 
@@ -127,7 +132,9 @@ def fault(
         alike = unit @ unit[i]
         others = [j for j in candidates if j != i and abs(alike[j]) < 0.6]
         j = int(rng.choice(others or [k for k in candidates if k != i]))
-        y[[i, j]] = y[[j, i]]
+        d = test.directions[[i, j]]
+        read = np.einsum("sci,sim->scm", d, y[[i, j]])
+        y[[i, j]] = np.einsum("sci,scm->sim", d, read[::-1])
         entry |= {"other": j, "other_node": int(test.labels[j])}
         hurt.add(j)
     hurt.add(i)
