@@ -93,7 +93,13 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         after = done["after"]
         result = discover_tables(study, found, specs, model, before, after, done)
         result["seconds"] = time.perf_counter() - start
-        result["warnings"] = [*deck.warnings, *model.warnings, *before.warnings, *found.warnings]
+        result["warnings"] = [
+            *deck.warnings,
+            *model.warnings,
+            *before.warnings,
+            *found.warnings,
+            *done["refused"],
+        ]
         result["pairs"] = correlate_tables(after)["pairs"]
         fill_run_folder(work, study, result, before, after)
     return result, run
@@ -125,7 +131,7 @@ def complete(
 
     assert study.deck is not None
     original = read_deck_text(study.deck)
-    text, cards = original, []
+    text, cards, refused = original, [], []
     if found.verdict in _ADOPTED:
         moved = {
             ref: value * m.factor
@@ -138,8 +144,11 @@ def complete(
     for f in found.findings:
         adopted = None
         if f.side == "model" and found.verdict == "effect":
-            adopted = adopt(text, deck, f)
-            text = adopted.deck
+            try:
+                adopted = adopt(text, deck, f)
+                text = adopted.deck
+            except InputError as error:
+                refused.append(f"the {f.kind.replace('_', ' ')} was not written: {error}")
         cards.append(list(adopted.cards) if adopted else [])
     top = write_deck(text, work / "deck")
     (work / "changes.diff").write_text(unified_diff(original, text), encoding="utf-8", newline="")
@@ -154,6 +163,7 @@ def complete(
     return {
         "after": after,
         "cards": cards,
+        "refused": refused,
         "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
     }
 

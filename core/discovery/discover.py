@@ -43,6 +43,7 @@ _TREND = (0.01, 0.05)
 _SIGNIFICANT = 3.0
 _SURE = 0.6
 _RITZ = 110
+_UNEXPLAINED = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,7 +263,12 @@ def _told(
     ]
     nodes = request.placed.observation.sensors.node
     xyz = request.placed.observation.xyz
-    told = [_fault(f, nodes, xyz) for f in faults if f.kind != "doubled"]
+    named = {
+        (f.kind, tuple(int(nodes[i]) for i in f.sensors)): _fault(f, nodes, xyz)
+        for f in faults
+        if f.kind != "doubled"
+    }
+    told = list(named.values())
     moved = _moved(request, searcher, best, spread)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
@@ -279,6 +285,12 @@ def _told(
         word = "effect"
     elif findings:
         word, decide = "undecided", _would_decide(request, searcher, found, verdict)
+    elif verdict.scale > _UNEXPLAINED:
+        word = "undecided"
+        decide = (
+            f"the best explanation leaves {verdict.scale:.0f} times the misfit of a right model; "
+            "further sensors or modes, or an effect that the catalogue does not have",
+        )
     elif told:
         word = "test_fault"
     elif matters:
