@@ -110,7 +110,7 @@ def _run(
     lines = survey.lines(first, last)
     f = survey.frequencies_hz[lines]
     n_input = len(columns)
-    top = max_order or int(np.ceil((4 * n_peaks + 20) * 1.5 / n_input)) + 4
+    top = max_order or int(np.ceil((4 * n_peaks + 16) * 1.2 / n_input)) + 4
     top = max(2, min(top, _MAX_COLUMNS // n_input, len(f) // 3))
     if len(f) < 12:
         return (), stabilise([], first, last)[1]

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Floats, Numbers
 from .moments import BandData, basis, excerpt, parts_of
 from .refinement import Fit, fit_shapes, refine
-from .search import strongest_root
+from .search import Traces, traces
 from .significance import allowance, best_of_noise, residual_lines, significance
 from .stabilisation import MAX_DAMPING, Candidate
 from .starting import complete_participation
@@ -61,11 +61,14 @@ def select(
         if significance(data, f, start)[-1] > _HOPELESS:
             state = _try(data, f, state, start) or state
     open_lines = (f >= low) & (f <= high)
+    left, found = _look(data, f, state)
     failed = 0
     for _ in range(_ROUNDS):
-        if not open_lines.any() or failed == _FAILURES:
+        trace = found.strongest(open_lines)
+        if trace is None or failed == _FAILURES:
             break
-        line, trial = _from_residual(data, f, state, open_lines)
+        line, root = trace
+        trial = _with_neighbours(data, f, state, left, root)
         grown = None if trial is None else _try(data, f, state, trial)
         if grown is None:
             failed += 1
@@ -73,6 +76,7 @@ def select(
         else:
             failed = 0
             state = grown
+            left, found = _look(data, f, state)
     return prune(data, f, state)
 
 
@@ -231,17 +235,20 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
     return grown if gained > 0.5 * best_of_noise(data, f, len(data.weight)) else None
 
 
-def _from_residual(
-    data: BandData, f: Floats, fit: Fit, open_lines: Numbers
-) -> tuple[int, Fit | None]:
-    """Find the root that explains most of the residual, and fit it with its neighbours.
-
-    None instead of the roots with the new one (last) when a fit of the lines around it shows
-    nothing but noise.
-    """
+def _look(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Traces]:
+    """Return the residual of a fit and the traces of roots in it."""
     left = residual_of(data, fit)
     n_line = len(f)
-    line, root = strongest_root(f, left[..., :n_line] + 1j * left[..., n_line:], open_lines)
+    return left, traces(f, left[..., :n_line] + 1j * left[..., n_line:], data.weight > 0.0)
+
+
+def _with_neighbours(
+    data: BandData, f: Floats, fit: Fit, left: Floats, root: Candidate
+) -> Fit | None:
+    """Add a root to a fit, at the place where a fit with its neighbours puts it (last).
+
+    None when the fit of the lines around it shows nothing but noise.
+    """
     centre = root.pole.imag
     close = np.abs(fit.poles.imag - centre) < _NEIGHBOURS * np.abs(fit.poles.real)
     decays = [-root.pole.real, *(-fit.poles.real[close])]
@@ -256,8 +263,8 @@ def _from_residual(
         if value > most:
             best, most = trial, value
     if best is None:
-        return line, None
+        return None
     poles, part = np.array(fit.poles), np.array(fit.participation)
     poles[near], part[:, near] = best.poles[:-1], best.participation[:, :-1]
     part = np.column_stack([part, best.participation[:, -1]])
-    return line, fit_shapes(data, np.append(poles, best.poles[-1]), part)
+    return fit_shapes(data, np.append(poles, best.poles[-1]), part)
