@@ -126,7 +126,7 @@ class Model:
         return frozen(np.ones(len(self.parameters)))
 
     def K(self, p: Floats | None = None) -> sp.csr_matrix:
-        """Return the stiffness at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        """Return K at the parameter values `p` (default: the deck), (n_free, n_free)."""
         return _sum(self.stiffness, self.deck_point if p is None else p, self.n_free)
 
     def M(self, p: Floats | None = None) -> sp.csr_matrix:
