@@ -9,8 +9,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from .arrays import Floats, Ints
+from .sparse_sum import shared
 
-CHUNK = 4096
+CHUNK = 1024
 """Elements evaluated at a time: bounds memory and keeps a chunk's matrices in cache."""
 
 Matrices = tuple[Floats | None, Floats | None]
@@ -109,11 +110,13 @@ def assemble(
     for width in (6, 3, 1):
         same = [m for m in members if m.block.width == width and len(m.rows)]
         if same:
-            blocks = _BlockSum(same, width, len(recipe.stiffness))
+            blocks = _BlockSum(same, width, len(recipe.points))
             for number, member in enumerate(same):
                 _add_member(blocks, masses, number, member, recipe)
-            parts = blocks.matrices(n_dof)
-            stiffness = [a + b if a.nnz else b for a, b in zip(stiffness, parts, strict=True)]
+            parts = blocks.matrices(n_dof, recipe.stiffness)
+            added = any(a.nnz for a in stiffness) and any(b.nnz for b in parts)
+            both = [a + b for a, b in zip(stiffness, parts, strict=True)] if added else []
+            stiffness = both or (parts if any(b.nnz for b in parts) else stiffness)
     return stiffness, masses.matrices()
 
 
@@ -129,7 +132,7 @@ def _add_member(
                 continue
             K, M = member.block.evaluate(rows, p, wanted)
             if K is not None and wanted[0]:
-                blocks.add(number, part, K, recipe.stiffness[:, k])
+                blocks.add(number, part, K, k)
             if M is not None and wanted[1]:
                 masses.add(member.block.places[rows], member.block.width, M, recipe.mass[:, k])
 
@@ -165,14 +168,14 @@ class _EntrySum:
 
 
 class _BlockSum:
-    """Accumulates element matrices of equal width into several block-sparse matrices."""
+    """Sums element matrices of equal width, evaluated at several points, on one pattern."""
 
-    def __init__(self, members: Sequence[Members], width: int, count: int) -> None:
+    def __init__(self, members: Sequence[Members], width: int, n_point: int) -> None:
         self._width = width
-        self._count = count
+        self._n_point = n_point
         self._members = members
         self._pattern: tuple[Ints, list[Ints]] | None = None
-        self._data: Floats | None = None
+        self._data: list[Floats | None] = [None] * n_point
 
     def _find_pattern(self) -> tuple[Ints, list[Ints]]:
         """Return the sorted keys (row place, column place) and each member's positions in them."""
@@ -185,12 +188,14 @@ class _BlockSum:
         cuts = np.cumsum([len(k) for k in keys])[:-1]
         return unique, np.split(inverse, cuts)
 
-    def add(self, member: int, part: slice, values: Floats, weights: Floats) -> None:
+    def add(self, member: int, part: slice, values: Floats, point: int) -> None:
         if not values.any():
             return
-        if self._pattern is None or self._data is None:
+        if self._pattern is None:
             self._pattern = self._find_pattern()
-            self._data = np.zeros((self._count, len(self._pattern[0]), self._width**2))
+        data = self._data[point]
+        if data is None:
+            data = self._data[point] = np.zeros((len(self._pattern[0]), self._width**2))
         n, m, _ = values.shape
         b = self._width
         w = m // b
@@ -199,24 +204,47 @@ class _BlockSum:
         order = np.argsort(position, kind="stable")
         ordered = position[order]
         starts = np.flatnonzero(np.diff(ordered, prepend=-1))
-        summed = np.add.reduceat(blocks[order], starts, axis=0)
-        for k in np.flatnonzero(weights):
-            self._data[k, ordered[starts]] += weights[k] * summed
+        data[ordered[starts]] += np.add.reduceat(blocks[order], starts, axis=0)
 
-    def matrices(self, n_dof: int) -> list[sp.csr_matrix]:
-        if self._pattern is None or self._data is None:
-            return [sp.csr_matrix((n_dof, n_dof)) for _ in range(self._count)]
-        keys = self._pattern[0]
+    def matrices(self, n_dof: int, weights: Floats) -> list[sp.csr_matrix]:
+        """Weighted sums over the points, one a row of `weights`, (n, n_point)."""
+        if self._pattern is None:
+            return [sp.csr_matrix((n_dof, n_dof)) for _ in weights]
+        position, pattern = self._to_csr(n_dof)
+        totals = []
+        total, scaled = np.empty((2, self._pattern[0].size * self._width**2))
+        for row in weights:
+            total.fill(0.0)
+            for weight, data in zip(row, self._data, strict=True):
+                if weight != 0.0 and data is not None:
+                    total += np.multiply(data.reshape(-1), weight, out=scaled)
+            totals.append(total[position])
+        return _trimmed(totals, pattern)
+
+    def _to_csr(self, n_dof: int) -> tuple[Ints, sp.csr_matrix]:
+        """Where the entries of a csr matrix stand among those of the blocks, and its pattern."""
+        assert self._pattern is not None
+        keys, b = self._pattern[0], self._width
         rows, columns = keys >> 32, (keys & 0xFFFFFFFF).astype(np.int32)
-        n_places = n_dof // self._width
+        n_places = n_dof // b
         start = np.searchsorted(rows, np.arange(n_places + 1)).astype(np.int32)
-        out = []
-        for data in self._data:
-            blocks = data.reshape(-1, self._width, self._width)
-            size = n_places * self._width
-            matrix = sp.bsr_matrix((blocks, columns, start), shape=(size, size)).tocsr()
-            matrix.eliminate_zeros()
-            if size < n_dof:
-                matrix.resize(n_dof, n_dof)
-            out.append(matrix)
-        return out
+        number = np.arange(keys.size * b * b, dtype=np.float64).reshape(-1, b, b)
+        size = n_places * b
+        matrix = sp.bsr_matrix((number, columns, start), shape=(size, size)).tocsr()
+        if size < n_dof:
+            matrix.resize(n_dof, n_dof)
+        return matrix.data.astype(np.int64), matrix
+
+
+def _trimmed(totals: list[Floats], pattern: sp.csr_matrix) -> list[sp.csr_matrix]:
+    """Matrices on one pattern without the entries that are zero in all of them."""
+    used = np.zeros(pattern.nnz, dtype=bool)
+    for total in totals:
+        used |= total != 0.0
+    if not used.all():
+        counts = np.concatenate([[0], np.cumsum(used)])
+        indptr = counts[pattern.indptr].astype(pattern.indptr.dtype)
+        totals = [total[used] for total in totals]
+        empty = np.zeros(int(counts[-1]))
+        pattern = sp.csr_matrix((empty, pattern.indices[used], indptr), shape=pattern.shape)
+    return shared(totals, pattern)

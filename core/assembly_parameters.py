@@ -14,10 +14,13 @@ from .errors import CheckError
 from .expansion import Expansion, expand
 from .model import Factor, Term
 
-_FITTED = 32
+_FITTED = 24
 """Elements of a kind that the functions are found on; as many others check them."""
 
-_TOLERANCE = 1e-7
+Known = tuple[Floats, int, Expansion]
+"""Bounds (2, k), kind (0 stiffness, 1 mass), functions."""
+
+_TOLERANCE = 3e-7
 _ALLOWED = 1e-6
 
 
@@ -46,10 +49,12 @@ def parametric_terms(
         A dependence that could not be expanded to this accuracy.
     """
     collected: tuple[dict[tuple[Factor, ...], sp.csr_matrix], ...] = ({(): None}, {(): None})
+    known: list[Known] = []
     for parameters, members in _groups(blocks).items():
-        for kind, (factors, matrix) in _group_terms(parameters, members, n_dof, lower, upper):
-            known = collected[kind].get(factors)
-            collected[kind][factors] = matrix if known is None else known + matrix
+        terms = _group_terms(parameters, members, n_dof, lower, upper, known)
+        for kind, (factors, matrix) in terms:
+            before = collected[kind].get(factors)
+            collected[kind][factors] = matrix if before is None else before + matrix
     zero = sp.csr_matrix((n_dof, n_dof))
     stiffness, mass = (
         tuple(Term(zero if m is None else m, f) for f, m in terms.items()) for terms in collected
@@ -74,6 +79,7 @@ def _group_terms(
     n_dof: int,
     lower: Floats,
     upper: Floats,
+    known: list[Known],
 ) -> list[tuple[int, tuple[tuple[Factor, ...], sp.csr_matrix]]]:
     """Terms (0 stiffness, 1 mass; factors; matrix) of elements with the same parameters."""
     everywhere = np.ones(len(lower))
@@ -82,7 +88,7 @@ def _group_terms(
         K, M = assemble(members, n_dof, Recipe(everywhere[None, :], one, one))
         return [(0, ((), K[0])), (1, ((), M[0]))]
     index = list(parameters)
-    expansions = [_expansion(members, kind, parameters, lower, upper) for kind in (0, 1)]
+    expansions = [_expansion(members, kind, parameters, lower, upper, known) for kind in (0, 1)]
     n_points = [len(e.points) for e in expansions]
     points = np.tile(everywhere, (sum(n_points), 1))
     points[:, index] = np.concatenate([e.points for e in expansions])
@@ -108,8 +114,12 @@ def _expansion(
     parameters: tuple[int, ...],
     lower: Floats,
     upper: Floats,
+    known: list[Known],
 ) -> Expansion:
-    """Find the functions on some elements of each kind and check them on others."""
+    """Find the functions on some elements of each kind and check them on others.
+
+    Functions found before, for other parameters with the same bounds, are tried first.
+    """
     index = list(parameters)
     low, high = lower[index], upper[index]
     generator = np.random.default_rng(20240229)
@@ -117,18 +127,32 @@ def _expansion(
     every = _Samples(chosen, kind, parameters, len(lower))
     fitted = _Samples([Members(m.block, m.rows[::2]) for m in chosen], kind, parameters, len(lower))
     checks = _check_points(low, high, generator)
+    if not every.set_scale(checks):
+        return Expansion((), np.zeros((0, len(index))), np.zeros((0, 0)))
+    for bounds, other_kind, found in known:
+        same = other_kind == kind and np.array_equal(bounds, [low, high])
+        if same and _fits(found, every, checks, low, high):
+            return found
     tolerance = _TOLERANCE
     for samples in (fitted, every, every):
-        if not samples.set_scale(checks):
-            return Expansion((), np.zeros((0, len(index))), np.zeros((0, 0)))
+        samples.set_scale(checks)
         found = expand(samples.features, low, high, tolerance)
         if _worst(found, every, checks, low, high) <= _ALLOWED:
+            known.insert(0, (np.array([low, high]), kind, found))
             return found
         tolerance *= 1e-2 if samples is every else 1.0
     raise CheckError(
         f"the dependence of {members[0].block.name} on its parameters could not be expanded to "
         f"{_ALLOWED:g} over their bounds: give narrower bounds"
     )
+
+
+def _fits(found: Expansion, samples: _Samples, points: Floats, low: Floats, high: Floats) -> bool:
+    """Whether functions found for other elements hold for these, none of them in vain."""
+    amounts = np.abs(found.weights @ samples.features(found.points)).max(axis=1)
+    largest = np.abs(found.values(points, low, high)).max(axis=0)
+    needed = bool((amounts * largest > _TOLERANCE).all())
+    return needed and _worst(found, samples, points, low, high) <= _ALLOWED
 
 
 def _pick(m: Members, n: int, generator: np.random.Generator) -> Members:
@@ -168,9 +192,16 @@ class _Samples:
         self._index = list(parameters)
         self._n = n_parameter
         self._scales: list[_Scale] = []
+        self._known: dict[bytes, list[Floats]] = {}
 
     def matrices(self, point: Floats) -> list[Floats]:
-        """Matrices at one point, (k,): for each kind of element (n, m, m)."""
+        """Matrices at one point, (k,): for each kind of element (n, m, m); kept."""
+        tag = point.tobytes()
+        if tag not in self._known:
+            self._known[tag] = self._evaluated(point)
+        return self._known[tag]
+
+    def _evaluated(self, point: Floats) -> list[Floats]:
         p = np.ones(self._n)
         p[self._index] = point
         out = []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ from scipy.sparse import linalg as spla
 
 from .arrays import Floats, Ints
 from .errors import InputError
+from .sparse_sum import select
 
 Bools = Any
 
@@ -53,22 +54,27 @@ class Reduction:
     expansion: sp.csr_matrix
     kept: Ints
 
-    def apply(self, matrix: sp.csr_matrix) -> sp.csr_matrix:
-        """Return E^T A E for symmetric A; cheap where few degrees of freedom are dependent."""
+    def apply(self, matrices: Sequence[sp.csr_matrix]) -> list[sp.csr_matrix]:
+        """Return E^T A E for symmetric A, several at a time.
+
+        Cheap for matrices without entries at dependent degrees of freedom: a part of each.
+        """
         n, n_free = self.expansion.shape
-        others = np.ones(n, dtype=bool)
-        others[self.kept] = False
-        others &= np.diff(self.expansion.indptr) > 0
-        rows = np.flatnonzero(others)
         if n_free == n:
-            return matrix
-        part = matrix[self.kept]
-        reduced = part[:, self.kept]
-        if len(rows):
-            D = self.expansion[rows]
-            cross = part[:, rows] @ D
-            reduced = reduced + cross + cross.T + D.T @ matrix[rows][:, rows] @ D
-        return reduced.tocsr()
+            return list(matrices)
+        others = np.diff(self.expansion.indptr) > 0
+        others[self.kept] = False
+        rows = np.flatnonzero(others)
+        out = select(matrices, self.kept)
+        if not len(rows):
+            return out
+        D = self.expansion[rows]
+        for k, matrix in enumerate(matrices):
+            part = matrix[rows]
+            if part.nnz:
+                cross = D.T @ part[:, self.kept]
+                out[k] = (out[k] + cross + cross.T + D.T @ part[:, rows] @ D).tocsr()
+        return out
 
     def drop(self, free: Ints) -> Reduction:
         """Fix the free degrees of freedom of the given numbers as well."""

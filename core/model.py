@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +13,7 @@ from .dofs import Dofs
 from .errors import InputError
 from .geometry import Geometry
 from .parameter import Parameter
+from .sparse_sum import weighted_sum
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ class Model:
         return _sum(self.stiffness, self.deck_point if p is None else p, self.n_free)
 
     def M(self, p: Floats | None = None) -> sp.csr_matrix:
-        """Return the mass at the parameter values `p` (default: the deck), (n_free, n_free)."""
+        """Return M at the parameter values `p` (default: the deck), (n_free, n_free)."""
         return _sum(self.mass, self.deck_point if p is None else p, self.n_free)
 
     def dK(self, parameter: int, p: Floats) -> sp.csr_matrix:
@@ -142,17 +142,9 @@ class Model:
         return _sum_derivative(self.mass, p, parameter, self.n_free)
 
 
-def _weighted(terms: Iterable[tuple[float, sp.csr_matrix]], n: int) -> sp.csr_matrix:
-    total = sp.csr_matrix((n, n))
-    for c, matrix in terms:
-        if c != 0.0:
-            total = total + c * matrix
-    return total.tocsr()
-
-
 def _sum(terms: tuple[Term, ...], p: Floats, n: int) -> sp.csr_matrix:
-    return _weighted(((t.coefficient(p), t.matrix) for t in terms), n)
+    return weighted_sum(((t.coefficient(p), t.matrix) for t in terms), n)
 
 
 def _sum_derivative(terms: tuple[Term, ...], p: Floats, parameter: int, n: int) -> sp.csr_matrix:
-    return _weighted(((t.coefficient_derivative(p, parameter), t.matrix) for t in terms), n)
+    return weighted_sum(((t.coefficient_derivative(p, parameter), t.matrix) for t in terms), n)

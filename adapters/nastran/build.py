@@ -18,6 +18,7 @@ from ...core.errors import CheckError, InputError
 from ...core.geometry import Geometry
 from ...core.model import Model, Term
 from ...core.parameter import Parameter
+from ...core.sparse_sum import select, weighted_sum
 from .analysis_set import read_analysis_set
 from .constraints import read_constraints
 from .direct import direct_matrices
@@ -225,7 +226,7 @@ def _remove_singular(
     if not len(loose):
         return terms, reduced, ()
     left = np.setdiff1d(np.arange(K.shape[0]), loose)
-    terms = _each(terms, lambda A: A[left][:, left].tocsr())
+    terms = _each(terms, lambda matrices: select(matrices, left))
     return terms, reduced.drop(loose), _loose_warning(points, reduced.kept[loose], automatic)
 
 
@@ -243,7 +244,7 @@ def _condense(
         T = static_condensation(_total(terms[0]), kept)
     except InputError as error:
         raise InputError(f"{deck.path}: ASET and OMIT: {error}") from None
-    terms = _each(terms, lambda A: sp.csr_matrix(T.T @ (A @ T)))
+    terms = _each(terms, lambda matrices: [sp.csr_matrix(T.T @ (A @ T)) for A in matrices])
     warning = (
         f"{len(reduced.kept) - len(kept)} degrees of freedom were condensed statically to the "
         f"{len(kept)} of the analysis set (ASET, OMIT)"
@@ -254,18 +255,24 @@ def _condense(
     return terms, expansion, reduced.kept[kept], (warning,)
 
 
-def _each(terms: Pair, change: Callable[[sp.csr_matrix], sp.csr_matrix]) -> Pair:
-    stiffness, mass = (tuple(Term(change(t.matrix), t.factors) for t in part) for part in terms)
+def _each(
+    terms: Pair, change: Callable[[Sequence[sp.csr_matrix]], Sequence[sp.csr_matrix]]
+) -> Pair:
+    stiffness, mass = (
+        tuple(
+            Term(matrix, t.factors)
+            for matrix, t in zip(change([t.matrix for t in part]), part, strict=True)
+        )
+        for part in terms
+    )
     return stiffness, mass
 
 
 def _total(terms: tuple[Term, ...]) -> sp.csr_matrix:
     """Sum of the terms at the deck's values."""
     ones = np.ones(1 + max((f.parameter for t in terms for f in t.factors), default=-1))
-    total = terms[0].coefficient(ones) * terms[0].matrix
-    for term in terms[1:]:
-        total = total + term.coefficient(ones) * term.matrix
-    return total.tocsr()
+    pairs = ((t.coefficient(ones), t.matrix) for t in terms)
+    return weighted_sum(pairs, terms[0].matrix.shape[0])
 
 
 def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ def test_energy_is_that_of_the_expanded_displacements():
     K = sp.csr_matrix(A @ A.T)
     found = reduce(n, {0: {3: 2.0, 4: -1.0}, 7: {0: 0.5}}, fixed=[8])
     E = found.expansion.toarray()
-    np.testing.assert_allclose(found.apply(K).toarray(), E.T @ K.toarray() @ E, atol=1e-12)
+    np.testing.assert_allclose(found.apply([K])[0].toarray(), E.T @ K.toarray() @ E, atol=1e-12)
     less = found.drop(np.array([1]))
     np.testing.assert_allclose(less.expansion.toarray(), np.delete(E, 1, axis=1))
 
