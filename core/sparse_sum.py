@@ -38,11 +38,13 @@ def weighted_sum(terms: Iterable[tuple[float, sp.csr_matrix]], n: int) -> sp.csr
     """
     parts: list[sp.csr_matrix] = []
     pattern = None
+    scaled = np.zeros(0)
     for c, matrix in terms:
         if c == 0.0:
             continue
         if pattern is not None and same_pattern(pattern, matrix):
-            parts[-1].data += c * matrix.data
+            scaled = scaled if len(scaled) == matrix.nnz else np.empty(matrix.nnz)
+            parts[-1].data += np.multiply(matrix.data, c, out=scaled)
         else:
             parts += shared([c * matrix.data], matrix)
             pattern = matrix
