@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,27 +18,28 @@ _SAME = 1.5  # half bandwidths within which candidates of two runs are the same 
 
 
 @dataclass(frozen=True, eq=False)
-class Candidates:
+class Proposal:
     """What the stabilisation of a band proposes.
 
     Parameters
     ----------
     firm : tuple of Candidate
         From the whole band.
-    spare : tuple of Candidate
-        Seen only in a narrower band or in another block of the survey; to be tested.
     chart : Chart
         Of the whole band.
+    more : callable
+        Returns the candidates seen only in a narrower band or in another block of the survey, to
+        be tested; they cost several times the firm ones, and few surveys need them.
     """
 
     firm: tuple[Candidate, ...]
-    spare: tuple[Candidate, ...]
     chart: Chart
+    more: Callable[[], tuple[Candidate, ...]]
 
 
 def propose(
     survey: Survey, first: float, last: float, n_peaks: int, max_order: int | None
-) -> Candidates:
+) -> Proposal:
     """Propose roots of a band.
 
     Parameters
@@ -52,15 +54,20 @@ def propose(
     """
     blocks = complete_blocks(survey.measured)
     firm, chart = _run(survey, blocks[0], first, last, n_peaks, max_order)
-    spare: list[Candidate] = []
-    for block in blocks[1:]:
-        spare += _new(_run(survey, block, first, last, n_peaks, max_order)[0], [*firm, *spare])
-    third = (last - first) / 3.0
-    for step in range(5):
-        low = first + 0.5 * step * third
-        found, _ = _run(survey, blocks[0], low, low + third, max(3, n_peaks // 2), max_order)
-        spare += _new(found, [*firm, *spare])
-    return Candidates(firm, tuple(spare), chart)
+
+    def more() -> tuple[Candidate, ...]:
+        spare: list[Candidate] = []
+        for block in blocks[1:]:
+            found, _ = _run(survey, block, first, last, n_peaks, max_order)
+            spare += _new(found, [*firm, *spare])
+        third = (last - first) / 3.0
+        for step in range(5):
+            low = first + 0.5 * step * third
+            found, _ = _run(survey, blocks[0], low, low + third, max(3, n_peaks // 2), max_order)
+            spare += _new(found, [*firm, *spare])
+        return tuple(spare)
+
+    return Proposal(firm, chart, more)
 
 
 def complete_blocks(measured: Numbers) -> list[tuple[Ints, Ints]]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..arrays import Floats, Numbers
 from .moments import BandData, basis, excerpt, parts_of
 from .refinement import Fit, fit_shapes, refine
 from .search import Traces, traces
-from .significance import allowance, best_of_noise, residual_lines, significance
+from .significance import allowance, best_of_noise, residual_is_white, residual_lines, significance
 from .stabilisation import MAX_DAMPING, Candidate
 from .starting import complete_participation
 
@@ -35,7 +37,7 @@ def select(
     data: BandData,
     frequencies_hz: Floats,
     start: Fit,
-    spare: tuple[Candidate, ...],
+    more: Callable[[], tuple[Candidate, ...]],
     low: float,
     high: float,
 ) -> Fit:
@@ -47,20 +49,23 @@ def select(
     frequencies_hz : (n_line,) float
     start : Fit
         Roots to begin with.
-    spare : tuple of Candidate
-        Roots to be tested first.
+    more : callable
+        Returns roots to be tested, called when the residual shows any.
     low, high : float
         Where further roots are sought in the residual [Hz].
     """
     f = frequencies_hz
     state = prune(data, f, start)
-    for c in spare:
+    open_lines = (f >= low) & (f <= high)
+    left, found = _look(data, f, state)
+    if found.strongest(open_lines) is None:
+        return state
+    for c in more():
         poles = np.append(state.poles, c.pole)
         part = np.column_stack([state.participation, c.participation])
-        start = fit_shapes(data, poles, complete_participation(data, poles, part))
-        if significance(data, f, start)[-1] > _HOPELESS:
-            state = _try(data, f, state, start) or state
-    open_lines = (f >= low) & (f <= high)
+        spare = fit_shapes(data, poles, complete_participation(data, poles, part))
+        if significance(data, f, spare)[-1] > _HOPELESS:
+            state = _try(data, f, state, spare) or state
     left, found = _look(data, f, state)
     failed = 0
     for _ in range(_ROUNDS):
@@ -97,7 +102,7 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
             doubtful = np.flatnonzero((value < _BEYOND_DOUBT) & ~tested)
             missed = [k for k in doubtful if not _is_missed(data, f, fit, int(k))]
             tested[doubtful] = True
-            doubles = split_roots(f, fit, value)
+            doubles = split_roots(data, f, fit, value)
             if missed:
                 drop = int(missed[int(np.argmin(value[missed]))])
             elif doubles.any():
@@ -156,14 +161,14 @@ def _around(
     return excerpt(data, lines, functions), near, lines
 
 
-def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
+def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
     """Roots that repeat a stronger one close by, (n_mode,) bool.
 
     Leakage splits one mode into a strong root and weak satellites of the same shape. A frequency
     that moves from reference to reference splits it into roots of one shape but different
     participation, which no structure has: a driving point is a sensor, too. Two modes that the
-    sensors cannot tell apart (sparse sensors alias) agree in both and are of like strength; they
-    stay.
+    sensors cannot tell apart (sparse sensors alias) agree in both; they stay when they are of
+    like strength or leave nothing but white noise, which no split mode does.
 
     Parameters
     ----------
@@ -182,12 +187,13 @@ def split_roots(f: Floats, fit: Fit, value: Floats) -> Numbers:
     part = fit.participation / np.linalg.norm(fit.participation, axis=0)
     contradict = np.abs(part.conj().T @ part) ** 2 < _ONE_PARTICIPATION * attainable
     strength = _strength(fit)
+    white = residual_is_white(data, f, fit)
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     for a in range(m):
         gap = np.abs(fit.poles.imag - fit.poles[a].imag)
         width = np.maximum(np.abs(fit.poles.real), np.abs(fit.poles[a].real))
         weaker = alike[a] & (strength < strength[a]) & mode & mode[a]
-        weaker &= contradict[a] | (strength < _SATELLITE * strength[a])
+        weaker &= contradict[a] | (~white & (strength < _SATELLITE * strength[a]))
         double |= weaker & (gap < _SPLIT_WIDTHS * width + _SPLIT_LINES * spacing)
     return double
 
@@ -225,7 +231,7 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
         grown = refine(data, grown.poles, grown.participation)
     value = significance(data, f, grown)
     new = len(grown.poles) - 1
-    if value[new] < 1.0 or split_roots(f, grown, value)[new]:
+    if value[new] < 1.0 or split_roots(data, f, grown, value)[new]:
         return None
     if value[new] < _BEYOND_DOUBT and not _is_missed(data, f, grown, new):
         return None
@@ -259,7 +265,7 @@ def _with_neighbours(
         part = np.column_stack([fit.participation[:, near], root.participation])
         trial = refine(local, poles, part, max_iterations=_TRIAL_ITERATIONS)
         values = significance(local, f[lines], trial)
-        value = 0.0 if split_roots(f, trial, values)[-1] else float(values[-1])
+        value = 0.0 if split_roots(local, f[lines], trial, values)[-1] else float(values[-1])
         if value > most:
             best, most = trial, value
     if best is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import chi2
 
-from ..arrays import Floats
+from ..arrays import Floats, Numbers
 from .moments import BandData, basis, parts_of, shape_normals
 from .refinement import Fit, solve_shapes
 
@@ -13,6 +13,8 @@ _RISK = 0.01  # that noise alone makes one root somewhere in a band
 _MARGIN = 2.0  # beyond what that risk allows, since noise is never quite white
 _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
+_WHITE = 2.0  # variance over that of the differences, below which noise is white
+_LEAST_SEEN = 12.0  # lines to either side of a mode over which that is judged
 _LISTENED = 200  # functions enough to tell the colour of the residual
 _PRIOR = 16.0  # numbers that the variance of all functions counts for in that of one
 
@@ -125,3 +127,26 @@ def colour(left: Floats, f: Floats, fit: Fit) -> Floats:
     time = np.arange(n_line) / (f[-1] - f[0]) * (n_line - 1) / n_line
     envelope = np.exp(2.0 * np.outer(fit.poles.real, time))
     return np.asarray(np.maximum(envelope @ energy / envelope.sum(axis=1) / mean, 1.0))
+
+
+def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
+    """Tell for each mode whether the residual around it is noise without memory, (n_mode,).
+
+    The variance of white noise equals that of its fourth difference over 70. What a faulty model
+    leaves, and the noise of windowed records, changes slowly from line to line.
+    """
+    left = residual_lines(data, fit, basis(data, fit.poles, derivative=False))
+    n_line = len(f)
+    lines = left.reshape(-1, 2, n_line)
+    functions = lines[:, 0] + 1j * lines[:, 1]
+    square = np.sum(np.abs(functions) ** 2, axis=0)
+    rough = np.sum(np.abs(np.diff(functions, n=4, axis=1)) ** 2, axis=0) / 70.0
+    spacing = float(np.median(np.diff(f)))
+    result = np.zeros(len(fit.poles), bool)
+    for k, pole in enumerate(fit.poles):
+        half = max(2.0 * abs(pole.real) / np.pi, _LEAST_SEEN * spacing)
+        centre = float(np.clip(abs(pole) / (2.0 * np.pi), f[0], f[-1]))
+        near = np.abs(f - centre) <= half
+        level = rough[near[2:-2]].mean()
+        result[k] = square[near].mean() < _WHITE * level
+    return result

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Floats, Numbers
 from .bands import Band
-from .candidates import Candidates
+from .candidates import Proposal
 from .moments import BandData, band_data
 from .refinement import Fit, fit_shapes
 from .selection import plausible, prune, select
@@ -70,7 +70,7 @@ class BandFit:
 
 
 def fit_range(
-    survey: Survey, bands: tuple[Band, ...], proposals: tuple[Candidates, ...]
+    survey: Survey, bands: tuple[Band, ...], proposals: tuple[Proposal, ...]
 ) -> tuple[BandFit, ...]:
     """Fit all bands, first each for itself, then with the contributions of all others removed."""
     owned: list[Roots] = []
@@ -86,7 +86,7 @@ def fit_range(
         f, data = _data(survey, band, far)
         near = _joined([near, beside[n]])
         start = Fit(near.poles, near.participation, near.shapes, np.inf)
-        fit = select(data, f, start, proposed.spare, band.low, band.high)
+        fit = select(data, f, start, proposed.more, band.low, band.high)
         owned[n] = _core(f, fit, band)
         beside[n] = _background(f, fit)
         owned = _without_doubles(owned)
