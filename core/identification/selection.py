@@ -10,18 +10,12 @@ from ..arrays import Floats, Numbers
 from .moments import BandData, basis, excerpt, parts_of
 from .refinement import Fit, fit_shapes, refine
 from .search import Traces, traces
-from .significance import allowance, best_of_noise, residual_is_white, residual_lines, significance
-from .stabilisation import MAX_DAMPING, Candidate
+from .significance import allowance, best_of_noise, residual_lines, significance
+from .splitting import plausible, split_roots, strength
+from .stabilisation import Candidate
 from .starting import complete_participation
 
 _BEYOND_DOUBT = 50.0  # significance above which a root is not tested by refining without it
-_WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
-_ONE_SHAPE = 0.95  # MAC above which two close roots have one shape
-_ONE_PARTICIPATION = 0.9  # MAC below which their participations contradict that
-_SATELLITE = 0.2  # of the strength of a root: what a satellite has at most
-_TELLING = 5  # outputs below which shapes tell nothing
-_SPLIT_WIDTHS = 6.0  # half bandwidths, and
-_SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
 _ROUNDS = 12  # of trying a root where the residual still shows one
 _FAILURES = 5  # in a row, after which no more is tried
 _NEIGHBOURS = 8.0  # half bandwidths to either side that a trial root is fitted over
@@ -106,7 +100,7 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
             if missed:
                 drop = int(missed[int(np.argmin(value[missed]))])
             elif doubles.any():
-                drop = int(np.argmin(np.where(doubles, _strength(fit), np.inf)))
+                drop = int(np.argmin(np.where(doubles, strength(fit), np.inf)))
             else:
                 break
         keep = np.arange(len(fit.poles)) != drop
@@ -159,67 +153,6 @@ def _around(
     mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
     functions = left + mine @ F.reshape(len(F), -1).T
     return excerpt(data, lines, functions), near, lines
-
-
-def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
-    """Roots that repeat a stronger one close by, (n_mode,) bool.
-
-    Leakage splits one mode into a strong root and weak satellites of the same shape. A frequency
-    that moves from reference to reference splits it into roots of one shape but different
-    participation, which no structure has: a driving point is a sensor, too. Two modes that the
-    sensors cannot tell apart (sparse sensors alias) agree in both; they stay when they are of
-    like strength or leave nothing but white noise, which no split mode does.
-
-    Parameters
-    ----------
-    value : (n_mode,) float
-        Significance: the noise in a shape of little significance lowers its MAC.
-    """
-    m = len(fit.poles)
-    double = np.zeros(m, bool)
-    if m < 2 or len(fit.shapes) < _TELLING:
-        return double
-    mode = plausible(f, fit)
-    unit = fit.shapes / np.maximum(np.linalg.norm(fit.shapes, axis=0), 1e-300)
-    noise = 1.0 / np.maximum(2.0 * value, 1.0)
-    attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
-    alike = np.abs(unit.conj().T @ unit) ** 2 > _ONE_SHAPE * attainable
-    part = fit.participation / np.linalg.norm(fit.participation, axis=0)
-    contradict = np.abs(part.conj().T @ part) ** 2 < _ONE_PARTICIPATION * attainable
-    strength = _strength(fit)
-    white = residual_is_white(data, f, fit)
-    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
-    for a in range(m):
-        gap = np.abs(fit.poles.imag - fit.poles[a].imag)
-        width = np.maximum(np.abs(fit.poles.real), np.abs(fit.poles[a].real))
-        weaker = alike[a] & (strength < strength[a]) & mode & mode[a]
-        weaker &= contradict[a] | (~white & (strength < _SATELLITE * strength[a]))
-        double |= weaker & (gap < _SPLIT_WIDTHS * width + _SPLIT_LINES * spacing)
-    return double
-
-
-def _strength(fit: Fit) -> Floats:
-    """Energy of each mode by itself."""
-    residues = np.sum(np.abs(fit.shapes) ** 2, axis=0) * np.sum(np.abs(fit.participation) ** 2, 0)
-    return np.asarray(residues / np.abs(fit.poles.real))
-
-
-def _without(data: BandData, fit: Fit, k: int) -> Fit:
-    keep = np.arange(len(fit.poles)) != k
-    return fit_shapes(data, fit.poles[keep], fit.participation[:, keep])
-
-
-def plausible(f: Floats, fit: Fit) -> Numbers:
-    """Whether each root is a mode of the band: inside, damped a little, not its background.
-
-    Roots beyond the band or as wide as a good part of it stand for what the residual terms do
-    not describe; they serve the fit and are not reported.
-    """
-    magnitude = np.abs(fit.poles)
-    hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
-    inside = (hz >= f[0]) & (hz <= f[-1])
-    narrow = 2.0 * damping * hz < _WIDEST * (f[-1] - f[0])
-    return np.asarray(inside & (damping < MAX_DAMPING) & narrow)
 
 
 def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:

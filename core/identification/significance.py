@@ -13,6 +13,7 @@ _RISK = 0.01  # that noise alone makes one root somewhere in a band
 _MARGIN = 2.0  # beyond what that risk allows, since noise is never quite white
 _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
+_SEEN = 0.05  # of one function, over the width of a mode: what artefacts make of it
 _WHITE = 2.0  # variance over that of the differences, below which noise is white
 _LEAST_SEEN = 12.0  # lines to either side of a mode over which that is judged
 _LISTENED = 200  # functions enough to tell the colour of the residual
@@ -26,7 +27,8 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
     variance of the residual around its frequency (output by output), is χ² with 2 n_output
     degrees of freedom for a pole given beforehand. A free participation makes them about
     (√(2 n_output) + √(2 n_input − 2))² (the largest eigenvalue of a Wishart matrix) and a free
-    pole 2 more; the best of n lines is allowed for by the risk.
+    pole 2 more; the best of n lines is allowed for by the risk. However clean the functions, a
+    mode must also be seen in them, see `visibility`.
     """
     m = len(fit.poles)
     if m == 0:
@@ -44,7 +46,34 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
         lost += np.sum(by_row / variance[:, rows], axis=1)
     narrow = -fit.poles.real / np.pi < np.median(np.diff(f))
     margin = np.where(narrow, _MARGIN_OF_SPIKES, _MARGIN)
-    return np.asarray(lost / (margin * best_of_noise(data, f, len(x))))
+    explained = lost / (margin * best_of_noise(data, f, len(x)))
+    return np.asarray(np.minimum(explained, visibility(data, f, fit, F)))
+
+
+def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
+    """Compare the energy of each mode within its half-power band with that of the functions.
+
+    Windows, leakage and small nonlinearities leave traces that noise does not explain and that
+    are no modes. They are taken to reach 5 % of one function, independently from function to
+    function, so that n functions show what is √n times weaker. 1 where a mode is at that limit.
+    """
+    n_line = len(f)
+    by_line = np.einsum("oin,oin->n", data.y, data.y)
+    energy = by_line[:n_line] + by_line[n_line:]
+    r = fit.shapes[:, None, :] * fit.participation[None, :, :]
+    r = np.where(data.weight[:, :, None] > 0.0, r, 0.0)
+    re, im = (np.einsum("oik,oik->k", a, a) for a in (r.real, r.imag))
+    cross = np.einsum("oik,oik->k", r.real, r.imag)
+    by_line = F[:, 0, :, 0] ** 2 * re + F[:, 0, :, 1] ** 2 * im
+    by_line += 2.0 * F[:, 0, :, 0] * F[:, 0, :, 1] * cross
+    own = by_line[:n_line] + by_line[n_line:]
+    hz, half = np.abs(fit.poles) / (2.0 * np.pi), np.abs(fit.poles.real) / (2.0 * np.pi)
+    result = np.empty(len(hz))
+    for k in range(len(hz)):
+        gap = np.abs(f - hz[k])
+        near = gap <= max(half[k], float(gap.min()))
+        result[k] = own[near, k].sum() / max(float(energy[near].sum()), 1e-300)
+    return np.asarray(result * data.weight.sum() / _SEEN**2)
 
 
 def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:

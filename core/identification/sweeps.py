@@ -11,8 +11,9 @@ from .bands import Band
 from .candidates import Proposal
 from .moments import BandData, band_data
 from .refinement import Fit, fit_shapes
-from .selection import plausible, prune, select
+from .selection import prune, select
 from .significance import significance
+from .splitting import plausible
 from .starting import start_from
 from .survey import Survey
 from .synthesis import modal_response

@@ -1,0 +1,79 @@
+"""Which roots are modes, and which repeat another one or stand for the background."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from .moments import BandData
+from .refinement import Fit
+from .significance import residual_is_white
+from .stabilisation import MAX_DAMPING
+
+_ONE_SHAPE = 0.95  # MAC above which two close roots have one shape
+_ONE_PARTICIPATION = 0.9  # MAC below which their participations contradict that
+_SATELLITE = 0.2  # of the strength of a root: what a satellite has at most
+_TELLING = 5  # outputs below which shapes tell nothing
+_FAINT = 0.01  # of the strength of a root: what a satellite has at most where shapes are not told
+_SPLIT_WIDTHS = 6.0  # half bandwidths, and
+_SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
+_WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
+
+
+def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
+    """Roots that repeat a stronger one close by, (n_mode,) bool.
+
+    Leakage splits one mode into a strong root and weak satellites of the same shape. A frequency
+    that moves from reference to reference splits it into roots of one shape but different
+    participation, which no structure has: a driving point is a sensor, too. Two modes that the
+    sensors cannot tell apart (sparse sensors alias) agree in both; they stay when they are of
+    like strength or leave nothing but white noise, which no split mode does. A few sensors tell
+    nothing of shapes: there only what is very much weaker goes.
+
+    Parameters
+    ----------
+    value : (n_mode,) float
+        Significance: the noise in a shape of little significance lowers its MAC.
+    """
+    if len(fit.poles) < 2:
+        return np.zeros(len(fit.poles), bool)
+    mode, size = plausible(f, fit), strength(fit)
+    ratio = size / np.maximum(size[:, None], 1e-300)
+    if len(fit.shapes) < _TELLING:
+        repeats = ratio < _FAINT
+    else:
+        noise = 1.0 / np.maximum(2.0 * value, 1.0)
+        attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
+        contradict = _mac(fit.participation) < _ONE_PARTICIPATION * attainable
+        white = residual_is_white(data, f, fit)
+        repeats = (ratio < 1.0) & (contradict | (~white & (ratio < _SATELLITE)))
+        repeats &= _mac(fit.shapes) > _ONE_SHAPE * attainable
+    decay, omega = np.abs(fit.poles.real), fit.poles.imag
+    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
+    reach = _SPLIT_WIDTHS * np.maximum(decay, decay[:, None]) + _SPLIT_LINES * spacing
+    close = np.abs(omega - omega[:, None]) < reach
+    return np.asarray((repeats & close & mode & mode[:, None]).any(axis=0))
+
+
+def _mac(vectors: Numbers) -> Floats:
+    unit = vectors / np.maximum(np.linalg.norm(vectors, axis=0), 1e-300)
+    return np.asarray(np.abs(unit.conj().T @ unit) ** 2)
+
+
+def strength(fit: Fit) -> Floats:
+    """Energy of each mode by itself, (n_mode,)."""
+    residues = np.sum(np.abs(fit.shapes) ** 2, axis=0) * np.sum(np.abs(fit.participation) ** 2, 0)
+    return np.asarray(residues / np.abs(fit.poles.real))
+
+
+def plausible(f: Floats, fit: Fit) -> Numbers:
+    """Whether each root is a mode of the band: inside, damped a little, not its background.
+
+    Roots beyond the band or as wide as a good part of it stand for what the residual terms do
+    not describe; they serve the fit and are not reported.
+    """
+    magnitude = np.abs(fit.poles)
+    hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
+    inside = (hz >= f[0]) & (hz <= f[-1])
+    narrow = 2.0 * damping * hz < _WIDEST * (f[-1] - f[0])
+    return np.asarray(inside & (damping < MAX_DAMPING) & narrow)
