@@ -116,10 +116,15 @@ def comparing(
         output = Output(
             given.pop("json"), given.pop("force"), given.pop("quiet"), given.pop("verbose")
         )
-        study = merge(read_study(study_file) if study_file else Study(), given)
+        filed = read_study(study_file) if study_file else Study()
+        _refuse_nonsense(filed)
+        try:
+            study = merge(filed, given)
+            _refuse_nonsense(study)
+        except InputError as error:
+            raise typer.BadParameter(str(error)) from None
         if study.deck is None or not study.test:
             raise typer.BadParameter("give DECK and TEST, or a study file (--study) naming both")
-        _refuse_nonsense(study)
         verb(study, output)
 
     def keyword(name: str, annotation: Any, default: Any = None) -> inspect.Parameter:

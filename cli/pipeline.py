@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ import numpy as np
 
 from ..core.comparison import Comparison, Placed, compare, place_test
 from ..core.correlate import Criteria
-from ..core.errors import InputError
+from ..core.errors import InputError, TrueupError
 from ..core.measurement import Measurement
 from ..core.model import Model
 from ..core.modes import Modes
@@ -26,6 +28,17 @@ class Analysis:
     modes: Modes
     rigid_body_modes: int
     warnings: tuple[str, ...]
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of the file at fault before sentences that do not hold it."""
+    try:
+        yield
+    except TrueupError as error:
+        if path.name in str(error):
+            raise
+        raise type(error)(f"{path}: {error}") from error
 
 
 def criteria_of(study: Study) -> Criteria:
@@ -54,15 +67,18 @@ def read_analysis(study: Study, fmax: float) -> Analysis:
 
     assert study.deck is not None
     deck = read_deck(study.deck)
-    model = build_model(deck, [parse_parameter(p) for p in study.parameters])
+    specs = [parse_parameter(p) for p in study.parameters]
+    with naming(study.deck):
+        model = build_model(deck, specs)
     warnings = (*deck.warnings, *model.warnings)
     if study.modes is not None:
         modes = read_analysis_modes(study.modes, deck)
         return Analysis(deck, model, modes, _rigid(modes), warnings)
     asked = deck.eigen.nd if deck.eigen and deck.eigen.nd else 0
-    solution = eigen.solve(model, fmax=fmax)
-    if len(solution.eigenvalues) < asked:
-        solution = eigen.solve(model, n_modes=asked)
+    with naming(study.deck):
+        solution = eigen.solve(model, fmax=fmax)
+        if len(solution.eigenvalues) < asked:
+            solution = eigen.solve(model, n_modes=asked)
     modes = eigen.modes_of(model, solution)
     return Analysis(deck, model, modes, solution.rigid_body_modes, (*warnings, *solution.warnings))
 

@@ -114,6 +114,12 @@ class Model:
         for t in (*self.stiffness, *self.mass):
             if t.matrix.shape != (n, n):
                 raise InputError(f"a matrix term has shape {t.matrix.shape}, expected {(n, n)}")
+        names = [q.name for q in self.parameters]
+        repeated = sorted({name for name in names if names.count(name) > 1})
+        if repeated:
+            raise InputError(
+                f"more than one parameter is called '{repeated[0]}'; give each its own name"
+            )
 
     @property
     def n_free(self) -> int:

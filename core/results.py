@@ -53,6 +53,12 @@ def correlation_tables(found: Correlation, test: Modes, analysis: Modes) -> Tabl
         "test_hz": test.frequencies_hz.tolist(),
         "analysis_hz": analysis.frequencies_hz.tolist(),
         "summary": gap(found),
+        "criteria": {
+            "mac_min": found.criteria.mac_min,
+            "frequency_tolerance": found.criteria.frequency_tolerance,
+            "cluster_width": found.criteria.cluster_width,
+            "rotate": found.criteria.rotate,
+        },
     }
 
 

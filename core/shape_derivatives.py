@@ -21,6 +21,10 @@ _OWN_FACTOR = 8
 
 _BLOCK = 64
 
+_ROUNDING = 1e-8
+"""Part of a shape derivative, relative to what the right-hand side says of the known modes, below
+which what lies outside them is rounding: K' proportional to K, or M' to M, leaves nothing else."""
+
 REPEATED = 1e-5
 """Eigenvalues this close, relatively, count as repeated: rounding of the coordinates in a deck
 splits the pairs of an axisymmetric mesh by so much, and no practical step resolves it."""
@@ -110,18 +114,21 @@ class ShapeDerivatives:
         lam = self._solution.eigenvalues
         z, b, along = modal_part(self._X, lam, cluster, changes)
         columns = np.repeat(lam[cluster], len(changes))
-        z += self._outside(cluster, b - self._MX @ along, columns)
+        least = _ROUNDING**2 * np.sum(along**2, axis=0) / max(abs(lam[-1]), np.finfo(float).tiny)
+        z += self._outside(cluster, b - self._MX @ along, columns, least)
         return z.reshape(len(z), len(cluster), len(changes))
 
-    def _outside(self, cluster: Ints, r: Floats, lam: Floats) -> Floats:
-        """(K - lam M)^-1 r on the complement of the known modes; one lam a column."""
+    def _outside(self, cluster: Ints, r: Floats, lam: Floats, least: Floats) -> Floats:
+        """(K - lam M)^-1 r on the complement of the known modes; one lam and `least` a column."""
         if self._X.shape[0] == self._X.shape[1]:  # all modes are known: nothing is left of r
             return np.zeros_like(r)
         factor, s = self._factor(cluster, r.shape[1])
         z = np.zeros_like(r)
         for first in range(0, r.shape[1], _BLOCK):
             part = slice(first, first + _BLOCK)
-            z[:, part] = self._conjugate_gradients(factor, r[:, part], lam[part] - s, cluster)
+            z[:, part] = self._conjugate_gradients(
+                factor, r[:, part], lam[part] - s, least[part], cluster
+            )
         distance = np.einsum("ij,ij->j", z, r)
         size = np.einsum("ij,ij->j", z, self._pencil.M @ z)
         if (distance < REPEATED * np.abs(lam) * size).any():
@@ -129,9 +136,12 @@ class ShapeDerivatives:
         return z
 
     def _conjugate_gradients(
-        self, factor: Factorisation, r: Floats, mu: Floats, cluster: Ints
+        self, factor: Factorisation, r: Floats, mu: Floats, least: Floats, cluster: Ints
     ) -> Floats:
-        """Solve (A - mu M) z = r with the factor of A as preconditioner, column by column."""
+        """Solve (A - mu M) z = r with the factor of A as preconditioner, column by column.
+
+        Energies r^T A^-1 r below `least` count as none.
+        """
         M, X, MX = self._pencil.M, self._X, self._MX
         z = np.zeros_like(r)
         d = np.zeros_like(r)
@@ -143,7 +153,7 @@ class ShapeDerivatives:
             s -= X @ (MX.T @ s)
             new = np.maximum(np.einsum("ij,ij->j", r, s), 0.0)
             if k == 0:
-                goal = self._tolerance**2 * new
+                goal = np.maximum(self._tolerance**2 * new, least)
             active = new > goal
             if not active.any():
                 return z

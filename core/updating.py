@@ -19,6 +19,9 @@ from .residuals import KINDS, Residuals, Weights, eigenvalue_residuals, shape_re
 from .sensitivity import sensitivities
 
 _UNIDENTIFIABLE = 1e-4
+_LEAST_GAIN = 1e-3
+_KEPT = 0.75
+"""Share of the pairs that a step must keep to be judged by those alone."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,8 @@ def update(
     Each iteration pairs the modes anew (clusters are turned onto the test again), linearises
     the residuals and takes the bounded step of (GᵀWG + W_p)Δp = GᵀWΔz₀; a step that does not
     lower the objective is halved. A test mode without a partner costs what a pair at the limits
-    of the criteria would, so gaining a pair is always a gain.
+    of the criteria would, so gaining a pair is always a gain; losing a pair at the MAC limit
+    does not stop a step that brings the other pairs closer.
 
     Parameters
     ----------
@@ -188,6 +192,7 @@ def update(
                 break
     active = sorted({k for s in stages for k in s.parameters})
     error, doubtful = problem.standard_error(state, active, stages[-1].residuals)
+    warnings = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
     lower, upper = _bounds(model)
     at_bound = np.isclose(state.factors, lower, rtol=1e-6) | np.isclose(
         state.factors, upper, rtol=1e-6
@@ -201,8 +206,27 @@ def update(
         tuple(history),
         solves,
         stopped,
-        doubtful,
+        warnings,
     )
+
+
+def _lost_pairs(before: State, after: State) -> tuple[str, ...]:
+    lost = sorted(
+        {q.test + 1 for q in before.correlation.pairs}
+        - {q.test + 1 for q in after.correlation.pairs}
+    )
+    if not lost:
+        return ()
+    modes = f"mode{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}"
+    return (f"test {modes} paired with the model as given, not with the updated one",)
+
+
+def _unfinished(stopped: str, iterations: int) -> tuple[str, ...]:
+    if stopped.endswith("iterations"):
+        return (f"the update had not settled after {stopped}; allow more (max_iterations)",)
+    if not iterations:
+        return ("no step of the parameters brings the model closer to the test; nothing changed",)
+    return ()
 
 
 def _bounds(model: Model) -> tuple[Floats, Floats]:
@@ -238,8 +262,11 @@ class _Problem:
         return [q for q in c.pairs if allowed is None or q.test in allowed]
 
     def objective(self, c: Correlation, residuals: str) -> float:
-        pairs = self.used(c)
         count = len(self.target.frequencies_hz if self.target.modes is None else self.target.modes)
+        return self._cost(self.used(c), count, residuals)
+
+    def _cost(self, pairs: Sequence[Pair], count: int, residuals: str) -> float:
+        """Equation (2) over pairs, with what is due for each of `count` that has none."""
         lam = np.array([(q.analysis_hz / q.test_hz) ** 2 - 1.0 for q in pairs])
         off = np.array([1.0 - q.mac for q in pairs])
         w, missing = self.weights, count - len(pairs)
@@ -309,9 +336,19 @@ class _Problem:
         for halving in range(5):
             p = np.clip(state.factors + step / 2**halving, lower, upper)
             trial = self.evaluate(p, stage.residuals)
-            if trial.objective < state.objective:
+            if trial.objective < state.objective or self._closer(trial, state, stage.residuals):
                 return trial, halving + 1
         return None, 5
+
+    def _closer(self, trial: State, state: State, residuals: str) -> bool:
+        """Whether most of the pairs are still pairs, and together closer than before."""
+        old = {q.test: q for q in self.used(state.correlation)}
+        new = {q.test: q for q in self.used(trial.correlation)}
+        common = sorted(old.keys() & new.keys())
+        if len(common) < _KEPT * len(old):
+            return False
+        cost = [self._cost([s[k] for k in common], len(common), residuals) for s in (new, old)]
+        return cost[0] < (1.0 - _LEAST_GAIN) * cost[1]
 
     def standard_error(
         self, state: State, active: Sequence[int], residuals: str

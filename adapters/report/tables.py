@@ -227,7 +227,8 @@ def history(result: Result) -> Table | None:
         Column("worst |dev.| %"),
         *[Column(n, "factors") for n in names],
     )
-    return Table("Iterations", columns, tuple(rows))
+    stopped = result.get("stopped")
+    return Table("Iterations", columns, tuple(rows), f"Ended: {stopped}." if stopped else "")
 
 
 def by_name(value: object) -> dict[str, float | None]:

@@ -10,6 +10,7 @@ import typer
 from ...core.errors import InputError
 from ..console import emit_json, speaks, stderr, stdout, working
 from ..options import JsonOption, Output, QuietOption, VerboseOption
+from ..pipeline import naming
 
 
 def solve(
@@ -31,11 +32,11 @@ def solve(
 
     output = Output(json=json, quiet=quiet, verbose=verbose)
     _check(number, fmax, out)
-    with working(f"reading {deck.name}", output):
+    with working(f"reading {deck.name}", output), naming(deck):
         read = read_deck(deck)
         model = build_model(read)
     wanted = number if number or fmax else ((read.eigen.nd if read.eigen else None) or 10)
-    with working("solving", output):
+    with working("solving", output), naming(deck):
         solution = eigen.solve(model, n_modes=wanted, fmax=fmax)
     modes = eigen.modes_of(model, solution)
     mass = weight(read)
@@ -53,7 +54,7 @@ def solve(
         "degrees_of_freedom": model.n_free,
         "backend": solution.backend,
         "seconds": solution.seconds,
-        "warnings": [*read.warnings, *model.warnings],
+        "warnings": [*read.warnings, *model.warnings, *solution.warnings],
     }
     if out:
         write_modes(out, model.geometry, modes)
@@ -81,10 +82,10 @@ def write_modes(path: Path, geometry: Any, modes: Any) -> None:
 
 def _check(number: int | None, fmax: float | None, out: Path | None) -> None:
     if number is not None and number < 1:
-        raise InputError(f"-n is {number}; ask for at least one mode")
+        raise typer.BadParameter(f"-n is {number}; ask for at least one mode")
     if fmax is not None and not fmax > 0.0:
-        raise InputError(f"--fmax is {fmax}; give a frequency above 0 Hz")
+        raise typer.BadParameter(f"--fmax is {fmax}; give a frequency above 0 Hz")
     if out is not None and out.suffix not in {".h5", ".unv", ".uff"}:
-        raise InputError(f"--out {out}: modes are written as .h5 or .unv; change the suffix")
+        raise typer.BadParameter(f"--out {out}: modes are written as .h5 or .unv")
     if out is not None and not out.parent.is_dir():
         raise InputError(f"--out {out}: the folder {out.parent} does not exist")

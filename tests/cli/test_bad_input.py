@@ -210,6 +210,13 @@ def test_a_report_of_what_is_no_run_folder(call: Call, inputs: Path) -> None:
         ("solve", "deck.bdf", "-n", "many"),
         ("report",),
         ("update", "deck.bdf", "test.unv", "-p"),
+        ("update", "deck.bdf", "test.unv", "--residuals", "everything"),
+        ("update", "deck.bdf", "test.unv", "--max-iterations", "0"),
+        ("correlate", "deck.bdf", "test.unv", "--rotate", "both"),
+        ("correlate", "deck.bdf", "test.unv", "--mac-min", "1.2"),
+        ("correlate", "deck.bdf", "test.unv", "--deck-length-unit", "km"),
+        ("solve", "deck.bdf", "-n", "0"),
+        ("solve", "deck.bdf", "--fmax", "-1"),
     ],
 )
 def test_wrong_usage_has_status_two(call: Call, words: tuple[str, ...]) -> None:

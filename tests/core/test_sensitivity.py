@@ -92,6 +92,19 @@ def close(found, expected, tolerance=1e-5):
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance * abs(expected).max())
 
 
+@pytest.mark.parametrize("kind", ["E", "rho"])
+def test_one_material_for_all_leaves_nothing_outside_the_known_modes(ring, kind):
+    """K' = K: shapes stay. M' = M: they scale by (1 + p)^(-1/2). What is left is rounding."""
+    n = 40
+    model = ring(n, parameters=[(kind, range(n))])
+    solution = solve(model, 16)
+    found = sensitivities(model, np.ones(1), solution, range(6, 12), [0], sp.identity(model.n_free))
+    rate, slope = (-0.5, -1.0) if kind == "rho" else (0.0, 1.0)
+    X, lam = solution.vectors[:, 6:12], solution.eigenvalues[6:12]
+    np.testing.assert_allclose(found.slopes[:, 0], slope * lam, rtol=1e-7)
+    np.testing.assert_allclose(found.shapes[:, :, 0], rate * X, atol=1e-6 * abs(X).max())
+
+
 def test_separate_modes_agree_with_central_differences(tower):
     p = np.array([1.1, 0.9, 1.2])
     solution = precise(tower, 12, p)

@@ -174,6 +174,39 @@ def test_stages_move_their_own_parameters_in_order():
     assert done.factors[0] != 1.0
 
 
+def test_a_pair_lost_at_the_mac_limit_does_not_stop_the_others(monkeypatch):
+    """One test shape loses its partner as soon as the factor moves: the rest is followed still,
+    and the loss is told."""
+    model = chain([range(N)])
+    target = measured(model, [1.5])
+    true_correlate = updating.correlate
+
+    def gated(hz, shapes, test_hz, test_shapes, criteria, rigid):
+        found = true_correlate(hz, shapes, test_hz, test_shapes, criteria, rigid)
+        if hz[0] > 1.02 * start:
+            kept = tuple(q for q in found.pairs if q.test != 3)
+            found = replace(found, pairs=kept, unpaired_test=(3,))
+        return found
+
+    start = np.sqrt(solve(model, n_modes=1).eigenvalues[0]) / (2.0 * np.pi)
+    monkeypatch.setattr(updating, "correlate", gated)
+    done = update(model, target, [Stage((0,), "frequencies", 20)], n_modes=8, tolerance=1e-6)
+    assert done.factors[0] == pytest.approx(1.5, rel=1e-4)
+    assert any("test mode 4 paired with the model as given" in w for w in done.warnings)
+
+
+def test_an_update_that_has_not_settled_says_so():
+    model = chain(HALVES)
+    done = update(model, measured(model, [1.3, 0.8]), [Stage((0, 1), "both", 1)], n_modes=8)
+    assert any("had not settled after 1 iterations" in w for w in done.warnings)
+
+
+def test_parameters_of_one_name_are_refused():
+    model = chain(HALVES)
+    with pytest.raises(InputError, match="more than one parameter is called 'k0'"):
+        replace(model, parameters=(model.parameters[0], model.parameters[0]))
+
+
 def test_only_the_named_test_modes_count():
     """A test mode that is wrong does not disturb when it is left out."""
     model, truth = chain(HALVES), [1.2, 0.9]
