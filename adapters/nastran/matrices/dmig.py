@@ -18,8 +18,8 @@ _WIDE = 72
 _LETTERLESS = (b"D", b"E")
 
 
-class _Entries:
-    """The entries of one matrix as they are met."""
+class Entries:
+    """The entries of one matrix as they are met: columns and rows as keys of a `DofMap`."""
 
     def __init__(self, form: int, kind: int) -> None:
         self.form, self.kind = form, kind
@@ -29,6 +29,7 @@ class _Entries:
 
     @property
     def is_complex(self) -> bool:
+        """Whether the values have imaginary parts."""
         return self.kind in (3, 4)
 
 
@@ -64,10 +65,12 @@ def read_dmig(path: Path | str, names: Iterable[str] | None = None) -> tuple[Nas
         raise InputError(f"{path} is not a text file: a punch file is expected")
     lines = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
     wanted = None if names is None else {n.upper() for n in names}
-    found: dict[str, _Entries] = {}
+    found: dict[str, Entries] = {}
     for start, stop, card in _cards(lines, path):
         _take(card, path, start, found, lines[start:stop])
-    matrices = (_matrix(name, e) for name, e in found.items() if not wanted or name in wanted)
+    matrices = (
+        matrix_of_entries(name, e) for name, e in found.items() if not wanted or name in wanted
+    )
     return tuple(matrices)
 
 
@@ -103,7 +106,7 @@ def _take(
     card: Fields | None,
     path: Path,
     start: int,
-    found: dict[str, _Entries],
+    found: dict[str, Entries],
     block: list[bytes],
 ) -> None:
     try:
@@ -111,7 +114,7 @@ def _take(
             _punched(block, found)
         elif len(card) > 2 and card[2] == "0":
             words = [*card, *[None] * 10]
-            found[str(card[1]).upper()] = _Entries(int(words[3] or 1), int(words[4] or 2))
+            found[str(card[1]).upper()] = Entries(int(words[3] or 1), int(words[4] or 2))
         else:
             _general(card, found)
     except (ValueError, IndexError):
@@ -123,7 +126,7 @@ def _take(
         ) from None
 
 
-def _punched(block: list[bytes], found: dict[str, _Entries]) -> None:
+def _punched(block: list[bytes], found: dict[str, Entries]) -> None:
     """One column in large field: a line ``DMIG* NAME GJ CJ``, then ``* GI CI A [B]`` each."""
     head = block[0].ljust(_WIDE)
     name = head[8:24].decode("latin-1").strip().upper()
@@ -154,7 +157,7 @@ def _number(field: bytes) -> float:
         return to_float(field.decode("latin-1"))
 
 
-def _general(card: Fields, found: dict[str, _Entries]) -> None:
+def _general(card: Fields, found: dict[str, Entries]) -> None:
     """Take a column in any form: NAME GJ CJ - G1 C1 A1 B1, then G2 C2 A2 B2 and so on."""
     entries = found[str(card[1]).upper()]
     column = 8 * int(card[2] or 0) + int(card[3] or 0)
@@ -176,7 +179,8 @@ def _general(card: Fields, found: dict[str, _Entries]) -> None:
     entries.values.append(np.array(values))
 
 
-def _matrix(name: str, entries: _Entries) -> NastranMatrix:
+def matrix_of_entries(name: str, entries: Entries) -> NastranMatrix:
+    """Put the entries of one matrix together, on the degrees of freedom that they name."""
     rows = np.concatenate([*entries.rows, np.zeros(0, np.int64)])
     columns = np.concatenate([*entries.columns, np.zeros(0, np.int64)])
     values = np.concatenate([*entries.values, np.zeros(0)])

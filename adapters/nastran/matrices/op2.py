@@ -1,58 +1,110 @@
-"""Matrices of OP2 files (KGG, MGG, KHH, KELM, ...), through pyNastran."""
+"""Matrices of OP2 files: data blocks such as KGG and KELM, and the DMIG of a MATPOOL."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 
-from ..results.op2file import read_op2_file
-from .content import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from ....core.arrays import Ints, Numbers
+from ....core.errors import InputError
+from ..results.op2records import Op2Block, Op2File, strings_of
+from .columns import Strings, assemble, expand
+from .content import SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from .op2pool import is_pool, pool_matrices
 
 _GRID = 1
+_NAMED_ROWS = ("EQEXIN", "EQEXINS")
+_FORMS = (1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 13, 15)
+_COMPLEX = (3, 4)
+_DOUBLE = (2, 4)
 
 
 def read_op2_matrices(path: Path | str) -> tuple[NastranMatrix, ...]:
-    """Read all matrices of an OP2 file.
+    """Read all matrices of an OP2 file, 32 or 64 bit.
 
     A square matrix with one row for each degree of freedom of the g-set gets its dof map from the
-    EQEXIN table of the same file; the others have none.
+    EQEXIN table of the same file; matrices of a MATPOOL (``PARAM,EXTOUT,DMIGOP2``) name their
+    degrees of freedom themselves; the others have none.
 
     Raises
     ------
     InputError
         The file cannot be read as OP2.
     """
-    path = Path(path)
-    model = read_op2_file(path, ("eqexin",))
-    g_set = _g_set(model.op2_results.eqexin)
-    return tuple(_matrix(m, g_set) for _, m in sorted(model.matrices.items()))
+    with Op2File(Path(path)) as file:
+        g_set = _g_set(file)
+        found: dict[str, NastranMatrix] = {}
+        for block in file.blocks:
+            if is_pool(block):
+                found |= {m.name: m for m in pool_matrices(file, block)}
+            elif is_matrix(block):
+                found[block.name] = _matrix(file, block, g_set)
+        return tuple(found[name] for name in sorted(found))
 
 
-def _g_set(eqexin: Any) -> DofMap | None:
-    """Return the rows of the g-set in internal order."""
-    if eqexin is None:
+def list_op2_matrices(path: Path | str) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Yield name, rows and columns of the matrices of an OP2 file without reading their values."""
+    with Op2File(Path(path)) as file:
+        for block in file.blocks:
+            if is_pool(block):
+                yield from ((m.name, m.matrix.shape) for m in pool_matrices(file, block))
+            elif is_matrix(block):
+                yield block.name, (block.trailer[2], block.trailer[1])
+
+
+def is_matrix(block: Op2Block) -> bool:
+    """Whether a data block is a matrix: its records are columns, its trailer that of a matrix."""
+    return (
+        any(r.is_column for r in block.records)
+        and len(block.trailer) >= 5
+        and block.trailer[3] in _FORMS
+        and block.trailer[4] in (1, 2, 3, 4)
+    )
+
+
+def _g_set(file: Op2File) -> DofMap | None:
+    """Return the rows of the g-set in internal order: pairs of point and 10 * place + kind."""
+    block = next((b for b in file.blocks if b.name in _NAMED_ROWS and len(b.records) == 2), None)
+    if block is None:
         return None
-    order = np.argsort(eqexin.dof, kind="stable")
-    points = np.asarray(eqexin.nid, np.int64)[order]
-    grid = np.asarray(eqexin.doftype)[order] == _GRID
+    words = file.integers(block.records[1])
+    pairs = words[: len(words) // 2 * 2].reshape(-1, 2)
+    order = np.argsort(pairs[:, 1] // 10, kind="stable")
+    points, grid = pairs[order, 0], pairs[order, 1] % 10 == _GRID
     size = np.where(grid, 6, 1)
     point = np.repeat(points, size)
     within = np.arange(len(point)) - np.repeat(np.cumsum(size) - size, size)
     return DofMap(point, np.where(np.repeat(grid, size), within + 1, 0))
 
 
-def _matrix(found: Any, g_set: DofMap | None) -> NastranMatrix:
-    data = found.data
-    matrix = sp.csc_matrix(data if sp.issparse(data) else np.atleast_2d(data))
-    matrix.sum_duplicates()
-    matrix.eliminate_zeros()
-    name = found.name.decode("latin-1") if isinstance(found.name, bytes) else str(found.name)
-    form = int(found.form or RECTANGULAR)
-    square = matrix.shape[0] == matrix.shape[1]
+def _matrix(file: Op2File, block: Op2Block, g_set: DofMap | None) -> NastranMatrix:
+    columns, rows, form, kind = block.trailer[1:5]
+    table = np.array(list(strings_of(file, block)), np.int64).reshape(-1, 4)
+    column, row, start, stop = table.T
+    single = file.word == 4 and kind not in _DOUBLE
+    size = (4 if single else 8) * (2 if kind in _COMPLEX else 1)
+    count = (stop - start) // size
+    outside = (row < 0) | (row + count > rows) | (column >= columns)
+    if outside.any() or ((stop - start) % size).any():
+        k = int(np.flatnonzero(outside | ((stop - start) % size != 0))[0])
+        raise file.damaged(int(start[k]), f"a run of {block.name} does not fit its size")
+    values = _values(file, start, stop, f"{file.order}{'c' if kind in _COMPLEX else 'f'}{size}")
+    held = np.complex128 if kind in _COMPLEX else np.float64
+    matrix = assemble(Strings(column, row, count, start), values.astype(held), (rows, columns))
+    square = rows == columns
     if form == SYMMETRIC and square:
         matrix = symmetrised(matrix)
-    rows = g_set if g_set is not None and square and len(g_set) == matrix.shape[0] else None
-    return NastranMatrix(name.strip().upper(), matrix, form, rows, rows)
+    there = g_set if g_set is not None and square and len(g_set) == rows else None
+    return NastranMatrix(block.name.upper(), matrix, form, there, there, single)
+
+
+def _values(file: Op2File, start: Ints, stop: Ints, kind: str) -> Numbers:
+    """Return the numbers between some bytes of the file, one run after another."""
+    if not len(start):
+        return np.zeros(0, kind)
+    words = expand(start // 4, (stop - start) // 4)  # records begin at multiples of four bytes
+    if (start % 4).any():
+        raise InputError(f"{file.path} cannot be read as OP2: its records are not whole words")
+    return file.words()[words].view(kind)

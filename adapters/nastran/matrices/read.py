@@ -14,16 +14,19 @@ from ..read import Deck
 from .content import DofMap, NastranMatrix
 from .dmig import read_dmig
 from .dofmaps import deck_maps, map_of_size, read_extrn
+from .hdf5 import read_hdf5_matrices
 from .op2 import read_op2_matrices
 from .op4 import is_op4, kind_of, list_op4, read_op4
 from .op4_binary import Header
 from .write import MAP
 
 _PUNCH_SUFFIXES = (".pch", ".asm")
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_RESULTS = {"op2": read_op2_matrices, "hdf5": read_hdf5_matrices}
 
 
 def read_matrices(path: Path | str, deck: Deck | None = None) -> tuple[NastranMatrix, ...]:
-    """Read all matrices of an OP4, OP2 or DMIG punch file; the kind is told by the contents.
+    """Read all matrices of an OP4, OP2, HDF5 or DMIG punch file; the kind is told by the contents.
 
     DMIG and OP2 files say what the rows of their matrices are. Those of an OP4 file are taken from
     the punch file of an external superelement beside it (same name, ``.pch``), or from the deck:
@@ -44,8 +47,11 @@ def read_matrices(path: Path | str, deck: Deck | None = None) -> tuple[NastranMa
     kind = matrix_file_kind(path)
     if kind == "op4":
         return _mapped(read_op4(path), path, deck)
-    if kind == "op2":
-        return _mapped(read_op2_matrices(path), path, deck)
+    if kind in _RESULTS:
+        found = _RESULTS[kind](path)
+        if not found:
+            raise InputError(f"{path} holds no matrices")
+        return _mapped(found, path, deck)
     found = read_dmig(path)
     if not found:
         raise InputError(f"{path} holds no DMIG matrices")
@@ -53,13 +59,16 @@ def read_matrices(path: Path | str, deck: Deck | None = None) -> tuple[NastranMa
 
 
 def matrix_file_kind(path: Path) -> str:
-    """Return ``op4``, ``op2`` or ``punch``."""
+    """Return ``op4``, ``op2``, ``hdf5`` or ``punch``."""
     if not path.is_file():
         raise InputError(f"{path} does not exist or is not a file")
     if is_op4(path):
         return "op4"
     with path.open("rb") as stream:
-        return "op2" if b"\0" in stream.read(1024) else "punch"
+        head = stream.read(1024)
+    if head.startswith(_HDF5_SIGNATURE):
+        return "hdf5"
+    return "op2" if b"\0" in head else "punch"
 
 
 def _mapped(

@@ -29,7 +29,7 @@ SCHEMA = "trueup/export-runs/1"
 INDEX = "runs.json"
 _REQUEST = ("PARAM", "EXTOUT", "DMIGPCH")
 _WHY = "trueup: stiffness and mass of the a-set go to the punch file (KAAX, MAAX)"
-_SUFFIXES = (".pch", ".op4", ".op2")
+_SUFFIXES = (".pch", ".op4", ".op2", ".h5")
 _NOTHING = 1e-14
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ..matrices.op2 import read_op2_matrices
-from .modes import OP2, READERS, kind_of_results
-from .table import ModeTable
+from ..matrices.hdf5 import list_hdf5_matrices
+from ..matrices.op2 import list_op2_matrices
+from .modes import HDF5, HEAD_READERS, OP2, kind_of_results
+from .table import ModeHead
 
 
 def describe_results(path: Path | str) -> dict[str, Any]:
@@ -26,14 +27,11 @@ def describe_results(path: Path | str) -> dict[str, Any]:
     """
     path = Path(path)
     kind = kind_of_results(path)
-    tables, names = READERS[kind](path)
-    matrices = read_op2_matrices(path) if kind == OP2 else ()
-    read = {m.name for m in matrices}
-    contents: dict[str, Any] = {"modes": [_modes(t) for t in tables]}
+    heads, names = HEAD_READERS[kind](path)
+    matrices = dict(_LISTS[kind](path)) if kind in _LISTS else {}
+    contents: dict[str, Any] = {"modes": [_modes(t) for t in heads]}
     if matrices:
-        contents["matrices"] = {
-            m.name: f"{m.matrix.shape[0]} x {m.matrix.shape[1]}" for m in matrices
-        }
+        contents["matrices"] = {name: f"{n} x {m}" for name, (n, m) in matrices.items()}
     return {
         "path": str(path),
         "format": kind,
@@ -41,12 +39,12 @@ def describe_results(path: Path | str) -> dict[str, Any]:
         "skipped": [
             {"what": name, "line": None, "why": "neither modes nor their eigenvalues"}
             for name in names
-            if not _is_read(name) and name not in read
+            if not _is_read(name) and name not in matrices
         ],
     }
 
 
-def _modes(table: ModeTable) -> dict[str, Any]:
+def _modes(table: ModeHead) -> dict[str, Any]:
     return {
         "subcase": table.subcase,
         "superelement": table.superelement,
@@ -70,5 +68,9 @@ def _is_read(name: str) -> bool:
         "NODAL/EIGENVECTOR_CPLX",
         "SUMMARY/EIGENVALUE",
         "DOMAINS",
+        "MATPOOL",
     )
-    return name.startswith(starts) or name in read
+    return name.startswith((*starts, "MATRIX/GENERAL/")) or name in read
+
+
+_LISTS = {OP2: list_op2_matrices, HDF5: list_hdf5_matrices}

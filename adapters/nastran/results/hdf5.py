@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +12,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError
-from .table import ModeTable
+from .table import ModeHead, ModeTable
 
 _DOMAINS = "NASTRAN/RESULT/DOMAINS"
 _REAL = "NASTRAN/RESULT/NODAL/EIGENVECTOR"
@@ -35,28 +37,43 @@ def read_hdf5_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     InputError
         The file cannot be read, or is HDF5 of another kind.
     """
+    with opened(path) as file:
+        groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path)]
+        return [_table(file, g, path) for g in groups], tuple(_data_sets(file))
+
+
+def read_hdf5_heads(path: Path) -> tuple[list[ModeHead], tuple[str, ...]]:
+    """Read what `read_hdf5_tables` gives but the values: costs what it reads."""
+    with opened(path) as file:
+        groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path)]
+        return [g.head for g in groups], tuple(_data_sets(file))
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Any]:
+    """Open a Nastran HDF5 file; every failure of HDF5 or of the layout told as one sentence."""
     import h5py
 
     try:
         with h5py.File(path, "r") as file:
             if "NASTRAN" not in file:
                 raise InputError(f"{path} is HDF5, but not a result file of Nastran")
-            tables = [t for name in (_REAL, _COMPLEX) for t in _tables(file, name, path)]
-            return tables, tuple(_data_sets(file))
+            yield file
     except OSError as error:
         reason = error.strerror if error.errno else "it is not HDF5, or is cut short"
         raise InputError(f"cannot read {path}: {reason}") from None
-    except (KeyError, ValueError, RuntimeError, TypeError) as error:
-        raise InputError(f"{path} is not laid out as Nastran's HDF5 results: {error}") from None
+    except (
+        KeyError, ValueError, IndexError, RuntimeError, TypeError, AttributeError, MemoryError,
+    ) as error:  # fmt: skip
+        reason = " ".join(str(error).strip("'").split())[:120]
+        raise InputError(f"{path} is not laid out as Nastran's HDF5 results: {reason}") from None
 
 
 def grids_with_own_systems(path: Path) -> Ints:
     """Return the grids of a file whose displacement system (CD) is not basic, where it says so."""
-    import h5py
-
-    with h5py.File(path, "r") as file:
+    with opened(path) as file:
         grids = file[_GRIDS][()] if _GRIDS in file else np.zeros(0, [("ID", int), ("CD", int)])
-    return np.asarray(grids["ID"][grids["CD"] != 0], np.int64)
+        return np.asarray(grids["ID"][grids["CD"] != 0], np.int64)
 
 
 def _data_sets(file: Any) -> Iterator[str]:
@@ -69,56 +86,104 @@ def _data_sets(file: Any) -> Iterator[str]:
     return iter(found)
 
 
-def _tables(file: Any, name: str, path: Path) -> Iterator[ModeTable]:
+@dataclass(frozen=True)
+class _Group:
+    """The modes of one subcase and superelement: where the rows of each stand."""
+
+    name: str
+    head: ModeHead
+    rows: tuple[slice, ...]
+
+
+def _groups(file: Any, name: str, path: Path) -> Iterator[_Group]:
     if name not in file:
         return
     if _DOMAINS not in file:
         raise InputError(f"{path}: the table of domains is missing, the modes cannot be told apart")
     domains = file[_DOMAINS][()]
-    vectors = file[name][()]
-    used = domains[np.isin(domains["ID"], vectors["DOMAIN_ID"])]
-    used = used[np.isin(used["ANALYSIS"], (_MODES, _COMPLEX_MODES))]
+    used = domains[np.isin(domains["ANALYSIS"], (_MODES, _COMPLEX_MODES))]
+    places = _places(file, name, path)
+    used = used[[int(d) in places for d in used["ID"]]]
     known_grids = np.asarray(file[_GRIDS]["ID"], np.int64) if _GRIDS in file else None
     for subcase, superelement in np.unique(used[["SUBCASE", "SE"]]).tolist():
         mine = used[(used["SUBCASE"] == subcase) & (used["SE"] == superelement)]
         mine = mine[np.argsort(mine["MODE"], kind="stable")]
-        points, shapes = _shapes(vectors, mine["ID"], path)
+        rows = tuple(places[int(d)] for d in mine["ID"])
+        points = np.asarray(file[name].fields("ID")[rows[0]], np.int64)
         scalar = np.zeros(len(points), bool)
         if known_grids is not None:
             scalar = ~np.isin(points, known_grids)
-        eigenvalues = np.asarray(mine["TIME_FREQ_EIGR"], np.float64)
+        eigenvalues: Numbers = np.asarray(mine["TIME_FREQ_EIGR"], np.float64)
         if name == _COMPLEX:
             eigenvalues = eigenvalues + 1j * mine["EIGI"]
         numbers = np.asarray(mine["MODE"], np.int64)
-        mass = _generalized_mass(file, numbers, eigenvalues)
-        yield ModeTable(
-            int(subcase), int(superelement), points, scalar, numbers, eigenvalues, shapes, mass,
+        head = ModeHead(
+            subcase=int(subcase),
+            superelement=int(superelement),
+            points=points,
+            scalar=scalar,
+            numbers=numbers,
+            eigenvalues=eigenvalues,
+            generalized_mass=_generalized_mass(file, numbers, eigenvalues),
             basic=False,
-        )  # fmt: skip
+        )
+        yield _Group(name, head, rows)
 
 
-def _shapes(vectors: Any, domains: Ints, path: Path) -> tuple[Ints, Numbers]:
-    """Return points and shapes (n_point, 6, n_mode) of some domains, which list equal points."""
-    order = np.argsort(vectors["DOMAIN_ID"], kind="stable")
-    sorted_domains = vectors["DOMAIN_ID"][order]
-    bounds = zip(
-        np.searchsorted(sorted_domains, domains, "left"),
-        np.searchsorted(sorted_domains, domains, "right"),
-        strict=True,
+def _places(file: Any, name: str, path: Path) -> dict[int, slice]:
+    """Return the rows of each domain: from the file's index, else from the rows themselves."""
+    if f"INDEX/{name}" in file:
+        index = file[f"INDEX/{name}"][()]
+        starts = np.asarray(index["POSITION"], np.int64)
+        stops = starts + np.asarray(index["LENGTH"], np.int64)
+        domains = np.asarray(index["DOMAIN_ID"], np.int64)
+        if (starts < 0).any() or (stops > len(file[name])).any():
+            raise InputError(f"{path}: the index of the eigenvectors points outside of them")
+    else:
+        of_row = np.asarray(file[name].fields("DOMAIN_ID")[()], np.int64)
+        starts = np.flatnonzero(np.diff(of_row, prepend=np.nan))
+        stops = np.append(starts, len(of_row))[1:]
+        domains = of_row[starts]
+        if len(np.unique(domains)) < len(domains):
+            raise InputError(f"{path}: the rows of one eigenvector do not stand together")
+    return {
+        int(d): slice(int(a), int(b))
+        for d, a, b in zip(domains, starts, stops, strict=True)
+        if b > a
+    }
+
+
+def _table(file: Any, group: _Group, path: Path) -> ModeTable:
+    """Read the values, one mode after another; all must list the same points."""
+    head = group.head
+    vectors = file[group.name]
+    first = vectors[group.rows[0]]
+    kind = np.result_type(*(first.dtype[k] for k in range(1, 7)))
+    if group.name == _COMPLEX:
+        kind = np.result_type(kind, np.complex64)
+    shapes = np.empty((len(head.points), 6, len(group.rows)), kind, order="F")
+    for k, rows in enumerate(group.rows):
+        block = vectors[rows]
+        if len(block) != len(head.points) or not np.array_equal(block["ID"], head.points):
+            raise InputError(f"{path}: the eigenvectors of one subcase list different grids")
+        for c, component in enumerate(_COMPONENTS):
+            if group.name == _COMPLEX:
+                shapes[:, c, k].real = block[f"{component}R"]
+                shapes[:, c, k].imag = block[f"{component}I"]
+            else:
+                shapes[:, c, k] = block[component]
+    shapes.flags.writeable = False
+    return ModeTable(
+        subcase=head.subcase,
+        superelement=head.superelement,
+        points=head.points,
+        scalar=head.scalar,
+        numbers=head.numbers,
+        eigenvalues=head.eigenvalues,
+        generalized_mass=head.generalized_mass,
+        basic=False,
+        shapes=shapes,
     )
-    blocks = [vectors[order[first:stop]] for first, stop in bounds]
-    points = np.asarray(blocks[0]["ID"], np.int64)
-    if any(not np.array_equal(b["ID"], points) for b in blocks):
-        raise InputError(f"{path}: the eigenvectors of one subcase list different grids")
-    return points, np.stack([_components(b) for b in blocks], axis=2)
-
-
-def _components(block: Any) -> Numbers:
-    if "X" in block.dtype.names:
-        return np.stack([block[c] for c in _COMPONENTS], axis=1)
-    real: Numbers = np.stack([block[f"{c}R"] for c in _COMPONENTS], axis=1)
-    imaginary: Numbers = np.stack([block[f"{c}I"] for c in _COMPONENTS], axis=1)
-    return np.asarray(real + 1j * imaginary)
 
 
 def _generalized_mass(file: Any, numbers: Ints, eigenvalues: Numbers) -> Floats:

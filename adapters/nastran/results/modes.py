@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints, Numbers
+from ....core.arrays import Ints, Numbers
 from ....core.dofs import Dofs
 from ....core.errors import InputError
 from ....core.modes import Modes
 from ..grids import Points, read_points
 from ..read import Deck
 from .f06 import is_f06, read_f06_tables
-from .hdf5 import grids_with_own_systems, read_hdf5_tables
-from .op2 import read_op2_tables
+from .hdf5 import grids_with_own_systems, read_hdf5_heads, read_hdf5_tables
+from .op2 import read_op2_heads, read_op2_tables
 from .punch import is_punched_result, read_punch_tables
-from .table import ModeTable
+from .table import ModeHead, ModeTable
 
 Reader = Callable[[Path], tuple[list[ModeTable], tuple[str, ...]]]
 
@@ -30,6 +30,13 @@ READERS: dict[str, Reader] = {
     F06: read_f06_tables,
 }
 """Readers by kind of file: path to tables and the names of all that the file holds."""
+
+HEAD_READERS: dict[str, Callable[[Path], tuple[Sequence[ModeHead], tuple[str, ...]]]] = {
+    **READERS,
+    HDF5: read_hdf5_heads,
+    OP2: read_op2_heads,
+}
+"""The same without the values where the kind of file lets them be left in it."""
 
 _HEAD = 20000
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -124,7 +131,7 @@ def _of_subcase(
 
 
 def _without_conjugates(table: ModeTable) -> ModeTable:
-    if not table.is_complex:
+    if not table.is_complex or (table.eigenvalues.imag >= 0.0).all():
         return table
     keep = table.eigenvalues.imag >= 0.0
     return table.take(np.arange(len(table.points)), np.flatnonzero(keep))
@@ -150,16 +157,18 @@ def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
         new = np.array([p not in known for p in table.points.tolist()], bool)
         known |= set(table.points.tolist())
         parts.append(table.take(new, np.arange(len(table.numbers))))
+    if len(parts) == 1:
+        return first
     return ModeTable(
-        first.subcase,
-        first.superelement,
-        np.concatenate([t.points for t in parts]),
-        np.concatenate([t.scalar for t in parts]),
-        first.numbers,
-        first.eigenvalues,
-        np.concatenate([t.shapes for t in parts]),
-        first.generalized_mass,
-        first.basic,
+        subcase=first.subcase,
+        superelement=first.superelement,
+        points=np.concatenate([t.points for t in parts]),
+        scalar=np.concatenate([t.scalar for t in parts]),
+        numbers=first.numbers,
+        eigenvalues=first.eigenvalues,
+        generalized_mass=first.generalized_mass,
+        basic=first.basic,
+        shapes=np.concatenate([t.shapes for t in parts]),
     )
 
 
@@ -178,15 +187,21 @@ def _modes(table: ModeTable, points: Points | None, path: Path) -> Modes:
     grids, scalars = np.flatnonzero(~scalar), np.flatnonzero(scalar)
     grids = grids[np.argsort(table.points[grids], kind="stable")]
     scalars = scalars[np.argsort(table.points[scalars], kind="stable")]
-    ids, shapes = table.points[grids], table.shapes[grids]
-    if points is not None and not table.basic:
-        shapes = _to_basic(ids, shapes, points)
-    n_mode = len(table.numbers)
+    ids = table.points[grids]
+    kind = np.complex128 if np.iscomplexobj(table.shapes) else np.float64
+    shapes = np.empty((6 * len(grids) + len(scalars), len(table.numbers)), kind, order="F")
+    for mode in range(len(table.numbers)):  # one by one: peak memory
+        vector = table.shapes[grids, :, mode].astype(kind)
+        if points is not None and not table.basic:
+            _turn_to_basic(ids, vector, points)
+        shapes[: 6 * len(grids), mode] = vector.reshape(-1)
+        shapes[6 * len(grids) :, mode] = table.shapes[scalars, 0, mode]
+    shapes.flags.writeable = False
     node = np.concatenate([np.repeat(ids, 6), table.points[scalars]])
     component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalars), int)])
     return Modes(
         frequencies_hz=table.frequencies_hz,
-        shapes=np.concatenate([shapes.reshape(-1, n_mode), table.shapes[scalars][:, 0]]),
+        shapes=shapes,
         dofs=Dofs(node, component),
         damping=table.damping,
         generalized_mass=table.generalized_mass,
@@ -203,12 +218,10 @@ def _require_same_points(table: ModeTable, points: Points, path: Path) -> None:
         )
 
 
-def _to_basic(ids: Ints, shapes: Numbers, points: Points) -> Floats:
-    """Turn translations and rotations from the displacement systems to the basic axes."""
+def _turn_to_basic(ids: Ints, vector: Numbers, points: Points) -> None:
+    """Turn a vector (n_grid, 6) from the displacement systems to the basic axes, in place."""
     rows = np.searchsorted(points.ids, ids)
     turned = np.flatnonzero(points.rotated[rows])
     R = points.directions[rows[turned]]  # rows are the displacement directions
-    result = np.array(shapes)
     for three in (slice(0, 3), slice(3, 6)):
-        result[turned, three] = np.einsum("gki,gkm->gim", R, shapes[turned, three])
-    return result
+        vector[turned, three] = np.einsum("gki,gk->gi", R, vector[turned, three])

@@ -1,22 +1,52 @@
-"""Eigenvectors from OP2 files (MSC, NX, OptiStruct, MYSTRAN), through pyNastran."""
+"""Eigenvectors from OP2 files of MSC, NX, OptiStruct and MYSTRAN, 32 and 64 bit."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
-from .op2file import read_op2_file
-from .table import ModeTable
+from ....core.errors import InputError
+from .op2records import Op2Block, Op2File, Op2Record
+from .table import ModeHead, ModeTable
 
 _GRID, _SCALAR = 1, 2
 _REAL, _COMPLEX = 2, 9  # analysis codes of normal and of complex modes
-_SUPERELEMENT = re.compile(r"SUPERELEMENT (\d+)")
-_KINDS = ("eigenvectors", "ROUGV1.eigenvectors", "eigenvectors_structure")
-_SUMMARY = "eigenvalues"
+_DISPLACEMENTS, _EIGENVECTORS = 1, 7  # table codes
+_MAGNITUDE_PHASE = 3  # format code
+_VECTORS = re.compile(r"[BR]?O(UG|PHIG)(?!.*F$)")
+"""Names of blocks with displacements of all points; those that end in F are of the fluid."""
+_SUPERELEMENT = re.compile(r"SUPERELEMENT\s+(\d+)")
+_TITLES = (50, 96)  # first word and number of words of title, subtitle and label
+_LAMA_WIDTH = 7
+_WIDTHS = {False: 8, True: 14}
+
+
+@dataclass(frozen=True)
+class _Vector:
+    """One eigenvector: where its values stand, and what its header says."""
+
+    name: str
+    subcase: int
+    superelement: int
+    number: int
+    eigenvalue: complex
+    is_complex: bool
+    polar: bool
+    data: Op2Record
+
+    @property
+    def basic(self) -> bool:
+        return self.name.startswith("B")
+
+    @property
+    def rank(self) -> int:
+        """Which of several sets of eigenvectors is taken: the lowest."""
+        return {"B": 0, "O": 1, "R": 2}[self.name[0]]
 
 
 def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
@@ -29,72 +59,191 @@ def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     -------
     tables : list of ModeTable
     names : tuple of str
-        All tables of the file, for inspection.
+        All data blocks of the file, for inspection.
 
     Raises
     ------
     InputError
         The file cannot be read as OP2.
     """
-    model = read_op2_file(path, (*_KINDS, _SUMMARY))
-    tables: list[ModeTable] = []
-    for kind in _KINDS:
-        found = model.get_result(kind)
-        modal = {k: v for k, v in found.items() if int(v.analysis_code) in (_REAL, _COMPLEX)}
-        tables += [_table(key, v, model.eigenvalues) for key, v in modal.items()]
-        if found:
-            break
-    names = [t.decode("latin-1") if isinstance(t, bytes) else str(t) for t in model.table_names]
-    return tables, tuple(dict.fromkeys(n.strip() for n in names))
+    with Op2File(path) as file:
+        groups = _groups(file)
+        tables = [_table(file, group, _head(file, group)) for group in groups]
+        return tables, _names(file)
 
 
-def _table(key: Any, vectors: Any, summaries: Any) -> ModeTable:
-    kind = vectors.node_gridtype[:, 1]
-    rows = np.flatnonzero((kind == _GRID) | (kind == _SCALAR))
-    numbers = np.asarray(vectors.modes, np.int64)
-    eigenvalues = _eigenvalues(vectors)
-    shapes = np.moveaxis(vectors.data[:, rows, :], 0, 2)
-    name = vectors.table_name
-    name = name.decode("latin-1") if isinstance(name, bytes) else str(name)
-    return ModeTable(
-        subcase=int(key[0] if isinstance(key, tuple) else key),
-        superelement=_superelement(key),
-        points=vectors.node_gridtype[rows, 0].astype(np.int64),
-        scalar=kind[rows] == _SCALAR,
+def read_op2_heads(path: Path) -> tuple[list[ModeHead], tuple[str, ...]]:
+    """Read what `read_op2_tables` gives but the values: costs what it reads."""
+    with Op2File(path) as file:
+        return [_head(file, group) for group in _groups(file)], _names(file)
+
+
+def _names(file: Op2File) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(block.name for block in file.blocks))
+
+
+def _groups(file: Op2File) -> list[list[_Vector]]:
+    """Return the eigenvectors by subcase and superelement, from the blocks that suit best."""
+    vectors = [v for b in file.blocks if _VECTORS.match(b.name) for v in _vectors(file, b)]
+    best = min((v.rank for v in vectors), default=0)
+    groups: dict[tuple[int, int, bool], list[_Vector]] = {}
+    for v in vectors:
+        if v.rank != best:
+            continue
+        group = groups.setdefault((v.subcase, v.superelement, v.is_complex), [])
+        if any(v.number == other.number for other in group):
+            raise InputError(
+                f"{file.path} holds mode {v.number} of subcase {v.subcase} twice (design cycles "
+                "or restarts): give the file of one run"
+            )
+        group.append(v)
+    return [groups[k] for k in sorted(groups)]
+
+
+def _vectors(file: Op2File, block: Op2Block) -> list[_Vector]:
+    """Return the eigenvectors of a block: pairs of a header record and a record of values."""
+    found = []
+    for head, data in zip(block.records[::2], block.records[1::2], strict=False):
+        words, reals = file.integers(head), file.reals(head)
+        if len(words) < _TITLES[0]:
+            raise file.damaged(head.parts[0][0], f"a header of {block.name} is too short")
+        analysis, (sort, table) = int(words[0]) // 10, divmod(int(words[1]), 1000)
+        modal = analysis in (_REAL, _COMPLEX) and table in (_DISPLACEMENTS, _EIGENVECTORS)
+        if not modal or sort & 2:  # sorted by points, not by modes: not asked for by any deck
+            continue
+        is_complex = int(words[9]) == _WIDTHS[True]
+        if int(words[9]) not in _WIDTHS.values():
+            raise file.damaged(head.parts[0][0], f"{block.name} has {words[9]} words a point")
+        root = analysis == _COMPLEX
+        said = _SUPERELEMENT.search(file.text(head, *_TITLES))
+        found.append(
+            _Vector(
+                block.name,
+                int(words[3]),
+                int(said[1]) if said else 0,
+                int(words[4]),
+                complex(float(reals[5]), float(reals[6])) if root else complex(float(reals[5])),
+                root,
+                is_complex and int(words[8]) == _MAGNITUDE_PHASE,
+                data,
+            )
+        )
+    return found
+
+
+def _head(file: Op2File, group: Sequence[_Vector]) -> ModeHead:
+    first = group[0]
+    integers = file.integers(first.data).reshape(-1, _width(file, first))
+    kinds = integers[:, 1]
+    rows = np.flatnonzero((kinds == _GRID) | (kinds == _SCALAR))
+    numbers = np.array([v.number for v in group], np.int64)
+    roots = np.array([v.eigenvalue for v in group])
+    eigenvalues: Numbers = roots if first.is_complex else roots.real.copy()
+    summaries = _summaries(file)
+    if not first.is_complex and not eigenvalues.any():
+        eigenvalues = _listed(summaries, numbers, eigenvalues)
+    return ModeHead(
+        subcase=first.subcase,
+        superelement=first.superelement,
+        points=integers[rows, 0] // 10,
+        scalar=kinds[rows] == _SCALAR,
         numbers=numbers,
         eigenvalues=eigenvalues,
-        shapes=shapes.astype(np.complex128 if np.iscomplexobj(shapes) else np.float64),
         generalized_mass=_generalized_mass(summaries, numbers, eigenvalues),
-        basic=name.startswith("B"),
+        basic=first.basic,
     )
 
 
-def _eigenvalues(vectors: Any) -> Numbers:
-    """Return what the headers of the eigenvectors hold: lambda, or the real and imaginary root."""
-    if int(vectors.analysis_code) == _COMPLEX:
-        roots = np.asarray(vectors.eigrs, float) + 1j * np.asarray(vectors.eigis, float)
-        return np.asarray(roots)
-    real = getattr(vectors, "eigns", None)
-    return np.asarray(vectors.eigrs if real is None else real, float)
+def _width(file: Op2File, vector: _Vector) -> int:
+    """Words a point of an eigenvector: 8 real, 14 complex."""
+    words = vector.data.size // file.word
+    fitting = [w for w in _WIDTHS.values() if words % w == 0]
+    own = _WIDTHS[vector.is_complex]
+    if own in fitting:
+        return own
+    if not fitting:
+        raise file.damaged(vector.data.parts[0][0] if vector.data.parts else 0,
+                           f"mode {vector.number} does not hold whole points")  # fmt: skip
+    return fitting[0]
 
 
-def _superelement(key: Any) -> int:
-    match = _SUPERELEMENT.search(str(key))
-    return int(match[1]) if match else 0
+def _table(file: Op2File, group: Sequence[_Vector], head: ModeHead) -> ModeTable:
+    """Read the values; every eigenvector must list the same points."""
+    width = _width(file, group[0])
+    kinds = file.integers(group[0].data).reshape(-1, width)[:, 1]
+    rows = np.flatnonzero((kinds == _GRID) | (kinds == _SCALAR))
+    is_complex = width == _WIDTHS[True]
+    real = np.float32 if file.word == 4 else np.float64
+    kind = (np.complex64 if real is np.float32 else np.complex128) if is_complex else real
+    shapes = np.empty((len(rows), 6, len(group)), kind, order="F")
+    for k, v in enumerate(group):
+        if v.data.size != group[0].data.size:
+            raise _other_points(file)
+        values = file.reals(v.data).reshape(-1, width)
+        points = values.view(values.dtype.str.replace("f", "i"))[rows, 0] // 10
+        if not np.array_equal(points, head.points):
+            raise _other_points(file)
+        if not is_complex:
+            shapes[:, :, k] = values[rows, 2:8]
+        elif v.polar:
+            angle = np.deg2rad(values[rows, 8:14])
+            shapes[:, :, k] = values[rows, 2:8] * np.exp(1j * angle)
+        else:
+            shapes[:, :, k] = values[rows, 2:8] + 1j * values[rows, 8:14]
+    shapes.flags.writeable = False
+    return ModeTable(
+        subcase=head.subcase,
+        superelement=head.superelement,
+        points=head.points,
+        scalar=head.scalar,
+        numbers=head.numbers,
+        eigenvalues=head.eigenvalues,
+        generalized_mass=head.generalized_mass,
+        basic=head.basic,
+        shapes=shapes,
+    )
 
 
-def _generalized_mass(summaries: Any, numbers: Ints, eigenvalues: Numbers) -> Floats:
+def _other_points(file: Op2File) -> InputError:
+    return InputError(
+        f"{file.path}: the eigenvectors of one subcase list different points: the file is damaged"
+    )
+
+
+def _summaries(file: Op2File) -> list[Floats]:
+    """Return the LAMA tables: mode number, eigenvalue and generalized mass, (n_mode, 3) each."""
+    found = []
+    for block in file.blocks:
+        if not block.name.startswith(("LAMA", "BLAMA")):
+            continue
+        for data in block.records[1::2]:
+            if data.size % (_LAMA_WIDTH * file.word):
+                continue
+            numbers = file.integers(data).reshape(-1, _LAMA_WIDTH)[:, 0]
+            reals = file.reals(data).reshape(-1, _LAMA_WIDTH)
+            found.append(np.column_stack([numbers, reals[:, 2], reals[:, 5]]))
+    return found
+
+
+def _rows_of(summary: Floats, numbers: Ints) -> Floats | None:
+    rows = {int(n): k for k, n in enumerate(summary[:, 0])}
+    at = [rows.get(int(n), -1) for n in numbers]
+    return summary[at] if min(at, default=-1) >= 0 else None
+
+
+def _listed(summaries: list[Floats], numbers: Ints, eigenvalues: Numbers) -> Numbers:
+    """Eigenvalues of the one summary that has these modes, for headers that leave them out."""
+    found = [rows for s in summaries if (rows := _rows_of(s, numbers)) is not None]
+    return found[0][:, 1] if len(found) == 1 else eigenvalues
+
+
+def _generalized_mass(summaries: list[Floats], numbers: Ints, eigenvalues: Numbers) -> Floats:
     """Return the masses of the LAMA table that lists these eigenvalues; NaN where none does."""
-    for summary in summaries.values():
-        mass = getattr(summary, "generalized_mass", None)
-        if mass is None or np.iscomplexobj(eigenvalues):
+    scale = np.abs(eigenvalues).max(initial=0.0)
+    for summary in summaries:
+        rows = _rows_of(summary, numbers)
+        if rows is None or np.iscomplexobj(eigenvalues):
             continue
-        rows = {int(n): k for k, n in enumerate(summary.mode)}
-        at = np.array([rows.get(int(n), -1) for n in numbers])
-        if (at < 0).any():
-            continue
-        scale = np.abs(eigenvalues).max(initial=0.0)
-        listed = np.asarray(summary.eigenvalues, float)[at]
-        if np.allclose(listed, eigenvalues, rtol=1e-5, atol=1e-6 * scale):
-            return np.asarray(np.asarray(mass, float)[at])
+        if np.allclose(rows[:, 1], eigenvalues, rtol=1e-5, atol=1e-6 * scale):
+            return np.asarray(rows[:, 2])
     return np.full(len(numbers), np.nan)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints, Numbers, frozen, require_finite, require_shape
+from ....core.arrays import Bools, Floats, Ints, Numbers, frozen, require_finite, require_shape
 
 
-@dataclass(frozen=True, eq=False)
-class ModeTable:
-    """The eigenvectors of one subcase and superelement.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ModeHead:
+    """What is known of the eigenvectors of one subcase and superelement without their values.
 
     Parameters
     ----------
@@ -25,8 +25,6 @@ class ModeTable:
         Mode numbers.
     eigenvalues : (n_mode,) float or complex
         Real: squared circular frequency [rad^2/s^2]; complex: the root [1/s].
-    shapes : (n_point, 6, n_mode) float or complex
-        Displacements in the axes that `basic` tells.
     generalized_mass : (n_mode,) float
         NaN where the file has none.
     basic : bool
@@ -36,23 +34,20 @@ class ModeTable:
     subcase: int
     superelement: int
     points: Ints
-    scalar: Numbers
+    scalar: Bools
     numbers: Ints
     eigenvalues: Numbers
-    shapes: Numbers
     generalized_mass: Floats
     basic: bool
 
     def __post_init__(self) -> None:
         n_point, n_mode = len(self.points), len(self.numbers)
-        for name in ("points", "scalar", "numbers", "eigenvalues", "shapes", "generalized_mass"):
+        for name in ("points", "scalar", "numbers", "eigenvalues", "generalized_mass"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         require_shape(self.scalar, (n_point,), "scalar points")
-        require_shape(self.shapes, (n_point, 6, n_mode), "eigenvectors")
         require_shape(self.eigenvalues, (n_mode,), "eigenvalues")
         require_shape(self.generalized_mass, (n_mode,), "generalized masses")
         require_finite(self.eigenvalues, "the eigenvalues")
-        require_finite(self.shapes, "the eigenvectors")
 
     @property
     def is_complex(self) -> bool:
@@ -74,16 +69,36 @@ class ModeTable:
             return np.full(len(size), np.nan)
         return np.divide(-self.eigenvalues.real, size, out=np.zeros(len(size)), where=size > 0.0)
 
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ModeTable(ModeHead):
+    """The eigenvectors of one subcase and superelement.
+
+    Parameters
+    ----------
+    shapes : (n_point, 6, n_mode) float or complex
+        Displacements in the axes that `basic` tells, in the file's precision.
+    """
+
+    shapes: Numbers
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "shapes", frozen(self.shapes))
+        require_shape(self.shapes, (len(self.points), 6, len(self.numbers)), "eigenvectors")
+        for mode in range(len(self.numbers)):  # one by one: no second array of that size
+            require_finite(self.shapes[:, :, mode], "the eigenvectors")
+
     def take(self, rows: Numbers, modes: Numbers) -> ModeTable:
         """Return some points (indices or mask) and modes."""
         return ModeTable(
-            self.subcase,
-            self.superelement,
-            self.points[rows],
-            self.scalar[rows],
-            self.numbers[modes],
-            self.eigenvalues[modes],
-            self.shapes[rows][:, :, modes],
-            self.generalized_mass[modes],
-            self.basic,
+            subcase=self.subcase,
+            superelement=self.superelement,
+            points=self.points[rows],
+            scalar=self.scalar[rows],
+            numbers=self.numbers[modes],
+            eigenvalues=self.eigenvalues[modes],
+            shapes=self.shapes[rows][:, :, modes],
+            generalized_mass=self.generalized_mass[modes],
+            basic=self.basic,
         )

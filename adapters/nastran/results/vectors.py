@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints, Numbers
+from ....core.arrays import Bools, Floats, Ints, Numbers
 from ....core.errors import InputError
 from .table import ModeTable
 
@@ -78,11 +78,19 @@ def _table(
         eigenvalues, shapes = eigenvalues.real.astype(float), shapes.real.copy()
     mass: Floats = np.array([masses.get(int(n), np.nan) for n in numbers])
     return ModeTable(
-        subcase, superelement, points, scalar, numbers, eigenvalues, shapes, mass, basic=False
+        subcase=subcase,
+        superelement=superelement,
+        points=points,
+        scalar=scalar,
+        numbers=numbers,
+        eigenvalues=eigenvalues,
+        generalized_mass=mass,
+        basic=False,
+        shapes=shapes,
     )
 
 
-def _column(v: Vector, path: Path) -> tuple[Ints, Numbers, Numbers]:
+def _column(v: Vector, path: Path) -> tuple[Ints, Bools, Numbers]:
     points = np.array([r[0] for r in v.rows], np.int64)
     unique, counts = np.unique(points, return_counts=True)
     if len(unique) < len(points):
