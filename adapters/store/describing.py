@@ -23,7 +23,7 @@ def is_store(path: str | os.PathLike[str]) -> bool:
     try:
         with h5py.File(source, "r") as file:
             return bool(file.attrs.get("format") == FORMAT)
-    except OSError:
+    except (OSError, KeyError, RuntimeError):  # what HDF5 says of a damaged header
         return False
 
 

@@ -118,7 +118,7 @@ class Op2File:
         return b"".join(self._data[start:stop] for start, stop in record.parts)
 
     def text(self, record: Op2Record, first: int, count: int) -> str:
-        """Return words of a record as text; a word of 64 bits holds four characters, too."""
+        """Return words of a record as text."""
         raw = self.raw(record)[first * self.word : (first + count) * self.word]
         return _text(raw, self.word)
 
@@ -232,7 +232,8 @@ class Op2File:
 
 
 def _text(raw: bytes, word: int) -> str:
-    if word == 8:
+    """Text of words: of 64 bit NX fills four characters of each, MSC (in names) all eight."""
+    if word == 8 and not any(raw[k + 4 : k + 8].strip(b" \0") for k in range(0, len(raw), 8)):
         raw = b"".join(raw[k : k + 4] for k in range(0, len(raw), 8))
     return raw.decode("latin-1").strip(" \0")
 

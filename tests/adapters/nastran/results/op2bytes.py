@@ -14,6 +14,8 @@ class Writer:
 
     word: int = 4
     order: str = "<"
+    names_in_full: bool = False
+    """Whether names fill words of 64 bit (MSC) or only half of each (NX)."""
     out: bytearray = field(default_factory=bytearray)
 
     def record(self, data: bytes) -> None:
@@ -76,13 +78,18 @@ class Writer:
 
     def _start(self, name: str, trailer: tuple[int, ...]) -> None:
         self.marker(2)
-        self.record(self.text(name, 2))
+        self.record(self._name(name))
         self.marker(-1)
         self.marker(7)
         self.record(b"".join(map(self.int, trailer)))
         for value in (-2, 1, 0, 2):
             self.marker(value)
-        self.record(self.text(name, 2))
+        self.record(self._name(name))
+
+    def _name(self, name: str) -> bytes:
+        if self.names_in_full:
+            return name.ljust(2 * self.word).encode("latin-1")
+        return self.text(name, 2)
 
     def vector_header(
         self, number: int, value: complex, *, subcase: int = 1, width: int = 8, form: int = 1,

@@ -29,8 +29,10 @@ SHAPES[:, 3, 1:] = 0.0
 OMEGA2 = np.array([4.0e2, 9.0e4, 1.6e7])
 
 
-def modal_file(word, order, name="OUGV1", version="XXXXXXXX", lama=True, label=True, **header):
-    w = Writer(word, order)
+def modal_file(
+    word, order, name="OUGV1", version="XXXXXXXX", lama=True, label=True, full=False, **header
+):
+    w = Writer(word, order, full)
     if label:
         w.label(version)
     if lama:  # cycles as NX has them in some files: rad/s
@@ -61,6 +63,13 @@ def test_words_of_32_and_64_bit_in_both_byte_orders(tmp_path, word, order):
     modes = read_modes(path)
     check(modes)
     assert modes.generalized_mass.tolist() == [2.0, 3.0, 4.0]
+
+
+def test_names_that_fill_words_of_64_bit(tmp_path):
+    """As MSC writes them; NX fills half of each word."""
+    path = tmp_path / "a.op2"
+    path.write_bytes(modal_file(8, "<", full=True))
+    check(read_modes(path))
 
 
 def test_64_bit_keeps_double_precision(tmp_path):
