@@ -16,12 +16,20 @@ from .systems import CoordinateSystem
 
 @dataclass(frozen=True)
 class Skipped:
-    """Something in a file that was not read: what, where and why."""
+    """Something in a file that was not read: what, where and why.
+
+    `harm` is "" for what trueup does not read by design, "lost" for content that is damaged, and
+    "frame" where without it the rest may stand at wrong places, in wrong axes or units.
+    """
 
     what: str
     line: int
     why: str
     path: str = ""
+    harm: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.path} line {self.line}: {self.what} was not read: {self.why}"
 
 
 @dataclass(frozen=True)

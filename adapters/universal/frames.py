@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Floats, Ints
-from ...core.errors import InputError
+from .content import Skipped
 from .nodes import NodeTable
 from .systems import BASIC, CoordinateSystem
 
@@ -33,15 +33,12 @@ class NodeFrames:
 
 
 def node_frames(
-    tables: Sequence[NodeTable], systems: Mapping[int, CoordinateSystem], warnings: list[str]
+    tables: Sequence[NodeTable],
+    systems: Mapping[int, CoordinateSystem],
+    warnings: list[str],
+    skipped: list[Skipped],
 ) -> NodeFrames:
-    """Merge node tables; a node given twice must stand in the same place.
-
-    Raises
-    ------
-    InputError
-        The same node at different positions.
-    """
+    """Merge node tables; of a node given twice the first is kept, and another place is told."""
     undefined: dict[int, int] = {}
     parts = [_placed(table, systems, undefined, warnings) for table in tables]
     for number, count in undefined.items():
@@ -52,7 +49,8 @@ def node_frames(
     if not parts:
         return NodeFrames(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3)))
     ids, xyz, frames = (np.concatenate(p) for p in zip(*parts, strict=True))
-    keep = _first_of_each(ids, xyz, [t.where for t in tables], warnings)
+    of_row = np.repeat(np.arange(len(tables)), [len(p[0]) for p in parts])
+    keep = _first_of_each(ids, xyz, [tables[k] for k in of_row], warnings, skipped)
     return NodeFrames(ids[keep], xyz[keep], frames[keep])
 
 
@@ -62,7 +60,7 @@ def _placed(
     undefined: dict[int, int],
     warnings: list[str],
 ) -> tuple[Ints, Floats, Floats]:
-    xyz = table.coordinates.copy()
+    xyz, where = table.coordinates.copy(), f"{table.path} line {table.line}"
     for number in np.unique(table.definition):
         rows = table.definition == number
         system = _system(int(number), systems, undefined, int(rows.sum()))
@@ -70,8 +68,8 @@ def _placed(
             xyz[rows] = system.positions(xyz[rows])
         if system.kind != "cartesian":
             warnings.append(
-                f"{table.where}: {rows.sum()} node(s) have {system.kind} coordinates; "
-                "their angles are taken in degrees"
+                f"{where}: {rows.sum()} node(s) have {system.kind} coordinates; their "
+                "angles are taken in degrees"
             )
     frames = np.broadcast_to(np.eye(3), (len(xyz), 3, 3)).copy()
     for number in np.unique(table.displacement):
@@ -81,29 +79,38 @@ def _placed(
         on_axis = table.ids[rows][system.on_axis(xyz[rows])]
         if len(on_axis):
             warnings.append(
-                f"{table.where}: node(s) {some(on_axis)} lie on the axis of their {system.kind} "
+                f"{where}: node(s) {some(on_axis)} lie on the axis of their {system.kind} "
                 "displacement system, where radial and tangential are not defined; x is taken as "
                 "radial"
             )
     return table.ids, xyz, frames
 
 
-def _first_of_each(ids: Ints, xyz: Floats, places: Sequence[str], warnings: list[str]) -> Ints:
-    """Rows of the first mention of each node."""
+def _first_of_each(
+    ids: Ints,
+    xyz: Floats,
+    tables: Sequence[NodeTable],
+    warnings: list[str],
+    skipped: list[Skipped],
+) -> Ints:
+    """Rows of the first mention of each node; `tables` are those of the rows."""
     unique, first, inverse = np.unique(ids, return_index=True, return_inverse=True)
     if len(unique) == len(ids):
         return np.arange(len(ids))
     size = max(float(np.ptp(xyz, axis=0).max()), 1e-30)
     apart = np.abs(xyz - xyz[first[inverse]]).max(axis=1) > 1e-4 * size
+    where = " and ".join(dict.fromkeys(f"{t.path} line {t.line}" for t in tables))
     if apart.any():
-        raise InputError(
-            f"{' and '.join(dict.fromkeys(places))}: node {ids[apart][0]} is given twice at "
-            "different positions; remove one, or give files of one test only"
+        table, count = tables[np.flatnonzero(apart)[0]], int(np.count_nonzero(apart))
+        what = f"node {ids[apart][0]}" + (f" and {count - 1} more" if count > 1 else "")
+        why = (
+            "given twice at different positions, the first is kept; remove one, or give files of "
+            "one test only"
         )
-    warnings.append(
-        f"{' and '.join(dict.fromkeys(places))}: {len(ids) - len(unique)} node(s) are given more "
-        "than once at the same position"
-    )
+        skipped.append(Skipped(what, table.line, why, table.path, "frame"))
+    same = len(ids) - len(unique) - int(np.count_nonzero(apart))
+    if same:
+        warnings.append(f"{where}: {same} node(s) are given more than once at the same position")
     return np.sort(first)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...core.dofs import Dofs
 from ...core.errors import InputError
 from ...core.modes import Modes
-from .content import Units
+from .content import Skipped, Units
 from .frames import NodeFrames, some
 from .shapes import Shape
 
@@ -64,16 +64,21 @@ def join_modes(shapes: list[Shape], frames: NodeFrames, warnings: list[str]) -> 
     )
 
 
-def agreed_units(units: Sequence[tuple[Units, str]]) -> Units | None:
-    """Return the units on which all files agree; each comes with the place it stands at."""
+def agreed_units(units: Sequence[tuple[Units, str, int]], skipped: list[Skipped]) -> Units | None:
+    """Return the units on which all files agree; each comes with the file and line it stands at.
+
+    The first that differ from them go to `skipped`.
+    """
     if not units:
         return None
-    first, where = units[0]
-    for other, elsewhere in units[1:]:
+    first, where, line = units[0]
+    for other, path, at in units[1:]:
         if abs(other.length_factor / first.length_factor - 1.0) > 1e-6:
-            raise InputError(
-                f"{where} and {elsewhere}: dataset 164 declares different length units "
-                f"(factors {first.length_factor:g} and {other.length_factor:g}); "
-                "export all files in one unit"
+            why = (
+                f"dataset 164 at {where} line {line} declares different length units (factors "
+                f"{first.length_factor:g} and {other.length_factor:g}); export all files in one "
+                "unit"
             )
+            skipped.append(Skipped("dataset 164 (units)", at, why, path, "frame"))
+            break
     return first

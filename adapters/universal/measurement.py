@@ -36,10 +36,14 @@ def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None)
     Raises
     ------
     InputError
-        As `read_universal`; no geometry; neither modes nor frequency responses; a node of the
+        As `read_universal`; nodes, coordinate systems or units that cannot be read; no geometry;
+        neither modes nor frequency responses; a node of the
         shapes without a position.
     """
     content = read_universal(paths)
+    misleading = next((s for s in content.skipped if s.harm == "frame"), None)
+    if misleading is not None:
+        raise InputError(str(misleading))
     names = " and ".join(content.files)
     if content.modes is None and content.frfs is None:
         raise InputError(
@@ -54,7 +58,8 @@ def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None)
     modes, silent = (None, ()) if content.modes is None else measured_directions(content.modes)
     if modes is not None and not len(modes.dofs):
         raise InputError(f"{names}: every mode shape is zero at every node")
-    warnings = [*content.warnings, *silent]
+    lost = [str(s) for s in content.skipped if s.harm == "lost"]
+    warnings = [*content.warnings, *lost, *silent]
     if content.length_unit is None:
         warnings.append(
             f"{names}: the length unit of the test is not declared (dataset 164 is missing or "

@@ -26,7 +26,8 @@ class NodeTable:
     definition: Ints
     displacement: Ints
     coordinates: Floats
-    where: str
+    path: str
+    line: int
 
 
 def read_15(source: Source, section: Section) -> NodeTable:
@@ -34,7 +35,7 @@ def read_15(source: Source, section: Section) -> NodeTable:
     lines = _filled(source.lines(section))
     values = _table(source, section, lines, _15, 1)
     ids, definition, displacement = values[:, :3].astype(np.int64).T
-    return NodeTable(ids, definition, displacement, values[:, 4:7], _where(source, section))
+    return NodeTable(ids, definition, displacement, values[:, 4:7], source.name, section.line)
 
 
 def read_2411(source: Source, section: Section) -> NodeTable:
@@ -47,7 +48,7 @@ def read_2411(source: Source, section: Section) -> NodeTable:
     labels = _table(source, section, lines[0::2], _2411[0], 2).astype(np.int64)
     xyz = _table(source, section, lines[1::2], _2411[1], 2, 1)
     zero = np.zeros(len(labels), np.int64)
-    return NodeTable(labels[:, 0], zero, labels[:, 2], xyz, _where(source, section))
+    return NodeTable(labels[:, 0], zero, labels[:, 2], xyz, source.name, section.line)
 
 
 def read_82(source: Source, section: Section) -> list[Trace]:
@@ -150,10 +151,6 @@ def _filled(lines: list[bytes]) -> list[bytes]:
     while lines and not lines[-1].strip(b" \t\x00"):
         lines.pop()
     return lines
-
-
-def _where(source: Source, section: Section) -> str:
-    return f"{source.name} line {section.line}"
 
 
 def _table(

@@ -19,7 +19,7 @@ from .names import name_of
 from .nodes import NodeTable, read_15, read_18, read_82, read_2411, read_2420
 from .responses import Record, Report, assemble
 from .shapes import Shape, read_55, read_2414
-from .source import Source, open_source
+from .source import DatasetError, Source, open_source
 from .systems import CoordinateSystem
 
 
@@ -43,10 +43,11 @@ class _Gathered:
     traces: list[Trace] = field(default_factory=list)
     shapes: list[Shape] = field(default_factory=list)
     functions: list[Record] = field(default_factory=list)
-    units: list[tuple[Units, str]] = field(default_factory=list)
+    units: list[tuple[Units, str, int]] = field(default_factory=list)
     headers: list[Header] = field(default_factory=list)
     datasets: list[Dataset] = field(default_factory=list)
     skipped: list[Skipped] = field(default_factory=list)
+    failed: list[InputError] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
 
@@ -82,9 +83,9 @@ def read_universal(
     Raises
     ------
     InputError
-        A file that is missing, not universal, cut off or damaged, or shapes and positions that
-        are not finite; the message names the file and line. A function of dataset 58 that cannot
-        be read does not stop the others: it is listed in `skipped`.
+        A file that is missing or not universal, or in which nothing can be read; the message
+        names the file and line. A dataset that is cut off, damaged or not finite does not stop
+        the others: it is listed in `skipped` with its line.
     """
     files = [Path(paths)] if isinstance(paths, str | Path) else [Path(p) for p in paths]
     if not files:
@@ -112,11 +113,13 @@ def _content(files: Sequence[Path], wanted: Selection, exact_lines: bool) -> Uni
             warnings += source.warnings
             for section in source.sections:
                 _read(source, section, gathered)
-        frames = node_frames(gathered.nodes, gathered.systems, warnings)
-        units = agreed_units(gathered.units)
+        frames = node_frames(gathered.nodes, gathered.systems, warnings, gathered.skipped)
+        units = agreed_units(gathered.units, gathered.skipped)
         unit = units.length_unit if units else None
-        report = Report(gathered.skipped, warnings)
+        report = Report(gathered.skipped, warnings, gathered.failed)
         frfs, functions = assemble(gathered.functions, frames.at, unit, report)
+    if gathered.failed and not (len(frames.ids) or gathered.shapes or frfs or functions):
+        raise gathered.failed[0]
     return UniversalContent(
         files=tuple(str(p) for p in files),
         geometry=drawn_geometry(frames, gathered.elements, gathered.traces, unit, warnings),
@@ -134,15 +137,22 @@ def _content(files: Sequence[Path], wanted: Selection, exact_lines: bool) -> Uni
 
 
 def _read(source: Source, section: Section, into: _Gathered) -> None:
-    """Read one dataset into what has been gathered."""
+    """Read one dataset into what has been gathered; list it where it cannot be read."""
     number = section.number
-    if not section.closed and number != 58:  # a function knows by itself whether it is whole
-        raise source.error(
-            section.line,
-            f"the file ends inside dataset {number} that starts here (no closing -1); "
-            "it is cut off, export or copy it again",
-        )
-    count = _READERS.get(number, _skip)(source, section, into)
+    try:
+        if not section.closed and number != 58:  # a function knows by itself whether it is whole
+            raise source.error(
+                section.line,
+                f"the file ends inside dataset {number} that starts here (no closing -1); "
+                "it is cut off, export or copy it again",
+            )
+        count = _READERS.get(number, _skip)(source, section, into)
+    except DatasetError as error:
+        what = f"dataset {number} ({name_of(number)})"
+        harm = "frame" if number in _FRAMES else "lost"
+        into.skipped.append(Skipped(what, error.line, error.why, source.name, harm))
+        into.failed.append(error)
+        count = 0
     into.datasets.append(Dataset(number, section.line, name_of(number), count, source.name))
 
 
@@ -227,11 +237,13 @@ def _model_header(source: Source, section: Section, into: _Gathered) -> int:
 
 def _units(source: Source, section: Section, into: _Gathered) -> int:
     units = read_units(source, section, into.warnings)
-    into.units.append((units, f"{source.name} line {section.line}"))
+    into.units.append((units, source.name, section.line))
     return 1
 
 
 _Reader = Callable[[Source, Section, _Gathered], int]
+_FRAMES = (15, 18, 164, 2411, 2420)
+"""Datasets without which the rest may be read wrongly."""
 _READERS: dict[int, _Reader] = {
     15: _nodes(read_15),
     18: _systems_18,

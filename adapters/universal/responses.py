@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
 
 from ...core.arrays import Floats, Ints, Numbers
 from ...core.dofs import Dofs
+from ...core.errors import InputError
 from ...core.frfs import Frfs
 from .content import Function, Skipped
 from .fields import NotANumber
@@ -40,12 +41,13 @@ class Report:
 
     skipped: list[Skipped]
     warnings: list[str]
+    failed: list[InputError] = field(default_factory=list)
 
     def skip(self, record: Record, why: str, row: int = 0) -> None:
         """List one function as not read."""
         line = record.head.section.line + row
         what = f"dataset 58 ({record.head.kind} {label(record.head)})"
-        self.skipped.append(Skipped(what, line, why, record.source.name))
+        self.skipped.append(Skipped(what, line, why, record.source.name, "lost"))
 
 
 def label(head: Head58) -> str:
@@ -279,11 +281,11 @@ def _refuse(record: Record, why: str, report: Report) -> None:
     """List a function whose data are not what its header announces; the last may be cut off."""
     section = record.head.section
     if not section.closed:
-        raise record.source.error(
-            section.line,
+        why = (
             f"the file ends inside dataset 58 that starts here ({why}); it is cut off, "
-            "export or copy it again",
+            "export or copy it again"
         )
+        report.failed.append(record.source.error(section.line, why))
     report.skip(record, why)
 
 

@@ -13,6 +13,14 @@ from .container import Scan, Section, first_lines
 from .content import Skipped
 
 
+class DatasetError(InputError):
+    """One dataset that cannot be read; the others of its file may be."""
+
+    def __init__(self, path: str, line: int, why: str) -> None:
+        super().__init__(f"{path} line {line}: {why}")
+        self.path, self.line, self.why = path, line, why
+
+
 @dataclass(frozen=True, eq=False)
 class Source:
     """An open universal file with its datasets; a context manager that closes it."""
@@ -53,9 +61,9 @@ class Source:
         lines, at = first_lines(self.read, section.begin, section.end, n)
         return [line.rstrip(b"\r\n") for line in lines], at
 
-    def error(self, line: int, what: str) -> InputError:
+    def error(self, line: int, what: str) -> DatasetError:
         """Return the error that names this file and a line of it."""
-        return InputError(f"{self.name} line {line}: {what}")
+        return DatasetError(self.name, line, what)
 
 
 def open_source(path: Path, exact_lines: bool = True) -> Source:

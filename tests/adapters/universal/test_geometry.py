@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from trueup.adapters.universal import read_universal
+from trueup.adapters.universal import read_test, read_universal
 from trueup.core.errors import InputError
 
 NODES = [(1, 1.0, 2.0, 3.0), (7, -4.0, 5.5, 0.0), (3, 0.0, 0.0, 9.0)]
@@ -43,10 +43,15 @@ def test_a_code_that_contradicts_its_factor_is_told(uff, write):
     assert "the factor is used" in content.warnings[0]
 
 
-def test_files_in_different_units_are_refused(uff, write):
-    paths = [write(uff.units(1.0), "a.unv"), write(uff.units(1000.0, 5), "b.unv")]
-    with pytest.raises(InputError, match=r"a\.unv line 2 and .*b\.unv line 2.*different length"):
-        read_universal(paths)
+def test_files_in_different_units_are_listed_and_refused_as_a_test(uff, write):
+    both = uff.nodes_15(NODES) + uff.shape_55({n[0]: (1, 0, 0) for n in NODES})
+    paths = [write(uff.units(1.0) + both, "a.unv"), write(uff.units(1000.0, 5), "b.unv")]
+    content = read_universal(paths)
+    assert content.length_unit == "m"
+    (listed,) = content.skipped
+    assert (listed.path, listed.line) == (str(paths[1]), 2)
+    with pytest.raises(InputError, match=r"b\.unv line 2: .*a\.unv line 2.*different length"):
+        read_test(paths)
 
 
 def system_18(number, kind, reference, points):
@@ -143,8 +148,37 @@ def test_the_same_node_twice(uff, write):
     content = read_universal(write(uff.nodes_15(NODES) + uff.nodes_2411(NODES[:2])))
     np.testing.assert_array_equal(content.geometry.ids, [1, 7, 3])
     assert "2 node(s) are given more than once" in content.warnings[0]
-    with pytest.raises(InputError, match="node 1 is given twice at different positions"):
-        read_universal(write(uff.nodes_15([*NODES, (1, 0.0, 0.0, 0.0)])))
+
+
+def test_the_same_node_at_two_places_is_listed_and_refused_as_a_test(uff, write):
+    shape = uff.shape_55({n[0]: (1, 0, 0) for n in NODES})
+    path = write(uff.nodes_15([*NODES, (1, 0.0, 0.0, 0.0)]) + shape)
+    content = read_universal(path)
+    np.testing.assert_array_equal(content.geometry.xyz[0], NODES[0][1:])
+    (listed,) = content.skipped
+    assert (listed.what, listed.line) == ("node 1", 2)
+    with pytest.raises(InputError, match=r"line 2: node 1 .*twice at different positions"):
+        read_test(path)
+
+
+def test_a_damaged_dataset_does_not_take_the_others_with_it(uff, write):
+    """Listed with the line of the damage; refused as a test where positions may be wrong."""
+    values = {n[0]: (1, 0, 0) for n in NODES}
+    good_lines = uff.shape_55(values, 7.0)
+    bad = "********".join(good_lines.rsplit("1.00000E+00", 1))
+    assert bad != good_lines
+    good = uff.nodes_15(NODES) + uff.shape_55(values, 5.0)
+    path = write(good + bad + uff.shape_55(values, 9.0))
+    content = read_universal(path)
+    assert content.modes.frequencies_hz.tolist() == [5.0, 9.0]
+    (listed,) = content.skipped
+    lines = path.read_text().splitlines()
+    assert "****" in lines[listed.line - 1]
+    assert any(f"line {listed.line}" in said for said in read_test(path).warnings)
+    cut = write(good + uff.dataset(2420, "         1", "name", "         5         0"), "cut.unv")
+    assert read_universal(cut).skipped[0].harm == "frame"
+    with pytest.raises(InputError, match="system 5 needs 12 values"):
+        read_test(cut)
 
 
 @pytest.mark.parametrize(

@@ -162,10 +162,20 @@ def test_damage_is_one_sentence_with_its_line(uff, write, old, new, said):
         read_universal(write(head + new + tail))
 
 
-def test_a_file_cut_anywhere_in_a_mode_is_refused(uff, write):
+def test_a_file_cut_anywhere_in_a_mode_keeps_the_modes_before(uff, write):
     text = uff.shape_55(VALUES, 1.0) + uff.shape_55(VALUES, 2.0)
     second = len(text) // 2
     for cut in range(second + 15, len(text) - 5, 7):
+        content = read_universal(write(text[:cut]))
+        assert content.modes.frequencies_hz.tolist() == [1.0]
+        (listed,) = content.skipped
+        assert "cut off" in listed.why
+        assert listed.line == text[:second].count("\n") + 2
+
+
+def test_a_file_cut_anywhere_in_its_only_mode_is_refused(uff, write):
+    text = uff.shape_55(VALUES, 1.0)
+    for cut in range(15, len(text) - 5, 7):
         with pytest.raises(InputError, match="cut off"):
             read_universal(write(text[:cut]))
 
