@@ -22,6 +22,7 @@ _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _FIRST = re.compile(rb"[ \t\r\n\x00]*-1[ \t]*(?=[\r\n]|\Z)")
 _SPACES = b" \t"
+_BLANKS = b" \t\r\n\x00"
 
 Read = Callable[[int, int], bytes]
 """Gives the bytes of a file between two offsets."""
@@ -152,6 +153,8 @@ class Scan:
         if full < 2 or end + rest > len(self.data) or self._after_line(end - pitch) != end:
             return None
         last = self._after_line(end) if rest else end
+        if rest and self.data[end:last].rstrip(_BLANKS).endswith(self._mark):
+            return None  # the closing -1 is glued to the last line
         closing = self._closing(last)
         if closing is None or self.data[last - 1] not in b"\r\n":
             return None
@@ -208,7 +211,7 @@ class Scan:
     def _blank(self, at: int, stop: int) -> int | None:
         """Start of the next line if only blanks stand from `at` to the line end, else None."""
         data = self.data
-        while at < stop and data[at] in b" \t\x00":
+        while at < stop and data[at] in b" \t\x00\x1a":
             at += 1
         if at >= len(data):
             return len(data)

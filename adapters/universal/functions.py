@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -147,6 +148,8 @@ def read_head(source: Source, section: Section) -> Head58:
             section.line + 7, f"dataset 58: {error.text!r} is not a number"
         ) from None
     steps = [*steps, 0.0, 0.0][: max(2, len(steps))]
+    if layout[2] != 0 and not all(map(math.isfinite, steps[:2])):
+        raise source.error(section.line + 7, "dataset 58: its start or step is not a finite number")
     return Head58(
         section,
         ids,
