@@ -18,8 +18,9 @@ from .systems import CoordinateSystem
 class Skipped:
     """Something in a file that was not read: what, where and why.
 
-    `harm` is "" for what trueup does not read by design, "lost" for content that is damaged, and
-    "frame" where without it the rest may stand at wrong places, in wrong axes or units.
+    `harm` is "" for what trueup does not read by design, "lost" for damaged content that the rest
+    does without (a function, elements, a header), and "test" where the rest is no sound test
+    without it (a mode, positions, axes, units).
     """
 
     what: str

@@ -104,10 +104,10 @@ def _first_of_each(
         table, count = tables[np.flatnonzero(apart)[0]], int(np.count_nonzero(apart))
         what = f"node {ids[apart][0]}" + (f" and {count - 1} more" if count > 1 else "")
         why = (
-            "given twice at different positions, the first is kept; remove one, or give files of "
-            "one test only"
+            f"{what} given twice at different positions, the first is kept; remove one, or give "
+            "files of one test only"
         )
-        skipped.append(Skipped(what, table.line, why, table.path, "frame"))
+        skipped.append(Skipped(what, table.line, why, table.path, "test"))
     same = len(ids) - len(unique) - int(np.count_nonzero(apart))
     if same:
         warnings.append(f"{where}: {same} node(s) are given more than once at the same position")

@@ -79,6 +79,6 @@ def agreed_units(units: Sequence[tuple[Units, str, int]], skipped: list[Skipped]
                 f"{first.length_factor:g} and {other.length_factor:g}); export all files in one "
                 "unit"
             )
-            skipped.append(Skipped("dataset 164 (units)", at, why, path, "frame"))
+            skipped.append(Skipped("dataset 164 (units)", at, why, path, "test"))
             break
     return first

@@ -36,14 +36,14 @@ def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None)
     Raises
     ------
     InputError
-        As `read_universal`; nodes, coordinate systems or units that cannot be read; no geometry;
+        As `read_universal`; modes, nodes, systems or units that cannot be read; no geometry;
         neither modes nor frequency responses; a node of the
         shapes without a position.
     """
     content = read_universal(paths)
-    misleading = next((s for s in content.skipped if s.harm == "frame"), None)
-    if misleading is not None:
-        raise InputError(str(misleading))
+    damaged = next((s for s in content.skipped if s.harm == "test"), None)
+    if damaged is not None:
+        raise InputError(f"{damaged.path} line {damaged.line}: {damaged.why}")
     names = " and ".join(content.files)
     if content.modes is None and content.frfs is None:
         raise InputError(

@@ -162,7 +162,7 @@ def test_the_same_node_at_two_places_is_listed_and_refused_as_a_test(uff, write)
 
 
 def test_a_damaged_dataset_does_not_take_the_others_with_it(uff, write):
-    """Listed with the line of the damage; refused as a test where positions may be wrong."""
+    """Listed with the line of the damage; a test without it is refused."""
     values = {n[0]: (1, 0, 0) for n in NODES}
     good_lines = uff.shape_55(values, 7.0)
     bad = "********".join(good_lines.rsplit("1.00000E+00", 1))
@@ -174,9 +174,10 @@ def test_a_damaged_dataset_does_not_take_the_others_with_it(uff, write):
     (listed,) = content.skipped
     lines = path.read_text().splitlines()
     assert "****" in lines[listed.line - 1]
-    assert any(f"line {listed.line}" in said for said in read_test(path).warnings)
+    with pytest.raises(InputError, match=f"line {listed.line}: "):
+        read_test(path)
     cut = write(good + uff.dataset(2420, "         1", "name", "         5         0"), "cut.unv")
-    assert read_universal(cut).skipped[0].harm == "frame"
+    assert read_universal(cut).skipped[0].harm == "test"
     with pytest.raises(InputError, match="system 5 needs 12 values"):
         read_test(cut)
 
