@@ -54,11 +54,14 @@ class ReducedModes:
         Coordinates in the basis, mass-orthonormal.
     rigid_body_modes : int
         Of the full model.
+    whole : ReducedModes, optional
+        All modes of the basis that these are the lowest of, for their derivatives.
     """
 
     eigenvalues: Floats
     vectors: Floats
     rigid_body_modes: int
+    whole: ReducedModes | None = field(default=None, repr=False)
 
     @property
     def frequencies_hz(self) -> Floats:
@@ -68,7 +71,10 @@ class ReducedModes:
     def take(self, count: int) -> ReducedModes:
         """Return the lowest `count` modes."""
         return ReducedModes(
-            self.eigenvalues[:count], self.vectors[:, :count], min(self.rigid_body_modes, count)
+            self.eigenvalues[:count],
+            self.vectors[:, :count],
+            min(self.rigid_body_modes, count),
+            self.whole or self,
         )
 
 
@@ -177,6 +183,7 @@ class ReducedModel:
         modes: Sequence[int] | Ints | Floats,
         parameters: Sequence[int],
         sensors: Floats | None = None,
+        solution: ReducedModes | None = None,
     ) -> Sensitivities:
         """Differentiate modes within the basis, exactly.
 
@@ -188,12 +195,15 @@ class ReducedModel:
             there are modes of interest.
         sensors : (n_sensor, n_basis) float, optional
             C Q of the sensors.
+        solution : ReducedModes, optional
+            At `p`, with its `whole`: repeated modes are those that the coefficients combine.
 
         Returns
         -------
         Sensitivities
         """
-        everything = self._finite(self.solve(p, self.size))
+        whole = None if solution is None else solution.whole
+        everything = self._finite(whole or self.solve(p, self.size))
         count = len(everything.eigenvalues)
         given = np.asarray(modes)
         if given.ndim == 2:

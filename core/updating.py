@@ -4,24 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.optimize import lsq_linear
 
 from .arrays import Floats, Numbers, frozen
-from .correlate import Correlation, Criteria, Pair, correlate
-from .correlation import realised
-from .eigen import Eigensolution, solve
+from .correlate import Criteria
+from .eigen import Eigensolution
 from .errors import InputError
 from .model import Model
-from .residuals import KINDS, Residuals, Weights, eigenvalue_residuals, shape_residuals
-from .sensitivity import sensitivities
+from .objective import Objective, State, Target
+from .orders import FullOrder, Order, reduce_around
+from .residuals import KINDS, Weights
 
-_UNIDENTIFIABLE = 1e-4
-_LEAST_GAIN = 1e-3
-_KEPT = 0.75
-"""Share of the pairs that a step must keep to be judged by those alone."""
+__all__ = ["Iteration", "Stage", "State", "Target", "Updated", "update"]
+
+_REACH = 1.5
+"""A reduced model is left where a factor is this many times, or this part of, that of its basis."""
+
+_AGREE = 0.1
+"""Of the tolerance: relative difference of eigenvalues, full and reduced, that ends an update."""
+
+_SAME = 1e-6
+"""Reduced objectives this close to the full one where the walk ends are not told apart from it."""
+
+_HALVINGS = 5
+_NO_STEP = "no step lowers the objective further"
 
 
 @dataclass(frozen=True)
@@ -48,26 +56,6 @@ class Stage:
 
 
 @dataclass(frozen=True, eq=False)
-class Target:
-    """The test at its sensors: what the update aims at.
-
-    Parameters
-    ----------
-    frequencies_hz : (n_test,) float
-    shapes : (n_sensor, n_test) float or complex
-    sensors : (n_sensor, n_free) sparse
-        Sensor displacements from the free degrees of freedom of the model.
-    modes : tuple of int, optional
-        Test modes that the update may use; default all.
-    """
-
-    frequencies_hz: Floats
-    shapes: Numbers
-    sensors: sp.csr_matrix
-    modes: tuple[int, ...] | None = None
-
-
-@dataclass(frozen=True, eq=False)
 class Iteration:
     """One entry of the history; `deviations_percent` by test mode (NaN where unpaired)."""
 
@@ -79,21 +67,12 @@ class Iteration:
 
 
 @dataclass(frozen=True, eq=False)
-class State:
-    """The model at one parameter point, correlated."""
-
-    factors: Floats
-    solution: Eigensolution
-    correlation: Correlation
-    objective: float
-
-
-@dataclass(frozen=True, eq=False)
 class Updated:
     """The outcome of an update.
 
     `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
-    `at_bound` (n_parameter,) bool; `stopped` says why the iteration ended.
+    `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
+    the iteration ended.
     """
 
     factors: Floats
@@ -123,7 +102,10 @@ def update(
     the residuals and takes the bounded step of (GᵀWG + W_p)Δp = GᵀWΔz₀; a step that does not
     lower the objective is halved. A test mode without a partner costs what a pair at the limits
     of the criteria would, so gaining a pair is always a gain; losing a pair at the MAC limit
-    does not stop a step that brings the other pairs closer.
+    does not stop a step that brings the frequencies of the other pairs closer.
+
+    The iterations run on a reduced model, made around the point where they start. Where they
+    end the full model is solved; unless both agree there, a reduced model is made anew.
 
     Parameters
     ----------
@@ -157,43 +139,33 @@ def update(
     for s in stages:
         if not all(0 <= k < known for k in s.parameters):
             raise InputError(f"a stage refers to parameter {max(s.parameters)} of {known}")
-    problem = _Problem(model, target, criteria, weights, n_modes)
-    p = np.array(model.deck_point)
-    state = before = problem.evaluate(p, stages[0].residuals)
+    full = FullOrder(model, target.sensors, n_modes)
+    objective = Objective(model.parameters, target, criteria, weights)
+    before = objective.at(full, np.array(model.deck_point), stages[0].residuals)
     if not before.correlation.pairs:
         raise InputError(
             "no test mode pairs with the model within the MAC limit "
             f"{criteria.mac_min:g} and the frequency tolerance "
             f"{criteria.frequency_tolerance:g}; loosen them or check the alignment"
         )
-    solves, stopped = 1, "no stage"
     history: list[Iteration] = []
 
     def note(stage: int, s: State) -> None:
-        history.append(problem.entry(len(history), stage, s))
+        history.append(_entry(len(history), stage, s, len(target.frequencies_hz)))
         progress(history[-1])
 
-    note(0, state)
+    note(0, before)
+    state, solves, stopped = before, 1, "no stage"
+    before = _without_factor(before)
     for number, stage in enumerate(stages):
-        state = replace(state, objective=problem.objective(state.correlation, stage.residuals))
-        stopped = f"{stage.max_iterations} iterations"
-        for _ in range(stage.max_iterations):
-            step = problem.step(state, stage)
-            trial, used = problem.descend(state, step, stage)
-            solves += used
-            if trial is None:
-                stopped = "no step lowers the objective further"
-                break
-            moved = float(np.max(np.abs(trial.factors / state.factors - 1.0)))
-            state = trial
-            note(number, state)
-            if moved < tolerance:
-                stopped = f"factors moved less than {tolerance:g}"
-                break
+        state = replace(state, objective=objective.value(state.correlation, stage.residuals))
+        state, used, stopped = _work_off(
+            objective, full, state, stage, tolerance, partial(note, number)
+        )
+        solves += used
     active = sorted({k for s in stages for k in s.parameters})
-    error, doubtful = problem.standard_error(state, active, stages[-1].residuals)
-    warnings = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
-    lower, upper = _bounds(model)
+    error, doubtful = objective.standard_error(full, state, active, stages[-1].residuals)
+    lower, upper = objective.bounds
     at_bound = np.isclose(state.factors, lower, rtol=1e-6) | np.isclose(
         state.factors, upper, rtol=1e-6
     )
@@ -202,12 +174,107 @@ def update(
         frozen(error),
         frozen(at_bound),
         before,
-        state,
+        _without_factor(state),
         tuple(history),
         solves,
         stopped,
-        warnings,
+        (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1)),
     )
+
+
+def _work_off(
+    objective: Objective,
+    full: FullOrder,
+    state: State,
+    stage: Stage,
+    tolerance: float,
+    note: Callable[[State], None],
+) -> tuple[State, int, str]:
+    """Work off a stage; return where it ends, the full solves that it took and why it ended."""
+    solves, left = 0, stage.max_iterations
+    while left:
+        assert isinstance(state.solution, Eigensolution)
+        near = reduce_around(full, state.factors, state.solution, stage.parameters)
+        trail, reason = _walk(objective, near, state, stage, left, tolerance)
+        if not trail:
+            return state, solves, reason
+        arrived = objective.at(full, trail[-1].factors, stage.residuals)
+        solves += 1
+        if not objective.closer(arrived, state, stage.residuals):
+            found, used = _descend(objective, full, state, stage)
+            solves += used
+            if found is None:
+                return state, solves, _NO_STEP
+            trail, reason, arrived = [found], "", found
+        for s in trail[:-1]:
+            if abs(s.objective - arrived.objective) > _SAME * arrived.objective:
+                note(s)
+        note(arrived)
+        left -= len(trail)
+        state = arrived
+        if reason and _agree(trail[-1], arrived, _AGREE * tolerance):
+            return state, solves, reason
+    return state, solves, f"{stage.max_iterations} iterations"
+
+
+def _walk(
+    objective: Objective,
+    near: Order,
+    start: State,
+    stage: Stage,
+    most: int,
+    tolerance: float,
+) -> tuple[list[State], str]:
+    """Iterate on a reduced model; return the states and why it ended, empty if it should go on."""
+    state = objective.at(near, start.factors, stage.residuals)
+    trail: list[State] = []
+    while len(trail) < most:
+        trial, _ = _descend(objective, near, state, stage)
+        if trial is None:
+            return trail, _NO_STEP
+        moved = float(np.max(np.abs(trial.factors / state.factors - 1.0)))
+        state = trial
+        trail.append(trial)
+        if moved < tolerance:
+            return trail, f"factors moved less than {tolerance:g}"
+        if np.max(np.abs(np.log(state.factors / start.factors))) > np.log(_REACH):
+            break
+    return trail, ""
+
+
+def _descend(
+    objective: Objective, order: Order, state: State, stage: Stage
+) -> tuple[State | None, int]:
+    """Take the step, halved until it is one; return where it leads and how many were tried."""
+    lower, upper = objective.bounds
+    step = objective.step(order, state, stage.parameters, stage.residuals)
+    for halving in range(_HALVINGS):
+        p = np.clip(state.factors + step / 2**halving, lower, upper)
+        trial = objective.at(order, p, stage.residuals)
+        if objective.closer(trial, state, stage.residuals):
+            return trial, halving + 1
+    return None, _HALVINGS
+
+
+def _agree(reduced: State, full: State, tolerance: float) -> bool:
+    """Whether both pair alike, with eigenvalues that are the same to a tolerance."""
+    by_test = [{q.test: q.analysis_hz for q in s.correlation.pairs} for s in (reduced, full)]
+    if by_test[0].keys() != by_test[1].keys():
+        return False
+    ratio = [(by_test[0][k] / by_test[1][k]) ** 2 - 1.0 for k in by_test[0]]
+    return bool(np.max(np.abs(ratio), initial=0.0) < max(tolerance, 1e-9))
+
+
+def _without_factor(state: State) -> State:
+    assert isinstance(state.solution, Eigensolution)
+    return replace(state, solution=replace(state.solution, factor=None))
+
+
+def _entry(iteration: int, stage: int, s: State, n_test: int) -> Iteration:
+    deviations = np.full(n_test, np.nan)
+    for q in s.correlation.pairs:
+        deviations[q.test] = q.deviation_percent
+    return Iteration(iteration, stage, s.objective, s.factors, frozen(deviations))
 
 
 def _lost_pairs(before: State, after: State) -> tuple[str, ...]:
@@ -227,158 +294,3 @@ def _unfinished(stopped: str, iterations: int) -> tuple[str, ...]:
     if not iterations:
         return ("no step of the parameters brings the model closer to the test; nothing changed",)
     return ()
-
-
-def _bounds(model: Model) -> tuple[Floats, Floats]:
-    return (
-        np.array([q.lower for q in model.parameters]),
-        np.array([q.upper for q in model.parameters]),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Problem:
-    model: Model
-    target: Target
-    criteria: Criteria
-    weights: Weights
-    n_modes: int
-
-    def evaluate(self, p: Floats, residuals: str) -> State:
-        solution = solve(self.model, n_modes=self.n_modes, p=p)
-        hz = np.sqrt(np.maximum(solution.eigenvalues, 0.0)) / (2.0 * np.pi)
-        found = correlate(
-            hz,
-            np.asarray(self.target.sensors @ solution.vectors),
-            self.target.frequencies_hz,
-            self.target.shapes,
-            self.criteria,
-            solution.rigid_body_modes,
-        )
-        return State(frozen(p), solution, found, self.objective(found, residuals))
-
-    def used(self, c: Correlation) -> list[Pair]:
-        allowed = self.target.modes
-        return [q for q in c.pairs if allowed is None or q.test in allowed]
-
-    def objective(self, c: Correlation, residuals: str) -> float:
-        count = len(self.target.frequencies_hz if self.target.modes is None else self.target.modes)
-        return self._cost(self.used(c), count, residuals)
-
-    def _cost(self, pairs: Sequence[Pair], count: int, residuals: str) -> float:
-        """Equation (2) over pairs, with what is due for each of `count` that has none."""
-        lam = np.array([(q.analysis_hz / q.test_hz) ** 2 - 1.0 for q in pairs])
-        off = np.array([1.0 - q.mac for q in pairs])
-        w, missing = self.weights, count - len(pairs)
-        frequency = np.sum((lam / (2.0 * w.frequency)) ** 2)
-        frequency += missing * (self.criteria.frequency_tolerance / w.frequency) ** 2
-        shape = np.sum(off) / w.shape**2 + missing * (1.0 - self.criteria.mac_min) / w.shape**2
-        parts = {"frequencies": (frequency,), "shapes": (shape,), "both": (frequency, shape)}
-        return float(sum(parts[residuals]))
-
-    def linearise(self, state: State, parameters: Sequence[int], residuals: str) -> Residuals:
-        pairs = self.used(state.correlation)
-        T = self._turned(state.correlation, pairs)
-        values, slopes, shapes = sensitivities(
-            self.model,
-            state.factors,
-            state.solution,
-            T,
-            tuple(parameters),
-            self.target.sensors if residuals != "frequencies" else None,
-        )
-        parts = []
-        if residuals != "shapes":
-            parts.append(eigenvalue_residuals(pairs, values, slopes, self.weights.frequency))
-        if residuals != "frequencies" and shapes is not None:
-            test = self._test_shapes(state.correlation)[:, [q.test for q in pairs]]
-            analysis = np.asarray(self.target.sensors @ (state.solution.vectors @ T))
-            parts.append(shape_residuals(analysis, shapes, test, self.weights.shape))
-        return Residuals(
-            np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
-        )
-
-    def _test_shapes(self, c: Correlation) -> Floats:
-        """Real test shapes as the pairs see them: turned where the test is the side to turn."""
-        shapes = realised(self.target.shapes)
-        if self.criteria.rotate != "test":
-            return shapes
-        size = np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-        return np.asarray((shapes / size) @ c.transformation)
-
-    def _turned(self, c: Correlation, pairs: Sequence[Pair]) -> Floats:
-        n = c.mac.shape[1]
-        T = c.transformation if self.criteria.rotate == "analysis" else np.eye(n)
-        return np.asarray(T[:, [q.analysis for q in pairs]])
-
-    def step(self, state: State, stage: Stage) -> Floats:
-        lin = self.linearise(state, stage.parameters, stage.residuals)
-        free = list(stage.parameters)
-        lower, upper = _bounds(self.model)
-        prior = np.sqrt(
-            self.weights.regularisation * np.array([self.model.parameters[k].weight for k in free])
-        )
-        p = np.asarray(state.factors)[free]
-        step = lsq_linear(
-            np.vstack([lin.gradient, np.diag(prior)]),
-            np.concatenate([-lin.values, np.zeros(len(free))]),
-            bounds=(
-                np.maximum(lower[free] - p, -0.5 * p) - 1e-12,
-                np.minimum(upper[free] - p, p) + 1e-12,
-            ),
-        ).x
-        full = np.zeros(len(self.model.parameters))
-        full[free] = step
-        return full
-
-    def descend(self, state: State, step: Floats, stage: Stage) -> tuple[State | None, int]:
-        lower, upper = _bounds(self.model)
-        for halving in range(5):
-            p = np.clip(state.factors + step / 2**halving, lower, upper)
-            trial = self.evaluate(p, stage.residuals)
-            if trial.objective < state.objective or self._closer(trial, state, stage.residuals):
-                return trial, halving + 1
-        return None, 5
-
-    def _closer(self, trial: State, state: State, residuals: str) -> bool:
-        """Whether most of the pairs are still pairs, and together closer than before."""
-        old = {q.test: q for q in self.used(state.correlation)}
-        new = {q.test: q for q in self.used(trial.correlation)}
-        common = sorted(old.keys() & new.keys())
-        if len(common) < _KEPT * len(old):
-            return False
-        cost = [self._cost([s[k] for k in common], len(common), residuals) for s in (new, old)]
-        return cost[0] < (1.0 - _LEAST_GAIN) * cost[1]
-
-    def standard_error(
-        self, state: State, active: Sequence[int], residuals: str
-    ) -> tuple[Floats, tuple[str, ...]]:
-        error = np.full(len(self.model.parameters), np.nan)
-        if not self.used(state.correlation):
-            return error, ()
-        lin = self.linearise(state, active, residuals)
-        _, s, vt = np.linalg.svd(lin.gradient, full_matrices=False)
-        kinds = 2 if residuals == "both" else 1
-        data = kinds * len(self.used(state.correlation))
-        scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
-        sound = s > _UNIDENTIFIABLE * s[0] if s.size and s[0] > 0.0 else np.zeros(len(s), bool)
-        said = vt[sound] ** 2 / s[sound, None] ** 2
-        error[list(active)] = np.sqrt(np.sum(said, axis=0) * scatter)
-        lost = np.vstack([vt[~sound], np.zeros((0, len(active)))])
-        names = [self.model.parameters[k].name for k in active]
-        doubtful = []
-        for direction in lost:
-            part = [names[i] for i in np.flatnonzero(np.abs(direction) > 0.1)]
-            error[[active[i] for i in np.flatnonzero(np.abs(direction) > 0.1)]] = np.nan
-            doubtful.append(
-                f"the test does not determine {' and '.join(part)}: "
-                + ("a common change leaves" if len(part) > 1 else "a change leaves")
-                + " every residual the same; fix one of them"
-            )
-        return error, tuple(doubtful)
-
-    def entry(self, iteration: int, stage: int, s: State) -> Iteration:
-        deviations = np.full(len(self.target.frequencies_hz), np.nan)
-        for q in s.correlation.pairs:
-            deviations[q.test] = q.deviation_percent
-        return Iteration(iteration, stage, s.objective, s.factors, frozen(deviations))

@@ -10,7 +10,6 @@ import typer
 from ...core.errors import InputError
 from ..console import emit_json, speaks, stderr, stdout, working
 from ..options import JsonOption, Output, QuietOption, VerboseOption
-from ..pipeline import naming
 
 
 def solve(
@@ -29,6 +28,7 @@ def solve(
     """Find the normal modes with the embedded solver."""
     from ...adapters.nastran import build_model, read_deck, weight
     from ...core import eigen
+    from ..pipeline import naming
 
     output = Output(json=json, quiet=quiet, verbose=verbose)
     _check(number, fmax, out)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core import updating
+from trueup.core import objective, orders
 from trueup.core.correlate import Criteria
 from trueup.core.dofs import Dofs
 from trueup.core.eigen import solve
@@ -179,7 +179,7 @@ def test_a_pair_lost_at_the_mac_limit_does_not_stop_the_others(monkeypatch):
     and the loss is told."""
     model = chain([range(N)])
     target = measured(model, [1.5])
-    true_correlate = updating.correlate
+    true_correlate = objective.correlate
 
     def gated(hz, shapes, test_hz, test_shapes, criteria, rigid):
         found = true_correlate(hz, shapes, test_hz, test_shapes, criteria, rigid)
@@ -189,7 +189,7 @@ def test_a_pair_lost_at_the_mac_limit_does_not_stop_the_others(monkeypatch):
         return found
 
     start = np.sqrt(solve(model, n_modes=1).eigenvalues[0]) / (2.0 * np.pi)
-    monkeypatch.setattr(updating, "correlate", gated)
+    monkeypatch.setattr(objective, "correlate", gated)
     done = update(model, target, [Stage((0,), "frequencies", 20)], n_modes=8, tolerance=1e-6)
     assert done.factors[0] == pytest.approx(1.5, rel=1e-4)
     assert any("test mode 4 paired with the model as given" in w for w in done.warnings)
@@ -239,7 +239,7 @@ def test_every_full_order_solve_is_counted(monkeypatch):
         calls.append(1)
         return solve(*words, **options)
 
-    monkeypatch.setattr(updating, "solve", counted)
+    monkeypatch.setattr(orders, "solve", counted)
     model = chain(HALVES)
     done = update(model, measured(model, [1.3, 0.8]), [Stage((0, 1))], n_modes=8)
     assert done.eigensolutions == len(calls)
@@ -325,8 +325,11 @@ def test_residuals_and_objective_speak_of_the_same_shapes(ring, rotate):
     """The squared residuals of a linearisation add up to the objective of its pairs."""
     model = ring(20, parameters=[("E", [0, 1, 2, 9, 10]), ("rho", [4, 5, 6])])
     target = measured(model, [1.25, 1.3], slice(6, 18))
-    problem = updating._Problem(model, target, Criteria(rotate=rotate, mac_min=0.3), Weights(), 24)
-    state = problem.evaluate(np.ones(2), "shapes")
+    full = orders.FullOrder(model, target.sensors, 24)
+    what = objective.Objective(
+        model.parameters, target, Criteria(rotate=rotate, mac_min=0.3), Weights()
+    )
+    state = what.at(full, np.ones(2), "shapes")
     missing = 12 - len(state.correlation.pairs)
-    lin = problem.linearise(state, [0, 1], "shapes")
+    lin = what.linearise(full, state, [0, 1], "shapes")
     assert np.sum(lin.values**2) + missing * 0.7 / 0.1**2 == pytest.approx(state.objective)

@@ -1,0 +1,96 @@
+"""A model to be solved again and again: in full, or reduced around one parameter point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+
+from .arrays import Floats
+from .eigen import Eigensolution, solve
+from .model import Model
+from .reduced import ReducedModel, ReducedModes, build_reduced
+from .sensitivity import Sensitivities, Spectral, sensitivities
+
+
+class Order(Protocol):
+    """Modes and their derivatives at any factors, seen by the sensors of a test."""
+
+    @property
+    def sensors(self) -> sp.csr_matrix | Floats:
+        """(n_sensor, n): sensor displacements from the vectors of `solve`."""
+        ...
+
+    def solve(self, p: Floats) -> Spectral:
+        """Modes at the factors `p`, (n_parameter,)."""
+        ...
+
+    def sensitivities(
+        self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool
+    ) -> Sensitivities:
+        """As `sensitivity.sensitivities`, shapes at the sensors where asked for."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class FullOrder:
+    """The model itself."""
+
+    model: Model
+    sensors: sp.csr_matrix
+    n_modes: int
+
+    def solve(self, p: Floats) -> Eigensolution:
+        """Find and check the modes; the factor is kept."""
+        return solve(self.model, n_modes=self.n_modes, p=p, keep_factor=True)
+
+    def sensitivities(
+        self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool
+    ) -> Sensitivities:
+        """Differentiate by the full matrices."""
+        assert isinstance(solution, Eigensolution)
+        at = self.sensors if with_shapes else None
+        return sensitivities(self.model, p, solution, T, tuple(active), at)
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedOrder:
+    """The model on the modes of one parameter point and their static answers to parameters."""
+
+    reduced: ReducedModel
+    sensors: Floats
+    n_modes: int
+
+    def solve(self, p: Floats) -> ReducedModes:
+        """Find the modes within the basis."""
+        return self.reduced.solve(p, self.reduced.size).take(self.n_modes)
+
+    def sensitivities(
+        self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool
+    ) -> Sensitivities:
+        """Differentiate within the basis."""
+        assert isinstance(solution, ReducedModes)
+        at = self.sensors if with_shapes else None
+        return self.reduced.sensitivities(p, T, tuple(active), at, solution)
+
+
+def reduce_around(
+    full: FullOrder, p: Floats, solution: Eigensolution, active: Sequence[int]
+) -> ReducedOrder:
+    """Reduce a model around the factors `p`, where its modes are `solution`.
+
+    Parameters
+    ----------
+    full : FullOrder
+    p : (n_parameter,) float
+    solution : Eigensolution
+    active : sequence of int
+        Parameters that will move.
+    """
+    count = len(solution.eigenvalues)
+    elastic = np.arange(min(solution.rigid_body_modes, count - 1), count)
+    reduced = build_reduced(full.model, p, elastic, tuple(active), solution=solution)
+    return ReducedOrder(reduced, reduced.project(full.sensors.T).T, count)
