@@ -244,6 +244,7 @@ def test_the_wheel_works_on_its_own(tmp_path: Path) -> None:
     # The libraries that trueup needs come from the interpreter that runs the tests.
     borrowed = [p for p in sys.path if p.endswith("site-packages")]
     Path(site, "borrowed.pth").write_text("\n".join([str(tmp_path / "lib"), *borrowed]) + "\n")
+    alone = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     script = (
         "import trueup, json\nfrom importlib.resources import files\n"
         "print(trueup.__file__)\n"
@@ -251,14 +252,19 @@ def test_the_wheel_works_on_its_own(tmp_path: Path) -> None:
         "print(trueup.build_model(deck).n_free)\n"
     )
     ran = subprocess.run(
-        [own, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
+        [own, "-c", script], cwd=tmp_path, env=alone, capture_output=True, text=True, check=False
     )
     assert ran.returncode == 0, ran.stderr
     where, free = ran.stdout.splitlines()
     assert Path(where).is_relative_to(tmp_path)
     assert int(free) > 1000
     said = subprocess.run(
-        [own, "-m", "trueup", "--version"], cwd=tmp_path, capture_output=True, text=True, check=True
+        [own, "-m", "trueup", "--version"],
+        cwd=tmp_path,
+        env=alone,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert said.stdout == f"trueup {trueup.__version__}\n"
     names = subprocess.run(

@@ -125,11 +125,13 @@ def test_the_demo_shows_the_paper(
         assert (folder / path.name).read_bytes() == path.read_bytes()
     runs = sorted((folder / "runs").iterdir())
     results = [json.loads((r / "result.json").read_text()) for r in runs]
-    assert [r["schema"].split("/")[1] for r in results] == ["correlate"] * 2 + ["update"] * 3
+    verbs = [r["schema"].split("/")[1] for r in results]
+    assert verbs == ["correlate"] * 2 + ["update"] * 3 + ["discover"]
     gaps = [r.get("after", r)["summary"] for r in results]
     assert gaps[1]["pairs"] >= 2 * gaps[0]["pairs"]
     for gap in gaps[2:]:
         assert gap["mean_abs_deviation_percent"] < 0.3 * gaps[1]["mean_abs_deviation_percent"]
+    assert gaps[5]["pairs"] >= max(g["pairs"] for g in gaps[:5]) + 5
     for run in runs:
         assert (run / "report.html").is_file()
     assert "What each step brought" in said.out
