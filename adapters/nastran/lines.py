@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from ...core.errors import InputError
-from .editing.includes import locate_include, parse_include
-
-_LONGEST_INCLUDE = 60
+from .editing.decktext import DeckText, read_deck_text
 
 
 class Line(NamedTuple):
@@ -49,9 +48,9 @@ def read_sections(path: Path) -> Sections:
     InputError
         A file that cannot be read, an INCLUDE that names no file or includes itself.
     """
-    files: list[Path] = []
-    lines: list[Line] = []
-    _expand(Path(path), files, (), None, lines)
+    deck = read_deck_text(path)
+    lines = list(_lines(deck))
+    files = [f.path for f in deck.files]
     marks = {"CEND": -1, "BEGIN": -1}
     for k, line in enumerate(lines):
         head = line.text[:80].split("$", 1)[0].upper().split()
@@ -69,7 +68,7 @@ def read_sections(path: Path) -> Sections:
     if cend >= 0 > begin:
         raise InputError(f"{path}: there is CEND but no BEGIN BULK: the deck is not complete")
     case_start = cend + 1
-    bulk = tuple(_until_enddata(lines[begin + 1 :]))
+    bulk = tuple(lines[begin + 1 :])
     case = lines[case_start:begin] if begin >= 0 else []
     return Sections(tuple(files), tuple(lines[: max(cend, 0)]), tuple(case), bulk)
 
@@ -78,53 +77,15 @@ def _is_bulk(head: list[str]) -> bool:
     return len(head) == 1 or (len(head) == 2 and head[1].startswith("BULK"))
 
 
-def _until_enddata(lines: list[Line]) -> list[Line]:
-    for k, line in enumerate(lines):
-        if line.text[:7].upper() == "ENDDATA":
-            return lines[:k]
-    return lines
+def _lines(deck: DeckText) -> Iterator[Line]:
+    texts = [_texts(f.data) for f in deck.files]
+    for file, first, stop in deck.stretches:
+        yield from (Line(texts[file][row], file, row + 1) for row in range(first, stop))
 
 
-def _read_text(path: Path, asked: str) -> list[str]:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{asked}cannot read {path}: {error.strerror}") from None
-    if b"\0" in data[:4096]:
-        raise InputError(f"{asked}{path} is not a text file: a Nastran deck is expected")
+def _texts(data: bytes) -> list[str]:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     return re.split(r"\r\n|\n|\r", text)
-
-
-def _expand(
-    path: Path, files: list[Path], parents: tuple[Path, ...], asked: str | None, lines: list[Line]
-) -> bool:
-    """Append the lines of a file and of what it includes; return whether ENDDATA was met.
-
-    Nastran reads nothing after it: an INCLUDE down there may name a file that does not exist.
-    """
-    texts = _read_text(path, "" if asked is None else f"{asked}: ")
-    file = len(files)
-    files.append(path)
-    parents = (*parents, path.resolve())
-    k = 0
-    while k < len(texts):
-        head = texts[k][:7].upper()
-        if head != "INCLUDE" or texts[k][7:8].isalnum():
-            lines.append(Line(texts[k], file, k + 1))
-            if head == "ENDDATA":
-                return True
-            k += 1
-            continue
-        here = f"{path} line {k + 1}"
-        name, used = parse_include(texts[k : k + _LONGEST_INCLUDE], here)
-        child = locate_include(name, path, files[0], here)
-        if child.resolve() in parents:
-            raise InputError(f"{here}: INCLUDE {name!r} includes itself")
-        if _expand(child, files, parents, here, lines):
-            return True
-        k += used
-    return False

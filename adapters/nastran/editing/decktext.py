@@ -37,6 +37,14 @@ class Segment(NamedTuple):
     part: str
 
 
+class Stretch(NamedTuple):
+    """Consecutive lines of one file as Nastran meets them."""
+
+    file: int
+    first: int
+    stop: int
+
+
 @dataclass(frozen=True, eq=False)
 class DeckText:
     """The text of a deck and of all files it includes.
@@ -53,7 +61,7 @@ class DeckText:
     children: Mapping[tuple[int, str], int]
 
     @cached_property
-    def _walked(self) -> tuple[tuple[Segment, ...], tuple[Include, ...]]:
+    def _walked(self) -> _Walk:
         def follow(parent: int, written: str, where: str) -> int:
             child = self.children.get((parent, written))
             if child is None:
@@ -64,17 +72,22 @@ class DeckText:
 
         walk = _Walk(lambda k: self.files[k], follow)
         walk.through(0, ())
-        return walk.result()
+        return walk
 
-    @property
+    @cached_property
     def segments(self) -> tuple[Segment, ...]:
         """The bulk data in the order Nastran reads it."""
-        return self._walked[0]
+        return self._walked.segments
+
+    @property
+    def stretches(self) -> tuple[Stretch, ...]:
+        """All lines in the order Nastran reads them, up to ENDDATA, INCLUDE statements left out."""
+        return tuple(self._walked.stretches)
 
     @property
     def includes(self) -> tuple[Include, ...]:
         """The INCLUDE statements in the order met."""
-        return self._walked[1]
+        return tuple(self._walked.includes)
 
     def value(self, ref: FieldRef) -> float | None:
         """Return a value of the deck, None where its field is blank (`edit.read_value`)."""
@@ -155,17 +168,20 @@ class _Walk:
     ) -> None:
         self._file = file
         self._follow = follow
-        self._segments: list[Segment] = []
+        self.stretches: list[Stretch] = []
+        self.includes: list[Include] = []
+        self._bulk: list[Segment] = []
         self._all: list[Segment] = []
-        self._includes: list[Include] = []
         self._in_bulk = False
         self._has_control = False
         self._part = ""
         self._ended = False
 
-    def result(self) -> tuple[tuple[Segment, ...], tuple[Include, ...]]:
-        segments = self._segments if self._has_control else self._all
-        return tuple(s for s in segments if s.stop > s.first), tuple(self._includes)
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """The bulk data; all lines where nothing says where it begins."""
+        segments = self._bulk if self._has_control else self._all
+        return tuple(s for s in segments if s.stop > s.first)
 
     def through(self, k: int, parents: tuple[int, ...]) -> None:
         file = self._file(k)
@@ -184,6 +200,7 @@ class _Walk:
             elif mark == _MARKS["BEGIN"]:
                 self._take(k, done, row)
                 self._begin(file.line(row))
+                self.stretches.append(Stretch(k, row, row + 1))
                 done = row + 1
             elif not self._in_bulk:
                 self._has_control = True
@@ -192,9 +209,10 @@ class _Walk:
         self._take(k, done, len(file.lines))
 
     def _take(self, k: int, first: int, stop: int) -> None:
+        self.stretches.append(Stretch(k, first, stop))
         self._all.append(Segment(k, first, stop, self._part))
         if self._in_bulk:
-            self._segments.append(self._all[-1])
+            self._bulk.append(self._all[-1])
 
     def _begin(self, line: bytes) -> None:
         words = line.split(b"$", 1)[0].decode("latin-1").upper().split()
@@ -214,6 +232,6 @@ class _Walk:
         if child in parents:
             raise InputError(f"{where}: INCLUDE {written!r} includes itself")
         self._take(k, done, row)
-        self._includes.append(Include(k, row, used, written, child))
+        self.includes.append(Include(k, row, used, written, child))
         self.through(child, parents)
         return row + used
