@@ -13,6 +13,7 @@ from .arrays import Floats, frozen
 from .dense import dense_modes
 from .errors import CheckError, InputError
 from .factor import Backend, Factorisation, best_backend, factorise
+from .linkage import linkage_note
 from .mechanism import mechanism, strain_free
 from .model import Model
 from .modes import Modes
@@ -157,6 +158,7 @@ def solve(
         spectrum = sparse_modes(owner, pencil, rigid, request)
     zero = _without_strain(pencil, spectrum)
     notes = _refuse_mechanism(owner, pencil, body, spectrum.vectors[:, :zero])
+    notes += linkage_note(owner, pencil, rigid) if owner else []
     values, vectors = _joined(pencil, rigid, spectrum)
     n_zero = rigid.shape[1] + zero
     keep = len(values) if wanted is None else min(wanted, len(values))

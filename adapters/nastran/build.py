@@ -33,8 +33,8 @@ from .variation import Variation, read_variation
 Pair = tuple[tuple[Term, ...], tuple[Term, ...]]
 """Terms of stiffness and of mass."""
 
-_SINGULAR = 1e-8
-"""EPZERO: smallest stiffness of a grid's direction, relative to its largest."""
+_EPZERO = 1e-8
+"""PARAM EPZERO: smallest stiffness of a grid's direction, relative to its largest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,18 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     groups = tuple(g for family in FAMILIES.values() for g in family(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
-    return Structure(points, groups, blocks, tuple(context.notes))
+    return Structure(points, groups, blocks, (*context.notes, *_unused_masses(deck)))
+
+
+def _unused_masses(deck: Deck) -> tuple[str, ...]:
+    """Say when the deck holds non-structural mass that case control does not select."""
+    names = [n for n in ("NSM", "NSM1", "NSML", "NSML1") if deck.bulk.table(n)]
+    if deck.case.nsm is not None or not names:
+        return ()
+    return (
+        f"{deck.path}: the {', '.join(names)} cards are not used: case control selects none "
+        "(NSM = ...)",
+    )
 
 
 def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
@@ -119,7 +130,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         mass=terms[1],
         parameters=variation.parameters,
         free_labels=tuple(points.label(d) for d in kept),
-        warnings=(*deck.warnings, *structure.notes, *warnings, *more),
+        warnings=(*structure.notes, *constraints.notes, *warnings, *more),
     )
 
 
@@ -222,7 +233,8 @@ def _remove_singular(
         raise InputError(f"{deck.path}: the deck has no element that carries stiffness")
     triple = np.where(reduced.kept < 6 * len(points.ids), reduced.kept // 3, -1)
     automatic = deck.params.get("AUTOSPC", "YES") != "NO"
-    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, _SINGULAR)
+    smallest = deck.param("EPZERO", _EPZERO)
+    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, smallest)
     if not len(loose):
         return terms, reduced, ()
     left = np.setdiff1d(np.arange(K.shape[0]), loose)

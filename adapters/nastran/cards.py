@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
+from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...core.errors import InputError
 from .catalogue import READ, Kind
 from .lines import Line
+from .raw_fields import Fields as Fields
+from .raw_fields import as_pynastran_reads, not_finite
+from .raw_fields import fields_of as fields_of
+from .raw_fields import to_float as to_float
 
 Card = Any
 """A card as pyNastran's class holds it, or its raw fields (a list of str or None)."""
-
-Fields = list[str | None]
 
 
 class Raw(NamedTuple):
@@ -88,7 +92,7 @@ class Bulk:
         return replace(self, tables=tables)
 
     def place(self, name: str, number: int) -> str:
-        """``CBAR 12 (wing.bdf line 40)``, for messages."""
+        """``CBAR 12 (models/wing.bdf line 40)``, for messages."""
         raw = self.numbered.get(name, {}).get(number)
         return f"{name} {number}" if raw is None else f"{name} {number} ({self.at(raw)})"
 
@@ -97,8 +101,8 @@ class Bulk:
         return f"{name} ({self.at(self.raw[name][index])})"
 
     def at(self, raw: Raw) -> str:
-        """``wing.bdf line 40``."""
-        return f"{self.files[raw.file].name} line {raw.line}"
+        """``models/wing.bdf line 40``, the path as it was given."""
+        return f"{self.files[raw.file]} line {raw.line}"
 
 
 _NAME = re.compile(r"[A-Z][A-Z0-9_/]*")
@@ -153,41 +157,6 @@ def _from_first_column(text: str) -> str:
     return text[:8].strip().ljust(8) + text[8:]
 
 
-def fields_of(lines: list[str]) -> Fields:
-    """Return a card's fields, name first, eight a line, None where blank, none blank at the end."""
-    fields: Fields = []
-    for k, line in enumerate(lines):
-        if "," in line[:10]:
-            part = line.split(",")
-            wide = 4 if "*" in part[0] else 8
-            part = [*part[: wide + 1], *[""] * (wide + 1 - len(part))]
-        else:
-            text = line.expandtabs() if "\t" in line else line
-            if "*" in text[:8]:
-                part = [text[:8], text[8:24], text[24:40], text[40:56], text[56:72]]
-            else:
-                part = [text[i : i + 8] for i in range(0, 72, 8)]
-        fields.extend([f.strip() or None for f in (part if k == 0 else part[1:])])
-    if fields and fields[0]:
-        fields[0] = fields[0].rstrip("*").upper()
-    while fields and fields[-1] is None:
-        fields.pop()
-    return fields
-
-
-_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
-
-
-def to_float(text: str) -> float:
-    """Return a Nastran real: ``7.85-9``, ``1.D3``, ``2.`` (ValueError when it is none)."""
-    text = text.upper().replace("D", "E")
-    if "E" not in text:
-        text = _EXPONENT.sub(r"E\1", text)
-    if "_" in text:
-        raise ValueError(text)
-    return float(text)
-
-
 class CardReader:
     """Turns raw cards into pyNastran's card objects; errors become one sentence with the place."""
 
@@ -223,7 +192,8 @@ class CardReader:
         fields = fields_of(raw.lines) if fields is None else fields
         if not kind.cls:
             return fields
-        card = self._card(fields, has_none=False)
+        self._check_numbers(raw, fields)
+        card = self._card(as_pynastran_reads(raw.name, fields), has_none=False)
         try:
             return self._make(kind, raw, card)
         except (
@@ -233,6 +203,16 @@ class CardReader:
             at = f"{self._files[raw.file]} line {raw.line}"
             number = fields[1] if len(fields) > 1 and fields[1] else ""
             raise InputError(f"{at}: {raw.name} {number}: {_reason(error)}") from None
+
+    def _check_numbers(self, raw: Raw, fields: Fields) -> None:
+        """Refuse words that Python would read as a number and Nastran would not."""
+        k = not_finite(fields)
+        if k is not None:
+            at = f"{self._files[raw.file]} line {raw.line}"
+            raise InputError(
+                f"{at}: {raw.name} {fields[1]}: field {k + 1} holds {fields[k]!r}, which is not a "
+                "finite number"
+            )
 
     def _make(self, kind: Kind, raw: Raw, card: Any) -> Card:
         words = kind.cls.split()
@@ -268,6 +248,11 @@ def read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dic
     InputError
         A card that cannot be read; two cards of one kind with the same number.
     """
+    with redirect_stdout(StringIO()):  # pyNastran prints before some of its errors
+        return _read_bulk(lines, files)
+
+
+def _read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dict[str, list[Raw]]]:
     reader = CardReader(files)
     tables: dict[str, dict[int, Card]] = {}
     lists: dict[str, list[Card]] = {}
@@ -284,6 +269,7 @@ def read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dic
         if kind is None:
             others.setdefault(raw.name, []).append(raw)
             continue
+        _check_length(raw, files)
         fields = fields_of(raw.lines)
         for part in range(_parts(kind, fields)):
             this = raw._replace(part=part) if part else raw
@@ -301,6 +287,16 @@ def read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dic
                 lists.setdefault(raw.name, []).append(card)
             kept.setdefault(raw.name, []).append(this)
     return Bulk(files, tables, lists, kept, numbered), others
+
+
+def _check_length(raw: Raw, files: tuple[Path, ...]) -> None:
+    """Refuse a line of free fields that holds more than a line can."""
+    for k, line in enumerate(raw.lines):
+        if line.count(",") > 9 and any(f.strip() for f in line.split(",")[10:]):
+            raise InputError(
+                f"{files[raw.file]} line {raw.line + k}: {raw.name} has more than ten fields on a "
+                "line: put what follows the ninth on the next line"
+            )
 
 
 def _parts(kind: Kind, fields: Fields) -> int:

@@ -27,10 +27,13 @@ class Constraints:
         MPC and rigid elements.
     fixed : (n_dof,) bool
         SPC and permanent constraints.
+    notes : tuple of str
+        Sets that case control asks for and the deck does not have.
     """
 
     equations: Equations
     fixed: Any
+    notes: tuple[str, ...] = ()
 
 
 class _Set(NamedTuple):
@@ -44,15 +47,18 @@ class _Set(NamedTuple):
 def read_constraints(deck: Deck, points: Points) -> Constraints:
     """Collect the constraints that the case control section selects, and the rigid elements.
 
+    A set that does not exist constrains nothing and is noted, as in Nastran (its warning 2053).
+
     Raises
     ------
     InputError
-        A set, grid or component that does not exist; an equation without its first coefficient.
+        A grid or component that does not exist; an equation without its first coefficient.
     """
+    notes: list[str] = []
     fixed = np.zeros(points.n_dof, dtype=bool)
     fixed[: points.permanent.size] = points.permanent.reshape(-1)
     if deck.case.spc is not None:
-        for name, item in _selected(deck, deck.case.spc, "SPCADD", ("SPC", "SPC1")):
+        for name, item in _selected(deck, deck.case.spc, ("SPC", "SPC1"), notes):
             for dof in _spc_dofs(name, item, points):
                 fixed[dof] = True
     rows = Rows(points)
@@ -60,33 +66,35 @@ def read_constraints(deck: Deck, points: Points) -> Constraints:
         for number, card in deck.bulk.table(name).items():
             make(rows, card, deck.bulk.place(name, number))
     if deck.case.mpc is not None:
-        for _, item in _selected(deck, deck.case.mpc, "MPCADD", ("MPC",)):
+        for _, item in _selected(deck, deck.case.mpc, ("MPC",), notes):
             _add_mpc(rows, item, points)
-    return Constraints(_equations(rows, points.n_dof), fixed)
+    return Constraints(_equations(rows, points.n_dof), fixed, tuple(notes))
 
 
 def _selected(
-    deck: Deck, number: int, adder: str, names: tuple[str, ...]
+    deck: Deck, number: int, names: tuple[str, ...], notes: list[str]
 ) -> Iterator[tuple[str, _Set]]:
-    """Cards of a set, sets added together resolved."""
-    numbers = [number]
-    for card in deck.bulk.listed(adder):
+    """Cards of a set, sets added together resolved; what is missing goes to `notes`."""
+    kind = names[0]
+    wanted = {number: f"{deck.path}: case control asks for {kind} = {number}"}
+    for k, card in enumerate(deck.bulk.listed(f"{kind}ADD")):
         if int(card.conid) == number:
-            numbers.extend(int(s) for s in card.sets)
-    found = False
+            place = deck.bulk.place_listed(f"{kind}ADD", k)
+            wanted.update({int(s): f"{place} adds set {int(s)}" for s in card.sets})
+    added = len(wanted) > 1
+    found = {number} if added else set()
     for name in names:
         for k, card in enumerate(deck.bulk.listed(name)):
-            if int(card.conid) in numbers:
-                found = True
+            if int(card.conid) in wanted:
+                found.add(int(card.conid))
                 raw = deck.bulk.raw[name][k]
                 thru = any("THRU" in line.upper() for line in raw.lines)
                 yield name, _Set(card, f"{name} ({deck.bulk.at(raw)})", thru)
-    if not found:
-        kind = adder[:3]
-        raise InputError(
-            f"{deck.path}: case control asks for {kind} = {number}, but the deck has no {kind} "
-            "cards of that set"
-        )
+    notes.extend(
+        f"{asked}, but the deck has no {kind} cards of that set: nothing is constrained by it"
+        for missing, asked in wanted.items()
+        if missing not in found
+    )
 
 
 def _spc_dofs(name: str, item: _Set, points: Points) -> Iterator[int]:

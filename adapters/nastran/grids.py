@@ -152,6 +152,11 @@ def read_points(bulk: Bulk) -> Points:
     rotated, directions = _directions(bulk, ids, xyz, cd, frames)
     permanent = np.zeros((len(ids), 6), dtype=bool)
     for i, components in enumerate(ps):
+        if components.strip("123456"):
+            raise InputError(
+                f"{bulk.place('GRID', int(ids[i]))}: the permanent constraints PS are "
+                f"{components!r}; digits from 1 to 6 are expected (on GRDSET where PS is blank)"
+            )
         if components:
             permanent[i, [int(c) - 1 for c in components]] = True
     return Points(bulk, ids, xyz, rotated, directions, permanent, scalar, frames)
@@ -197,7 +202,7 @@ def _systems(bulk: Bulk, cards: list[Any]) -> tuple[Ints, Ints, list[str]]:
     """CP, CD and PS of each grid, blanks filled from GRDSET."""
     cp = np.array([c.cp for c in cards], dtype=np.int64)
     cd = np.array([c.cd for c in cards], dtype=np.int64)
-    ps = [str(c.ps or "") for c in cards]
+    ps = [_components(c.ps) for c in cards]
     defaults = bulk.listed("GRDSET")
     if not defaults:
         return cp, cd, ps
@@ -214,5 +219,11 @@ def _systems(bulk: Bulk, cards: list[Any]) -> tuple[Ints, Ints, list[str]]:
         no_cp, no_cd, no_ps = blank[int(card.nid)]
         cp[i] = default_cp if no_cp else cp[i]
         cd[i] = default_cd if no_cd else cd[i]
-        ps[i] = str(default[7] or "") if no_ps else ps[i]
+        ps[i] = _components(default[7]) if no_ps else ps[i]
     return cp, cd, ps
+
+
+def _components(value: Any) -> str:
+    """PS as digits; a zero stands for none."""
+    text = str(value or "").strip()
+    return "" if text == "0" else text

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.arrays import Floats
 from ...core.errors import InputError
-from .cards import Bulk, Card
+from .cards import Bulk, Card, fields_of
 from .materials import Plane, plane
 
 
@@ -80,7 +80,7 @@ def _pshell(bulk: Bulk, card: Card, place: str, own: float, share: float) -> Lay
     mid1, mid2, mid3, mid4 = (_mid(m) for m in (card.mid1, card.mid2, card.mid3, card.mid4))
     zero = np.zeros((3, 3))
     used: dict[int, Plane] = {}
-    strain = mid2 == -1  # plane strain
+    strain = _asks_for_plane_strain(bulk, int(card.pid))
     mid2 = None if strain else mid2
     for mid in (mid1, mid2, mid3, mid4):
         if mid is not None:
@@ -96,12 +96,18 @@ def _pshell(bulk: Bulk, card: Card, place: str, own: float, share: float) -> Lay
     S = np.diag([np.inf, np.inf])
     if mid3 is not None and mid2 is not None:
         S = used[mid3].shear * (float(card.tst if card.tst is not None else 0.833333) * t)
-    drilling = float(A[2, 2] if mid1 is not None else D[2, 2] * 12.0 / t**2)
+    drilling = float(A[2, 2])  # none without a membrane
     first = used[mid1 if mid1 is not None else next(iter(used))]
     density = first.rho * t + float(card.nsm or 0.0)
     keys = tuple(_key(bulk, mid) for mid in used)
     same = all(m.isotropic for m in used.values())
     return Layup(A, B, D, S, drilling, density, same, keys)
+
+
+def _asks_for_plane_strain(bulk: Bulk, pid: int) -> bool:
+    """Whether MID2 is -1, which pyNastran's class does not keep."""
+    raw = bulk.numbered.get("PSHELL", {}).get(pid)
+    return raw is not None and fields_of(raw.lines)[4:5] == ["-1"]
 
 
 def _mid(value: int | None) -> int | None:
@@ -158,8 +164,7 @@ def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
     density = float(rho @ t) + float(card.nsm or 0.0)
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
-    drilling = float(A[2, 2]) if A.any() else float(D[2, 2]) * 12.0 / total**2
-    return Layup(A, B, D, S, drilling, density, same, keys)
+    return Layup(A, B, D, S, float(A[2, 2]), density, same, keys)
 
 
 def _plies(card: Card, place: str) -> tuple[Floats, Floats, list[int]]:

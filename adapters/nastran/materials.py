@@ -82,6 +82,12 @@ def isotropic(bulk: Bulk, mid: int | None, asked_by: str) -> Isotropic:
 def _constants(bulk: Bulk, card: Card) -> Isotropic:
     E, G, nu = float(card.e or 0.0), float(card.g or 0.0), float(card.nu or 0.0)
     rho = float(card.rho or 0.0)
+    if E < 0.0 or G < 0.0:
+        name, value = ("E", E) if E < 0.0 else ("G", G)
+        raise InputError(
+            f"{bulk.place('MAT1', int(card.mid))}: {name} is {value:g}; a modulus must not be "
+            "negative"
+        )
     if not -1.0 < nu <= 0.5:
         raise InputError(
             f"{bulk.place('MAT1', int(card.mid))}: Poisson's ratio is {nu:g}; it must lie between "

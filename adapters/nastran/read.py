@@ -10,7 +10,7 @@ from typing import Any
 from ...core.errors import InputError
 from .cards import Bulk, Raw, read_bulk, to_float
 from .casecontrol import CaseControl, read_case_control
-from .catalogue import IGNORED, refusal
+from .catalogue import ELEMENTS_LEFT_OUT, IGNORED, refusal
 from .lines import read_sections
 from .units import find_length_unit
 
@@ -131,6 +131,8 @@ def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:
         words = re.split(r"[\s,=]+", line.text.split("$", 1)[0].strip().upper())
         if words[0] == "PARAM" and len(words) > 2:
             params[words[1]] = words[2]
+        if words[0].startswith("AUTOSPC") and len(words) > 1:
+            params["AUTOSPC"] = words[-1]
     for fields in bulk.listed("PARAM"):
         if len(fields) > 2:
             params[str(fields[1]).upper()] = str(fields[2]).upper()
@@ -169,7 +171,7 @@ def _skipped(
     skipped, refused, warnings = [], [], []
     for name, raws in others.items():
         first = raws[0]
-        file = bulk.files[first.file].name
+        file = str(bulk.files[first.file])
         why = refusal(name)
         if why:
             number = _number(first)
@@ -180,6 +182,8 @@ def _skipped(
         else:
             why = IGNORED[name]
         count = f"{len(raws)} cards" if len(raws) > 1 else "1 card"
+        if name in IGNORED and name in ELEMENTS_LEFT_OUT:
+            warnings.append(f"{file} line {first.line}: {name} ({count}) is left out: {why}")
         skipped.append(
             {"what": f"{name} ({count}, first in {file})", "line": first.line, "why": why}
         )

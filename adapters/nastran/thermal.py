@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,14 +83,21 @@ def read_thermal(deck: Deck) -> Thermal:
 
 
 def _uniform(deck: Deck, number: int) -> float:
-    """Return the one temperature of a set."""
-    values: dict[float, str] = {}
-    for name, step in (("TEMP", 2), ("TEMPD", 1)):
-        for k, fields in enumerate(deck.bulk.listed(name)):
-            place = deck.bulk.place_listed(name, k)
-            for sid, value in _entries(fields, step, place):
-                if sid == number:
-                    values.setdefault(value, place)
+    """Return the one temperature of a set: TEMP of the grids, TEMPD of those without."""
+    own = {
+        grid: (value, place)
+        for fields, place in _placed(deck, "TEMP")
+        for sid, grid, value in _grid_entries(fields, place)
+        if sid == number
+    }
+    default = [
+        (value, place)
+        for fields, place in _placed(deck, "TEMPD")
+        for sid, value in _entries(fields, place)
+        if sid == number
+    ]
+    covered = own and all(grid in own for grid in deck.bulk.table("GRID"))
+    values = dict([*own.values(), *([] if covered else default)])
     if not values:
         raise InputError(
             f"{deck.path}: case control asks for the temperature set {number}, but the deck has "
@@ -105,16 +112,28 @@ def _uniform(deck: Deck, number: int) -> float:
     return next(iter(values))
 
 
-def _entries(fields: Fields, step: int, place: str) -> list[tuple[int, float]]:
-    """(set, temperature) pairs of a TEMP (grid and value, step 2) or TEMPD (set and value)."""
+def _placed(deck: Deck, name: str) -> Iterator[tuple[Fields, str]]:
+    for k, fields in enumerate(deck.bulk.listed(name)):
+        yield fields, deck.bulk.place_listed(name, k)
+
+
+def _grid_entries(fields: Fields, place: str) -> list[tuple[int, int, float]]:
+    """(set, grid, temperature) of a TEMP card."""
     try:
-        if step == 2:
-            sid = int(str(fields[1]))
-            return [(sid, to_float(str(f))) for f in fields[3::2] if f is not None]
+        sid = int(str(fields[1]))
+        pairs = zip(fields[2::2], fields[3::2], strict=False)
+        return [(sid, int(str(g)), to_float(str(t))) for g, t in pairs if g is not None]
+    except (IndexError, ValueError):
+        raise InputError(f"{place}: a set, a grid or a temperature is not a number") from None
+
+
+def _entries(fields: Fields, place: str) -> list[tuple[int, float]]:
+    """(set, temperature) pairs of a TEMPD card."""
+    try:
         pairs = zip(fields[1::2], fields[2::2], strict=False)
         return [(int(str(a)), to_float(str(b))) for a, b in pairs if a is not None]
     except (IndexError, ValueError):
-        raise InputError(f"{place}: a set, a grid or a temperature is not a number") from None
+        raise InputError(f"{place}: a set or a temperature is not a number") from None
 
 
 def _value(bulk: Bulk, table: int, x: float, asked_by: Key) -> tuple[float, bool]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats, Ints
-from .batch import in_chunks, skew, symmetric, transpose, unit
+from .batch import arms, congruent, in_chunks, skew, symmetric, transpose, unit
 from .section import ShellSection
 from .solid_shapes import gauss_tria
 from .transverse_shear import finite_shear
@@ -86,7 +86,7 @@ def tria6_axes(xyz: Floats) -> Floats:
     return _frame(xyz, _TRIA.shape(_TRIA.centre)[1])[:, 0]
 
 
-def quad8_stiffness(xyz: Floats, section: ShellSection) -> Floats:
+def quad8_stiffness(xyz: Floats, section: ShellSection, offset: Floats | float = 0.0) -> Floats:
     """Stiffness of eight-node curved shells, (n, 48, 48).
 
     2 x 2 points; what they do not see of the direct strains is held by a quarter of its
@@ -100,15 +100,13 @@ def quad8_stiffness(xyz: Floats, section: ShellSection) -> Floats:
         Corners, then middle nodes, basic frame; see `fill_middle_nodes` for missing ones.
     section : ShellSection
         In the axes at each point: x along xi, z normal.
+    offset : (n,) float
+        From the nodes to the middle surface, along the normals of the surface at the nodes.
     """
-
-    def matrices(part: slice) -> Floats:
-        return _quad8(xyz[part], section.take(part))
-
-    return in_chunks(len(xyz), 48, matrices, _CHUNK)
+    return _offset_stiffness(_QUAD, _quad8, xyz, section, offset)
 
 
-def tria6_stiffness(xyz: Floats, section: ShellSection) -> Floats:
+def tria6_stiffness(xyz: Floats, section: ShellSection, offset: Floats | float = 0.0) -> Floats:
     """Stiffness of six-node curved shells, (n, 36, 36).
 
     Three points; the membrane is MSC Nastran's, transverse shear at the points with a residual
@@ -117,11 +115,29 @@ def tria6_stiffness(xyz: Floats, section: ShellSection) -> Floats:
 
     Parameters as for `quad8_stiffness`, `xyz` (n, 6, 3).
     """
+    return _offset_stiffness(_TRIA, _tria6, xyz, section, offset)
+
+
+def _offset_stiffness(
+    rule: _Rule,
+    stiffness: Callable[[Floats, ShellSection], Floats],
+    xyz: Floats,
+    section: ShellSection,
+    offset: Floats | float,
+) -> Floats:
+    """Stiffness of the shifted surface, carried to the nodes by rigid arms."""
+    n, nodes = xyz.shape[:2]
+    offset = np.broadcast_to(np.asarray(offset, float), (n,))
 
     def matrices(part: slice) -> Floats:
-        return _tria6(xyz[part], section.take(part))
+        at, z = xyz[part], offset[part]
+        if not z.any():
+            return stiffness(at, section.take(part))
+        arm = z[:, None, None] * _frame(at, rule.shape(rule.nodes)[1])[:, :, 2]
+        basic = np.broadcast_to(np.eye(3), (len(at), 3, 3))
+        return congruent(stiffness(at + arm, section.take(part)), arms(basic, arm))
 
-    return in_chunks(len(xyz), 36, matrices, _CHUNK)
+    return in_chunks(n, 6 * nodes, matrices, _CHUNK)
 
 
 def quad8_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:

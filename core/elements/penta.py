@@ -130,13 +130,18 @@ def penta15_stiffness(xyz: Floats, C: Floats, integration: str = "reduced") -> F
         Node positions, basic frame.
     C : (n, 6, 6) float
         Elastic matrices, basic frame.
-    integration : {"reduced", "full"}
-        7 x 3 points with the shears across the triangle sampled at 3 x 2 points, or plain.
+    integration : {"reduced", "full", "two"}
+        7 x 3 points with the shears across the triangle sampled at 3 x 2 points, plain 7 x 3, or
+        plain 3 x 2.
     """
     if integration == "full":
         return solid_stiffness(PENTA15, xyz, C)
 
     def matrices(part: slice) -> Floats:
+        if integration == "two":
+            _, derivatives = penta15(PENTA6.points)
+            _, detJ, g = displacement_gradients(xyz[part], derivatives)
+            return energy(strain_operator(g), C[part], detJ * PENTA6.weights)
         return _penta15(xyz[part], C[part])
 
     return in_chunks(len(xyz), 45, matrices, _CHUNK // 2)

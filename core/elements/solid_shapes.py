@@ -93,12 +93,15 @@ def gauss_wedge(n_tria: int, n_line: int) -> tuple[Floats, Floats]:
 
 
 def gauss_tetra(n: int) -> tuple[Floats, Floats]:
-    """Return the 1, 4 or 15 point rule of the tetrahedron (weights sum to 1/6)."""
+    """Return the 1, 4, 5 or 15 point rule of the tetrahedron (weights sum to 1/6)."""
     c = np.full((1, 3), 0.25)
     if n == 1:
         return c, np.array([1.0 / 6.0])
     if n == 4:
         return _corners((5.0 - np.sqrt(5.0)) / 20.0), np.full(4, 1.0 / 24.0)
+    if n == 5:
+        points = np.concatenate([c, _corners(1.0 / 6.0)])
+        return points, np.array([-0.8, 0.45, 0.45, 0.45, 0.45]) / 6.0
     s = np.sqrt(15.0)
     a, b = (7.0 + s) / 34.0, (7.0 - s) / 34.0
     d = (10.0 - 2.0 * s) / 40.0
@@ -296,6 +299,6 @@ HEXA20 = Solid(20, _hexa_edges(), hexa20, *gauss_hexa(3), *gauss_hexa(3))
 PENTA6 = Solid(6, _NONE, penta6, *gauss_wedge(3, 2), *gauss_wedge(7, 2))
 PENTA15 = Solid(15, _penta_edges(), penta15, *gauss_wedge(7, 3), *gauss_wedge(7, 3))
 TETRA4 = Solid(4, _NONE, tetra4, *gauss_tetra(1), *gauss_tetra(4))
-TETRA10 = Solid(10, _tetra_edges(), tetra10, *gauss_tetra(4), *gauss_tetra(15))
+TETRA10 = Solid(10, _tetra_edges(), tetra10, *gauss_tetra(5), *gauss_tetra(15))
 PYRAMID5 = Solid(5, _NONE, pyramid5, *gauss_pyramid(2), *gauss_pyramid(2))
 PYRAMID13 = Solid(13, _pyramid_edges(), pyramid13, *gauss_pyramid(3), *gauss_pyramid(3))

@@ -81,11 +81,11 @@ def _bar_constants(context: Context, bulk: Bulk, key: Key) -> list[float]:
         k1, k2 = (s.K1, s.K2) if sheared else (0.0, 0.0)
         return [E, G, s.A, s.I1, s.I2, s.I12, s.J, k1, k2, rho * s.A + nsm]
     values = [float(x or 0.0) for x in (card.A, card.i1, card.i2, card.i12, card.j)]
-    A, I1, I2, I12, _ = values
+    A, I1, I2, I12, _ = values  # K1 and K2 do not count beside an I12 (Quick Reference, PBAR)
     if min(A, I1, I2) < 0.0 or I12**2 > I1 * I2 * (1.0 + 1e-9):
         raise InputError(f"{place}: its area and inertias are not those of a real section")
     k1, k2 = (float(k or 0.0) for k in (card.k1, card.k2))
-    k1, k2 = (0.0 if k >= _RIGID_SHEAR else k for k in (k1, k2))
+    k1, k2 = (0.0 if k >= _RIGID_SHEAR or I12 != 0.0 else k for k in (k1, k2))
     return [E, G, *values, k1, k2, rho * A + nsm]
 
 

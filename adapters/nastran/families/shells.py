@@ -57,7 +57,7 @@ class Kernel:
 
     @property
     def curved(self) -> bool:
-        """Whether it has middle nodes, normals of its own, and no offset."""
+        """Whether it has middle nodes and normals of its own."""
         return len(self.edges) > 0
 
 
@@ -74,15 +74,15 @@ def _triar(
 
 
 def _quad8(
-    xyz: Floats, section: ShellSection, _k6rot: float, _offset: Floats, _normals: Floats | None
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, _normals: Floats | None
 ) -> Floats:
-    return elements.quad8_stiffness(xyz, section)
+    return elements.quad8_stiffness(xyz, section, offset)
 
 
 def _tria6(
-    xyz: Floats, section: ShellSection, _k6rot: float, _offset: Floats, _normals: Floats | None
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, _normals: Floats | None
 ) -> Floats:
-    return elements.tria6_stiffness(xyz, section)
+    return elements.tria6_stiffness(xyz, section, offset)
 
 
 _NO_EDGES = np.zeros((0, 2), dtype=np.int64)
@@ -191,7 +191,8 @@ def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
         bulk, SHELL_PROPERTIES, name, ids, np.array([c.pid for c in cards])
     )
     own, share = _thickness(cards, kernel.corners)
-    turned = np.array([not layup(bulk, key, bulk.place(*key)).isotropic for key in keys])[of]
+    any_thickness = [layup(bulk, key, bulk.place(*key), own=1.0, share=0.0) for key in keys]
+    turned = np.array([not section.isotropic for section in any_thickness])[of]
     angle = np.zeros(len(ids))
     if turned.any():
         angle[turned] = material_angle(context, placed, np.flatnonzero(turned))
@@ -203,11 +204,14 @@ def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
         angle,
         own,
         share,
-        _offsets(context, placed),
+        np.array([c.zoffset or 0.0 for c in placed.cards], dtype=np.float64),
         normals,
         None if placed.spread is None else np.kron(placed.spread, np.eye(6)),
     )
-    of_property = [frozenset([key, *layup(bulk, key, bulk.place(*key)).materials]) for key in keys]
+    of_property = [
+        frozenset([key, *section.materials])
+        for key, section in zip(keys, any_thickness, strict=True)
+    ]
     sources, source_of = element_sources(context, ids, of_property, of)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
@@ -216,15 +220,6 @@ def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
     return Group(
         name, ids, placed.nodes, 6, matrices, sources, source_of, kernel.shape, placed.corners
     )
-
-
-def _offsets(context: Context, placed: _Placed) -> Floats:
-    offset = np.array([c.zoffset or 0.0 for c in placed.cards], dtype=np.float64)
-    if placed.kernel.curved and offset.any():
-        bad = int(placed.ids[np.flatnonzero(offset)[0]])
-        place = context.bulk.place(placed.name, bad)
-        raise InputError(f"{place}: ZOFFS is not supported on {placed.name}")
-    return offset
 
 
 def _matrices(

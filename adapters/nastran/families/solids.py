@@ -73,7 +73,6 @@ _QUADRATIC = {
     ("", "FULL"): "full",
     ("THREE", "FULL"): "full",
 }
-_WEDGE = {key: word for key, word in _QUADRATIC.items() if word != "two"}
 
 KERNELS: dict[str, tuple[Kernel, Kernel]] = {
     "CTETRA": (
@@ -86,7 +85,7 @@ KERNELS: dict[str, tuple[Kernel, Kernel]] = {
     ),
     "CPENTA": (
         Kernel("penta", 6, shapes.PENTA6, penta.penta6_stiffness, solid.penta6_mass, _LINEAR),
-        Kernel("penta", 6, shapes.PENTA15, penta.penta15_stiffness, solid.penta15_mass, _WEDGE),
+        Kernel("penta", 6, shapes.PENTA15, penta.penta15_stiffness, solid.penta15_mass, _QUADRATIC),
     ),
     "CHEXA": (
         Kernel("hexa", 8, shapes.HEXA8, hexa.hexa8_stiffness, solid.hexa8_mass, _LINEAR),

@@ -1,5 +1,7 @@
 """Solids: rigid bodies, patch tests, bending, mass."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -188,7 +190,7 @@ def test_mass(structure, kind, solid, _, coupled):
     R = structure.rigid_motions(xyz, rotations=False)[:, :3]
     total = R.T @ M @ R
     assert total == pytest.approx(7.0 * VOLUME[kind] * np.eye(3), abs=1e-12)
-    assert np.linalg.eigvalsh(M)[0] > 0
+    assert np.linalg.eigvalsh(M)[0] > 0 or (solid.edges.size and not coupled)
     if not coupled:
         assert np.count_nonzero(M - np.diag(np.diag(M))) == 0
 
@@ -210,3 +212,21 @@ def test_anisotropic_material_turns_with_the_body(structure, kind, solid, stiffn
 def test_inside_out_brick_has_negative_volume():
     xyz = CORNERS["hexa"][[4, 5, 6, 7, 0, 1, 2, 3]]
     assert solid_volume(HEXA8, xyz[None])[0] == pytest.approx(-1.0)
+
+
+def test_the_five_points_of_the_tetrahedron_are_exact_to_third_order():
+    """Nastran's rule: on straight edges it sees what any better one does."""
+    points, weights = TETRA10.points, TETRA10.weights
+    for powers in ((0, 0, 0), (1, 0, 0), (1, 1, 1), (2, 1, 0), (3, 0, 0)):
+        exact = np.prod([math.factorial(k) for k in powers]) / math.factorial(3 + sum(powers))
+        assert weights @ np.prod(points ** np.array(powers), axis=1) == pytest.approx(exact)
+
+
+@pytest.mark.parametrize("solid", [HEXA20, PENTA15, TETRA10], ids=["hexa", "penta", "tetra"])
+def test_lumped_mass_stands_at_the_middle_nodes(solid):
+    """As in MSC Nastran, whose modes of a pair of ten-node tetrahedra it makes."""
+    kind = {20: "hexa", 15: "penta", 10: "tetra"}[solid.nodes]
+    m = np.diag(solid_mass(solid, nodes(kind, solid)[None], np.ones(1), False)[0])[::3]
+    corners = solid.nodes - len(solid.edges)
+    assert not m[:corners].any()
+    assert (m[corners:] > 0.0).all()

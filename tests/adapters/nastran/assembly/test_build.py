@@ -192,8 +192,8 @@ class TestSingularities:
 
 
 BAD = [
-    ("CROD,5,4,1,33", "", r"CROD 5 \(deck.bdf line 18\) refers to grid 33, which does not exist"),
-    ("PROD,4,9,20.", "", r"PROD 4 \(deck.bdf line \d+\) refers to material 9, but there is no"),
+    ("CROD,5,4,1,33", "", r"CROD 5 \(.*deck.bdf line 18\) refers to grid 33, which does not exist"),
+    ("PROD,4,9,20.", "", r"PROD 4 \(.*deck.bdf line \d+\) refers to material 9, but there is no"),
     ("CROD,5,44,1,3", "", r"CROD 5 .* refers to property 44, but there is no PROD 44"),
     ("GRID,7,77,30.,10.,40.", "", r"GRID 7 .* refers to coordinate system 77, which does not"),
     ("CORD2C,5,5,0.,0.,0.,0.3,0.4,1.\n,1.,0.2,0.", "", r"CORD2C 5 .* is defined by itself"),
@@ -204,8 +204,7 @@ BAD = [
     ("RBE2,20,5,123456,6,7,5", "", r"RBE2 20 .* grid 5 is both the independent and a dependent"),
     ("RBE2,21,1,1,6", "", r"6:1 \(grid:component\) is made dependent by RBE2 20 .* and RBE2 21"),
     ("SPC1,4,3,6", "SPC = 4", r"6:3 .* is dependent in RBE2 20 .* and constrained by an SPC"),
-    ("SPC1,4,3,6", "SPC = 5", r"case control asks for SPC = 5, but the deck has no SPC"),
-    ("SPC1,4,3,66", "SPC = 4", r"SPC1 \(deck.bdf line \d+\) refers to grid 66"),
+    ("SPC1,4,3,66", "SPC = 4", r"SPC1 \(.*deck.bdf line \d+\) refers to grid 66"),
     ("PSHELL,1,1,0.", "", r"PSHELL 1 .*: the thickness T is 0"),
     ("GRID,1,,nan,0.,0.", "", r"GRID 1"),
 ]  # fmt: skip

@@ -32,8 +32,9 @@ class TestFiles:
         deck = read_deck(tmp_path / "main.bdf")
         assert [f.name for f in deck.files] == ["main.bdf", "grids.bdf", "two.bdf", "rod.bdf"]
         assert deck.counts == {"GRID": 2, "CROD": 1, "PROD": 1, "MAT1": 1}
-        assert deck.bulk.place("GRID", 2) == "GRID 2 (two.bdf line 1)"
-        assert deck.bulk.place("PROD", 1) == "PROD 1 (rod.bdf line 2)"
+        deep = tmp_path / "parts" / "deep"
+        assert deck.bulk.place("GRID", 2) == f"GRID 2 ({deep / 'two.bdf'} line 1)"
+        assert deck.bulk.place("PROD", 1) == f"PROD 1 ({deep / 'rod.bdf'} line 2)"
 
     @pytest.mark.parametrize(
         ("text", "message"),

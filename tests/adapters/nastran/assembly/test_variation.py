@@ -127,7 +127,7 @@ def test_derivatives_are_those_of_the_matrices(deck):
     [
         ("PSHELL 9 T", r"there is no PSHELL 9 in the deck; the deck has PSHELL 1"),
         ("PCOMP 9 T1", r"there is no PCOMP 9 in the deck"),
-        ("MAT1 1 G", r"G is blank on MAT1 1 \(deck.bdf line 28\)"),
+        ("MAT1 1 G", r"G is blank on MAT1 1 \(.*deck.bdf line 28\)"),
         ("PROD 4 C", r"C is blank on PROD 4"),
         ("PELAS 6 K", r"changes neither stiffness nor mass"),
         ("MAT1 1 NU", r"parameter 'MAT1 1 NU'.*MAT1 1 .*Poisson's ratio is 1.5"),

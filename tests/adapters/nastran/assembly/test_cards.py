@@ -1,0 +1,227 @@
+"""Cards in the forms decks in the wild have them, against closed forms and each other."""
+
+import numpy as np
+import pytest
+
+from trueup.adapters.nastran import weight
+from trueup.core.eigen import solve
+from trueup.core.errors import InputError
+
+GRID = "GRID,1,,0.,0.,0.,,23456\n"
+MASS = "CONM2,90,1,,2.\n"
+SPRING = np.sqrt(900.0 / 2.0) / (2.0 * np.pi)
+
+
+class TestGroundedAtEitherEnd:
+    @pytest.mark.parametrize(
+        "spring",
+        [
+            "CELAS1,1,2,,,1,1\nPELAS,2,900.",
+            "CELAS1,1,2,0,0,1,1\nPELAS,2,900.",
+            "CELAS1,1,2,1,1\nPELAS,2,900.",
+            "CELAS2,1,900.,,,1,1",
+            "CELAS2,1,900.,1,1",
+        ],
+    )
+    def test_spring(self, model, frequencies, spring):
+        np.testing.assert_allclose(frequencies(model(GRID + MASS + spring)), [SPRING])
+
+    @pytest.mark.parametrize(
+        "mass",
+        [
+            "CMASS1,1,2,,,1,1\nPMASS,2,2.",
+            "CMASS1,1,2,1,1\nPMASS,2,2.",
+            "CMASS2,1,2.,,,1,1",
+        ],
+    )
+    def test_mass(self, model, frequencies, mass):
+        np.testing.assert_allclose(frequencies(model(GRID + "CELAS2,9,900.,1,1\n" + mass)), SPRING)
+
+    @pytest.mark.parametrize(
+        "cards",
+        [
+            "CELAS3,1,2,,7\nPELAS,2,900.\nCMASS3,3,4,,7\nPMASS,4,2.",
+            "CELAS4,1,900.,,7\nCMASS4,3,2.,,7",
+            "CELAS4,1,900.,7\nCMASS4,3,2.,7\nCDAMP4,5,3.,,7",
+        ],
+    )
+    def test_scalar_points(self, model, frequencies, cards):
+        np.testing.assert_allclose(frequencies(model("SPOINT,7\n" + cards)), SPRING)
+
+
+class TestSets:
+    def test_a_set_that_does_not_exist_constrains_nothing_and_is_said(self, model):
+        cards = "GRID,1\nGRID,2,,1.\nCBAR,1,1,1,2,0.,0.,1.\nPBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.,,.3,1."
+        found = model(cards, case="SPC = 5\nMPC = 6")
+        assert found.n_free == 12
+        for kind, number in (("SPC", 5), ("MPC", 6)):
+            assert any(f"asks for {kind} = {number}, but" in w for w in found.warnings)
+
+    def test_a_set_missing_in_an_spcadd_is_said(self, model):
+        cards = "SPC1,1,123456,1\nSPCADD,3,1,2\nGRID,1\nGRID,2,,1.\nCROD,1,1,1,2\n"
+        found = model(cards + "PROD,1,1,1.\nMAT1,1,1.,,.3,1.", case="SPC = 3")
+        assert any("adds set 2, but the deck has no SPC cards" in w for w in found.warnings)
+
+    def test_a_range_of_dependent_grids(self, model):
+        grids = "".join(f"GRID,{k},,{k}.,0.,0.\n" for k in range(1, 6))
+        rest = "CELAS2,9,1.,1,1\nCONM2,8,3,,1.\n"
+        by_range = model(f"{grids}RBE2,7,1,123456,2,THRU,5\n{rest}")
+        listed = model(f"{grids}RBE2,7,1,123456,2,3,4,5\n{rest}")
+        assert by_range.free_labels == listed.free_labels
+
+
+class TestWhatIsLeftOut:
+    def test_heat_elements_are_in_the_decks_warnings(self, deck):
+        found = deck(GRID + MASS + "CELAS2,1,900.,1,1\nCHBDYG,5,,AREA4\n")
+        assert any("CHBDYG (1 card) is left out: it belongs to heat" in w for w in found.warnings)
+
+    def test_mass_that_is_not_selected_is_said(self, model):
+        rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
+        nsm = "NSM1,4,PROD,2.,1\n"
+        assert any("NSM1 cards are not used" in w for w in model(rod + nsm).warnings)
+        assert not any("NSM" in w for w in model(rod + nsm, case="NSM = 4").warnings)
+
+    @pytest.mark.parametrize("card", ["BNDFIX,1,123", "BNDFREE1,123,1"])
+    def test_sets_of_component_modes_are_refused_under_all_their_names(self, model, card):
+        with pytest.raises(InputError, match=r"deck.bdf line \d+: BND.* component modes"):
+            model(GRID + MASS + "CELAS2,1,900.,1,1\n" + card)
+
+
+BAR = "GRID,1\nGRID,2,,1.\nCBAR,1,1,1,2,0.,0.,1.\nMAT1,1,2.6,,.3,1.\n"
+
+
+def _shell(card, prop, tail=""):
+    return (
+        "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\n"
+        f"{card},1,1,1,2,3,4{tail}\n{prop}\nMAT1,1,7.,,.3,1.\n"
+    )
+
+
+def _max_change(one, other):
+    return np.abs((one.K() - other.K()).toarray()).max() / np.abs(other.K().toarray()).max()
+
+
+class TestProperties:
+    def test_shear_factors_do_not_count_beside_a_product_of_inertia(self, model):
+        pbar = "PBAR,1,1,1.,2.,3.,1.\n,,,,,,,,\n,{},{},{}\n"
+        without = model(BAR + pbar.format("", "", 0.5))
+        assert _max_change(model(BAR + pbar.format(0.1, 0.1, 0.5)), without) == 0.0
+        assert _max_change(model(BAR + pbar.format(0.1, 0.1, "")), without) > 0.1
+
+    def test_thickness_may_stand_on_the_elements_alone(self, model):
+        own = ",,\n,,,0.3,0.3,0.3,0.3"
+        by_element = model(_shell("CQUAD4", "PSHELL,1,1,,1,,1", own))
+        by_property = model(_shell("CQUAD4", "PSHELL,1,1,.3,1,,1"))
+        assert _max_change(by_element, by_property) < 1e-12
+
+    def test_a_shell_without_membrane_bends_only(self, model):
+        found = model(_shell("CQUAD4", "PSHELL,1,,.3,1,,1,.3"))
+        assert {label.split(":")[1] for label in found.free_labels} == {"3", "4", "5"}
+
+    def test_plane_strain(self, model):
+        found = model(_shell("CQUAD4", "PSHELL,1,1,.3,-1"), case="")
+        plain = model(_shell("CQUAD4", "PSHELL,1,1,.3").replace("7.,,.3", f"{7 / 0.91},,{3 / 7}"))
+        assert _max_change(found, plain) < 1e-4
+
+
+class TestTemperature:
+    rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
+    table = "MATT1,1,3\nTABLEM1,3\n,0.,4.,100.,16.,ENDT\n"
+
+    @pytest.mark.parametrize(
+        "temperatures",
+        ["TEMPD,4,100.", "TEMP,4,1,100.,2,100.", "TEMP,4,1,100.,2,100.\nTEMPD,4,7.,5,8."],
+    )
+    def test_the_grids_own_go_before_the_default(self, model, temperatures):
+        cold = model(self.rod + self.table + "TEMPD,4,0.", case="TEMP(INIT) = 4")
+        hot = model(self.rod + self.table + temperatures, case="TEMP(INIT) = 4")
+        assert hot.K().diagonal() == pytest.approx(4.0 * cold.K().diagonal())
+
+    def test_different_temperatures_are_refused(self, model):
+        cards = self.rod + self.table + "TEMP,4,1,50.\nTEMPD,4,60."
+        with pytest.raises(InputError, match="initial temperatures differ"):
+            model(cards, case="TEMP(INIT) = 4")
+
+
+class TestParameters:
+    def test_autospc_may_stand_in_case_control(self, model):
+        rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
+        assert model(rod).n_free == 1
+        assert model(rod, case="AUTOSPC = NO").n_free == 3
+
+
+BAD = [
+    ("GRID,1,,0.,0.,0.,,1A3", r"deck.bdf line \d+: GRID 1: .*1A3"),
+    ("GRDSET,,,,,,,1A3\nGRID,1", r"GRID 1 \(.*PS are '1A3'"),
+    (
+        "MAT1,1,7.+4,,.3,nan",
+        r"deck.bdf line \d+: MAT1 1: field 6 holds 'nan', which is not a finite",
+    ),
+    ("MAT1,1,inf,,.3", r"MAT1 1: field 3 holds 'inf'"),
+    ("MAT1,1,-7.+4,,.3", r"MAT1 1 \(.*deck.bdf line \d+\): E is -70000"),
+    ("RBE3,7,,5,123,1.,123,1,2,3,4,5", r"line \d+: RBE3 has more than ten fields on a line"),
+]
+
+
+@pytest.mark.parametrize(("card", "message"), BAD, ids=[b[0] for b in BAD])
+def test_bad_fields_are_named(model, card, message):
+    first = "" if card.startswith("G") else "GRID,1\n"
+    rest = "" if card.startswith("MAT1") else "MAT1,1,1.,,.3,1.\n"
+    with pytest.raises(InputError, match=message):
+        model(f"{first}{card}\n{rest}GRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\n")
+
+
+def test_a_degenerate_system_prints_nothing(model, capsys):
+    with pytest.raises(InputError, match="CORD2R 5: its three points coincide or stand in a line"):
+        model("CORD2R,5,0,0.,0.,0.,0.,0.,1.\n,0.,0.,2.\nGRID,1,5")
+    assert capsys.readouterr().out == ""
+
+
+def test_scalar_masses_weigh_along_their_axis(deck):
+    found = weight(deck(GRID + "CELAS2,1,900.,1,1\nCMASS2,2,3.,1,1\n"))
+    np.testing.assert_allclose(found.masses, [3.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("shape", "nodes", "edges"),
+    [
+        ("CQUAD8", "1,2,3,4", ((1, 2), (2, 3), (3, 4), (4, 1))),
+        ("CTRIA6", "1,2,3", ((1, 2), (2, 3), (3, 1))),
+    ],
+)
+def test_offset_of_a_second_order_shell_is_a_rigid_arm(model, shape, nodes, edges):
+    xyz = {1: (0.0, 0.0), 2: (2.0, 0.0), 3: (2.0, 1.0), 4: (0.0, 1.0)}
+    corners = list(range(1, len(edges) + 1))
+    for k, (i, j) in enumerate(edges):
+        xyz[11 + k] = tuple((a + b) / 2 for a, b in zip(xyz[i], xyz[j], strict=True))
+    used = [*corners, *(11 + k for k in range(len(edges)))]
+    middles = ",".join(str(11 + k) for k in range(len(edges)))
+    z = 0.25
+    prop = "PSHELL,1,1,.2,1,,1\nMAT1,1,7.,,.3,1.\nPARAM,AUTOSPC,NO\n"
+    first = ",".join(f"{nodes},{middles}".split(",")[:6])
+    second = f"{nodes},{middles}".split(",")[6:]
+    fields = [*second, *[""] * (2 - len(second))] if shape == "CQUAD8" else []
+    lines = {
+        "CQUAD8": f"CQUAD8,1,1,{first}\n,{','.join(fields)},,,,,,{{z}}\n",
+        "CTRIA6": f"CTRIA6,1,1,{first}\n,,{{z}}\n",
+    }
+    flat = "".join(f"GRID,{n},,{xyz[n][0]},{xyz[n][1]},0.\n" for n in used)
+    offset = model(flat + lines[shape].format(z=z) + prop)
+    arms = "".join(f"GRID,{100 + n},,{xyz[n][0]},{xyz[n][1]},{z}\n" for n in used)
+    rigid = "".join(f"RBE2,{200 + n},{n},123456,{100 + n}\n" for n in used)
+    moved = lines[shape].format(z="")
+    for n in sorted(used, reverse=True):
+        moved = moved.replace(f",{n},", f",{100 + n},").replace(f",{n}\n", f",{100 + n}\n")
+    moved = f"{shape},1,1," + moved.split(",", 3)[3]
+    apart = model(flat + arms + rigid + moved + prop)
+    assert _max_change(offset, apart) < 1e-12
+
+
+def test_a_linkage_is_not_a_rigid_body(model):
+    """A mass on a rod that swings: nothing resists it, and it is not the whole that moves."""
+    found = model(
+        "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
+        "PARAM,AUTOSPC,NO"
+    )
+    solution = solve(found, 3)
+    assert any("2:2" in w or "2:3" in w for w in solution.warnings)
