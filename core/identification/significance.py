@@ -54,8 +54,8 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     """Compare the energy of each mode within its half-power band with that of the functions.
 
     Windows, leakage and small nonlinearities leave traces that noise does not explain and that
-    are no modes. They are taken to reach 5 % of one function, independently from function to
-    function, so that n functions show what is √n times weaker. 1 where a mode is at that limit.
+    are no modes. They are taken to reach 5 % of one function; a root on which n functions agree
+    may be n times weaker. 1 where a mode is at that limit.
     """
     n_line = len(f)
     by_line = np.einsum("oin,oin->n", data.y, data.y)
@@ -73,7 +73,7 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
         gap = np.abs(f - hz[k])
         near = gap <= max(half[k], float(gap.min()))
         result[k] = own[near, k].sum() / max(float(energy[near].sum()), 1e-300)
-    return np.asarray(result * data.weight.sum() / _SEEN**2)
+    return np.asarray(result * (data.weight.sum() / _SEEN) ** 2)
 
 
 def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:

@@ -17,6 +17,7 @@ _TELLING = 5  # outputs below which shapes tell nothing
 _FAINT = 0.01  # of the strength of a root: what a satellite has at most where shapes are not told
 _SPLIT_WIDTHS = 6.0  # half bandwidths, and
 _SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
+_TOUCHING = 3.0  # lines, within which two modes of one shape are one
 _WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
 
 
@@ -27,8 +28,9 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
     that moves from reference to reference splits it into roots of one shape but different
     participation, which no structure has: a driving point is a sensor, too. Two modes that the
     sensors cannot tell apart (sparse sensors alias) agree in both; they stay when they are of
-    like strength or leave nothing but white noise, which no split mode does. A few sensors tell
-    nothing of shapes: there only what is very much weaker goes.
+    like strength or leave nothing but white noise, which few split modes do; unless they stand
+    a line apart, as the halves do that a window makes of a mode narrower than the lines. A few
+    sensors tell nothing of shapes: there only what is very much weaker goes.
 
     Parameters
     ----------
@@ -39,6 +41,9 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
         return np.zeros(len(fit.poles), bool)
     mode, size = plausible(f, fit), strength(fit)
     ratio = size / np.maximum(size[:, None], 1e-300)
+    decay, omega = np.abs(fit.poles.real), fit.poles.imag
+    gap = np.abs(omega - omega[:, None])
+    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     if len(fit.shapes) < _TELLING:
         repeats = ratio < _FAINT
     else:
@@ -46,13 +51,11 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
         attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
         contradict = _mac(fit.participation) < _ONE_PARTICIPATION * attainable
         white = residual_is_white(data, f, fit)
-        repeats = (ratio < 1.0) & (contradict | (~white & (ratio < _SATELLITE)))
+        satellite = ~white & (ratio < _SATELLITE)
+        repeats = (ratio < 1.0) & (contradict | satellite | (gap < _TOUCHING * spacing))
         repeats &= _mac(fit.shapes) > _ONE_SHAPE * attainable
-    decay, omega = np.abs(fit.poles.real), fit.poles.imag
-    spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     reach = _SPLIT_WIDTHS * np.maximum(decay, decay[:, None]) + _SPLIT_LINES * spacing
-    close = np.abs(omega - omega[:, None]) < reach
-    return np.asarray((repeats & close & mode & mode[:, None]).any(axis=0))
+    return np.asarray((repeats & (gap < reach) & mode & mode[:, None]).any(axis=0))
 
 
 def _mac(vectors: Numbers) -> Floats:
