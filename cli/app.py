@@ -54,8 +54,8 @@ def _register() -> None:
     app.command()(solve)
     app.command()(identify)
     app.command()(comparing(correlate))
-    app.command()(comparing(update, UPDATE))
-    app.command()(comparing(discover))
+    app.command()(comparing(update, UPDATE, changes_deck=True))
+    app.command()(comparing(discover, changes_deck=True))
     app.command()(report)
     app.command()(demo)
 

@@ -23,6 +23,10 @@ OutOption = Annotated[
 ]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run folder.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no tables.")]
+InPlaceOption = Annotated[
+    bool,
+    typer.Option("-ip", "--in-place", help="Change the deck itself as well; keeps backups."),
+]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
 LengthUnitOption = Annotated[
     str | None,
@@ -38,6 +42,7 @@ class Output:
     force: bool = False
     quiet: bool = False
     verbose: bool = False
+    in_place: bool = False
 
 
 _STUDY: dict[str, Any] = {
@@ -101,12 +106,16 @@ UPDATE: dict[str, Any] = {
 
 
 def comparing(
-    verb: Callable[[Study, Output], None], extra: dict[str, Any] | None = None
+    verb: Callable[[Study, Output], None],
+    extra: dict[str, Any] | None = None,
+    *,
+    changes_deck: bool = False,
 ) -> Callable[..., None]:
     """Return a typer command for a verb that compares a deck with a test.
 
     The command takes DECK, TEST..., ``--study``, the shared options and `extra` ones (by key of
-    `Study`), merges them (command line over study file) and calls `verb`.
+    `Study`), merges them (command line over study file) and calls `verb`. One that changes the
+    deck takes ``--in-place`` too.
     """
     shared = {**_STUDY, **(extra or {})}
 
@@ -114,7 +123,11 @@ def comparing(
     def command(**given: Any) -> None:
         study_file: Path | None = given.pop("study")
         output = Output(
-            given.pop("json"), given.pop("force"), given.pop("quiet"), given.pop("verbose")
+            given.pop("json"),
+            given.pop("force"),
+            given.pop("quiet"),
+            given.pop("verbose"),
+            given.pop("in_place", False),
         )
         filed = read_study(study_file) if study_file else Study()
         _refuse_nonsense(filed)
@@ -143,6 +156,7 @@ def comparing(
             ],
         ),
         *(keyword(name, annotation) for name, annotation in shared.items()),
+        *([keyword("in_place", InPlaceOption, False)] if changes_deck else []),
         keyword("json", JsonOption),
         keyword("force", ForceOption, False),
         keyword("quiet", QuietOption, False),

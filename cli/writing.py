@@ -85,6 +85,8 @@ def answer(result: dict[str, Any], output: Output, run: Path) -> None:
         for table in result_tables(result, console.width):
             console.print(table)
         console.print(f"run folder: {run}", markup=False)
+        for file, backup in zip(*result.get("in_place", {}).values(), strict=True):
+            console.print(f"changed in place: {file} (before: {backup})", markup=False)
     if not output.quiet:
         for warning in result.get("warnings", ()):
             stderr().print(f"warning: {warning}", markup=False)

@@ -34,6 +34,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.discovery.discover import Request
     from ...core.discovery.discover import discover as find
     from ...core.results import correlate_tables
+    from ..inplace import put_in_place
     from ..pipeline import criteria_of, highest_frequency, read_measurement
     from ..runfolder import refuse_existing, run_folder
     from ..writing import default_folder, fill_run_folder
@@ -102,6 +103,8 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         ]
         result["pairs"] = correlate_tables(after)["pairs"]
         fill_run_folder(work, study, result, before, after)
+        if output.in_place:
+            put_in_place(done["text"], work, result)
     return result, run
 
 
@@ -164,6 +167,7 @@ def complete(
         "after": after,
         "cards": cards,
         "refused": refused,
+        "text": text,
         "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
     }
 

@@ -31,6 +31,7 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.results import correlate_tables, history_tables, parameter_tables
     from ...core.updating import Target
     from ...core.updating import update as move
+    from ..inplace import put_in_place
     from ..pipeline import correlated, criteria_of
     from ..runfolder import refuse_existing, run_folder
     from ..stages import stages_of
@@ -96,6 +97,8 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         }
         result["before"]["warnings"] = result["after"]["warnings"] = []
         fill_run_folder(work, replace(study, out=None), result, before, after)
+        if output.in_place:
+            put_in_place(written["text"], work, result)
     return result, run
 
 
@@ -132,7 +135,9 @@ def write_updated(study: Study, model: Any, done: Any, work: Path) -> dict[str, 
     }
     changed = set_values(original, wanted)
     top = write_deck(changed, work / "deck")
-    (work / "changes.diff").write_text(unified_diff(original, changed), encoding="utf-8")
+    (work / "changes.diff").write_text(
+        unified_diff(original, changed), encoding="utf-8", newline=""
+    )
     again = eigen.solve(build_model(read_deck(top)), n_modes=len(done.after.solution.eigenvalues))
     target, got = done.after.solution.eigenvalues, again.eigenvalues
     elastic = slice(again.rigid_body_modes, None)
@@ -143,4 +148,5 @@ def write_updated(study: Study, model: Any, done: Any, work: Path) -> dict[str, 
             "updated model's; nothing was written"
         )
     values = [[read_value(changed, ref) for ref in spec.fields] for spec in specs]
-    return {"top": top.relative_to((work / "deck").absolute()), "values": values}
+    place = top.relative_to((work / "deck").absolute())
+    return {"top": place, "values": values, "text": changed}
