@@ -19,7 +19,7 @@ from .residuals import KINDS, Weights
 
 __all__ = ["Iteration", "Stage", "State", "Target", "Updated", "update"]
 
-_REACH = 1.5
+_REACH = 2.0
 """A reduced model is left where a factor is this many times, or this part of, that of its basis."""
 
 _AGREE = 0.1
@@ -164,7 +164,7 @@ def update(
         )
         solves += used
     active = sorted({k for s in stages for k in s.parameters})
-    error, doubtful = objective.standard_error(full, state, active, stages[-1].residuals)
+    error, doubtful = _standard_error(objective, full, state, active, stages[-1].residuals)
     lower, upper = objective.bounds
     at_bound = np.isclose(state.factors, lower, rtol=1e-6) | np.isclose(
         state.factors, upper, rtol=1e-6
@@ -254,6 +254,16 @@ def _descend(
         if objective.closer(trial, state, stage.residuals):
             return trial, halving + 1
     return None, _HALVINGS
+
+
+def _standard_error(
+    objective: Objective, full: FullOrder, state: State, active: Sequence[int], residuals: str
+) -> tuple[Floats, tuple[str, ...]]:
+    assert isinstance(state.solution, Eigensolution)
+    near = reduce_around(full, state.factors, state.solution, active)
+    return objective.standard_error(
+        near, objective.at(near, state.factors, residuals), active, residuals
+    )
 
 
 def _agree(reduced: State, full: State, tolerance: float) -> bool:

@@ -1,0 +1,105 @@
+"""An update beside one eigensolution of the same model, in one run; ends with one line of JSON.
+
+``python benchmarks/updating.py [--quick] [--dofs N] [--no-scipy]``: twenty moduli of a free barrel
+shell of 120,000 degrees of freedom are moved to a test of 36 modes at 200 sensors, made by the
+same model with other moduli and 0.2 % of noise; ten iterations on frequencies and shapes, the
+check at full order included. ``--quick`` runs each part once, otherwise the best of three
+eigensolutions counts; ``--no-scipy`` leaves out scipy's ``eigsh``, which takes minutes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from shell import SIZES, shell_model
+
+from trueup.core.correlate import Criteria
+from trueup.core.eigen import Eigensolution, solve
+from trueup.core.model import Model
+from trueup.core.updating import Stage, Target, update
+
+_MODES = 36
+_PARAMETERS = 20
+_ITERATIONS = 10
+_SENSORS = 200
+_SIGMA = -((2.0 * np.pi * 20.0) ** 2)
+
+
+def measured(model: Model, seed: int = 0) -> Target:
+    """Return a test of the model with other factors."""
+    rng = np.random.default_rng(seed)
+    truth = rng.uniform(0.8, 1.25, _PARAMETERS)
+    solution = solve(model, _MODES, p=truth)
+    grids = rng.choice(len(model.geometry.xyz), _SENSORS // 2, replace=False)
+    rows = model.expansion[np.concatenate([6 * grids, 6 * grids + 1])]
+    elastic = slice(solution.rigid_body_modes, None)
+    hz = solution.frequencies_hz[elastic] * (1.0 + 0.002 * rng.standard_normal(_MODES - 6))
+    shapes = np.asarray(rows @ solution.vectors[:, elastic])
+    shapes = shapes + 0.01 * np.abs(shapes).max(axis=0) * rng.standard_normal(shapes.shape)
+    return Target(hz, shapes, sp.csr_matrix(rows))
+
+
+def clocked(what: str, work: Callable[[], object]) -> tuple[float, object]:
+    """Time one piece of work."""
+    began = time.perf_counter()
+    outcome = work()
+    seconds = time.perf_counter() - began
+    sys.stderr.write(f"{what:<28}{seconds:8.2f} s\n")
+    return seconds, outcome
+
+
+def main() -> None:
+    """Run and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--no-scipy", action="store_true")
+    parser.add_argument("--dofs", type=int, default=120_000, choices=sorted(SIZES))
+    chosen = parser.parse_args()
+    model = shell_model(*SIZES[chosen.dofs], panels=_PARAMETERS, parameters=_PARAMETERS)
+    target = measured(model)
+    runs = [
+        clocked("eigensolution", lambda: solve(model, _MODES))
+        for _ in range(1 if chosen.quick else 3)
+    ]
+    eigensolution = min(seconds for seconds, _ in runs)
+    stage = Stage(tuple(range(_PARAMETERS)), "both", _ITERATIONS)
+    seconds, done = clocked(
+        "update",
+        lambda: update(model, target, [stage], Criteria(), n_modes=_MODES, tolerance=1e-9),
+    )
+    result = {
+        "benchmark": "updating",
+        "update_over_eigensolution": round(seconds / eigensolution, 2),
+        "dofs": model.n_free,
+        "parameters": _PARAMETERS,
+        "iterations": len(done.history) - 1,
+        "eigensolutions": done.eigensolutions,
+        "pairs": len(done.after.correlation.pairs),
+        "mean_abs_deviation_percent": [
+            round(s.correlation.mean_abs_deviation_percent or np.nan, 3)
+            for s in (done.before, done.after)
+        ],
+        "stopped": done.stopped,
+    }
+    if not chosen.no_scipy:
+        result["scipy_over_ours"] = round(_scipy(model, runs[0][1]) / eigensolution, 2)
+    sys.stdout.write(json.dumps(result) + "\n")
+
+
+def _scipy(model: Model, ours: Eigensolution) -> float:
+    K, M = model.K(), model.M()
+    seconds, (values, _) = clocked("scipy", lambda: spla.eigsh(K, _MODES, M, sigma=_SIGMA))
+    elastic = slice(ours.rigid_body_modes, None)
+    np.testing.assert_allclose(np.sort(values)[elastic], ours.eigenvalues[elastic], rtol=1e-5)
+    return seconds
+
+
+if __name__ == "__main__":
+    main()
