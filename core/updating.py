@@ -156,15 +156,21 @@ def update(
 
     note(0, before)
     state, solves, stopped = before, 1, "no stage"
+    near: Order | None = None
     before = _without_factor(before)
     for number, stage in enumerate(stages):
         state = replace(state, objective=objective.value(state.correlation, stage.residuals))
-        state, used, stopped = _work_off(
+        state, near, used, stopped = _work_off(
             objective, full, state, stage, tolerance, partial(note, number)
         )
         solves += used
     active = sorted({k for s in stages for k in s.parameters})
-    error, doubtful = _standard_error(objective, full, state, active, stages[-1].residuals)
+    if near is None or active != sorted(stages[-1].parameters):
+        assert isinstance(state.solution, Eigensolution)
+        near = reduce_around(full, state.factors, state.solution, active)
+    last = stages[-1].residuals
+    there = objective.at(near, state.factors, last)
+    error, doubtful = objective.standard_error(near, there, active, last)
     lower, upper = objective.bounds
     at_bound = np.isclose(state.factors, lower, rtol=1e-6) | np.isclose(
         state.factors, upper, rtol=1e-6
@@ -189,22 +195,35 @@ def _work_off(
     stage: Stage,
     tolerance: float,
     note: Callable[[State], None],
-) -> tuple[State, int, str]:
-    """Work off a stage; return where it ends, the full solves that it took and why it ended."""
+) -> tuple[State, Order | None, int, str]:
+    """Work off a stage.
+
+    Returns
+    -------
+    state : State
+        Where it ends, in full.
+    near : Order or None
+        Reduced model that was last used.
+    solves : int
+        Full solves that it took.
+    reason : str
+        Why it ended.
+    """
     solves, left = 0, stage.max_iterations
+    near: Order | None = None
     while left:
         assert isinstance(state.solution, Eigensolution)
         near = reduce_around(full, state.factors, state.solution, stage.parameters)
         trail, reason = _walk(objective, near, state, stage, left, tolerance)
         if not trail:
-            return state, solves, reason
+            return state, near, solves, reason
         arrived = objective.at(full, trail[-1].factors, stage.residuals)
         solves += 1
         if not objective.closer(arrived, state, stage.residuals):
             found, used = _descend(objective, full, state, stage)
             solves += used
             if found is None:
-                return state, solves, _NO_STEP
+                return state, near, solves, _NO_STEP
             trail, reason, arrived = [found], "", found
         for s in trail[:-1]:
             if abs(s.objective - arrived.objective) > _SAME * arrived.objective:
@@ -213,8 +232,8 @@ def _work_off(
         left -= len(trail)
         state = arrived
         if reason and _agree(trail[-1], arrived, _AGREE * tolerance):
-            return state, solves, reason
-    return state, solves, f"{stage.max_iterations} iterations"
+            return state, near, solves, reason
+    return state, near, solves, f"{stage.max_iterations} iterations"
 
 
 def _walk(
@@ -254,16 +273,6 @@ def _descend(
         if objective.closer(trial, state, stage.residuals):
             return trial, halving + 1
     return None, _HALVINGS
-
-
-def _standard_error(
-    objective: Objective, full: FullOrder, state: State, active: Sequence[int], residuals: str
-) -> tuple[Floats, tuple[str, ...]]:
-    assert isinstance(state.solution, Eigensolution)
-    near = reduce_around(full, state.factors, state.solution, active)
-    return objective.standard_error(
-        near, objective.at(near, state.factors, residuals), active, residuals
-    )
 
 
 def _agree(reduced: State, full: State, tolerance: float) -> bool:
