@@ -10,6 +10,7 @@ from ..arrays import Floats, Numbers
 from ..geometry import Geometry
 from ..modes import Modes
 from .bands import cmif
+from .model_error import CHAIN, pole_errors
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .scaling import driving_points, scale
@@ -37,6 +38,7 @@ class _Table:
     pole_covariance: Floats
     shape_covariance: Floats
     significance: Floats
+    blurred: Numbers
 
 
 def _collect(fits: tuple[BandFit, ...]) -> _Table:
@@ -44,17 +46,18 @@ def _collect(fits: tuple[BandFit, ...]) -> _Table:
     for b in fits:
         if b.core.any():
             e = errors(b.data, b.fit)
+            of_model, blurred = pole_errors(b.data, b.frequencies_hz, b.fit)
             f, c = b.fit, b.core
             parts.append(
-                (f.poles[c], f.participation[:, c], f.shapes[:, c], e.poles[c], e.shapes[:, c],
-                 b.significance[c])
+                (f.poles[c], f.participation[:, c], f.shapes[:, c], (e.poles + of_model)[c],
+                 e.shapes[:, c], b.significance[c], blurred[c])
             )  # fmt: skip
     n_output, n_input = fits[0].data.weight.shape
     empty = (
         np.empty(0, complex), np.empty((n_input, 0), complex), np.empty((n_output, 0), complex),
-        np.empty((0, 2, 2)), np.empty((n_output, 0, 2, 2)), np.empty(0),
+        np.empty((0, 2, 2)), np.empty((n_output, 0, 2, 2)), np.empty(0), np.empty(0, bool),
     )  # fmt: skip
-    axes = (0, 1, 1, 0, 1, 0)
+    axes = (0, 1, 1, 0, 1, 0, 0)
     joined = [
         np.concatenate([empty[k], *(p[k] for p in parts)], axis=a) for k, a in enumerate(axes)
     ]
@@ -92,7 +95,7 @@ def assemble(
     variance = np.einsum("ka,okab,kb->ok", turn, t.shape_covariance, turn)
     shape_std = np.sqrt(np.maximum(variance, 0.0)) / survey.output_weight[:, None]
     size, real_size = _largest(shapes, shape_std), _largest(real, shape_std)
-    shape_std = shape_std / real_size
+    shape_std = np.hypot(shape_std / real_size, CHAIN)
     points = driving_points(survey.outputs, survey.inputs, geometry)
     scaling = scale(t.poles, shapes, participation, points, survey.inputs)
     shapes, participation = shapes / size, participation * size
@@ -107,6 +110,7 @@ def assemble(
     near = np.array([int(np.argmin(np.abs(survey.frequencies_hz - x))) for x in hz], dtype=int)
     at_mode = np.array([mif[max(k - 2, 0) : k + 3].min() for k in near])
     remarks = _remarks(survey, hz, t, quality, mpc, shape_std, real / real_size)
+    warnings += _blurred(hz, t.blurred)
     if not len(hz):
         warnings.append("no mode stands out of the noise")
     source = survey.source
@@ -204,6 +208,18 @@ def _pair_possible(survey: Survey, t: _Table, warnings: list[str]) -> Numbers:
         )
         return np.ones(n, bool)
     return np.zeros(n, bool)
+
+
+def _blurred(hz: Floats, blurred: Numbers) -> list[str]:
+    if not blurred.any():
+        return []
+    which = ", ".join(f"{f:.2f}" for f in hz[blurred][:5])
+    which += ", ..." if np.count_nonzero(blurred) > 5 else ""
+    return [
+        f"{np.count_nonzero(blurred)} mode(s) ({which} Hz) are narrow for the lines and leave a "
+        "residual that is not noise (leakage): their damping may be too high, as its standard "
+        "error says"
+    ]
 
 
 def _remarks(

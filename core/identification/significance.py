@@ -158,11 +158,18 @@ def colour(left: Floats, f: Floats, fit: Fit) -> Floats:
     return np.asarray(np.maximum(envelope @ energy / envelope.sum(axis=1) / mean, 1.0))
 
 
-def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
-    """Tell for each mode whether the residual around it is noise without memory, (n_mode,).
+def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Floats]:
+    """Compare the residual around each mode with noise without memory from line to line.
 
     The variance of white noise equals that of its fourth difference over 70. What a faulty model
     leaves, and the noise of windowed records, changes slowly from line to line.
+
+    Returns
+    -------
+    ratio : (n_mode,) float
+        Variance over that of the differences; about 1 for white noise.
+    scatter : (n_mode,) float
+        Standard deviation of the ratio for white noise.
     """
     left = residual_lines(data, fit, basis(data, fit.poles, derivative=False))
     n_line = len(f)
@@ -171,11 +178,16 @@ def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
     square = np.sum(np.abs(functions) ** 2, axis=0)
     rough = np.sum(np.abs(np.diff(functions, n=4, axis=1)) ** 2, axis=0) / 70.0
     spacing = float(np.median(np.diff(f)))
-    result = np.zeros(len(fit.poles), bool)
+    ratio, scatter = np.ones(len(fit.poles)), np.ones(len(fit.poles))
     for k, pole in enumerate(fit.poles):
         half = max(2.0 * abs(pole.real) / np.pi, _LEAST_SEEN * spacing)
         centre = float(np.clip(abs(pole) / (2.0 * np.pi), f[0], f[-1]))
         near = np.abs(f - centre) <= half
-        level = rough[near[2:-2]].mean()
-        result[k] = square[near].mean() < _WHITE * level
-    return result
+        ratio[k] = square[near].mean() / max(float(rough[near[2:-2]].mean()), 1e-300)
+        scatter[k] = 2.0 / np.sqrt(np.count_nonzero(near) * data.weight.sum())
+    return ratio, scatter
+
+
+def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
+    """Tell for each mode whether the residual around it is about noise without memory."""
+    return np.asarray(memory_of_residual(data, f, fit)[0] < _WHITE)

@@ -14,6 +14,7 @@ from .synthesis import derivative_order
 
 MIN_LINES = 16
 _MODEL_ERROR = 0.01  # relative error that a response is assumed to have besides its noise
+_TOO_SMOOTH = 1e-5  # noise over rms below which functions were computed, not measured
 _NOISE_ONLY = 0.7  # noise over rms above which a response holds nothing else
 
 
@@ -87,6 +88,13 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     if not measured.any():
         reason = f": {warnings[-1]}" if warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
+    smooth = float(np.median(noise[measured] / np.maximum(rms[measured], 1e-300)))
+    if smooth < _TOO_SMOOTH:
+        warnings.append(
+            f"{name}: the functions are smooth to {smooth:.0e} of their size, as measured ones "
+            "are not: they seem computed from an earlier identification, whose own errors the "
+            "standard errors here cannot know"
+        )
     rows, columns = measured.any(axis=1), measured.any(axis=0)
     rows, columns = _one_component(measured, rows, columns, responses, references, warnings)
     values, measured = values[rows][:, columns], measured[rows][:, columns]
