@@ -16,6 +16,7 @@ from .measurement import Measurement
 from .modes import Modes
 from .observation import Observation, observe
 from .units import reconcile_units, to_length_unit
+from .weighting import ModeErrors, mode_errors, told
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,8 @@ class Placed:
     test_geometry : Geometry
         In the analysis frame and the deck length unit.
     warnings : tuple of str
+    errors : ModeErrors, optional
+        Standard errors of `test` where it was identified here; they weigh.
     """
 
     alignment: Alignment
@@ -40,6 +43,14 @@ class Placed:
     test: Modes
     test_geometry: Geometry
     warnings: tuple[str, ...] = ()
+    errors: ModeErrors | None = None
+
+    def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
+        """Multiply rows of sensors with the square roots of their weights."""
+        if self.errors is None:
+            return rows
+        factor = sp.diags(np.sqrt(self.errors.sensors))
+        return sp.csr_matrix(factor @ rows) if sp.issparse(rows) else np.asarray(factor @ rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +150,16 @@ def place_test(
     ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
     warnings = (*measurement.warnings, *units.warnings, *alignment.warnings, *ambiguity)
     scaled = replace(alignment, scale=units.factor)
-    return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings))
+    errors = _errors(measurement, rows)
+    weighed = (told(errors, kept.sensors.labels),) if errors else ()
+    return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings, *weighed), errors)
+
+
+def _errors(measurement: Measurement, rows: Numbers) -> ModeErrors | None:
+    modes, f_std, std = measurement.modes, measurement.frequency_std, measurement.shape_std
+    if modes is None or f_std is None or std is None:
+        return None
+    return mode_errors(modes.frequencies_hz, modes.shapes[rows], f_std, std[rows])
 
 
 def compare(
@@ -162,9 +182,9 @@ def compare(
     normalised = mass_normalised(analysis)
     found = correlate(
         analysis.frequencies_hz,
-        np.asarray(placed.observation.matrix @ normalised.shapes),
+        np.asarray(placed.weighted(placed.observation.matrix @ normalised.shapes)),
         placed.test.frequencies_hz,
-        placed.test.shapes,
+        np.asarray(placed.weighted(placed.test.shapes)),
         criteria,
         rigid_body_modes,
     )

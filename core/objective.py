@@ -35,12 +35,17 @@ class Target:
         Sensor displacements from the free degrees of freedom of the model.
     modes : tuple of int, optional
         Test modes that the update may use; default all.
+    frequency_std, shape_std : (n_test,) float, optional
+        Standard errors of the test's frequencies, relative, and lengths of those of its shapes,
+        over the shapes'; they add to the standard deviations of the weights.
     """
 
     frequencies_hz: Floats
     shapes: Numbers
     sensors: sp.csr_matrix
     modes: tuple[int, ...] | None = None
+    frequency_std: Floats | None = None
+    shape_std: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,11 +147,11 @@ class Objective:
                                                      with_shapes)  # fmt: skip
         parts = []
         if residuals != "shapes":
-            parts.append(eigenvalue_residuals(pairs, values, slopes, self.weights.frequency))
+            parts.append(eigenvalue_residuals(pairs, values, slopes, self.sigmas(pairs)[0]))
         if shapes is not None:
             test = self._test_shapes(state.correlation)[:, [q.test for q in pairs]]
             analysis = np.asarray(order.sensors @ (state.solution.vectors @ T))
-            parts.append(shape_residuals(analysis, shapes, test, self.weights.shape))
+            parts.append(shape_residuals(analysis, shapes, test, self.sigmas(pairs)[1]))
         return Residuals(
             np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
         )
@@ -179,14 +184,25 @@ class Objective:
             )
         return error, tuple(doubtful)
 
+    def sigmas(self, pairs: Sequence[Pair]) -> tuple[Floats, Floats]:
+        """Return standard deviations of the residuals of each pair: the weights' and the test's."""
+        test = [q.test for q in pairs]
+        w, t = self.weights, self.target
+        none = np.zeros(len(self.target.frequencies_hz))
+        return (
+            np.hypot(w.frequency, (none if t.frequency_std is None else t.frequency_std)[test]),
+            np.hypot(w.shape, (none if t.shape_std is None else t.shape_std)[test]),
+        )
+
     def _cost(self, pairs: Sequence[Pair], count: int, residuals: str) -> float:
         """Equation (2) over pairs, with what is due for each of `count` that has none."""
         lam = np.array([(q.analysis_hz / q.test_hz) ** 2 - 1.0 for q in pairs])
         off = np.array([1.0 - q.mac for q in pairs])
         w, missing = self.weights, count - len(pairs)
-        frequency = np.sum((lam / (2.0 * w.frequency)) ** 2)
+        sigma_f, sigma_s = self.sigmas(pairs)
+        frequency = np.sum((lam / (2.0 * sigma_f)) ** 2)
         frequency += missing * (self.criteria.frequency_tolerance / w.frequency) ** 2
-        shape = np.sum(off) / w.shape**2 + missing * (1.0 - self.criteria.mac_min) / w.shape**2
+        shape = np.sum(off / sigma_s**2) + missing * (1.0 - self.criteria.mac_min) / w.shape**2
         parts = {"frequencies": (frequency,), "shapes": (shape,), "both": (frequency, shape)}
         return float(sum(parts[residuals]))
 

@@ -58,7 +58,7 @@ def eigenvalue_residuals(
     pairs: Sequence[Pair],
     eigenvalues: Floats,
     derivatives: Floats,
-    sigma: float,
+    sigma: Floats | float,
 ) -> Residuals:
     """Relative eigenvalue differences (λ_a − λ_t)/λ_t of each pair, equation (5).
 
@@ -69,19 +69,20 @@ def eigenvalue_residuals(
         Of the analysis mode of each pair, after rotation the Rayleigh quotient, [rad²/s²].
     derivatives : (n_pair, n_parameter) float
         Of `eigenvalues` by the parameters.
-    sigma : float
+    sigma : float or (n_pair,) float
         Standard deviation of a relative *frequency* difference; an eigenvalue's is twice that.
     """
     test = (2.0 * np.pi * np.array([p.test_hz for p in pairs])) ** 2
-    scale = 1.0 / (2.0 * sigma)
-    return Residuals(scale * (eigenvalues / test - 1.0), scale * derivatives / test[:, None])
+    scale = np.ones(len(pairs)) / (2.0 * sigma)
+    values = scale * (eigenvalues / test - 1.0)
+    return Residuals(values, scale[:, None] * derivatives / test[:, None])
 
 
 def shape_residuals(
     analysis: Floats,
     derivatives: Floats,
     test: Floats,
-    sigma: float,
+    sigma: Floats | float,
 ) -> Residuals:
     """Part of each normalised analysis shape outside its test shape, equation (6).
 
@@ -91,7 +92,7 @@ def shape_residuals(
         Shapes at the sensors, any scaling.
     derivatives : (n_sensor, n_pair, n_parameter) float
         Of `analysis` by the parameters.
-    sigma : float
+    sigma : float or (n_pair,) float
         Standard deviation of the residual's length √(1 − MAC).
     """
     norm = np.linalg.norm(analysis, axis=0)
@@ -100,6 +101,7 @@ def shape_residuals(
     slope = derivatives / norm[:, None]
     slope = slope - a[:, :, None] * np.einsum("sj,sjp->jp", a, slope)[None]
     slope = slope - t[:, :, None] * np.einsum("sj,sjp->jp", t, slope)[None]
-    value = a - t * np.sum(t * a, axis=0)
+    value = (a - t * np.sum(t * a, axis=0)) / sigma
+    slope = slope / (sigma * np.ones(a.shape[1]))[:, None]
     n = value.size
-    return Residuals(value.T.reshape(n) / sigma, slope.transpose(1, 0, 2).reshape(n, -1) / sigma)
+    return Residuals(value.T.reshape(n), slope.transpose(1, 0, 2).reshape(n, -1))

@@ -31,6 +31,7 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.results import correlate_tables, history_tables, parameter_tables
     from ...core.updating import Target
     from ...core.updating import update as move
+    from ...core.weighting import weight_tables
     from ..inplace import put_in_place
     from ..pipeline import correlated, criteria_of
     from ..runfolder import refuse_existing, run_folder
@@ -62,9 +63,11 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             model,
             Target(
                 placed.test.frequencies_hz,
-                placed.test.shapes,
-                placed.observation.matrix @ model.expansion,
+                placed.weighted(placed.test.shapes),
+                placed.weighted(placed.observation.matrix @ model.expansion),
                 chosen,
+                None if placed.errors is None else placed.errors.frequency,
+                None if placed.errors is None else placed.errors.length,
             ),
             stages,
             criteria_of(study),
@@ -90,6 +93,7 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             "history": history_tables(done.history),
             "before": correlate_tables(before),
             "after": correlate_tables(after),
+            "weights": weight_tables(placed.errors),
             "eigensolutions": done.eigensolutions,
             "stopped": done.stopped,
             "seconds": time.perf_counter() - start,

@@ -1,0 +1,85 @@
+"""What the standard errors of identified modes weigh in correlation and updating."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .arrays import Floats, Numbers, frozen
+
+_OF_SENSORS = 0.05
+"""Error of a reading besides that of the fit, over the rms reading: gain, place, model."""
+
+_LITTLE = 0.5  # weight below which a sensor is named
+
+
+@dataclass(frozen=True, eq=False)
+class ModeErrors:
+    """Standard errors of test modes, relative.
+
+    Parameters
+    ----------
+    frequency : (n_test,) float
+        Of each frequency, over the frequency.
+    shape : (n_sensor, n_test) float
+        Of each reading, over the rms reading of its shape.
+    """
+
+    frequency: Floats
+    shape: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frequency", frozen(self.frequency, np.float64))
+        object.__setattr__(self, "shape", frozen(self.shape, np.float64))
+
+    @property
+    def length(self) -> Floats:
+        """Length of each shape's error over the shape's, (n_test,): its part of √(1 − MAC)."""
+        return np.asarray(np.sqrt(np.mean(self.shape**2, axis=0)))
+
+    @property
+    def sensors(self) -> Floats:
+        """Weight of each sensor, (n_sensor,): 1/σ² over that of the median sensor."""
+        variance = _OF_SENSORS**2 + np.mean(self.shape**2, axis=1)
+        return np.asarray(np.median(variance) / variance) if len(variance) else variance
+
+
+def mode_errors(frequencies_hz: Floats, shapes: Numbers, f_std: Floats, std: Floats) -> ModeErrors:
+    """Relative standard errors from absolute ones.
+
+    Parameters
+    ----------
+    frequencies_hz, f_std : (n_test,) float
+    shapes : (n_sensor, n_test) float or complex
+    std : (n_sensor, n_test) float
+        In the scale of the shapes.
+    """
+    rms = np.sqrt(np.mean(np.abs(shapes) ** 2, axis=0))
+    return ModeErrors(f_std / frequencies_hz, std / np.maximum(rms, np.finfo(float).tiny))
+
+
+def told(errors: ModeErrors, labels: Sequence[str]) -> str:
+    """Say in one sentence what is weighed by what."""
+    f, s = 100.0 * errors.frequency, 100.0 * errors.length
+    weight = errors.sensors
+    little = [labels[k] for k in np.flatnonzero(weight < _LITTLE)]
+    named = ", ".join(little[:8]) + (", ..." if len(little) > 8 else "")
+    less = f"; sensor(s) {named} count less than half" if little else ""
+    return (
+        "the identified modes weigh by their standard errors (frequencies "
+        f"{f.min():.2g} to {f.max():.2g} %, shapes {s.min():.2g} to {s.max():.2g} %){less}"
+    )
+
+
+def weight_tables(errors: ModeErrors | None) -> dict[str, Any] | None:
+    """Return the errors as in result.json: by test mode and by sensor."""
+    if errors is None:
+        return None
+    return {
+        "frequency_std_percent": (100.0 * errors.frequency).tolist(),
+        "shape_std_percent": (100.0 * errors.length).tolist(),
+        "sensor_weights": errors.sensors.tolist(),
+    }
