@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...core.errors import InputError
-from .catalogue import READ, Kind
+from .catalogue import READ, SHARED_NUMBERS, Kind
+from .continuations import in_order
 from .lines import Line
 from .raw_fields import Fields as Fields
 from .raw_fields import as_pynastran_reads, not_finite
@@ -259,7 +260,7 @@ def _read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, di
     kept: dict[str, list[Raw]] = {}
     numbered: dict[str, dict[int, Raw]] = {}
     others: dict[str, list[Raw]] = {}
-    raws = list(cut(lines, files))
+    raws = list(cut(in_order(lines), files))
     for name in ("BAROR", "BEAMOR"):
         for raw in raws:
             if raw.name == name:
@@ -286,7 +287,23 @@ def _read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, di
             else:
                 lists.setdefault(raw.name, []).append(card)
             kept.setdefault(raw.name, []).append(this)
+    _check_unique(numbered, files)
     return Bulk(files, tables, lists, kept, numbered), others
+
+
+def _check_unique(numbered: Mapping[str, Mapping[int, Raw]], files: tuple[Path, ...]) -> None:
+    """Refuse numbers that two kinds of cards share where only one can be meant."""
+    for names in SHARED_NUMBERS:
+        first: dict[int, Raw] = {}
+        for name in names:
+            for number, raw in numbered.get(name, {}).items():
+                other = first.setdefault(number, raw)
+                if other is not raw:
+                    raise InputError(
+                        f"{files[raw.file]} line {raw.line}: {raw.name} {number} has the number "
+                        f"of {other.name} {number} ({files[other.file]} line {other.line}): give "
+                        "one of them another"
+                    )
 
 
 def _check_length(raw: Raw, files: tuple[Path, ...]) -> None:

@@ -82,6 +82,15 @@ READ: dict[str, Kind] = {
 }  # fmt: skip
 """Cards that are read, by name."""
 
+SHARED_NUMBERS = (
+    ("CORD2R", "CORD2C", "CORD2S", "CORD1R", "CORD1C", "CORD1S"),
+    ("PSHELL", "PCOMP", "PCOMPG"),
+    ("PBAR", "PBARL"),
+    ("PBEAM", "PBEAML"),
+    ("MAT1", "MAT2", "MAT8", "MAT9"),
+)
+"""Kinds of cards that are referred to by number alone: no two may have the same."""
+
 _WHY_NOT = {
     "loads do not enter normal modes": "FORCE FORCE1 FORCE2 MOMENT MOMENT1 MOMENT2 PLOAD PLOAD1 "
     "PLOAD2 PLOAD4 PLOADX1 LOAD GRAV RFORCE RFORCE1 ACCEL ACCEL1 SLOAD SPCD SPCR LSEQ DLOAD TLOAD1 "

@@ -69,6 +69,8 @@ def as_pynastran_reads(name: str, fields: Fields) -> Fields:
     """
     if name in _ENDS:
         return _first_end_there(fields, *_ENDS[name])
+    if name == "EIGR" and len(fields) > 9 and str(fields[9]).upper() != "POINT":
+        return fields[:10]  # G and C have a meaning with NORM = POINT only
     if name == "RBE2" and "THRU" in [str(f).upper() for f in fields]:
         return _written_out(fields, 4)
     return fields
