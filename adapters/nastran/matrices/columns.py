@@ -5,9 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import scipy.sparse as sp
 
 from ....core.arrays import Ints, Numbers
+from ....core.errors import InputError
+
+_LONG = 256
+"""Runs of so many words on average are copied one by one, shorter ones picked all at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,16 +42,79 @@ def expand(starts: Ints, lengths: Ints) -> Ints:
     return np.asarray(np.arange(total) + np.repeat(starts - before, lengths))
 
 
-def assemble(strings: Strings, values: Numbers, shape: tuple[int, int]) -> sp.csc_matrix:
-    """Make a sparse matrix; `values` are those of all strings in turn. Zeros are not stored."""
-    rows = expand(strings.row, strings.length)
-    columns = np.repeat(strings.column, strings.length)
-    held = values != 0
-    if not held.all():
-        rows, columns, values = rows[held], columns[held], values[held]
-    matrix = sp.coo_matrix((values, (rows, columns)), shape=shape).tocsc()
-    matrix.sort_indices()
-    return matrix
+def gather(words: Numbers, starts: Ints, lengths: Ints) -> Numbers:
+    """Return the words of each run, one after another."""
+    if len(starts) and lengths.sum() >= _LONG * len(starts):
+        pairs = zip(starts.tolist(), (starts + lengths).tolist(), strict=True)
+        return np.concatenate([words[a:b] for a, b in pairs])
+    return np.asarray(words[expand(starts, lengths)])
+
+
+class Filler:
+    """Puts a sparse matrix together column after column, in little more memory than it takes.
+
+    Parameters
+    ----------
+    shape : (int, int)
+    most : int
+        No more values than these will come.
+    dtype : float64 or complex128
+
+    Raises
+    ------
+    InputError
+        A size that no memory holds.
+    """
+
+    def __init__(self, shape: tuple[int, int], most: int, dtype: npt.DTypeLike) -> None:
+        most = max(min(most, shape[0] * shape[1]), 0)
+        index = np.int32 if max(*shape, most) < 2**31 - 1 else np.int64
+        self._shape = shape
+        try:  # memory is taken only when it is written
+            self._data: Numbers = np.empty(most, dtype)
+            self._rows: Numbers = np.empty(most, index)
+            self._counts: Numbers = np.zeros(shape[1] + 1, index)
+        except MemoryError:
+            raise InputError(
+                f"a matrix of {shape[0]} rows and {shape[1]} columns does not fit into memory, if "
+                "its file is sound"
+            ) from None
+        self._n = 0
+
+    def add(self, strings: Strings, values: Numbers) -> None:
+        """Add the values of some strings, columns rising; zeros are not stored.
+
+        Raises
+        ------
+        ValueError
+            More values than were announced.
+        """
+        rows = expand(strings.row, strings.length)
+        columns = np.repeat(strings.column, strings.length)
+        held = values != 0
+        if not held.all():
+            rows, columns, values = rows[held], columns[held], values[held]
+        stop = self._n + len(values)
+        if stop > len(self._data):
+            raise ValueError("more values than rows and columns")
+        self._data[self._n : stop] = values
+        self._rows[self._n : stop] = rows
+        self._n = stop
+        if len(columns):
+            first = int(columns.min())
+            found = np.bincount(columns - first)
+            self._counts[first + 1 : first + 1 + len(found)] += found.astype(self._counts.dtype)
+
+    def matrix(self) -> sp.csc_matrix:
+        """Return the matrix; the filler is empty afterwards."""
+        for array in (self._data, self._rows):
+            array.resize(self._n, refcheck=False)
+        np.cumsum(self._counts, out=self._counts)
+        matrix = sp.csc_matrix((self._data, self._rows, self._counts), self._shape)
+        self._data = self._rows = np.empty(0)
+        if not matrix.has_sorted_indices:
+            matrix.sort_indices()
+        return matrix
 
 
 def runs_of(matrix: sp.csc_matrix) -> Strings:

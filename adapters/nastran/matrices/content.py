@@ -11,6 +11,7 @@ from ....core.arrays import Ints, frozen, require_shape
 from ....core.dofs import Dofs
 
 SQUARE, RECTANGULAR, SYMMETRIC = 1, 2, 6
+_COLUMNS = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +89,35 @@ class NastranMatrix:
 
 def symmetrised(matrix: sp.csc_matrix) -> sp.csc_matrix:
     """Fill in the entries of a symmetric matrix that are given on one side of the diagonal only."""
+    upper, lower = _sides(matrix)
+    if upper == lower and _is_symmetric(matrix):
+        return matrix
+    if not upper or not lower:
+        diagonal = sp.diags_array(matrix.diagonal(), format="csc")
+        return sp.csc_matrix(matrix + matrix.T.tocsc() - diagonal)
     other = matrix.T.tocsc()
     held = sp.csc_matrix((np.ones(matrix.nnz), matrix.indices, matrix.indptr), matrix.shape)
     missing = (other - other.multiply(held)).tocsc()
     return (matrix + missing).tocsc() if missing.count_nonzero() else matrix
+
+
+def _is_symmetric(matrix: sp.csc_matrix) -> bool:
+    """Whether a matrix and its transpose do the same to a vector of no special direction."""
+    vector = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    size = abs(matrix.data).max(initial=0.0) * matrix.shape[0]
+    return bool(np.abs(matrix @ vector - matrix.T @ vector).max(initial=0.0) <= 1e-7 * size)
+
+
+def _sides(matrix: sp.csc_matrix) -> tuple[int, int]:
+    """Count the entries above and below the diagonal, a part of the columns at a time."""
+    upper = lower = 0
+    for first in range(0, matrix.shape[1], _COLUMNS):
+        bounds = matrix.indptr[first : first + _COLUMNS + 1].astype(np.int64)
+        rows = matrix.indices[bounds[0] : bounds[-1]]
+        columns = np.repeat(np.arange(first, first + len(bounds) - 1), np.diff(bounds))
+        upper += int(np.count_nonzero(rows < columns))
+        lower += int(np.count_nonzero(rows > columns))
+    return upper, lower
 
 
 def guessed_form(matrix: sp.spmatrix) -> int:

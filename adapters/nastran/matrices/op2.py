@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.arrays import Ints, Numbers
-from ....core.errors import InputError
 from ..results.op2records import Op2Block, Op2File, strings_of
-from .columns import Strings, assemble, expand
+from .columns import Filler, Strings, gather
 from .content import SYMMETRIC, DofMap, NastranMatrix, symmetrised
 from .op2pool import is_pool, pool_matrices
 
@@ -81,30 +79,26 @@ def _g_set(file: Op2File) -> DofMap | None:
 
 def _matrix(file: Op2File, block: Op2Block, g_set: DofMap | None) -> NastranMatrix:
     columns, rows, form, kind = block.trailer[1:5]
-    table = np.array(list(strings_of(file, block)), np.int64).reshape(-1, 4)
-    column, row, start, stop = table.T
     single = file.word == 4 and kind not in _DOUBLE
     size = (4 if single else 8) * (2 if kind in _COMPLEX else 1)
-    count = (stop - start) // size
-    outside = (row < 0) | (row + count > rows) | (column >= columns)
-    if outside.any() or ((stop - start) % size).any():
-        k = int(np.flatnonzero(outside | ((stop - start) % size != 0))[0])
-        raise file.damaged(int(start[k]), f"a run of {block.name} does not fit its size")
-    values = _values(file, start, stop, f"{file.order}{'c' if kind in _COMPLEX else 'f'}{size}")
-    held = np.complex128 if kind in _COMPLEX else np.float64
-    matrix = assemble(Strings(column, row, count, start), values.astype(held), (rows, columns))
+    number = f"{file.order}{'c' if kind in _COMPLEX else 'f'}{size}"
+    most = sum(r.size for r in block.records) // size
+    filler = Filler((rows, columns), most, np.complex128 if kind in _COMPLEX else np.float64)
+    for runs in strings_of(file, block):
+        column, row, start, stop = runs.T
+        count = (stop - start) // size
+        wrong = (row < 0) | (row + count > rows) | (column >= columns) | ((stop - start) % size > 0)
+        if wrong.any() or (start % 4).any():  # records begin at multiples of four bytes
+            at = int(start[np.argmax(wrong)])
+            raise file.damaged(at, f"a run of {block.name} does not fit its size")
+        values = gather(file.words(), start // 4, (stop - start) // 4).view(number)
+        try:
+            filler.add(Strings(column, row, count, start), values)
+        except ValueError:
+            raise file.damaged(int(start[0]), f"{block.name} has too many values") from None
+    matrix = filler.matrix()
     square = rows == columns
     if form == SYMMETRIC and square:
         matrix = symmetrised(matrix)
     there = g_set if g_set is not None and square and len(g_set) == rows else None
     return NastranMatrix(block.name.upper(), matrix, form, there, there, single)
-
-
-def _values(file: Op2File, start: Ints, stop: Ints, kind: str) -> Numbers:
-    """Return the numbers between some bytes of the file, one run after another."""
-    if not len(start):
-        return np.zeros(0, kind)
-    words = expand(start // 4, (stop - start) // 4)  # records begin at multiples of four bytes
-    if (start % 4).any():
-        raise InputError(f"{file.path} cannot be read as OP2: its records are not whole words")
-    return file.words()[words].view(kind)

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints
+from ....core.arrays import Floats
 from ....core.errors import InputError
-from .columns import Strings, assemble
+from .columns import Filler, Strings
 from .content import SYMMETRIC, NastranMatrix, symmetrised
 from .op4_binary import Header
 
 _FORMAT = re.compile(r"(\d+)\s*[EDGF](\d+)\.\d+", re.IGNORECASE)
 _NO_LETTER = re.compile(rb"(?<=[\d.])([+-]\d+)$")
 _BIGMAT_FROM = 65536
+_BATCH = 1 << 22
 
 
 @dataclass(frozen=True)
@@ -30,23 +34,34 @@ class _Print:
 
 
 class _Lines:
-    """The lines of a file, one after another."""
+    """The lines of a file, one after another; only a part of it is in memory."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, stream: BinaryIO) -> None:
         self.path = path
-        self.lines = path.read_bytes().replace(b"\r\n", b"\n").split(b"\n")
-        while self.lines and not self.lines[-1].strip():
-            self.lines.pop()
+        self.size = path.stat().st_size
         self.at = 0
+        self._stream = stream
+        self._ahead: bytes | None = None
 
     def more(self) -> bool:
-        return self.at < len(self.lines)
+        """Whether anything but blank lines is left."""
+        while self._ahead is None:
+            line = self._stream.readline()
+            if not line:
+                return False
+            if line.strip():
+                self._ahead = line
+            else:
+                self.at += 1
+        return True
 
     def next(self, what: str) -> bytes:
-        if not self.more():
+        line = self._ahead if self._ahead is not None else self._stream.readline()
+        self._ahead = None
+        if not line:
             raise InputError(f"{self.path} is cut short: it ends where {what} is expected")
         self.at += 1
-        return self.lines[self.at - 1]
+        return line.rstrip(b"\r\n")
 
     def wrong(self, why: str) -> InputError:
         return InputError(f"{self.path} line {self.at}: {why}")
@@ -61,16 +76,14 @@ class _Lines:
                 return [int(w) for w in words]
             raise self.wrong(f"{what} is expected, not {_quoted(line)}") from None
 
-    def skip(self, count: int, form: _Print) -> None:
-        self.at += -(-count // form.per_line)
-        if self.at > len(self.lines):
+    def values(self, count: int, form: _Print) -> list[bytes]:
+        """Return the lines of some values."""
+        n_line = -(-count // form.per_line)
+        lines = list(islice(self._stream, n_line))
+        self.at += len(lines)
+        if len(lines) < n_line:
             raise InputError(f"{self.path} is cut short: it ends in the values of a matrix")
-
-    def values(self, count: int, form: _Print) -> tuple[int, int]:
-        """Step over the lines of some values; return their range of lines."""
-        start = self.at
-        self.skip(count, form)
-        return start, self.at
+        return lines
 
 
 def _quoted(line: bytes) -> str:
@@ -102,20 +115,31 @@ def read_ascii(path: Path, values: bool = True) -> Iterator[NastranMatrix | Head
     InputError
         A file that is cut short or damaged: the line.
     """
-    lines = _Lines(path)
-    while lines.more():
-        header, form = _header(lines)
-        strings, ranges = _columns(lines, header, form)
-        if not values:
-            yield header
-            continue
-        per_value = 2 if header.kind in (3, 4) else 1
-        numbers = _numbers(lines, ranges, strings.length * per_value, form)
-        found = numbers.view(np.complex128) if per_value == 2 else numbers
-        matrix = assemble(strings, found, header.shape)
-        if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
-            matrix = symmetrised(matrix)
-        yield NastranMatrix(header.name, matrix, header.form, single=header.kind in (1, 3))
+    with path.open("rb") as stream:
+        lines = _Lines(path, stream)
+        while lines.more():
+            header, form = _header(lines)
+            complex_ = header.kind in (3, 4)
+            dtype = np.complex128 if complex_ else np.float64
+            most = lines.size // form.width if values else 0
+            filler = Filler(header.shape, most, dtype)
+            for strings, fields in _batches(lines, header, form):
+                if not values:
+                    continue
+                numbers = _numbers(fields, form, lines)
+                found = numbers.view(np.complex128) if complex_ else numbers
+                try:
+                    filler.add(strings, found)
+                except ValueError:
+                    raise lines.wrong(f"matrix {header.name} has too many values") from None
+            yield _matrix(header, filler) if values else header
+
+
+def _matrix(header: Header, filler: Filler) -> NastranMatrix:
+    matrix = filler.matrix()
+    if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
+        matrix = symmetrised(matrix)
+    return NastranMatrix(header.name, matrix, header.form, single=header.kind in (1, 3))
 
 
 def _header(lines: _Lines) -> tuple[Header, _Print]:
@@ -135,31 +159,61 @@ def _header(lines: _Lines) -> tuple[Header, _Print]:
     return Header(name, (abs(nrow), ncol), form, kind, bigmat), _Print(per_line, columns, width)
 
 
-def _columns(lines: _Lines, header: Header, form: _Print) -> tuple[Strings, list[tuple[int, int]]]:
+def _batches(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[Strings, list[bytes]]]:
+    """Yield some strings and their numbers as text."""
+    per_value = 2 if header.kind in (3, 4) else 1
+    runs = array("q")
+    fields: list[bytes] = []
+    size = 0
+    for column, row, count in _runs(lines, header, form):
+        runs.extend((column - 1, row - 1, count))
+        text = _text(lines.values(count * per_value, form), count * per_value, form)
+        fields.append(text)
+        size += len(text)
+        if size > _BATCH:
+            yield _strings(runs), fields
+            runs, fields, size = array("q"), [], 0
+    yield _strings(runs), fields
+
+
+def _strings(runs: array[int]) -> Strings:
+    column, row, count = np.array(runs, np.int64).reshape(-1, 3).T
+    return Strings(column, row, count, np.zeros_like(count))
+
+
+def _text(lines: list[bytes], count: int, form: _Print) -> bytes:
+    """Put the fields of some lines one after another, each of its full width."""
+    full = form.per_line * form.width
+    last = (count - (len(lines) - 1) * form.per_line) * form.width
+    parts = [line.rstrip(b"\r\n")[:full].ljust(full) for line in lines[:-1]]
+    return b"".join([*parts, lines[-1].rstrip(b"\r\n")[:last].ljust(last)])
+
+
+def _runs(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[int, int, int]]:
+    """Yield column, first row and number of values of each string; all from 1."""
     complex_ = 2 if header.kind in (3, 4) else 1
     words = complex_ * (2 if header.kind in (2, 4) else 1)
-    runs: list[tuple[int, int, int]] = []
-    ranges: list[tuple[int, int]] = []
+    last = 0
 
-    def take(column: int, row: int, count: int) -> None:
+    def sound(column: int, row: int, count: int) -> tuple[int, int, int]:
         if count < 1 or row < 1 or row + count - 1 > header.shape[0]:
             raise lines.wrong(
                 f"matrix {header.name} ({header.shape[0]} by {header.shape[1]}) has no {count} "
                 f"values from row {row} of column {column} on"
             )
-        runs.append((column - 1, row - 1, count))
-        ranges.append(lines.values(count * complex_, form))
+        return column, row, count
 
     while True:
         column, row, left = lines.integers(f"a column of {header.name}", 3, form.integer)
         if column > header.shape[1]:
-            lines.skip(left, form)
-            break
-        if column <= (last := runs[-1][0] + 1 if runs else 0) or row < 0 or left < 0:
+            lines.values(left, form)
+            return
+        if column <= last or row < 0 or left < 0:
             raise lines.wrong(f"column {column} of matrix {header.name} follows column {last}")
+        last = column
         if row > 0:  # counted in numbers; in words of single precision by some programs
             room = (header.shape[0] - row + 1) * complex_
-            take(column, row, left // (complex_ if left <= room else words))
+            yield sound(column, row, left // (complex_ if left <= room else words))
             continue
         while left > 0:
             if header.bigmat:
@@ -170,22 +224,13 @@ def _columns(lines: _Lines, header: Header, form: _Print) -> tuple[Strings, list
                 length, row, left = (said >> 16) - 1, said & 0xFFFF, left - 1
             if length % words:
                 raise lines.wrong(f"a string of {length} words is no whole number of values")
-            take(column, row, length // words)
+            yield sound(column, row, length // words)
             left -= length
-    table = np.array(runs, np.int64).reshape(-1, 3)
-    at = np.zeros(len(table), np.int64)
-    return Strings(table[:, 0], table[:, 1], table[:, 2], at), ranges
 
 
-def _numbers(lines: _Lines, ranges: list[tuple[int, int]], counts: Ints, form: _Print) -> Floats:
-    """Read the numbers of some ranges of lines; each range ends in a line that may be short."""
-    full = form.per_line * form.width
-    parts: list[bytes] = []
-    for (start, stop), count in zip(ranges, counts.tolist(), strict=True):
-        last = (count - (stop - start - 1) * form.per_line) * form.width
-        parts += [line[:full].ljust(full) for line in lines.lines[start : stop - 1]]
-        parts.append(lines.lines[stop - 1][:last].ljust(last))
-    fields = np.frombuffer(b"".join(parts).replace(b"D", b"E"), f"S{form.width}")
+def _numbers(texts: list[bytes], form: _Print, lines: _Lines) -> Floats:
+    """Read fields of one width."""
+    fields = np.frombuffer(b"".join(texts).replace(b"D", b"E"), f"S{form.width}")
     try:
         return np.asarray(fields.astype(np.float64))
     except ValueError:
@@ -194,6 +239,6 @@ def _numbers(lines: _Lines, ranges: list[tuple[int, int]], counts: Ints, form: _
         return np.array([float(_NO_LETTER.sub(rb"E\1", f.strip())) for f in fields.tolist()])
     except ValueError:
         raise InputError(
-            f"{lines.path}: a number between lines {ranges[0][0] + 1} and {ranges[-1][1]} cannot "
-            "be read; write the matrix again in binary"
+            f"{lines.path}: a number before line {lines.at + 1} cannot be read; write the matrix "
+            "again in binary"
         ) from None

@@ -9,7 +9,9 @@ DMAP Programmer's Guide, OUTPUT4).
 
 from __future__ import annotations
 
+import mmap
 import struct
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,10 +20,14 @@ import numpy as np
 
 from ....core.arrays import Ints, Numbers
 from ....core.errors import InputError
-from .columns import Strings, assemble, expand
+from .columns import Filler, Strings, gather
 from .content import SYMMETRIC, NastranMatrix, symmetrised
 
 _BIGMAT_FROM = 65536
+_FEW = 64
+"""Strings of fewer columns than these are found column by column, else side by side."""
+_BATCH, _MOST_COLUMNS = 1 << 22, 1 << 16
+"""Bytes and numbers of columns that are looked at together."""
 _HEADER = {24: 4, 48: 8}
 """Bytes of a matrix header record: bytes of a word."""
 
@@ -62,14 +68,24 @@ class _File:
     """Fortran records over the bytes of a file."""
 
     def __init__(self, path: Path, layout: Layout) -> None:
-        raw = np.memmap(path, np.uint8, "r")
+        with path.open("rb") as stream:
+            self.data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         word, shift = layout.word, layout.mark % layout.word
-        usable = raw[shift : shift + (len(raw) - shift) // word * word]
-        self.words = usable.view(f"u{word}")
-        self.integers = usable.view(f"{layout.order}i{word}")
-        self.data, self.layout, self.path = memoryview(raw.data), layout, path
+        count = (len(self.data) - shift) // word
+        self.words = np.frombuffer(self.data, f"u{word}", count, shift)
+        self.integers = self.words.view(f"{layout.order}i{word}")
+        self.layout, self.path = layout, path
         self._mark = struct.Struct(layout.order + ("i" if layout.mark == 4 else "q"))
         self._three = struct.Struct(layout.order + ("3i" if layout.word == 4 else "3q"))
+        self._released = 0
+
+    def release(self, until: int) -> None:
+        """Let the system take back the memory of what has been read."""
+        start = self._released // mmap.PAGESIZE * mmap.PAGESIZE
+        stop = until // mmap.PAGESIZE * mmap.PAGESIZE
+        if stop - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
+            self.data.madvise(mmap.MADV_DONTNEED, start, stop - start)
+            self._released = stop
 
     def record(self, at: int) -> tuple[int, int]:
         """Return where the content of a record starts and ends."""
@@ -138,47 +154,106 @@ def read_binary(
     while at < len(file.data):
         start, end = file.record(at)
         header = file.header(start, end)
-        columns, at = _columns(file, end + layout.mark, header)
-        yield _matrix(file, header, columns) if values else header
+        columns = _Columns(file, end + layout.mark, header)
+        if values:
+            yield _matrix(file, header, columns)
+        else:
+            columns.skip()
+            yield header
+        at = columns.at
 
 
-def _columns(file: _File, at: int, header: Header) -> tuple[Ints, int]:
-    """Return ICOL, IROW, first and last byte of the values of each column, and the next record."""
-    found: list[tuple[int, int, int, int]] = []
-    head = 3 * file.layout.word
-    while True:
-        start, end = file.record(at)
-        if end - start < head:
-            raise InputError(f"{file.path} is damaged: no column of {header.name} at byte {at}")
-        column, row, words = file.column(start)
-        at = end + file.layout.mark
-        if column > header.shape[1]:
-            return np.array(found, np.int64).reshape(-1, 4), at
-        last = found[-1][0] if found else 0
-        fits = start + head + words * file.layout.word <= end
-        if column <= last or row < 0 or words < 0 or not fits:
-            raise InputError(
-                f"{file.path} is damaged: matrix {header.name} has no column {column} of "
-                f"{words} words from row {row}"
-            )
-        found.append((column, row, start + head, start + head + words * file.layout.word))
+class _Columns:
+    """The columns of a matrix in turn; `at` is the record after them when all have been met."""
+
+    def __init__(self, file: _File, at: int, header: Header) -> None:
+        self.file, self.at, self.header = file, at, header
+
+    def skip(self) -> None:
+        """Step over all of them."""
+        for _ in self.batches():
+            pass
+
+    def batches(self) -> Iterator[Ints]:
+        """Yield ICOL, IROW, first and last byte of the values, (n, 4), of some columns at once."""
+        found = array("q")
+        limit = self.at + _BATCH
+        for entry in self._each():
+            found.extend(entry)
+            if self.at > limit or len(found) > _MOST_COLUMNS:
+                yield np.array(found, np.int64).reshape(-1, 4)
+                self.file.release(self.at)
+                found = array("q")
+                limit = self.at + _BATCH
+        yield np.array(found, np.int64).reshape(-1, 4)
+        self.file.release(self.at)
+
+    def _each(self) -> Iterator[tuple[int, int, int, int]]:
+        file, header = self.file, self.header
+        word, mark = file.layout.word, file.layout.mark
+        head, last = 3 * word, 0
+        while True:
+            start, end = file.record(self.at)
+            if end - start < head:
+                raise InputError(
+                    f"{file.path} is damaged: no column of {header.name} at byte {self.at}"
+                )
+            column, row, words = file.column(start)
+            self.at = end + mark
+            if column > header.shape[1]:
+                return
+            stop = start + head + words * word
+            if column <= last or row < 0 or words < 0 or stop > end:
+                raise InputError(
+                    f"{file.path} is damaged: matrix {header.name} has no column {column} of "
+                    f"{words} words from row {row}"
+                )
+            last = column
+            yield column, row, start + head, stop
 
 
-def _matrix(file: _File, header: Header, columns: Ints) -> NastranMatrix:
+def _matrix(file: _File, header: Header, columns: _Columns) -> NastranMatrix:
     kind, word = header.kind, file.layout.word
     per_value = (1 if word == 8 or kind in (1, 3) else 2) * (2 if kind in (3, 4) else 1)
-    strings = _strings(file, header, columns, per_value)
-    total = int(strings.length.sum())
-    picked = file.words[expand(strings.at, strings.length * per_value)]
     bytes_of_real = 4 if word == 4 and kind in (1, 3) else 8
     letter = "f" if kind in (1, 2) else "c"
     size = bytes_of_real * (2 if letter == "c" else 1)
-    values: Numbers = picked.view(f"{file.layout.order}{letter}{size}")
-    values = values.astype(np.complex128 if letter == "c" else np.float64).reshape(total)
-    matrix = assemble(strings, values, header.shape)
+    most = (len(file.data) - columns.at) // size
+    filler = Filler(header.shape, most, np.complex128 if letter == "c" else np.float64)
+    for batch in columns.batches():
+        strings = _strings(file, header, batch, per_value)
+        picked = gather(file.words, strings.at, strings.length * per_value)
+        values: Numbers = picked.view(f"{file.layout.order}{letter}{size}")
+        try:
+            filler.add(strings, values)
+        except ValueError:
+            raise file.damaged_strings(header) from None
+    matrix = filler.matrix()
     if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
         matrix = symmetrised(matrix)
     return NastranMatrix(header.name, matrix, header.form, single=kind in (1, 3))
+
+
+def _strings_of_column(
+    file: _File, header: Header, column: int, span: tuple[int, int]
+) -> tuple[Ints, Ints, Ints, Ints]:
+    """Find the runs of one column, one after another: column, row, words and place of each."""
+    at, end = span
+    words = file.integers[at:end].astype(np.int64).data
+    found, k, stop = array("q"), 0, end - at
+    lead = 2 if header.bigmat else 1
+    while k + lead <= stop:
+        if header.bigmat:
+            length, row = words[k] - 1, words[k + 1]
+        else:
+            length, row = (words[k] >> 16) - 1, words[k] & 0xFFFF
+        k += lead
+        if length < 1 or k + length > stop:
+            raise file.damaged_strings(header)
+        found.extend((column, row, length, at + k))
+        k += length
+    table = np.array(found, np.int64).reshape(-1, 4)
+    return table[:, 0], table[:, 1], table[:, 2], table[:, 3]
 
 
 def _strings(file: _File, header: Header, columns: Ints, per_value: int) -> Strings:
@@ -189,7 +264,7 @@ def _strings(file: _File, header: Header, columns: Ints, per_value: int) -> Stri
     parts = [(columns[dense, 0], columns[dense, 1], (end - at)[dense], at[dense])]
     column, at, end = columns[~dense, 0], at[~dense], end[~dense]
     lead = 2 if header.bigmat else 1
-    while len(column):  # the k-th string of every column at once
+    while len(column) >= _FEW:  # the k-th string of every column at once
         inside = at + lead <= end
         column, at, end = column[inside], at[inside], end[inside]
         said = file.integers[at].astype(np.int64)
@@ -201,6 +276,8 @@ def _strings(file: _File, header: Header, columns: Ints, per_value: int) -> Stri
         if (length < 1).any() or (at + lead + length > end).any():
             raise file.damaged_strings(header)
         at = at + lead + length
+    for one, start, stop in zip(column.tolist(), at.tolist(), end.tolist(), strict=True):
+        parts.append(_strings_of_column(file, header, one, (start, stop)))
     column, row, length, at = (np.concatenate(p) for p in zip(*parts, strict=True))
     order = np.argsort(column, kind="stable")
     column, row, length, at = column[order], row[order], length[order], at[order]

@@ -14,6 +14,7 @@ from .content import NastranMatrix
 
 _REAL, _COMPLEX = 2, 4
 _WORD = 4
+_ENTRIES = 1 << 20
 _HEAD = 3
 """Words before the strings of a column: ICOL, IROW, NW."""
 _LONGEST_NAME = 8
@@ -35,7 +36,10 @@ def op4_binary(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
         header[0] = header[7] = 24
         name = _name(m).ljust(_LONGEST_NAME).encode("ascii")
         yield header[:5].tobytes() + name + header[7:].tobytes()
-        yield _binary_columns(matrix, kind).tobytes()
+        for first, stop in _parts(matrix):
+            yield _binary_columns(matrix[:, first:stop], first, kind).tobytes()
+        end = (5 * _WORD, matrix.shape[1] + 1, 1, 2, 0, 0x3FF00000, 5 * _WORD)
+        yield np.array(end, "<i4").tobytes()
 
 
 def op4_formatted(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
@@ -80,8 +84,20 @@ def _reals(matrix: sp.csc_matrix, kind: int) -> Floats:
     return np.asarray(np.ascontiguousarray(matrix.data, dtype).view("<f8"))
 
 
-def _binary_columns(matrix: sp.csc_matrix, kind: int) -> Ints:
-    """All records of a matrix after its header, as words."""
+def _parts(matrix: sp.csc_matrix) -> Iterator[tuple[int, int]]:
+    """Cut the columns into parts of about as many entries; columns without any are passed over."""
+    first = 0
+    while first < matrix.shape[1]:
+        until = int(matrix.indptr[first]) + _ENTRIES
+        stop = int(np.searchsorted(matrix.indptr, until, "right")) - 1
+        stop = min(max(stop, first + 1), matrix.shape[1])
+        if matrix.indptr[stop] > matrix.indptr[first]:
+            yield first, stop
+        first = stop
+
+
+def _binary_columns(matrix: sp.csc_matrix, shift: int, kind: int) -> Ints:
+    """Return records of some columns as words, those before counted by `shift`."""
     strings = runs_of(matrix)
     per_value = 4 if kind == _COMPLEX else 2
     words_of_string = 2 + strings.length * per_value
@@ -90,16 +106,15 @@ def _binary_columns(matrix: sp.csc_matrix, kind: int) -> Ints:
     record = words + _HEAD + 2  # two marks
     start = np.cumsum(record) - record
     total = int(record.sum())
-    out = np.zeros(total + 7, "<i4")
+    out = np.zeros(total, "<i4")
     size = (words + _HEAD) * _WORD
     out[start] = out[start + record - 1] = size
-    out[start + 1], out[start + 3] = held + 1, words
+    out[start + 1], out[start + 3] = held + 1 + shift, words
     # strings stand one after another in their record, two marks and three words between columns
     number = np.searchsorted(held, strings.column)
     at = np.cumsum(words_of_string) - words_of_string + (_HEAD + 2) * number + 1 + _HEAD
     out[at], out[at + 1] = strings.length * per_value + 1, strings.row + 1
     out[expand(at + 2, strings.length * per_value)] = _reals(matrix, kind).view("<i4")
-    out[total:] = 5 * _WORD, matrix.shape[1] + 1, 1, 2, 0, 0x3FF00000, 5 * _WORD
     return out
 
 

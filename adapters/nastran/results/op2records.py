@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import mmap
 import struct
+from array import array
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -24,6 +25,7 @@ from ....core.errors import InputError
 _STARTS = {b"\4\0\0\0": ("<", 4), b"\0\0\0\4": (">", 4), b"\10\0\0\0": ("<", 8),
            b"\0\0\0\10": (">", 8)}  # fmt: skip
 _MARK = 4
+_MOST_RUNS = 1 << 18
 _LABEL = 3
 """First marker of the label that most files start with: the date has three words."""
 
@@ -238,10 +240,18 @@ def _text(raw: bytes, word: int) -> str:
     return raw.decode("latin-1").strip(" \0")
 
 
-def strings_of(file: Op2File, block: Op2Block) -> Iterator[tuple[int, int, int, int]]:
-    """Yield column (from 0), first row (from 0) and bytes start, stop of each run of a matrix."""
-    columns = [r for r in block.records if r.is_column]
-    for column, record in enumerate(columns):
+def strings_of(file: Op2File, block: Op2Block) -> Iterator[Ints]:
+    """Yield column and first row (from 0) and bytes start, stop of runs of a matrix, (n, 4)."""
+    found = array("q")
+    column = -1
+    for record in block.records:
+        if not record.is_column:
+            continue
+        column += 1
         for start, stop in record.parts:
             (row,) = file._integer.unpack_from(file._data, start)
-            yield column, row - 1, start + file.word, stop
+            found.extend((column, row - 1, start + file.word, stop))
+        if len(found) > _MOST_RUNS:
+            yield np.array(found, np.int64).reshape(-1, 4)
+            found = array("q")
+    yield np.array(found, np.int64).reshape(-1, 4)
