@@ -13,8 +13,8 @@ from .arrays import Floats, frozen
 from .dense import dense_modes
 from .errors import CheckError, InputError
 from .factor import Backend, Factorisation, best_backend, factorise
-from .linkage import linkage_note
-from .mechanism import mechanism, strain_free
+from .linkage import refuse_linkage
+from .mechanism import Massless, hold, mechanism, strain_free
 from .model import Model
 from .modes import Modes
 from .pencil import Pencil
@@ -26,6 +26,7 @@ _DENSE = 600
 _DEFAULT_MODES = 10
 _RESIDUAL = 1e-5
 _ORTHONORMAL = 1e-8
+_HELD = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,14 +152,25 @@ def solve(
     wanted = n_modes if n_modes is not None or fmax is not None else _DEFAULT_MODES
     chosen = backend or best_backend()
     small = pencil.n <= _DENSE or ((wanted or 0) > pencil.n // 4 and pencil.n <= 4 * _DENSE)
-    if small:
-        spectrum = dense_modes(owner, pencil, rigid)
-    else:
-        request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed)
-        spectrum = sparse_modes(owner, pencil, rigid, request)
+    request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed)
+    held: list[str] = []
+    while True:
+        try:
+            if small:
+                spectrum = dense_modes(owner, pencil, rigid)
+            else:
+                spectrum = sparse_modes(owner, pencil, rigid, request)
+            break
+        except Massless as found:
+            if len(held) == _HELD:
+                raise
+            pencil, rigid, note = hold(owner, pencil, found.motions, rigid)
+            held.append(note)
     zero = _without_strain(pencil, spectrum)
     notes = _refuse_mechanism(owner, pencil, body, spectrum.vectors[:, :zero])
-    notes += linkage_note(owner, pencil, rigid) if owner else []
+    notes += held
+    if owner:
+        refuse_linkage(owner, pencil, rigid)
     values, vectors = _joined(pencil, rigid, spectrum)
     n_zero = rigid.shape[1] + zero
     keep = len(values) if wanted is None else min(wanted, len(values))

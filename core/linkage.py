@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from .arrays import Floats, Ints
+from .errors import InputError
 from .mechanism import where
 from .model import Model
 from .pencil import Pencil
@@ -13,8 +14,8 @@ from .pencil import Pencil
 _MOVED = 1e-6
 
 
-def linkage_note(model: Model, pencil: Pencil, modes: Floats) -> list[str]:
-    """Say which free motions bend a linkage: an element turns about a grid that is held.
+def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
+    """Refuse free motions that bend a linkage: an element turns about a grid that is held.
 
     The free end of a rod that is pinned to the ground at its other end can go sideways as in the
     translation of a rigid body; but the rod turns. Such a motion needs a translation, of a grid
@@ -25,30 +26,32 @@ def linkage_note(model: Model, pencil: Pencil, modes: Floats) -> list[str]:
     modes : (n_free, n_mode) float
         Motions without strain energy that count as rigid-body modes.
 
-    Returns
-    -------
-    list of str
-        A warning, or nothing.
+    Raises
+    ------
+    InputError
+        With the grids and directions that move.
     """
     fixed, xyz = _held(model)
     if not modes.shape[1] or not len(fixed):
-        return []
+        return
     moving = [k for k in range(modes.shape[1]) if _turns(model, fixed, xyz, modes[:, k])]
-    if not moving:
-        return []
-    return [
-        f"{len(moving)} of the rigid-body modes are those of a mechanism: parts that are held "
-        f"elsewhere move without resistance at {where(model, pencil, modes[:, moving])}"
-    ]
+    if moving:
+        count = "a motion" if len(moving) == 1 else f"{len(moving)} motions"
+        raise InputError(
+            f"the model is a mechanism: {count} of parts that are held elsewhere, without "
+            f"stiffness, at {where(model, pencil, modes[:, moving])}; constrain these directions "
+            "or give them stiffness"
+        )
 
 
 def _held(model: Model) -> tuple[Ints, Floats]:
-    """Find the translations, as rows of `dofs`, that cannot move at all, and where they are."""
+    """Find the translations, as rows of `dofs`, that the user holds, and where they are."""
     T = sp.csr_matrix(model.expansion)
     still = np.asarray(abs(T).sum(axis=1)).ravel() == 0.0
     row = model.geometry.index_of(model.dofs.node)
     translation = (model.dofs.component >= 1) & (model.dofs.component <= 3)
-    fixed = np.flatnonzero(still & translation & (row >= 0))
+    idle = np.isin(model.dofs.node, model.idle)
+    fixed = np.flatnonzero(still & translation & (row >= 0) & ~idle)
     return fixed, model.geometry.xyz[row[fixed]]
 
 

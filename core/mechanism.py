@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg as sl
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
@@ -25,6 +26,14 @@ _NEGATIVE = (
     "the stiffness is not positive semi-definite: "
     "look for negative springs, moduli or section values near {}"
 )
+
+
+class Massless(InputError):
+    """Motions with neither stiffness nor mass; `motions` is (n, n_motion) float."""
+
+    def __init__(self, message: str, motions: Floats) -> None:
+        super().__init__(message)
+        self.motions = motions
 
 
 def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
@@ -135,10 +144,43 @@ def mechanism(
     count = X.shape[1]
     motions = "a motion" if count == 1 else f"{count} motions"
     without = "neither stiffness nor mass" if massless else "no stiffness"
-    return InputError(
+    message = (
         f"the model is a mechanism: {motions} with {without} besides the rigid-body modes, at "
         f"{where(model, pencil, X)}; constrain these directions or give them stiffness"
     )
+    return Massless(message, X) if massless else InputError(message)
+
+
+def hold(
+    model: Model | None, pencil: Pencil, X: Floats, rigid: Floats
+) -> tuple[Pencil, Floats, str]:
+    """Hold motions that have neither stiffness nor mass; nothing else changes by it.
+
+    One degree of freedom of each is sprung to ground. Every other motion can leave it at rest by
+    a part of X that costs nothing, so no mode and no frequency notices (MSC Nastran's MECHFIX).
+
+    Parameters
+    ----------
+    X : (n, n_motion) float
+        The motions.
+    rigid : (n, n_rigid) float
+        Rigid-body modes.
+
+    Returns
+    -------
+    Pencil, (n, n_rigid) float, str
+        With the springs, the rigid-body modes that leave them at rest, and what to tell the user.
+    """
+    X = np.linalg.qr(X)[0]
+    held = sl.qr(X.T, mode="r", pivoting=True)[1][: X.shape[1]]
+    rigid = rigid - X @ np.linalg.solve(X[held], rigid[held])
+    count = "a motion" if len(held) == 1 else f"{len(held)} motions"
+    note = (
+        f"{count} with neither stiffness nor mass, at {where(model, pencil, X)}, held at "
+        + ", ".join(pencil.name(int(r)) for r in held[:_NAMED])
+        + ("" if len(held) <= _NAMED else f" and {len(held) - _NAMED} more")
+    )
+    return pencil.sprung(held), rigid, note
 
 
 def _least_motion(X: Floats, rigid: Floats, lengths: Floats) -> Floats:

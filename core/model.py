@@ -94,6 +94,8 @@ class Model:
         For messages, ``grid:component`` of each free degree of freedom, as the deck counts.
     warnings : tuple of str
         What the adapter left out or assumed.
+    idle : tuple of int
+        Nodes of which a translation is fixed for want of stiffness, not by the user.
     """
 
     geometry: Geometry
@@ -104,6 +106,7 @@ class Model:
     parameters: tuple[Parameter, ...] = ()
     free_labels: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    idle: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         n = self.expansion.shape[1]

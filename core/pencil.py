@@ -7,9 +7,12 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, require_finite
+from .arrays import Floats, Ints, require_finite
 from .errors import InputError
 from .model import Model
+
+_ROUNDING = 1e-12
+"""Mass over stiffness, beside that of most, below which a mass is rounding of a rotation."""
 
 
 class Pencil:
@@ -34,6 +37,8 @@ class Pencil:
         self.K, self.M = sp.csr_matrix(K), sp.csr_matrix(M)
         self.n = int(self.K.shape[0])
         self.labels = labels
+        self._check_shapes()
+        self.M = _without_rounding(self.K, self.M)
         self._check()
         upper_k, upper_m = sp.triu(self.K, format="csr"), sp.triu(self.M, format="csr")
         both = (upper_k + 1j * upper_m).tocsr()  # keeps an entry unless it is zero in both
@@ -49,6 +54,12 @@ class Pencil:
         if isinstance(model, Model):
             return cls(model.K(p), model.M(p), model.free_labels)
         return cls(*model)
+
+    def sprung(self, rows: Ints) -> Pencil:
+        """Return the pencil with springs to ground, as stiff as the diagonal, at some rows."""
+        spring = np.zeros(self.n)
+        spring[rows] = np.where(self.k_diagonal[rows] > 0.0, self.k_diagonal[rows], 1.0)
+        return Pencil(self.K + sp.diags(spring), self.M, self.labels)
 
     def shifted(self, sigma: float) -> sp.csr_matrix:
         """Upper triangle of K - sigma M, (n, n) csr on a pattern that does not depend on sigma."""
@@ -96,7 +107,7 @@ class Pencil:
         """Return what the user calls a degree of freedom."""
         return self.labels[row] if len(self.labels) == self.n else f"degree of freedom {row + 1}"
 
-    def _check(self) -> None:
+    def _check_shapes(self) -> None:
         for matrix, what in ((self.K, "stiffness"), (self.M, "mass")):
             if matrix.shape != (self.n, self.n):
                 raise InputError(f"the {what} matrix has shape {matrix.shape}, expected square")
@@ -108,6 +119,8 @@ class Pencil:
             )
             if skew.any():
                 raise InputError(f"the {what} matrix is not symmetric")
+
+    def _check(self) -> None:
         if self.n == 0:
             raise InputError("the model has no free degree of freedom: nothing can move")
         if self.M.nnz == 0 or not np.any(self.M.data):
@@ -130,6 +143,27 @@ class Pencil:
             raise InputError(
                 f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
             )
+
+
+def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
+    """Take out rows and columns of M that are the rounding of zero, positive or negative.
+
+    Massless directions, as the torsion of a bar, that a displacement coordinate system mixes
+    with others keep some 1e-16 of their masses. A semi-definite matrix has no entries beside a
+    zero on its diagonal.
+    """
+    k, m = np.abs(K.diagonal()), M.diagonal()
+    both = (k > 0.0) & (m > 0.0)
+    if not both.any():
+        return M
+    usual = float(np.quantile(m[both] / k[both], 0.9))
+    noise = (np.diff(M.indptr) > 0) & (np.abs(m) < _ROUNDING * usual * k)
+    if not noise.any():
+        return M
+    kept = sp.diags((~noise).astype(float))
+    cleaned = sp.csr_matrix(kept @ M @ kept)
+    cleaned.eliminate_zeros()
+    return cleaned
 
 
 def _digits(value: float) -> int:

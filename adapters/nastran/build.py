@@ -120,7 +120,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
     constraints = read_constraints(deck, points)
     terms = _terms(deck, structure, variation)
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
-    terms, reduced, warnings = _remove_singular(deck, points, terms, reduced)
+    terms, reduced, warnings, idle = _remove_singular(deck, points, terms, reduced)
     terms, expansion, kept, more = _condense(deck, points, terms, reduced)
     return Model(
         geometry=_geometry(deck, structure),
@@ -131,6 +131,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         parameters=variation.parameters,
         free_labels=tuple(points.label(d) for d in kept),
         warnings=(*structure.notes, *constraints.notes, *warnings, *more),
+        idle=idle,
     )
 
 
@@ -225,8 +226,11 @@ def _check_influence(parameters: tuple[Parameter, ...], terms: Sequence[Term]) -
 
 def _remove_singular(
     deck: Deck, points: Points, terms: Pair, reduced: Reduction
-) -> tuple[Pair, Reduction, tuple[str, ...]]:
-    """Reduce all terms; fix what has no stiffness (AUTOSPC), or neither stiffness nor mass."""
+) -> tuple[Pair, Reduction, tuple[str, ...], tuple[int, ...]]:
+    """Reduce all terms; fix what has no stiffness (AUTOSPC), or neither stiffness nor mass.
+
+    The last results are a warning, and the grids of which a translation was fixed.
+    """
     terms = _each(terms, reduced.apply)
     K, M = (_total(part) for part in terms)
     if not K.nnz:
@@ -236,10 +240,13 @@ def _remove_singular(
     smallest = deck.param("EPZERO", _EPZERO)
     loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, smallest)
     if not len(loose):
-        return terms, reduced, ()
+        return terms, reduced, (), ()
     left = np.setdiff1d(np.arange(K.shape[0]), loose)
     terms = _each(terms, lambda matrices: select(matrices, left))
-    return terms, reduced.drop(loose), _loose_warning(points, reduced.kept[loose], automatic)
+    fixed = reduced.kept[loose]
+    translations = fixed[(fixed < 6 * len(points.ids)) & (fixed % 6 < 3)]
+    idle = tuple(int(i) for i in np.unique(points.ids[translations // 6]))
+    return terms, reduced.drop(loose), _loose_warning(points, fixed, automatic), idle
 
 
 def _condense(
