@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import find_peaks
+from scipy.signal import find_peaks, peak_widths
 
 from ..arrays import Floats, Ints, Numbers
 
 MAX_PEAKS = 10  # in one band
 _MAX_LINES = 2000  # in the core of one band
-_MIN_LINES = 96  # a band is not split below twice this
+_MIN_LINES = 96  # a band is not split below twice this, or
+_MIN_WIDTHS = 12.0  # this many half-power bandwidths of its modes
 _MARGIN = 0.25  # of the core's width, on either side
 _PROMINENCE_DB = 1.0
 
@@ -84,8 +85,9 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
         What noise alone makes of the singular values.
     """
     lines = peaks(indicator, floor)
+    widths = _widths(indicator, lines)
     valley = np.log(np.maximum(indicator[:, 0], 1e-300))
-    edges = [0, *_cuts(valley, lines, 0, len(frequencies_hz) - 1), len(frequencies_hz) - 1]
+    edges = [0, *_cuts(valley, lines, widths, 0, len(frequencies_hz) - 1), len(frequencies_hz) - 1]
     f = frequencies_hz
     bands = []
     for a, b in pairwise(edges):
@@ -95,19 +97,33 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
     return tuple(bands)
 
 
-def _cuts(valley: Floats, lines: Ints, a: int, b: int) -> list[int]:
-    inside = lines[(lines > a) & (lines < b)]
-    low, high = a + _MIN_LINES, b - _MIN_LINES
+def _widths(indicator: Floats, lines: Ints) -> Floats:
+    """Half-power widths of peaks, in lines, by the singular value that is narrowest there."""
+    result = np.full(len(lines), float(len(indicator)))
+    for column in indicator.T:
+        tops, _ = find_peaks(column)
+        here = np.flatnonzero(np.isin(lines, tops))
+        if len(here):
+            width = peak_widths(column**2, lines[here], rel_height=0.5)[0]
+            result[here] = np.minimum(result[here], width)
+    return result
+
+
+def _cuts(valley: Floats, lines: Ints, widths: Floats, a: int, b: int) -> list[int]:
+    here = (lines > a) & (lines < b)
+    inside = lines[here]
+    least = max(_MIN_LINES, int(_MIN_WIDTHS * np.median(widths[here])) if len(inside) else 0)
+    low, high = a + least, b - least
     few = len(inside) <= MAX_PEAKS
     if (few and b - a <= _MAX_LINES) or low >= high:
         return []
     if few:
         low, high = a + (b - a) // 3, b - (b - a) // 3
         cut = low + int(np.argmin(valley[low:high]))
-        return [*_cuts(valley, lines, a, cut), cut, *_cuts(valley, lines, cut, b)]
+        return [*_cuts(valley, lines, widths, a, cut), cut, *_cuts(valley, lines, widths, cut, b)]
     quarter = len(inside) // 4
     low, high = max(low, int(inside[quarter])), min(high, int(inside[-quarter - 1]))
     if low >= high:
         low, high = (a + b) // 2, (a + b) // 2 + 1
     cut = low + int(np.argmin(valley[low:high]))
-    return [*_cuts(valley, lines, a, cut), cut, *_cuts(valley, lines, cut, b)]
+    return [*_cuts(valley, lines, widths, a, cut), cut, *_cuts(valley, lines, widths, cut, b)]

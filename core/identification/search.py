@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.fft
 from scipy.stats import chi2
 
 from ..arrays import Floats, Numbers
@@ -12,6 +13,7 @@ from .stabilisation import Candidate
 
 _WIDTHS = (0.5, 1.5, 4.0, 12.0, 36.0)  # decay rates of the filters, in line spacings
 _RISK = 0.1  # that noise shows a trace somewhere
+_CHUNK = 1 << 17  # numbers filtered at once, few enough to stay near the processor
 _SMOOTHED = 15  # lines over which the level of the residual is taken
 
 
@@ -67,22 +69,28 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Trac
     measured : (n_output, n_input) bool
     """
     n_output, n_input, n_line = residual.shape
-    level = np.einsum("oif,oif->f", residual, residual.conj()).real / np.count_nonzero(measured)
+    level = np.einsum("oif,oif->f", residual.real, residual.real)
+    level += np.einsum("oif,oif->f", residual.imag, residual.imag)
+    level /= np.count_nonzero(measured)
     width = min(_SMOOTHED, n_line)
     window = np.ones(width)
     smooth = np.convolve(level, window, "same") / np.convolve(np.ones(n_line), window, "same")
     size = 2 * n_line
-    spectrum = np.fft.fft(residual / np.sqrt(np.maximum(smooth, 1e-300)), size)
+    scale = 1.0 / np.sqrt(np.maximum(smooth, 1e-300))
     offset = np.fft.fftfreq(size, 1.0 / size)
     decay = np.array([w for w in _WIDTHS if w <= 0.1 * n_line] or [_WIDTHS[0]])
-    explained = np.empty((len(decay), n_line))
-    grams = np.empty((len(decay), n_line, n_input, n_input), complex)
-    for d in range(len(decay)):
-        kernel = 1.0 / (1j * offset + decay[d])
-        filtered = np.fft.ifft(spectrum * np.fft.fft(kernel).conj())[..., :n_line]
-        by_line = filtered.transpose(2, 0, 1)
-        grams[d] = by_line.conj().transpose(0, 2, 1) @ by_line
-        explained[d] = np.linalg.eigvalsh(grams[d])[:, -1] / np.sum(np.abs(kernel) ** 2)
+    kernels = 1.0 / (1j * offset + decay[:, None])
+    filters = scipy.fft.fft(kernels).conj()
+    grams = np.zeros((len(decay), n_line, n_input, n_input), complex)
+    step = max(1, _CHUNK // (n_input * size))
+    for first in range(0, n_output, step):
+        spectrum = scipy.fft.fft(residual[first : first + step] * scale, size)
+        for d in range(len(decay)):
+            filtered = scipy.fft.ifft(spectrum * filters[d])[..., :n_line]
+            by_line = np.ascontiguousarray(filtered.transpose(2, 1, 0))
+            grams[d] += by_line.conj() @ by_line.transpose(0, 2, 1)
+    energy = np.sum(np.abs(kernels) ** 2, axis=1)
+    explained = np.linalg.eigvalsh(grams)[..., -1] / energy[:, None]
     freedom = (np.sqrt(2.0 * n_output) + np.sqrt(2.0 * n_input - 2.0)) ** 2
     limit = 0.5 * float(chi2.isf(_RISK / explained.size, freedom))
     return Traces(frequencies_hz, explained, grams, decay, limit)

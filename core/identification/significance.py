@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.stats import chi2
 
@@ -171,7 +173,10 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Flo
     scatter : (n_mode,) float
         Standard deviation of the ratio for white noise.
     """
-    left = residual_lines(data, fit, basis(data, fit.poles, derivative=False))
+    some = slice(None, None, max(1, int(data.weight.sum()) // _LISTENED))
+    heard = replace(data, y=data.y[some], weight=data.weight[some])
+    fitted = replace(fit, shapes=fit.shapes[some])
+    left = residual_lines(heard, fitted, basis(heard, fit.poles, derivative=False))
     n_line = len(f)
     lines = left.reshape(-1, 2, n_line)
     functions = lines[:, 0] + 1j * lines[:, 1]
@@ -184,7 +189,7 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Flo
         centre = float(np.clip(abs(pole) / (2.0 * np.pi), f[0], f[-1]))
         near = np.abs(f - centre) <= half
         ratio[k] = square[near].mean() / max(float(rough[near[2:-2]].mean()), 1e-300)
-        scatter[k] = 2.0 / np.sqrt(np.count_nonzero(near) * data.weight.sum())
+        scatter[k] = 2.0 / np.sqrt(np.count_nonzero(near) * heard.weight.sum())
     return ratio, scatter
 
 
