@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from ....core.errors import InputError
 from .content import NastranMatrix
 from .op4_ascii import is_ascii_op4, read_ascii
-from .op4_binary import Header, layout_of, read_binary
+from .op4_binary import Header, Names, layout_of, read_binary
 
 _HEAD = 512
 
@@ -20,8 +20,14 @@ def is_op4(path: Path) -> bool:
     return layout_of(head) is not None or is_ascii_op4(head)
 
 
-def read_op4(path: Path | str) -> tuple[NastranMatrix, ...]:
-    """Read all matrices of an OP4 file, binary or formatted; the kind is told by the contents.
+def read_op4(path: Path | str, names: Collection[str] | None = None) -> tuple[NastranMatrix, ...]:
+    """Read the matrices of an OP4 file, binary or formatted; the kind is told by the contents.
+
+    Parameters
+    ----------
+    path : path
+    names : collection of str, optional
+        Only these; the numbers of the others are stepped over. Default: all.
 
     Returns
     -------
@@ -33,12 +39,14 @@ def read_op4(path: Path | str) -> tuple[NastranMatrix, ...]:
     InputError
         A file that is not OP4, is cut short or damaged.
     """
-    return tuple(m for m in _matrices(Path(path), True) if isinstance(m, NastranMatrix))
+    wanted = None if names is None else frozenset(n.upper() for n in names)
+    return tuple(m for m in _matrices(Path(path), wanted) if isinstance(m, NastranMatrix))
 
 
 def list_op4(path: Path | str) -> tuple[Header, ...]:
     """Return the headers of all matrices of an OP4 file without reading their numbers."""
-    return tuple(m for m in _matrices(Path(path), False) if isinstance(m, Header))
+    found = _matrices(Path(path), frozenset())
+    return tuple(m for m in found if isinstance(m, Header))
 
 
 def kind_of(path: Path) -> str:
@@ -51,15 +59,15 @@ def kind_of(path: Path) -> str:
     return f"binary, {8 * layout.word} bit words, {order} endian"
 
 
-def _matrices(path: Path, values: bool) -> Iterator[NastranMatrix | Header]:
+def _matrices(path: Path, wanted: Names) -> Iterator[NastranMatrix | Header]:
     try:
         with path.open("rb") as stream:
             head = stream.read(_HEAD)
         layout = layout_of(head)
         if layout is not None:
-            yield from read_binary(path, layout, values)
+            yield from read_binary(path, layout, wanted)
         elif is_ascii_op4(head):
-            yield from read_ascii(path, values)
+            yield from read_ascii(path, wanted)
         else:
             raise InputError(
                 f"{path} is not an OP4 file: it starts neither as a binary nor as a formatted one"

@@ -16,12 +16,12 @@ from ....core.arrays import Floats
 from ....core.errors import InputError
 from .columns import Filler, Strings
 from .content import SYMMETRIC, NastranMatrix, symmetrised
-from .op4_binary import Header
+from .op4_binary import Header, Names
 
 _FORMAT = re.compile(r"(\d+)\s*[EDGF](\d+)\.\d+", re.IGNORECASE)
 _NO_LETTER = re.compile(rb"(?<=[\d.])([+-]\d+)$")
 _BIGMAT_FROM = 65536
-_BATCH = 1 << 22
+_BATCH = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,8 @@ class _Lines:
     def integers(self, what: str, count: int, width: int) -> list[int]:
         line = self.next(what)
         try:
+            if count == 2:
+                return [int(line[:width]), int(line[width : 2 * width])]
             return [int(line[k * width : (k + 1) * width]) for k in range(count)]
         except ValueError:
             words = line.split()
@@ -76,14 +78,30 @@ class _Lines:
                 return [int(w) for w in words]
             raise self.wrong(f"{what} is expected, not {_quoted(line)}") from None
 
-    def values(self, count: int, form: _Print) -> list[bytes]:
-        """Return the lines of some values."""
+    def fields(self, count: int, form: _Print) -> bytes:
+        """Return the fields of some values one after another, each of its full width."""
+        if count <= form.per_line:  # most strings of a sparse matrix
+            self.at += 1
+            width = count * form.width
+            line = self._stream.readline()
+            text = line[:width]
+            if len(text) == width and text[-1] > 32:
+                return text
+            if not line:
+                raise self._cut_short()
+            return text.rstrip(b"\r\n").ljust(width)
         n_line = -(-count // form.per_line)
         lines = list(islice(self._stream, n_line))
         self.at += len(lines)
         if len(lines) < n_line:
-            raise InputError(f"{self.path} is cut short: it ends in the values of a matrix")
-        return lines
+            raise self._cut_short()
+        full = form.per_line * form.width
+        last = (count - (n_line - 1) * form.per_line) * form.width
+        parts = [line.rstrip(b"\r\n")[:full].ljust(full) for line in lines[:-1]]
+        return b"".join([*parts, lines[-1].rstrip(b"\r\n")[:last].ljust(last)])
+
+    def _cut_short(self) -> InputError:
+        return InputError(f"{self.path} is cut short: it ends in the values of a matrix")
 
 
 def _quoted(line: bytes) -> str:
@@ -105,10 +123,10 @@ def _header_fields(line: bytes) -> tuple[list[int], bytes, int] | None:
     return None
 
 
-def read_ascii(path: Path, values: bool = True) -> Iterator[NastranMatrix | Header]:
+def read_ascii(path: Path, wanted: Names = None) -> Iterator[NastranMatrix | Header]:
     """Read the matrices of a formatted OP4 file in turn.
 
-    With `values` False only their headers are given; the numbers are stepped over.
+    Of those not `wanted` only the headers are given; the numbers are stepped over.
 
     Raises
     ------
@@ -119,6 +137,7 @@ def read_ascii(path: Path, values: bool = True) -> Iterator[NastranMatrix | Head
         lines = _Lines(path, stream)
         while lines.more():
             header, form = _header(lines)
+            values = wanted is None or header.name in wanted
             complex_ = header.kind in (3, 4)
             dtype = np.complex128 if complex_ else np.float64
             most = lines.size // form.width if values else 0
@@ -167,7 +186,8 @@ def _batches(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[Stri
     size = 0
     for column, row, count in _runs(lines, header, form):
         runs.extend((column - 1, row - 1, count))
-        text = _text(lines.values(count * per_value, form), count * per_value, form)
+        number = count * per_value
+        text = lines.fields(number, form)
         fields.append(text)
         size += len(text)
         if size > _BATCH:
@@ -179,14 +199,6 @@ def _batches(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[Stri
 def _strings(runs: array[int]) -> Strings:
     column, row, count = np.array(runs, np.int64).reshape(-1, 3).T
     return Strings(column, row, count, np.zeros_like(count))
-
-
-def _text(lines: list[bytes], count: int, form: _Print) -> bytes:
-    """Put the fields of some lines one after another, each of its full width."""
-    full = form.per_line * form.width
-    last = (count - (len(lines) - 1) * form.per_line) * form.width
-    parts = [line.rstrip(b"\r\n")[:full].ljust(full) for line in lines[:-1]]
-    return b"".join([*parts, lines[-1].rstrip(b"\r\n")[:last].ljust(last)])
 
 
 def _runs(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[int, int, int]]:
@@ -206,7 +218,7 @@ def _runs(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[int, in
     while True:
         column, row, left = lines.integers(f"a column of {header.name}", 3, form.integer)
         if column > header.shape[1]:
-            lines.values(left, form)
+            lines.fields(left, form)
             return
         if column <= last or row < 0 or left < 0:
             raise lines.wrong(f"column {column} of matrix {header.name} follows column {last}")

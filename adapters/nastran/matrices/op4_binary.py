@@ -26,7 +26,7 @@ from .content import SYMMETRIC, NastranMatrix, symmetrised
 _BIGMAT_FROM = 65536
 _FEW = 64
 """Strings of fewer columns than these are found column by column, else side by side."""
-_BATCH, _MOST_COLUMNS = 1 << 22, 1 << 16
+_BATCH, _MOST_COLUMNS = 1 << 20, 1 << 15
 """Bytes and numbers of columns that are looked at together."""
 _HEADER = {24: 4, 48: 8}
 """Bytes of a matrix header record: bytes of a word."""
@@ -137,12 +137,16 @@ class _File:
         return Header(name, (abs(nrow), ncol), form, kind, nrow < 0 or nrow >= _BIGMAT_FROM)
 
 
+Names = frozenset[str] | None
+"""Matrices whose numbers are wanted; None: all."""
+
+
 def read_binary(
-    path: Path, layout: Layout, values: bool = True
+    path: Path, layout: Layout, wanted: Names = None
 ) -> Iterator[NastranMatrix | Header]:
     """Read the matrices of a binary OP4 file in turn.
 
-    With `values` False only their headers are given; the columns are stepped over.
+    Of those not `wanted` only the headers are given; the columns are stepped over.
 
     Raises
     ------
@@ -155,7 +159,7 @@ def read_binary(
         start, end = file.record(at)
         header = file.header(start, end)
         columns = _Columns(file, end + layout.mark, header)
-        if values:
+        if wanted is None or header.name in wanted:
             yield _matrix(file, header, columns)
         else:
             columns.skip()

@@ -14,7 +14,7 @@ from .content import NastranMatrix
 
 _REAL, _COMPLEX = 2, 4
 _WORD = 4
-_ENTRIES = 1 << 20
+_ENTRIES = 1 << 18
 _HEAD = 3
 """Words before the strings of a column: ICOL, IROW, NW."""
 _LONGEST_NAME = 8
@@ -56,7 +56,8 @@ def op4_formatted(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
             raise InputError(f"matrix {m.name} is too large for formatted OP4: write it in binary")
         head = "".join(f"{n:8d}" for n in (matrix.shape[1], -matrix.shape[0], m.form, kind))
         yield f"{head}{_name(m):8}1P,{_PER_LINE}E{_WIDTH}.16\n".encode()
-        yield from _formatted_columns(matrix, kind)
+        for first, stop in _parts(matrix):
+            yield from _formatted_columns(matrix[:, first:stop], first, kind)
         yield f"{matrix.shape[1] + 1:8d}{1:8d}{1:8d}\n{1.0:{_WIDTH}.16E}\n".encode()
 
 
@@ -118,28 +119,35 @@ def _binary_columns(matrix: sp.csc_matrix, shift: int, kind: int) -> Ints:
     return out
 
 
-def _formatted_columns(matrix: sp.csc_matrix, kind: int) -> Iterator[bytes]:
+def _formatted_columns(matrix: sp.csc_matrix, shift: int, kind: int) -> Iterator[bytes]:
     strings = runs_of(matrix)
     complex_ = 2 if kind == _COMPLEX else 1
-    reals = _reals(matrix, kind)
-    held, first = np.unique(strings.column, return_index=True)
-    ends = np.append(first, len(strings.column))[1:]
-    for column, a, b in zip(held.tolist(), first.tolist(), ends.tolist(), strict=True):
-        runs = list(
-            zip(
-                strings.row[a:b].tolist(),
-                strings.length[a:b].tolist(),
-                strings.at[a:b].tolist(),
-                strict=True,
-            )
-        )
-        words = sum(2 + 2 * complex_ * length for _, length, _ in runs)
-        lines = [f"{column + 1:8d}{0:8d}{words:8d}"]
-        for row, length, at in runs:
-            lines.append(f"{2 * complex_ * length + 1:8d}{row + 1:8d}")
-            values = reals[complex_ * at : complex_ * (at + length)].tolist()
-            printed = [f"{v:{_WIDTH}.16E}" for v in values]
-            lines += [
-                "".join(printed[k : k + _PER_LINE]) for k in range(0, len(printed), _PER_LINE)
-            ]
-        yield ("\n".join(lines) + "\n").encode()
+    text = _printed(_reals(matrix, kind))
+    lines: list[str] = []
+    last = -1
+    words = np.bincount(strings.column, 2 + 2 * complex_ * strings.length).astype(np.int64).tolist()
+    for column, row, length, at in zip(
+        strings.column.tolist(),
+        strings.row.tolist(),
+        strings.length.tolist(),
+        strings.at.tolist(),
+        strict=True,
+    ):
+        if column != last:
+            lines.append(f"{column + 1 + shift:8d}{0:8d}{words[column]:8d}\n")
+            last = column
+        lines.append(f"{2 * complex_ * length + 1:8d}{row + 1:8d}\n")
+        stop = _WIDTH * complex_ * (at + length)
+        for k in range(_WIDTH * complex_ * at, stop, _WIDTH * _PER_LINE):
+            lines += (text[k : min(k + _WIDTH * _PER_LINE, stop)], "\n")
+    yield "".join(lines).encode()
+
+
+def _printed(values: Floats) -> str:
+    """Print numbers one after another, each in its columns; three-digit exponents with one less."""
+    text = f"%{_WIDTH}.16E" * len(values) % tuple(values.tolist())
+    if len(text) == _WIDTH * len(values):
+        return text
+    fields = (f"{v:{_WIDTH}.16E}" for v in values.tolist())
+    pairs = zip(fields, values.tolist(), strict=True)
+    return "".join(f if len(f) == _WIDTH else f"{v:{_WIDTH}.15E}" for f, v in pairs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError
-from .table import ModeHead, ModeTable
+from .table import ModeHead, ModeTable, room
 
 _DOMAINS = "NASTRAN/RESULT/DOMAINS"
 _REAL = "NASTRAN/RESULT/NODAL/EIGENVECTOR"
@@ -23,8 +23,10 @@ _COMPONENTS = ("X", "Y", "Z", "RX", "RY", "RZ")
 _MODES, _COMPLEX_MODES = 2, 9
 
 
-def read_hdf5_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
-    """Read all eigenvectors of a Nastran HDF5 file.
+def read_hdf5_tables(
+    path: Path, modes: Collection[int] | None = None
+) -> tuple[list[ModeTable], tuple[str, ...]]:
+    """Read the eigenvectors of a Nastran HDF5 file, all or those of some mode numbers.
 
     Returns
     -------
@@ -38,7 +40,7 @@ def read_hdf5_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
         The file cannot be read, or is HDF5 of another kind.
     """
     with opened(path) as file:
-        groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path)]
+        groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path, modes)]
         return [_table(file, g, path) for g in groups], tuple(_data_sets(file))
 
 
@@ -95,13 +97,17 @@ class _Group:
     rows: tuple[slice, ...]
 
 
-def _groups(file: Any, name: str, path: Path) -> Iterator[_Group]:
+def _groups(
+    file: Any, name: str, path: Path, modes: Collection[int] | None = None
+) -> Iterator[_Group]:
     if name not in file:
         return
     if _DOMAINS not in file:
         raise InputError(f"{path}: the table of domains is missing, the modes cannot be told apart")
     domains = file[_DOMAINS][()]
     used = domains[np.isin(domains["ANALYSIS"], (_MODES, _COMPLEX_MODES))]
+    if modes is not None:
+        used = used[np.isin(used["MODE"], list(modes))]
     places = _places(file, name, path)
     used = used[[int(d) in places for d in used["ID"]]]
     known_grids = np.asarray(file[_GRIDS]["ID"], np.int64) if _GRIDS in file else None
@@ -157,33 +163,19 @@ def _table(file: Any, group: _Group, path: Path) -> ModeTable:
     """Read the values, one mode after another; all must list the same points."""
     head = group.head
     vectors = file[group.name]
-    first = vectors[group.rows[0]]
-    kind = np.result_type(*(first.dtype[k] for k in range(1, 7)))
-    if group.name == _COMPLEX:
-        kind = np.result_type(kind, np.complex64)
-    shapes = np.empty((len(head.points), 6, len(group.rows)), kind, order="F")
+    values = room(len(head.points), len(group.rows), group.name == _COMPLEX)
     for k, rows in enumerate(group.rows):
         block = vectors[rows]
         if len(block) != len(head.points) or not np.array_equal(block["ID"], head.points):
             raise InputError(f"{path}: the eigenvectors of one subcase list different grids")
+        column = values[:, k].reshape(-1, 6)
         for c, component in enumerate(_COMPONENTS):
             if group.name == _COMPLEX:
-                shapes[:, c, k].real = block[f"{component}R"]
-                shapes[:, c, k].imag = block[f"{component}I"]
+                column[:, c].real = block[f"{component}R"]
+                column[:, c].imag = block[f"{component}I"]
             else:
-                shapes[:, c, k] = block[component]
-    shapes.flags.writeable = False
-    return ModeTable(
-        subcase=head.subcase,
-        superelement=head.superelement,
-        points=head.points,
-        scalar=head.scalar,
-        numbers=head.numbers,
-        eigenvalues=head.eigenvalues,
-        generalized_mass=head.generalized_mass,
-        basic=False,
-        shapes=shapes,
-    )
+                column[:, c] = block[component]
+    return ModeTable(**vars(head), values=values)
 
 
 def _generalized_mass(file: Any, numbers: Ints, eigenvalues: Numbers) -> Floats:

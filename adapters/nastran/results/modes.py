@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,12 @@ _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SAME = 1e-5  # relative difference of eigenvalues that superelements share
 
 
-def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None = None) -> Modes:
+def read_modes(
+    path: Path | str,
+    deck: Deck | None = None,
+    subcase: int | None = None,
+    modes: Collection[int] | None = None,
+) -> Modes:
     """Read normal or complex modes from an OP2, a Nastran HDF5, a punch or an F06 file.
 
     Punch and F06 hold seven digits: take them only where there is no OP2 or HDF5.
@@ -62,6 +67,8 @@ def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None =
         to basic axes. Without it the shapes of an OP2 stay along the axes of the file.
     subcase : int, optional
         Which one, where the file has several; default that of the deck.
+    modes : collection of int, optional
+        Only these mode numbers; of an OP2 or HDF5 nothing else is read. Default: all.
 
     Returns
     -------
@@ -76,7 +83,7 @@ def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None =
     """
     path = Path(path)
     kind = kind_of_results(path)
-    tables, names = READERS[kind](path)
+    tables, names = _tables(path, kind, modes)
     if not tables:
         held = ", ".join(names[:8]) or "nothing"
         raise InputError(
@@ -91,6 +98,25 @@ def read_modes(path: Path | str, deck: Deck | None = None, subcase: int | None =
     chosen = _of_subcase(tables, deck, subcase, path)
     table = _joined([_without_conjugates(t) for t in chosen], path)
     return _modes(table, None if deck is None else read_points(deck.bulk), path)
+
+
+def _tables(
+    path: Path, kind: str, modes: Collection[int] | None
+) -> tuple[list[ModeTable], tuple[str, ...]]:
+    if kind == OP2:
+        tables, names = read_op2_tables(path, modes)
+    elif kind == HDF5:
+        tables, names = read_hdf5_tables(path, modes)
+    else:
+        tables, names = READERS[kind](path)
+        if modes is not None:
+            rows = [np.arange(len(t.points)) for t in tables]
+            kept = [np.flatnonzero(np.isin(t.numbers, list(modes))) for t in tables]
+            tables = [t.take(r, k) for t, r, k in zip(tables, rows, kept, strict=True) if len(k)]
+    if modes is not None and not tables:
+        asked = ", ".join(map(str, sorted(modes)))
+        raise InputError(f"{path} has none of the modes {asked}")
+    return tables, names
 
 
 def kind_of_results(path: Path) -> str:
@@ -168,7 +194,7 @@ def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
         eigenvalues=first.eigenvalues,
         generalized_mass=first.generalized_mass,
         basic=first.basic,
-        shapes=np.concatenate([t.shapes for t in parts]),
+        values=np.asfortranarray(np.concatenate([t.values for t in parts])),
     )
 
 
@@ -188,14 +214,12 @@ def _modes(table: ModeTable, points: Points | None, path: Path) -> Modes:
     grids = grids[np.argsort(table.points[grids], kind="stable")]
     scalars = scalars[np.argsort(table.points[scalars], kind="stable")]
     ids = table.points[grids]
-    kind = np.complex128 if np.iscomplexobj(table.shapes) else np.float64
-    shapes = np.empty((6 * len(grids) + len(scalars), len(table.numbers)), kind, order="F")
-    for mode in range(len(table.numbers)):  # one by one: peak memory
-        vector = table.shapes[grids, :, mode].astype(kind)
-        if points is not None and not table.basic:
-            _turn_to_basic(ids, vector, points)
-        shapes[: 6 * len(grids), mode] = vector.reshape(-1)
-        shapes[6 * len(grids) :, mode] = table.shapes[scalars, 0, mode]
+    as_it_is = not len(scalars) and np.array_equal(grids, np.arange(len(grids)))
+    shapes = table.values if as_it_is else _ordered(table, grids, scalars)
+    shapes.flags.writeable = True  # the table is not used any more
+    if points is not None and not table.basic:
+        for mode in range(len(table.numbers)):  # one by one: peak memory
+            _turn_to_basic(ids, shapes[: 6 * len(grids), mode].reshape(-1, 6), points)
     shapes.flags.writeable = False
     node = np.concatenate([np.repeat(ids, 6), table.points[scalars]])
     component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalars), int)])
@@ -216,6 +240,17 @@ def _require_same_points(table: ModeTable, points: Points, path: Path) -> None:
             f"{path} holds point {table.points[unknown][0]}, which the deck does not have: "
             "it is not a run of this deck"
         )
+
+
+def _ordered(table: ModeTable, grids: Ints, scalars: Ints) -> Numbers:
+    """Return the values of grids in some order, then those of scalar points."""
+    n = 6 * len(grids)
+    shapes = np.empty((n + len(scalars), len(table.numbers)), table.values.dtype, order="F")
+    for mode in range(len(table.numbers)):
+        vector = table.vector(mode)
+        shapes[:n, mode] = vector[grids].reshape(-1)
+        shapes[n:, mode] = vector[scalars, 0]
+    return shapes
 
 
 def _turn_to_basic(ids: Ints, vector: Numbers, points: Points) -> None:

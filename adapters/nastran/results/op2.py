@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import numpy as np
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError
 from .op2records import Op2Block, Op2File, Op2Record
-from .table import ModeHead, ModeTable
+from .table import ModeHead, ModeTable, room
 
 _GRID, _SCALAR = 1, 2
 _REAL, _COMPLEX = 2, 9  # analysis codes of normal and of complex modes
@@ -49,8 +49,10 @@ class _Vector:
         return {"B": 0, "O": 1, "R": 2}[self.name[0]]
 
 
-def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
-    """Read all eigenvectors of an OP2 file.
+def read_op2_tables(
+    path: Path, modes: Collection[int] | None = None
+) -> tuple[list[ModeTable], tuple[str, ...]]:
+    """Read the eigenvectors of an OP2 file, all or those of some mode numbers.
 
     Frequencies come from the eigenvalues (in the header of each eigenvector, where the LAMA table
     may be missing), never from what the file calls cycles: that is rad/s in some.
@@ -67,8 +69,8 @@ def read_op2_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
         The file cannot be read as OP2.
     """
     with Op2File(path) as file:
-        groups = _groups(file)
-        tables = [_table(file, group, _head(file, group)) for group in groups]
+        groups = [[v for v in g if modes is None or v.number in modes] for g in _groups(file)]
+        tables = [_table(file, group, _head(file, group)) for group in groups if group]
         return tables, _names(file)
 
 
@@ -170,38 +172,28 @@ def _width(file: Op2File, vector: _Vector) -> int:
 def _table(file: Op2File, group: Sequence[_Vector], head: ModeHead) -> ModeTable:
     """Read the values; every eigenvector must list the same points."""
     width = _width(file, group[0])
-    kinds = file.integers(group[0].data).reshape(-1, width)[:, 1]
-    rows = np.flatnonzero((kinds == _GRID) | (kinds == _SCALAR))
     is_complex = width == _WIDTHS[True]
-    real = np.float32 if file.word == 4 else np.float64
-    kind = (np.complex64 if real is np.float32 else np.complex128) if is_complex else real
-    shapes = np.empty((len(rows), 6, len(group)), kind, order="F")
+    all_rows = file.integers(group[0].data).reshape(-1, width)[:, 1]
+    rows: Ints | slice = np.flatnonzero((all_rows == _GRID) | (all_rows == _SCALAR))
+    if len(head.points) == len(all_rows):
+        rows = slice(None)
+    values = room(len(head.points), len(group), is_complex)
     for k, v in enumerate(group):
         if v.data.size != group[0].data.size:
             raise _other_points(file)
-        values = file.reals(v.data).reshape(-1, width)
-        points = values.view(values.dtype.str.replace("f", "i"))[rows, 0] // 10
+        table = file.reals(v.data).reshape(-1, width)
+        points = table.view(table.dtype.str.replace("f", "i"))[rows, 0] // 10
         if not np.array_equal(points, head.points):
             raise _other_points(file)
+        column = values[:, k].reshape(-1, 6)
         if not is_complex:
-            shapes[:, :, k] = values[rows, 2:8]
+            column[:] = table[rows, 2:8]
         elif v.polar:
-            angle = np.deg2rad(values[rows, 8:14])
-            shapes[:, :, k] = values[rows, 2:8] * np.exp(1j * angle)
+            column[:] = table[rows, 2:8] * np.exp(1j * np.deg2rad(table[rows, 8:14]))
         else:
-            shapes[:, :, k] = values[rows, 2:8] + 1j * values[rows, 8:14]
-    shapes.flags.writeable = False
-    return ModeTable(
-        subcase=head.subcase,
-        superelement=head.superelement,
-        points=head.points,
-        scalar=head.scalar,
-        numbers=head.numbers,
-        eigenvalues=head.eigenvalues,
-        generalized_mass=head.generalized_mass,
-        basic=head.basic,
-        shapes=shapes,
-    )
+            column[:] = table[rows, 2:8] + 1j * table[rows, 8:14]
+        file.release(v.data)
+    return ModeTable(**vars(head), values=values)
 
 
 def _other_points(file: Op2File) -> InputError:

@@ -124,7 +124,19 @@ class Op2File:
         raw = self.raw(record)[first * self.word : (first + count) * self.word]
         return _text(raw, self.word)
 
+    def release(self, record: Op2Record) -> None:
+        """Let the system take back the memory of a record that has been read."""
+        for start, stop in record.parts:
+            first = -(-start // mmap.PAGESIZE) * mmap.PAGESIZE
+            whole = (stop - first) // mmap.PAGESIZE * mmap.PAGESIZE
+            if whole > 0 and hasattr(mmap, "MADV_DONTNEED"):
+                self._data.madvise(mmap.MADV_DONTNEED, first, whole)
+
     def _words(self, record: Op2Record, kind: str) -> Numbers:
+        if len(record.parts) == 1:
+            start, stop = record.parts[0]
+            count = (stop - start) // self.word
+            return np.frombuffer(self._data, self._dtype(kind), count, start)
         raw = self.raw(record)
         return np.frombuffer(raw[: len(raw) // self.word * self.word], self._dtype(kind))
 

@@ -76,21 +76,28 @@ class ModeTable(ModeHead):
 
     Parameters
     ----------
-    shapes : (n_point, 6, n_mode) float or complex
-        Displacements in the axes that `basic` tells, in the file's precision.
+    values : (6 n_point, n_mode) float64 or complex128
+        Displacements in the axes that `basic` tells, six a point. Taken as it is, not copied:
+        what a file of a gigabyte holds must not be there twice.
     """
 
-    shapes: Numbers
+    values: Numbers
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "shapes", frozen(self.shapes))
-        require_shape(self.shapes, (len(self.points), 6, len(self.numbers)), "eigenvectors")
+        self.values.flags.writeable = False
+        require_shape(self.values, (6 * len(self.points), len(self.numbers)), "eigenvectors")
         for mode in range(len(self.numbers)):  # one by one: no second array of that size
-            require_finite(self.shapes[:, :, mode], "the eigenvectors")
+            require_finite(self.values[:, mode], "the eigenvectors")
+
+    def vector(self, mode: int) -> Numbers:
+        """Return one eigenvector, (n_point, 6)."""
+        return self.values[:, mode].reshape(-1, 6)
 
     def take(self, rows: Numbers, modes: Numbers) -> ModeTable:
         """Return some points (indices or mask) and modes."""
+        chosen = np.arange(len(self.points))[rows]
+        picked = self.values[(6 * chosen[:, None] + np.arange(6)).ravel()][:, modes]
         return ModeTable(
             subcase=self.subcase,
             superelement=self.superelement,
@@ -98,7 +105,13 @@ class ModeTable(ModeHead):
             scalar=self.scalar[rows],
             numbers=self.numbers[modes],
             eigenvalues=self.eigenvalues[modes],
-            shapes=self.shapes[rows][:, :, modes],
+            values=np.asfortranarray(picked),
             generalized_mass=self.generalized_mass[modes],
             basic=self.basic,
         )
+
+
+def room(n_point: int, n_mode: int, is_complex: bool) -> Numbers:
+    """Return an array for the values of a table, to be filled mode by mode."""
+    kind = np.complex128 if is_complex else np.float64
+    return np.empty((6 * n_point, n_mode), kind, order="F")

@@ -73,9 +73,9 @@ def _table(
         )
     numbers = np.array([v.number for v in vectors], np.int64)
     eigenvalues: Numbers = np.array([v.eigenvalue for v in vectors])
-    shapes: Numbers = np.stack([c for _, _, c in columns], axis=2)
+    values: Numbers = np.asfortranarray(np.stack([c.ravel() for _, _, c in columns], axis=1))
     if not any(isinstance(v.eigenvalue, complex) for v in vectors):
-        eigenvalues, shapes = eigenvalues.real.astype(float), shapes.real.copy()
+        eigenvalues, values = eigenvalues.real.astype(float), np.asfortranarray(values.real)
     mass: Floats = np.array([masses.get(int(n), np.nan) for n in numbers])
     return ModeTable(
         subcase=subcase,
@@ -86,7 +86,7 @@ def _table(
         eigenvalues=eigenvalues,
         generalized_mass=mass,
         basic=False,
-        shapes=shapes,
+        values=values,
     )
 
 

@@ -272,3 +272,89 @@ def test_names_that_nastran_does_not_take_are_refused(tmp_path: Path, name: str)
     with pytest.raises(InputError, match="name"):
         write_op4(tmp_path / "a.op4", [NastranMatrix(name, sp.csc_matrix(np.eye(2)))])
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("formatted", [False, True])
+def test_only_the_matrices_asked_for_are_read(tmp_path: Path, formatted: bool) -> None:
+    path = tmp_path / "two.op4"
+    rng = np.random.default_rng(5)
+    K, M = (sp.csc_matrix(rng.normal(size=(7, 4))) for _ in range(2))
+    write_op4(path, [NastranMatrix("KAA", K), NastranMatrix("MAA", M)], formatted)
+    (only,) = read_op4(path, names=["maa"])
+    assert only.name == "MAA"
+    assert np.array_equal(only.matrix.toarray(), M.toarray())
+
+
+def test_negative_numbers_with_three_digit_exponents_keep_their_columns(tmp_path: Path) -> None:
+    values = np.array([[-1.5e-120, 2.25e200, -1.0 / 3.0], [1.0, -9.5e-101, 1e-300]])
+    path = tmp_path / "wide.op4"
+    write_op4(path, [NastranMatrix("A", sp.csc_matrix(values))], formatted=True)
+    (again,) = read_op4(path)
+    np.testing.assert_allclose(again.matrix.toarray(), values, rtol=1e-15)
+    assert {len(x) % 23 for x in path.read_text().splitlines()[1:] if "E" in x} == {0}
+
+
+@pytest.mark.parametrize("storage", ["bigmat", "dense"])
+def test_columns_over_several_batches(tmp_path: Path, storage: str) -> None:
+    """More bytes than are looked at together; long columns of many strings, and many columns."""
+    rng = np.random.default_rng(6)
+    tall = sp.random(400_000, 3, 0.2, "csc", random_state=1)
+    wide = sp.random(40, 90_000, 0.1, "csc", random_state=2)
+    full = sp.csc_matrix(rng.normal(size=(700, 500)))
+    for matrix in (tall, wide, full):
+        path = tmp_path / "big.op4"
+        if storage == "dense" and matrix is not full:
+            continue
+        if storage == "dense":
+            data = packed("A", matrix.toarray(), 2, Variant("dense", "<", 4, True))
+            path.write_bytes(data)
+        else:
+            write_op4(path, [NastranMatrix("A", matrix)])
+        (again,) = read_op4(path)
+        assert again.matrix.has_sorted_indices
+        assert (again.matrix != matrix).nnz == 0
+
+
+_PEAK = """
+import sys
+from trueup.adapters.nastran import read_op4
+def high():
+    lines = open("/proc/self/status").read().splitlines()
+    return 1024 * int(next(line.split()[1] for line in lines if line.startswith("VmHWM")))
+read_op4(sys.argv[2])
+before = high()
+m = read_op4(sys.argv[1])[0].matrix
+print((high() - before) / (m.data.nbytes + m.indices.nbytes + m.indptr.nbytes), m.nnz)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no /proc on this system")
+@pytest.mark.parametrize("formatted", [False, True])
+def test_reading_takes_little_more_memory_than_the_matrix(tmp_path: Path, formatted: bool) -> None:
+    import subprocess
+    import sys
+
+    n = 300_000
+    rng = np.random.default_rng(7)
+    offsets = [-300, -1, 0, 1, 300]
+    band = sp.diags([rng.normal(size=n - abs(k)) for k in offsets], offsets, format="csc")
+    write_op4(tmp_path / "band.op4", [NastranMatrix("K", band)], formatted)
+    write_op4(tmp_path / "small.op4", [NastranMatrix("K", band[:4, :4])], formatted)
+    command = [sys.executable, "-c", _PEAK, tmp_path / "band.op4", tmp_path / "small.op4"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    assert int(said[1]) == band.nnz
+    assert float(said[0]) < 2.0
+
+
+@pytest.mark.slow
+def test_a_matrix_of_ten_million_rows_stays_sparse(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    rows, columns = rng.integers(10_000_000, size=100_000), rng.integers(10_000, size=100_000)
+    values = rng.normal(size=100_000)
+    matrix = sp.coo_matrix((values, (rows, columns)), shape=(10_000_000, 10_000)).tocsc()
+    path = tmp_path / "long.op4"
+    write_op4(path, [NastranMatrix("PHI", matrix)])
+    (again,) = read_op4(path)
+    assert (again.matrix != matrix).nnz == 0
+    assert again.matrix.data.nbytes < 2e6

@@ -305,3 +305,24 @@ def test_real_matrices_against_pynastran():
         if matrix.form == 6:
             theirs = np.where(theirs == 0, theirs.T, theirs)
         assert np.array_equal(mine, theirs)
+
+
+def test_only_some_modes_are_read(tmp_path):
+    path = tmp_path / "a.op2"
+    path.write_bytes(modal_file(4, "<"))
+    some = read_modes(path, modes=[3, 1])
+    whole = read_modes(path)
+    assert some.frequencies_hz.tolist() == whole.frequencies_hz[[0, 2]].tolist()
+    assert np.array_equal(some.shapes, whole.shapes[:, [0, 2]])
+    assert some.generalized_mass.tolist() == [2.0, 4.0]
+    with pytest.raises(InputError, match="none of the modes 9"):
+        read_modes(path, modes=[9])
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason=f"no shared data beside {ROOT.name}")
+@pytest.mark.parametrize("name", ["modes.h5", "modes.op2", "modes.f06"])
+def test_only_some_modes_of_every_kind_of_file(name):
+    path = DATA / "svanberg_beam" / name
+    some, whole = read_modes(path, modes=[2, 5]), read_modes(path)
+    assert np.array_equal(some.shapes, whole.shapes[:, [1, 4]])
+    assert np.array_equal(some.frequencies_hz, whole.frequencies_hz[[1, 4]])
