@@ -41,6 +41,15 @@ def test_bands_tile_the_range_and_hold_few_peaks(survey):
     assert max(np.count_nonzero((at >= b.low) & (at <= b.high)) for b in bands) <= 10
 
 
+def test_no_band_is_narrow_for_its_modes(survey):
+    """Many close modes of 2 % damping on fine lines: few peaks a band is not worth a mode cut."""
+    frfs, _ = survey(3, n_mode=24, damping=(0.02, 0.02), n_line=8000, n_response=20)
+    indicator = cmif(prepare(frfs).values)
+    bands = split(frfs.frequencies_hz, indicator, np.sqrt(20.0) + np.sqrt(2.0))
+    for b in bands:
+        assert b.last - b.first > 8.0 * 2.0 * 0.02 * 0.5 * (b.low + b.high) or len(bands) == 1
+
+
 def test_two_equal_roots_peak_in_two_singular_values():
     f = np.linspace(40.0, 60.0, 401)
     shapes = np.eye(4)[:, :2].astype(complex)
