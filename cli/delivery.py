@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -78,6 +80,7 @@ _PARTS = {
     "modes": "the modes",
     "frfs": "the frequency responses",
     "matrices": "the matrices",
+    "functions": "the functions",
 }
 
 
@@ -100,7 +103,15 @@ def _universal(path: Path, cargo: Cargo, binary: bool = False) -> None:
             modes.generalized_mass, modes.source,
         )  # fmt: skip
     frfs = next(iter(cargo.frfs.values()), None)
-    write_universal(path, geometry=cargo.geometry, modes=modes, frfs=frfs, binary=binary)
+    functions = tuple(cargo.functions.values())
+    write_universal(
+        path,
+        geometry=cargo.geometry,
+        modes=modes,
+        frfs=frfs,
+        functions=functions,
+        binary=binary,
+    )
     if modes is not None:
         cargo.notes.append("dataset 55 holds six digits of each shape")
 
@@ -121,8 +132,15 @@ def _store(path: Path, cargo: Cargo) -> None:
         frfs=cargo.frfs,
         dofs=dofs,
         matrices={name: m.matrix.tocsr() for name, m in cargo.matrices.items()},
+        functions={name: _record(f) for name, f in cargo.functions.items()},
         **extras,
     )
+
+
+def _record(function: Any) -> dict[str, Any]:
+    said = dataclasses.asdict(function)
+    kept = {k: v for k, v in said.items() if k not in ("kind", "line", "path")}
+    return {"function": function.kind, **kept}
 
 
 def _op4(path: Path, cargo: Cargo, formatted: bool = False) -> None:
@@ -138,7 +156,7 @@ def _punch(path: Path, cargo: Cargo) -> None:
     cargo.notes.append("DMIG fields hold eleven to fourteen digits of each number")
 
 
-_SHAPES = frozenset({"geometry", "modes", "frfs"})
+_SHAPES = frozenset({"geometry", "modes", "frfs", "functions"})
 _MATRICES = frozenset({"matrices"})
 _UNIVERSAL = Target("universal file", _SHAPES, _universal)
 _BINARY = Target("universal file", _SHAPES, lambda p, c: _universal(p, c, binary=True))

@@ -23,7 +23,7 @@ class Cargo:
     Parameters
     ----------
     geometry : Geometry or None
-    modes, frfs, matrices : dict
+    modes, frfs, matrices, functions : dict
         By name.
     from_deck : bool
         Whether the geometry is that of a deck, which goes on holding it.
@@ -39,6 +39,7 @@ class Cargo:
     modes: dict[str, Modes] = field(default_factory=dict)
     frfs: dict[str, Frfs] = field(default_factory=dict)
     matrices: dict[str, Any] = field(default_factory=dict)
+    functions: dict[str, Any] = field(default_factory=dict)
     from_deck: bool = False
     rest: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -111,15 +112,13 @@ def _universal(paths: list[Path], cargo: Cargo) -> None:
     from ..adapters.universal import read_universal
 
     content = read_universal(paths)
-    where = ", ".join(p.name for p in paths)
     _set_geometry(cargo, content.geometry, paths[0])
     if content.modes is not None:
         cargo.add("modes", "test", content.modes)
     if content.frfs is not None:
         cargo.add("frfs", "test", content.frfs)
-    for kind in dict.fromkeys(f.kind for f in content.functions):
-        count = sum(1 for f in content.functions if f.kind == kind)
-        cargo.rest.append(f"{count} functions of kind {kind} of {where}")
+    for k, f in enumerate(content.functions, 1):
+        cargo.functions[f"{f.kind.replace(' ', '_').replace('/', '_')}/{k:05d}"] = f
     cargo.rest += [f"{s.what} of {Path(s.path or paths[0]).name} line {s.line}"
                    for s in content.skipped]  # fmt: skip
     cargo.notes += content.warnings
@@ -155,6 +154,7 @@ def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:
 def _store(path: Path, cargo: Cargo) -> None:
     from ..adapters.nastran import matrix_of
     from ..adapters.store import read_store
+    from ..adapters.universal import Function
 
     content = read_store(path)
     _set_geometry(cargo, content.geometry, path)
@@ -162,6 +162,9 @@ def _store(path: Path, cargo: Cargo) -> None:
         cargo.add("modes", name, modes)
     for name, frfs in content.frfs.items():
         cargo.add("frfs", name, frfs)
+    for name, said in content.functions.items():
+        kept = {k: v for k, v in said.items() if k != "function"}
+        cargo.add("functions", name, Function(kind=said["function"], **kept))
     used = set()
     for name, matrix in content.matrices.items():
         rows, columns = (content.dofs.get(f"{side}/{name}") for side in ("rows", "columns"))

@@ -5,6 +5,7 @@ Layout, version 1 (``/`` carries ``format = "trueup"`` and ``version = 1``)::
     /geometry, /test_geometry     ids, xyz [length_unit], elements/SHAPE, element_ids/SHAPE
     /modes/NAME                   frequencies_hz, shapes, damping, generalized_mass, dofs/...
     /frfs/NAME                    frequencies_hz, values, responses/..., references/...
+    /functions/NAME               abscissa, values, and what they are as attributes
     /dofs/NAME                    node, component, axis
     /mac/NAME                     test, analysis, values
     /matrices/NAME                a dense dataset, or data, indices, indptr of a CSR matrix

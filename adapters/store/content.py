@@ -16,6 +16,7 @@ from ...core.geometry import Geometry
 from ...core.modes import Modes
 
 FORMAT, VERSION = "trueup", 1
+FUNCTION_TEXTS = ("function", "quantity", "per", "over", "abscissa_unit", "ordinate_unit")
 
 Matrix: TypeAlias = npt.NDArray[Any] | sp.csr_matrix
 Record: TypeAlias = Mapping[str, Any]
@@ -28,7 +29,9 @@ class StoreContent:
     `geometry` is the analysis model's, `test_geometry` the test's, each in its own frame and
     length unit. `mac` maps a name (``mac``, ``mac_rotated``) to ``{"test", "analysis",
     "values"}`` as in result.json. `matrices` are arrays or CSR matrices. `pairs` and `history`
-    are rows as in result.json.
+    are rows as in result.json. `functions` maps a name to a measured function of any kind:
+    ``abscissa``, ``values`` and what they are (``function``, ``response``, ``reference``,
+    ``quantity``, ``per``, ``over``, ``abscissa_unit``, ``ordinate_unit``, ``ids``).
     """
 
     geometry: Geometry | None = None
@@ -38,5 +41,6 @@ class StoreContent:
     dofs: dict[str, Dofs] = field(default_factory=dict)
     mac: dict[str, dict[str, npt.NDArray[np.float64]]] = field(default_factory=dict)
     matrices: dict[str, Matrix] = field(default_factory=dict)
+    functions: dict[str, Record] = field(default_factory=dict)
     pairs: Sequence[Record] = ()
     history: Sequence[Record] = ()

@@ -94,10 +94,19 @@ def _matrix(group: h5py.Group) -> dict[str, Any]:
     return {"shape": [int(n) for n in shape], "storage": group.attrs["storage"], **nonzeros}
 
 
+def _function(group: h5py.Group) -> dict[str, Any]:
+    return {
+        "function": str(group.attrs["function"]),
+        "points": int(group["values"].shape[0]),
+        "complex": group["values"].dtype.kind == "c",
+    }
+
+
 _SAID = {
     "modes": _modes,
     "frfs": _frfs,
     "dofs": lambda g: {"dofs": int(g["node"].shape[0])},
     "mac": lambda g: {"shape": [int(n) for n in g["values"].shape]},
     "matrices": _matrix,
+    "functions": _function,
 }

@@ -17,7 +17,7 @@ from ...core.frfs import Frfs
 from ...core.geometry import Geometry
 from ...core.modes import Modes
 from .columns import read_table
-from .content import FORMAT, VERSION, Matrix, StoreContent
+from .content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record, StoreContent
 
 if TYPE_CHECKING:
     import h5py
@@ -41,6 +41,7 @@ def read_store(path: str | os.PathLike[str]) -> StoreContent:
             dofs=_named(file, "dofs", _dofs),
             mac=_named(file, "mac", _mac),
             matrices=_named(file, "matrices", _matrix),
+            functions=_named(file, "functions", _function),
             pairs=read_table(file["pairs"]) if "pairs" in file else (),
             history=read_table(file["history"]) if "history" in file else (),
         )
@@ -131,6 +132,18 @@ def _frfs(group: h5py.Group) -> Frfs:
         group.attrs["quantity"],
         group.attrs["source"],
     )
+
+
+def _function(group: h5py.Group) -> Record:
+    said = {key: group.attrs[key] for key in FUNCTION_TEXTS}
+    return {
+        "abscissa": group["abscissa"][()],
+        "values": group["values"][()],
+        "response": tuple(int(n) for n in group.attrs["response"]),
+        "reference": tuple(int(n) for n in group.attrs["reference"]),
+        "ids": tuple(str(t) for t in group.attrs["ids"]),
+        **said,
+    }
 
 
 def _mac(group: h5py.Group) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from ...core.frfs import Frfs
 from ...core.geometry import Geometry
 from ...core.modes import Modes
 from .columns import write_table
-from .content import FORMAT, VERSION, Matrix, Record
+from .content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record
 
 if TYPE_CHECKING:
     import h5py
@@ -42,6 +42,7 @@ def write_store(
     pairs: Sequence[Record] = (),
     mac: Mapping[str, Mapping[str, Any]] | None = None,
     matrices: Mapping[str, Any] | None = None,
+    functions: Mapping[str, Record] | None = None,
     history: Sequence[Record] = (),
 ) -> None:
     """Write a store; it takes its name only when it is whole.
@@ -58,6 +59,8 @@ def write_store(
     mac : mapping of str to {"test", "analysis", "values"}, optional
     matrices : mapping of str to array or scipy sparse matrix, optional
         Sparse ones are kept sparse.
+    functions : mapping of str to mapping, optional
+        As in `StoreContent`.
 
     Raises
     ------
@@ -85,6 +88,7 @@ def write_store(
                 ("dofs", "dofs", dofs, _dofs),
                 ("mac", "mac", mac, _mac),
                 ("matrices", "matrix", matrices, _matrix),
+                ("functions", "function", functions, _function),
             ):
                 for label, noun in _checked(named or {}, key).items():
                     write(_group(file, f"{key}/{label}", kind), noun)
@@ -171,6 +175,16 @@ def _frfs(group: h5py.Group, noun: Frfs) -> None:
     )  # fmt: skip
     _dofs(_group(group, "responses", "dofs"), noun.responses)
     _dofs(_group(group, "references", "dofs"), noun.references)
+
+
+def _function(group: h5py.Group, noun: Record) -> None:
+    for key in FUNCTION_TEXTS:
+        group.attrs[key] = str(noun.get(key, ""))
+    for key in ("response", "reference"):
+        group.attrs[key] = np.array(noun[key], np.int64)
+    group.attrs["ids"] = [str(text) for text in noun.get("ids", ())] or [""]
+    _put(group, "abscissa", noun["abscissa"], str(noun.get("abscissa_unit", "")))
+    _put(group, "values", noun["values"], str(noun.get("ordinate_unit", "")))
 
 
 def _mac(group: h5py.Group, noun: Mapping[str, Any]) -> None:

@@ -97,6 +97,8 @@ class Function:
         Frequencies [Hz] or times [s] as `abscissa_unit` says, and the ordinates as in the file.
     response, reference : (int, int)
         Node and signed direction (+-1..3 translation, +-4..6 rotation, 0 unknown or scalar).
+    quantity, per, over : str
+        What ordinate, denominator and abscissa are, as dataset 58 calls them.
     ids : tuple of str
         The five text lines.
     """
@@ -108,6 +110,7 @@ class Function:
     reference: tuple[int, int]
     quantity: str = "unknown"
     per: str = "unknown"
+    over: str = "unknown"
     abscissa_unit: str = ""
     ordinate_unit: str = ""
     ids: tuple[str, ...] = ()

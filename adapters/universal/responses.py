@@ -299,6 +299,7 @@ def _function(record: Record, x: Floats, y: Numbers) -> Function:
         h.reference,
         QUANTITIES.get(h.ordinate.quantity, f"type {h.ordinate.quantity}"),
         QUANTITIES.get(h.denominator.quantity, f"type {h.denominator.quantity}"),
+        QUANTITIES.get(h.abscissa.quantity, f"type {h.abscissa.quantity}"),
         h.abscissa.unit,
         h.ordinate.unit,
         h.ids,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from datetime import datetime
 from pathlib import Path
 
@@ -13,10 +13,11 @@ from ...core.errors import InputError
 from ...core.frfs import Frfs
 from ...core.geometry import Geometry
 from ...core.modes import Modes
-from .content import Units
+from .content import Function, Units
 from .printing import dataset, name_field, text_line
 from .vectors import node_systems
 from .writing_frfs import frf_datasets
+from .writing_functions import function_datasets
 from .writing_geometry import geometry_datasets
 from .writing_modes import mode_datasets
 
@@ -34,6 +35,7 @@ def write_universal(
     geometry: Geometry | None = None,
     modes: Modes | None = None,
     frfs: Frfs | None = None,
+    functions: Sequence[Function] = (),
     units: Units | str | None = None,
     binary: bool = False,
     single: bool = False,
@@ -53,6 +55,8 @@ def write_universal(
         zero. The format keeps six digits.
     frfs : Frfs, optional
         Dataset 58, or 58b with `binary`; combinations that are NaN are not written.
+    functions : sequence of Function, optional
+        Dataset 58 or 58b each, whatever they are.
     units : Units or {"m", "mm", "in", "ft"}, optional
         Dataset 164. Default: the length unit of the geometry, with forces in newton (pounds of
         force for in and ft); nothing where that is not known.
@@ -71,7 +75,7 @@ def write_universal(
         Nothing to write, a file that cannot be written, or content that the format cannot hold.
     """
     target = Path(path)
-    if geometry is None and modes is None and frfs is None:
+    if geometry is None and modes is None and frfs is None and not functions:
         raise InputError(f"nothing to write to {target}: give a geometry, modes or responses")
     if node_dataset not in (15, 2411):
         raise InputError(f"nodes are written as dataset 2411 or 15, not {node_dataset}")
@@ -82,8 +86,8 @@ def write_universal(
             "carry the coordinate systems"
         )
     parts = _parts(
-        target, geometry, modes, frfs, _units_of(units, geometry), systems, binary, single,
-        node_dataset, description,
+        target, geometry, modes, frfs, functions, _units_of(units, geometry), systems, binary,
+        single, node_dataset, description,
     )  # fmt: skip
     _write(target, parts)
 
@@ -104,6 +108,7 @@ def _parts(
     geometry: Geometry | None,
     modes: Modes | None,
     frfs: Frfs | None,
+    functions: Sequence[Function],
     units: Units | None,
     systems: dict[int, Floats],
     binary: bool,
@@ -120,6 +125,7 @@ def _parts(
         yield from mode_datasets(modes, systems)
     if frfs is not None:
         yield from frf_datasets(frfs, systems, binary, single)
+    yield from function_datasets(functions, binary, single)
 
 
 def _header(name: str, description: str) -> bytes:

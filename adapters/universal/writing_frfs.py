@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ...core.arrays import Floats
+from ...core.arrays import Floats, Numbers
 from ...core.dofs import Dofs
 from ...core.errors import InputError
 from ...core.frfs import Frfs
@@ -24,15 +24,17 @@ def frf_datasets(
 ) -> Iterator[bytes]:
     """Print each measured combination; nodes in `systems` have displacement axes of their own."""
     x = frfs.frequencies_hz
-    start, step, even = _spacing(x)
+    start, step, even = spacing(x)
     kind = 5 if single else 6
     responses = _directions(frfs.responses, systems)
     references = _directions(frfs.references, systems)
     form = b"%10d%10d%10d" % (kind, len(x), int(even))
     form += (tight(start) + tight(step) if even else tight(0.0) * 2) + tight(0.0) + b"\n"
     quantity = _QUANTITIES[frfs.quantity]
-    axes = _axis(18, 0, 0, "Frequency", "Hz") + _axis(*quantity[:1], 1, 0, "NONE", quantity[2])
-    axes += _axis(13, 0, 1, "NONE", "NONE") + _axis(0, 0, 0, "NONE", "NONE")
+    axes = axis_line(18, 0, 0, "Frequency", "Hz") + axis_line(
+        *quantity[:1], 1, 0, "NONE", quantity[2]
+    )
+    axes += axis_line(13, 0, 1, "NONE", "NONE") + axis_line(0, 0, 0, "NONE", "NONE")
     number = b"    58"
     if binary:
         size = len(x) * sum(records(kind, even)[0])
@@ -54,14 +56,19 @@ def frf_datasets(
                 4, 0, 1, 0, b"NONE", *response, b"NONE", *reference,
             )  # fmt: skip
             yield form + axes
-            if binary:
-                yield _packed(x, values, even, single)
-            else:
-                yield from _printed(x, values, even, single)
+            yield from numbers(x, values, even, single, binary)
             yield DELIMITER
 
 
-def _spacing(x: Floats) -> tuple[float, float, bool]:
+def numbers(x: Floats, values: Numbers, even: bool, single: bool, binary: bool) -> Iterator[bytes]:
+    """Print or pack the numbers of a function, real or complex."""
+    if binary:
+        yield _packed(x, values, even, single)
+    else:
+        yield from _printed(x, values, even, single)
+
+
+def spacing(x: Floats) -> tuple[float, float, bool]:
     """Start and step as they will be read, and whether they give the axis again."""
     if len(x) == 1:
         return float(x[0]), 0.0, float(tight(x[0])) == x[0]
@@ -86,13 +93,16 @@ def _name(node: int, direction: int) -> str:
     return f"{node}:{'-' if direction < 0 else '+'}{_LETTERS[abs(direction) - 1]}"
 
 
-def _axis(kind: int, length: int, force: int, label: str, unit: str) -> bytes:
-    words = label.encode(), unit.encode()
-    return b"%10d%5d%5d%5d %-20s %-20s\n" % (kind, length, force, 0, *words)
+def axis_line(kind: int, length: int, force: int, label: str, unit: str) -> bytes:
+    """Return a record that describes an axis: quantity, exponents, label and unit."""
+    name, said = (w.encode("latin-1", "replace")[:20] for w in (label, unit))
+    return b"%10d%5d%5d%5d %-20s %-20s\n" % (kind, length, force, 0, name, said)
 
 
-def _packed(x: Floats, values: Floats, even: bool, single: bool) -> bytes:
-    ordinates = values.astype("<c8" if single else "<c16")
+def _packed(x: Floats, values: Numbers, even: bool, single: bool) -> bytes:
+    letter = "c" if np.iscomplexobj(values) else "f"
+    size = (4 if single else 8) * (2 if letter == "c" else 1)
+    ordinates = values.astype(f"<{letter}{size}")
     if even:
         return ordinates.tobytes()
     layout = np.dtype([("x", "<f4"), ("y", ordinates.dtype)])  # by the book, x is single
@@ -101,16 +111,17 @@ def _packed(x: Floats, values: Floats, even: bool, single: bool) -> bytes:
     return table.tobytes()
 
 
-def _printed(x: Floats, values: Floats, even: bool, single: bool) -> Iterator[bytes]:
+def _printed(x: Floats, values: Numbers, even: bool, single: bool) -> Iterator[bytes]:
     parts = np.ascontiguousarray(values).view(np.float64)
     if even:
         yield from print_lines(parts, 13, 5, 6) if single else print_lines(parts, 20, 12, 4)
         return
+    n = 2 if np.iscomplexobj(values) else 1
     number = "%13.5E" if single else "%20.12E"
     lines = []
-    per_line = 2 if single else 1
-    pairs = parts.reshape(-1, 2).tolist()
-    for k, (frequency, (real, imaginary)) in enumerate(zip(x.tolist(), pairs, strict=True), 1):
-        end = "\n" if k % per_line == 0 or k == len(pairs) else ""
-        lines.append(tight(frequency).decode() + number % real + number % imaginary + end)
+    per_line = {(1, True): 3, (1, False): 2, (2, True): 2, (2, False): 1}[n, single]
+    rows = parts.reshape(-1, n).tolist()
+    for k, (abscissa, row) in enumerate(zip(x.tolist(), rows, strict=True), 1):
+        end = "\n" if k % per_line == 0 or k == len(rows) else ""
+        lines.append(tight(abscissa).decode() + "".join(number % v for v in row) + end)
     yield "".join(lines).encode("ascii")

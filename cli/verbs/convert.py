@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -107,6 +108,9 @@ def _written(cargo: Cargo, holds: frozenset[str]) -> dict[str, str]:
             f"{k} {len(f.responses)} x {len(f.references)} x {len(f.frequencies_hz)}"
             for k, f in cargo.frfs.items()
         )
+    if cargo.functions and "functions" in holds:
+        kinds = Counter(f.kind for f in cargo.functions.values())
+        said["functions"] = ", ".join(f"{n} x {kind}" for kind, n in kinds.items())
     if cargo.matrices and "matrices" in holds:
         said["matrices"] = ", ".join(
             f"{k} {m.matrix.shape[0]} x {m.matrix.shape[1]}" for k, m in cargo.matrices.items()
@@ -115,6 +119,6 @@ def _written(cargo: Cargo, holds: frozenset[str]) -> dict[str, str]:
 
 
 def _told(cargo: Cargo) -> str:
-    every = frozenset({"geometry", "modes", "frfs", "matrices"})
-    told = "; ".join(f"{k} {v}" for k, v in _written(cargo, every).items())
+    every = frozenset({"geometry", "modes", "frfs", "matrices", "functions"})
+    told = "; ".join([*(f"{k} {v}" for k, v in _written(cargo, every).items()), *cargo.rest[:3]])
     return told[:_LONGEST] + "..." * (len(told) > _LONGEST) or "no content at all"

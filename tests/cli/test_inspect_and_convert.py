@@ -267,3 +267,29 @@ def test_faults_of_a_conversion_are_one_sentence(
     assert why in err
     assert err.count("\n") == 1
     assert [p.name for p in tmp_path.iterdir()] == ["a.op4"]
+
+
+def test_functions_of_any_kind_go_through_a_store_and_back(
+    trueup: Call, data: Path, tmp_path: Path
+) -> None:
+    """A time record: universal -> HDF5 -> 58b, equal to the last bit."""
+    source = data / "uff" / "Sample_UFF58_ascii.uff"
+    store, binary = tmp_path / "a.h5", tmp_path / "b.unv"
+    assert trueup("convert", source, store)[0] == 0
+    status, out, _ = trueup("convert", store, binary, "--to", "uff-binary", "--json", "-")
+    assert status == 0
+    assert json.loads(out)["written"] == {"functions": "1 x time response"}
+    (a,), (b,) = (read_universal(p).functions for p in (source, binary))
+    assert np.array_equal(a.values, b.values)
+    assert (a.kind, a.response, a.quantity, a.over) == (b.kind, b.response, b.quantity, b.over)
+    status, out, _ = trueup("inspect", store, "--json", "-")
+    told = json.loads(out)["files"][0]["contents"]
+    assert [t["what"] for t in told] == ["function"]
+    assert told[0]["function"] == "time response"
+
+
+def test_a_format_that_holds_no_functions_says_so(trueup: Call, data: Path, tmp_path: Path) -> None:
+    source = data / "uff" / "Sample_UFF58_ascii.uff"
+    status, _, said = trueup("convert", source, tmp_path / "a.op4")
+    assert status == 1
+    assert "functions 1 x time response" in said
