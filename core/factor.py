@@ -1,7 +1,7 @@
 """Sparse symmetric factorisation by the best direct solver present.
 
 MKL PARDISO where the optional ``mkl`` wheel is installed, else scipy's SuperLU without pivoting
-on a symmetric ordering. Which one is used is an argument, never a global setting.
+on a minimum degree order of the nodes. Which one is used is an argument, never a global setting.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from .arrays import Floats, Numbers, require_finite
+from .arrays import Floats, Ints, Numbers, require_finite
 from .errors import CheckError, InputError
+from .ordering import nodal_order
 from .pardiso import NotDefinite, Pardiso, library
 
 Backend = Literal["pardiso", "superlu"]
@@ -61,7 +62,10 @@ def best_backend() -> Backend:
 
 
 def factorise(
-    a: sp.spmatrix, definite: bool | None = None, backend: Backend | None = None
+    a: sp.spmatrix,
+    definite: bool | None = None,
+    backend: Backend | None = None,
+    groups: Ints | None = None,
 ) -> Factorisation:
     """Factorise a sparse symmetric matrix.
 
@@ -75,6 +79,8 @@ def factorise(
         succeeds, else indefinite.
     backend : {"pardiso", "superlu"}, optional
         Default: `best_backend`.
+    groups : (n,) int, optional
+        Node of each row, which helps SuperLU to a better order; PARDISO finds its own.
 
     Returns
     -------
@@ -101,7 +107,7 @@ def factorise(
     chosen = backend or best_backend()
     makers: dict[str, Callable[[sp.spmatrix, bool], Factorisation]] = {
         "pardiso": _PardisoFactorisation,
-        "superlu": _SuperluFactorisation,
+        "superlu": lambda m, d: _SuperluFactorisation(m, d, groups),
     }
     make = makers.get(chosen)
     if make is None:
@@ -129,8 +135,7 @@ class _PardisoFactorisation:
 
     def refactorise(self, a: sp.spmatrix) -> None:
         upper = upper_triangle(a)
-        old_indptr, old_indices = self._pattern
-        if np.array_equal(upper.indptr, old_indptr) and np.array_equal(upper.indices, old_indices):
+        if _same(self._pattern, upper):
             self._scale = _scale(upper)
             self._pardiso.refactorise(_scaled(upper, self._scale).data)
         else:
@@ -155,22 +160,28 @@ class _PardisoFactorisation:
 class _SuperluFactorisation:
     backend: Backend = "superlu"
 
-    def __init__(self, a: sp.spmatrix, definite: bool) -> None:
+    def __init__(self, a: sp.spmatrix, definite: bool, groups: Ints | None = None) -> None:
         self.n = int(a.shape[0])
         self._definite = definite
+        self._groups = groups
+        self._pattern: tuple[Ints, Ints] | None = None
         self.refactorise(a)
 
     def refactorise(self, a: sp.spmatrix) -> None:
         upper = upper_triangle(a)
         self._scale = _scale(upper)
         scaled = _scaled(upper, self._scale)
-        self._full = (scaled + sp.triu(scaled, 1).T).tocsc()
+        full = (scaled + sp.triu(scaled, 1).T).tocsr()
+        if self._pattern is None or not _same(self._pattern, upper):
+            self._order = nodal_order(full, self._groups)
+            self._pattern = upper.indptr, upper.indices
+        self._full = full[self._order][:, self._order].tocsc()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", spla.MatrixRankWarning)
                 self._lu = spla.splu(
                     self._full,
-                    permc_spec="MMD_AT_PLUS_A",
+                    permc_spec="NATURAL",
                     diag_pivot_thresh=0.0,
                     options={"SymmetricMode": True},
                 )
@@ -187,7 +198,9 @@ class _SuperluFactorisation:
     def solve(self, b: Numbers) -> Floats:
         d = self._scale[:, None]
         columns = np.asarray(b, np.float64).reshape(self.n, -1)
-        x = np.asarray(self._lu.solve(np.multiply(columns, d, order="F")), order="F")
+        y = self._lu.solve(np.asfortranarray((columns * d)[self._order]))
+        x = np.empty((self.n, columns.shape[1]), order="F")
+        x[self._order] = y
         x *= d
         return x.reshape(np.shape(b), order="F")
 
@@ -200,6 +213,10 @@ class _SuperluFactorisation:
         if not residual <= _PROBE_TOLERANCE * np.linalg.norm(probe):
             raise CheckError("the factorisation without pivoting lost its accuracy")
         return int(np.count_nonzero(self._lu.U.diagonal() < 0.0))
+
+
+def _same(pattern: tuple[Ints, Ints], upper: sp.csr_matrix) -> bool:
+    return np.array_equal(upper.indptr, pattern[0]) and np.array_equal(upper.indices, pattern[1])
 
 
 def upper_triangle(a: sp.spmatrix) -> sp.csr_matrix:

@@ -72,6 +72,14 @@ class Pencil:
         both = (self.k_diagonal > 0.0) & (self.m_diagonal > 0.0)
         return np.sort(self.k_diagonal[both] / self.m_diagonal[both]) if both.any() else np.ones(1)
 
+    @cached_property
+    def groups(self) -> Ints | None:
+        """Node of each degree of freedom by its label, (n,); None where there are no labels."""
+        if len(self.labels) != self.n:
+            return None
+        nodes = np.array([label.split(":", 1)[0] for label in self.labels])
+        return np.asarray(np.unique(nodes, return_inverse=True)[1], np.int64).reshape(-1)
+
     @property
     def least_shift(self) -> float:
         """Size of a shift that stands clear of the rounding of K."""

@@ -20,6 +20,7 @@ from .spectrum import Spectrum
 _FIRST_SHIFT_HZ = 20.0  # a guess, bettered when the first Ritz values are seen
 _SHIFTS = 6  # guesses at most
 _WIDTH = 8  # of the block: what one pass through the factor serves best
+_NARROW = 4  # with SuperLU, which gains little by several right sides at once
 _WIDEST = 64  # of the block, when many equal modes were missed
 _GUARD = 4  # modes above the wanted ones, in the room of the basis
 _GUARD_TOLERANCE = 1e-3  # Ritz residual at which a value helps to find a gap
@@ -116,8 +117,9 @@ def _started(
     factor = _definite(model, pencil, sigma, request.backend)
     refuse_unresisted(model, pencil, sigma, factor)
     rng = np.random.default_rng(request.seed)
+    width = _WIDTH if request.backend == "pardiso" else _NARROW
     for attempt in range(_SHIFTS):
-        start = rng.standard_normal((pencil.n, min(_WIDTH, pencil.n)))
+        start = rng.standard_normal((pencil.n, min(width, pencil.n)))
         lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, _room(elastic))
         lanczos.step()
         for _ in range(2):
@@ -143,7 +145,7 @@ def _definite(
     """Factor of K - sigma M, on the pattern of an old one; `InputError` where it has none."""
     try:
         if old is None:
-            return factorise(pencil.shifted(sigma), True, backend)
+            return factorise(pencil.shifted(sigma), True, backend, pencil.groups)
         old.refactorise(pencil.shifted(sigma))
     except NotDefinite:
         diagnose(model, pencil, sigma, backend)
@@ -280,9 +282,10 @@ def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> 
     """Return the number of eigenvalues below a point of an interval without modes."""
     low, high = between
     try:
-        return factorise(pencil.shifted(low), False, backend).negative
+        return factorise(pencil.shifted(low), False, backend, pencil.groups).negative
     except CheckError:
-        return factorise(pencil.shifted(0.7 * low + 0.3 * high), False, backend).negative
+        at = pencil.shifted(0.7 * low + 0.3 * high)
+        return factorise(at, False, backend, pencil.groups).negative
 
 
 def _with_missed(
@@ -294,7 +297,7 @@ def _with_missed(
     attempt: int,
 ) -> Spectrum:
     """Search again, M-orthogonally to all that was found: another start, as wide as needed."""
-    factor = found.factor or factorise(pencil.shifted(found.sigma), True, request.backend)
+    factor = found.factor or _definite(None, pencil, found.sigma, request.backend)
     locked = np.hstack([rigid, found.vectors])
     rng = np.random.default_rng(request.seed + 1000 * attempt)
     width = min(missed + _GUARD, _WIDEST) if missed > _GUARD else _WIDTH
