@@ -11,9 +11,9 @@ from ..core.errors import InputError
 from ..core.frfs import Frfs
 from ..core.geometry import Geometry
 from ..core.modes import Modes
-from .formats import DECK, OP4, PUNCH, RESULTS, STORE, UNIVERSAL, kind_of_file
+from .formats import DECK, OP4, PUNCH, RESULTS, RUNS, STORE, UNIVERSAL, kind_of_file
 
-KINDS = (DECK, UNIVERSAL, STORE, RESULTS, OP4, PUNCH)
+KINDS = (DECK, UNIVERSAL, STORE, RESULTS, OP4, PUNCH, RUNS)
 
 
 @dataclass
@@ -78,6 +78,8 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
             _results(path, deck, subcase, cargo)
         elif k in (OP4, PUNCH):
             _matrices(path, deck, cargo)
+        elif k == RUNS:
+            _runs(path, cargo)
         elif k == STORE:
             _store(path, cargo)
     return cargo
@@ -142,6 +144,14 @@ def _results(path: Path, deck: Any, subcase: int | None, cargo: Cargo) -> None:
     if others:
         more = f" and {len(others) - 6} more" if len(others) > 6 else ""
         cargo.notes.append(f"{path.name}: not read: {', '.join(others[:6])}{more}")
+
+
+def _runs(path: Path, cargo: Cargo) -> None:
+    from ..adapters.nastran import terms_of_runs
+
+    for m, factor in terms_of_runs(path):
+        cargo.add("matrices", m.name, m)
+        cargo.notes.append(f"{m.name} is multiplied by {factor}")
 
 
 def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:

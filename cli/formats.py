@@ -9,7 +9,7 @@ from typing import Any
 from ..core.errors import InputError
 
 DECK, UNIVERSAL, STORE = "deck", "universal", "store"
-RESULTS, OP4, PUNCH = "results", "op4", "punch"
+RESULTS, OP4, PUNCH, RUNS = "results", "op4", "punch", "runs"
 
 _DECK_SUFFIXES = (".bdf", ".dat", ".nas", ".blk", ".inc", ".asm", ".fem", ".pch", ".ecd", ".cmn")
 _UNIVERSAL_SUFFIXES = (".unv", ".uff", ".uf", ".bunv")
@@ -47,6 +47,12 @@ def _matrices(path: Path) -> dict[str, Any]:
     return describe_matrices(path)
 
 
+def _runs(path: Path) -> dict[str, Any]:
+    from ..adapters.nastran import describe_runs
+
+    return describe_runs(path)
+
+
 _DESCRIBERS: dict[str, Callable[[Path], dict[str, Any]]] = {
     DECK: _deck,
     UNIVERSAL: _universal,
@@ -54,6 +60,7 @@ _DESCRIBERS: dict[str, Callable[[Path], dict[str, Any]]] = {
     RESULTS: _results,
     OP4: _matrices,
     PUNCH: _matrices,
+    RUNS: _runs,
 }
 
 
@@ -73,9 +80,10 @@ def kind_of_file(path: Path) -> str:
 
     Returns
     -------
-    {"deck", "universal", "store", "results", "op4", "punch"}
+    {"deck", "universal", "store", "results", "op4", "punch", "runs"}
         ``results`` are those of a Nastran run (OP2, HDF5, F06, punched eigenvectors), ``punch`` is
-        a file with DMIG matrices, or of an external superelement, and no deck.
+        a file with DMIG matrices, or of an external superelement, and no deck; ``runs`` is the
+        index (``runs.json``) of a folder that export-runs wrote.
 
     Raises
     ------
@@ -104,8 +112,10 @@ def kind_of_file(path: Path) -> str:
 
 
 def _nastran_kind(path: Path, head: bytes) -> str:
-    from ..adapters.nastran import is_op4
+    from ..adapters.nastran import is_op4, is_runs
 
+    if is_runs(head):
+        return RUNS
     if is_op4(path):
         return OP4
     suffix = path.suffix.lower()

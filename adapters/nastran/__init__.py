@@ -15,6 +15,7 @@ from .matrices.model import matrix_of, model_matrices, model_of_matrices, stiffn
 from .matrices.op4 import is_op4, read_op4
 from .matrices.read import describe_matrices, matrix_file_kind, read_matrices
 from .matrices.runs import read_runs, write_runs
+from .matrices.runterms import describe_runs, is_runs, terms_of_runs
 from .matrices.write import write_dmig, write_op4
 from .parameters import FieldRef, ParameterSpec, parse_parameter
 from .read import Deck, EigenRequest, read_deck
@@ -38,8 +39,10 @@ __all__ = [
     "describe_deck",
     "describe_matrices",
     "describe_results",
+    "describe_runs",
     "free_id",
     "is_op4",
+    "is_runs",
     "matrix_file_kind",
     "matrix_of",
     "model_matrices",
@@ -55,6 +58,7 @@ __all__ = [
     "set_values",
     "split_property",
     "stiffness_and_mass",
+    "terms_of_runs",
     "unified_diff",
     "weight",
     "writable",

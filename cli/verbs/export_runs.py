@@ -26,8 +26,9 @@ def export_runs(
 ) -> None:
     """Write the decks from whose exported matrices all derivative matrices follow.
 
-    Run each with your own Nastran in its folder; it punches stiffness and mass. The model with
-    its parameters is then read back from the folder (trueup.adapters.nastran.read_runs).
+    Run each with your own Nastran in its folder; it punches stiffness and mass. The constant
+    matrices of all terms then come from ``trueup convert DIR/runs.json terms.h5`` (or .op4), the
+    model with its parameters from trueup.adapters.nastran.read_runs.
     """
     from ...adapters.nastran import parse_parameter, write_runs
     from ..runfolder import run_folder

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,12 @@ from ..parameters import ParameterSpec, parse_parameter
 from ..read import Deck, read_deck
 from .content import NastranMatrix
 from .design import Design, design_of
+from .dmig import read_dmig
+from .hdf5 import list_hdf5_matrices
 from .model import model_of_matrices, stiffness_and_mass
-from .read import read_matrices
+from .op2 import list_op2_matrices
+from .op4 import list_op4
+from .read import matrix_file_kind, read_matrices
 
 SCHEMA = "trueup/export-runs/1"
 INDEX = "runs.json"
@@ -94,8 +98,9 @@ def _written(spec: ParameterSpec) -> str:
 def read_runs(folder: Path | str) -> Model:
     """Make a model with parameters of the matrices that the runs of `write_runs` exported.
 
-    In each run's folder one punch, OP4 or OP2 file with a pair of stiffness and mass is looked
-    for. With as many runs as terms, the terms are those that give every run's matrices exactly.
+    In each run's folder one punch, OP4, OP2 or HDF5 file with a pair of stiffness and mass is
+    looked for. With as many runs as terms, the terms are those that give every run's matrices
+    exactly.
 
     Raises
     ------
@@ -103,7 +108,7 @@ def read_runs(folder: Path | str) -> Model:
         A folder without ``runs.json``, a run without matrices: which one is missing.
     """
     folder = Path(folder)
-    index = _index(folder)
+    index = read_index(folder)
     specs = [parse_parameter(text) for text in index["parameters"]]
     tops = [folder / run["deck"] for run in index["runs"]]
     deck = read_deck(tops[0])
@@ -133,7 +138,14 @@ def _as_written(design: Design) -> Design:
     return replace(design, points=points)
 
 
-def _index(folder: Path) -> dict[str, Any]:
+def read_index(folder: Path) -> dict[str, Any]:
+    """Read the ``runs.json`` of a folder.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is not one of export-runs.
+    """
     try:
         index = json.loads((folder / INDEX).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -143,12 +155,19 @@ def _index(folder: Path) -> dict[str, Any]:
     return index
 
 
+def matrices_beside(top: Path) -> list[Path]:
+    """Return the files beside a run's deck that hold a pair of stiffness and mass."""
+    if not top.parent.is_dir():
+        return []
+    return sorted(p for p in top.parent.iterdir() if _holds_matrices(p))
+
+
 def _matrices_of(top: Path, deck: Deck) -> tuple[NastranMatrix, NastranMatrix]:
-    found = sorted(p for p in top.parent.iterdir() if _holds_matrices(p))
+    found = matrices_beside(top)
     if not found:
         raise InputError(
-            f"{top.parent} has no punch, OP4 or OP2 file with matrices: run Nastran on {top.name} "
-            "there"
+            f"{top.parent} has no punch, OP4, OP2 or HDF5 file with a pair of stiffness and mass "
+            f"matrices: run Nastran on {top.name} there"
         )
     if len(found) > 1:
         raise InputError(
@@ -160,7 +179,24 @@ def _matrices_of(top: Path, deck: Deck) -> tuple[NastranMatrix, NastranMatrix]:
 
 def _holds_matrices(path: Path) -> bool:
     suffix = path.suffix.lower()
-    return suffix in _SUFFIXES or suffix.startswith(".pch")
+    if not path.is_file() or not (suffix in _SUFFIXES or suffix.startswith(".pch")):
+        return False
+    try:
+        kind = matrix_file_kind(path)
+        if kind == "punch":  # of modes or of DMIG
+            names = {m.name for m in read_dmig(path)}
+        else:
+            names = {name for name, _ in _LISTS[kind](path)}
+    except InputError:
+        return False
+    return any(n[:1] == "K" and "M" + n[1:] in names for n in names)
+
+
+_LISTS: dict[str, Callable[[Path], Iterable[tuple[str, tuple[int, int]]]]] = {
+    "op4": lambda path: [(h.name, h.shape) for h in list_op4(path)],
+    "op2": list_op2_matrices,
+    "hdf5": list_hdf5_matrices,
+}
 
 
 def _terms(matrices: Sequence[NastranMatrix], design: Design, frame: Model) -> tuple[Term, ...]:

@@ -15,10 +15,12 @@ import scipy.sparse as sp
 
 from trueup.adapters.nastran import (
     build_model,
+    describe_runs,
     model_matrices,
     parse_parameter,
     read_deck,
     read_runs,
+    terms_of_runs,
     write_dmig,
     write_op4,
     write_runs,
@@ -184,3 +186,31 @@ def test_the_verb(
     ]  # fmt: skip
     assert run() == 1
     assert "exists" in capsys.readouterr().err
+
+
+def test_other_files_of_a_run_are_passed_over(tmp_path: Path) -> None:
+    """Nastran leaves more in the folder: an OP2 of modes alone, a log, an F06."""
+    folder, expected = exported(tmp_path, BEAM, ("MAT1 1 E",))
+    op2 = Path(__file__).parents[1] / "results" / "mystran" / "basic.op2"
+    for run in folder.glob("run_*"):
+        (run / "deck.op2").write_bytes(op2.read_bytes())
+        (run / "deck.f06").write_text("1 N A S T R A N\n")
+    assert difference(read_runs(folder), expected, np.array([1.7])) < (1e-9, 1e-9)
+
+
+def test_the_terms_alone_as_matrices(tmp_path: Path) -> None:
+    """K0 + T1(E) K1 at any E, with the Chebyshev polynomial that the text names."""
+    folder, expected = exported(tmp_path, BEAM, ("modulus = MAT1 1 E [0.5, 2.5]", "CONM2 90 M"))
+    told = describe_runs(folder / "runs.json")["contents"]
+    assert told["runs_without_matrices"] == 0
+    terms = {m.name: (m, said) for m, said in terms_of_runs(folder / "runs.json")}
+    assert set(terms) == {"K0", "K1", "M0", "M1"}
+    assert terms["K0"][1] == terms["M0"][1] == "1"
+    assert terms["K1"][1] == "T1(modulus on [0.5, 2.5])"
+    for factor in (0.6, 1.0, 2.2):
+        unit = (2 * factor - 0.5 - 2.5) / (2.5 - 0.5)
+        K = terms["K0"][0].matrix + unit * terms["K1"][0].matrix
+        keys = terms["K0"][0].rows.keys
+        order = np.argsort(keys)
+        wanted = ordered(expected, expected.K(np.array([factor, 1.0])))
+        assert abs(K.toarray()[np.ix_(order, order)] - wanted).max() < 1e-9 * abs(wanted).max()
