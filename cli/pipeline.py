@@ -105,14 +105,15 @@ def correlated(study: Study) -> tuple[Analysis, Placed, Comparison]:
     geometry = analysis.model.geometry
     if geometry.length_unit is None and analysis.deck.length_unit:
         geometry = replace(geometry, length_unit=analysis.deck.length_unit)
-    placed = place_test(
-        geometry,
-        analysis.modes,
-        measurement,
-        study.deck_length_unit,
-        motion=analysis.model.expansion,
-        seed=study.seed,
-    )
+    with naming(study.test[0]):
+        placed = place_test(
+            geometry,
+            analysis.modes,
+            measurement,
+            study.deck_length_unit,
+            motion=analysis.model.expansion,
+            seed=study.seed,
+        )
     found = compare(geometry, analysis.modes, placed, criteria_of(study), analysis.rigid_body_modes)
     return (
         analysis,

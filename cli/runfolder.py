@@ -14,6 +14,19 @@ from typing import Any
 
 from ..core.errors import InputError
 
+_OWN = {
+    "changes.diff",
+    "deck",
+    "modes.h5",
+    "modes.unv",
+    "modes_complex.unv",
+    "report.html",
+    "result.h5",
+    "result.json",
+    "stabilisation.html",
+    "study.toml",
+}
+
 
 @contextmanager
 def run_folder(path: Path, force: bool) -> Iterator[Path]:
@@ -34,11 +47,19 @@ def run_folder(path: Path, force: bool) -> Iterator[Path]:
             old = Path(tempfile.mkdtemp(prefix=f".{path.name}.old.", dir=path.parent))
             os.replace(path, old / path.name)
             os.replace(work, path)
+            _keep_foreign(old / path.name, path)
             shutil.rmtree(old)
         else:
             os.replace(work, path)
     finally:
         shutil.rmtree(work, ignore_errors=True)
+
+
+def _keep_foreign(old: Path, new: Path) -> None:
+    """Move what trueup did not write from a replaced run folder to the new one."""
+    for entry in old.iterdir():
+        if entry.name not in _OWN and not (new / entry.name).exists():
+            os.replace(entry, new / entry.name)
 
 
 def refuse_existing(path: Path, force: bool) -> None:

@@ -15,8 +15,11 @@ from .geometry import Geometry
 from .measurement import Measurement
 from .modes import Modes
 from .observation import Observation, observe
-from .units import reconcile_units, to_length_unit
+from .units import POSSIBLE, reconcile_units, to_length_unit
 from .weighting import ModeErrors, mode_errors, told
+
+_ON_MODEL = 0.9
+"""Share of the sensors on the model that proves a very small test to be a part of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +123,13 @@ def place_test(
     """
     if measurement.modes is None or not len(measurement.modes):
         raise InputError("the test holds no modes")
+    resting = _frequencies(measurement.modes)
+    measured = measurement.geometry
+    if measured.size == 0.0 and len(measured.ids) > 1:
+        raise InputError(
+            f"all {len(measured.ids)} nodes of the test lie at one position: its geometry was "
+            "not exported; export it again (dataset 15 or 2411)"
+        )
     declared = replace(
         measurement.geometry,
         length_unit=measurement.geometry.length_unit or measurement.length_unit,
@@ -135,6 +145,13 @@ def place_test(
         raise InputError("the test holds no modes")
     alignment = align(own, moved, analysis, test, seed=seed)
     seen = observe(own, analysis.dofs, moved, test.dofs, alignment, motion=motion)
+    if moved.size < POSSIBLE[0] * own.size and seen.within.mean() < _ON_MODEL:
+        raise InputError(
+            f"the test is {own.size / moved.size:.3g} times smaller than the model and only "
+            f"{seen.within.mean():.0%} of its sensors lie on it in the best position: the length "
+            "units of the two cannot both be right; state the deck's with --deck-length-unit, the "
+            "test's in dataset 164"
+        )
     rows = np.flatnonzero(seen.within)
     kept = seen.take(rows)
     at_sensors = Modes(
@@ -148,11 +165,27 @@ def place_test(
     in_frame = replace(moved, xyz=alignment.apply(moved.xyz))
     # An undecided alignment warns of its ambiguity itself.
     ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
-    warnings = (*measurement.warnings, *units.warnings, *alignment.warnings, *ambiguity)
+    warnings = (*measurement.warnings, *resting, *units.warnings, *alignment.warnings, *ambiguity)
     scaled = replace(alignment, scale=units.factor)
     errors = _errors(measurement, rows)
     weighed = (told(errors, kept.sensors.labels),) if errors else ()
     return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings, *weighed), errors)
+
+
+def _frequencies(modes: Modes) -> tuple[str, ...]:
+    """Refuse frequencies that are none; say which modes are at rest."""
+    hz = modes.frequencies_hz
+    wrong = np.flatnonzero(~np.isfinite(hz) | (hz < 0.0))
+    if len(wrong):
+        raise InputError(
+            f"mode {wrong[0] + 1} of the test has a frequency of {hz[wrong[0]]:g} Hz; a frequency "
+            "is zero or above: correct it in the test file"
+        )
+    zero = np.flatnonzero(hz == 0.0) + 1
+    if not len(zero):
+        return ()
+    which = f"mode{'s' if len(zero) > 1 else ''} {', '.join(map(str, zero))}"
+    return (f"test {which}: the frequency is 0 Hz or blank in the file, so nothing can pair",)
 
 
 def _errors(measurement: Measurement, rows: Numbers) -> ModeErrors | None:

@@ -137,8 +137,9 @@ def _bands(analysis_hz: Floats, test_hz: Floats, most: int) -> tuple[Ints, Ints]
     At least two where there are as many, so that a pair is not torn, and at most `most` and six.
     """
     most = int(np.clip(most, 1, min(_MOST_MODES, len(analysis_hz))))
-    floor = 1e-3 * test_hz.max(initial=1.0)
-    away = np.abs(np.log(np.maximum(analysis_hz, floor)[None] / test_hz[:, None]))
+    floor = 1e-3 * float(test_hz.max(initial=np.finfo(float).tiny))
+    ratio = np.maximum(analysis_hz, floor)[None] / np.maximum(test_hz, floor)[:, None]
+    away = np.abs(np.log(ratio))
     nearest = np.argsort(away, axis=1, kind="stable")[:, :most]
     near = np.take_along_axis(away, nearest, axis=1) <= np.log(1 + BAND)
     return nearest, np.maximum(near.sum(axis=1), min(2, most))

@@ -18,6 +18,7 @@ from .residuals import Residuals, Weights, eigenvalue_residuals, shape_residuals
 from .sensitivity import Spectral
 
 _UNIDENTIFIABLE = 1e-4
+_UNSURE = 0.5
 _LEAST_GAIN = 1e-3
 _KEPT = 0.75
 """Share of the pairs that a step must keep to be judged by those alone."""
@@ -171,6 +172,8 @@ class Objective:
         sound = s > _UNIDENTIFIABLE * s[0] if s.size and s[0] > 0.0 else np.zeros(len(s), bool)
         said = vt[sound] ** 2 / s[sound, None] ** 2
         error[list(active)] = np.sqrt(np.sum(said, axis=0) * scatter)
+        factors = np.asarray(state.factors)
+        unsure = np.flatnonzero(error > _UNSURE * factors)
         lost = np.vstack([vt[~sound], np.zeros((0, len(active)))])
         names = [self.parameters[k].name for k in active]
         doubtful = []
@@ -181,6 +184,11 @@ class Objective:
                 f"the test does not determine {' and '.join(part)}: "
                 + ("a common change leaves" if len(part) > 1 else "a change leaves")
                 + " every residual the same; fix one of them"
+            )
+        for k in unsure[np.isfinite(error[unsure])]:
+            doubtful.append(
+                f"the test hardly determines {self.parameters[k].name}: its factor "
+                f"{factors[k]:.3g} has a standard error of {error[k]:.2g}"
             )
         return error, tuple(doubtful)
 

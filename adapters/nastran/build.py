@@ -20,6 +20,7 @@ from ...core.model import Model, Term
 from ...core.parameter import Parameter
 from ...core.sparse_sum import select, weighted_sum
 from .analysis_set import read_analysis_set
+from .bounds import admissible
 from .constraints import read_constraints
 from .direct import direct_matrices
 from .families import FAMILIES, Context, Group, Settings
@@ -118,6 +119,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
     structure = read_structure(deck, variation)
     points = structure.points
     constraints = read_constraints(deck, points)
+    variation, narrowed = admissible(variation, parameters, structure.groups, structure.blocks)
     terms = _terms(deck, structure, variation)
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
     terms, reduced, warnings, idle = _remove_singular(deck, points, terms, reduced)
@@ -130,7 +132,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         mass=terms[1],
         parameters=variation.parameters,
         free_labels=tuple(points.label(d) for d in kept),
-        warnings=(*structure.notes, *constraints.notes, *warnings, *more),
+        warnings=(*structure.notes, *constraints.notes, *narrowed, *warnings, *more),
         idle=idle,
     )
 
@@ -180,7 +182,9 @@ def _evaluation(group: Group, points: Points, variation: Variation, wtmass: floa
         try:
             K, M = group.matrices(variation.at(p), rows, wanted)
         except InputError as error:
-            raise InputError(f"{variation.describe(p)}{error}") from None
+            moved = variation.describe(p)
+            advice = "; give narrower bounds, such as '[0.9, 1.1]'" if moved else ""
+            raise InputError(f"{moved}{error}{advice}") from None
         for X in (K, M):
             if X is not None and not np.isfinite(X).all():
                 bad = int(group.ids[rows[np.flatnonzero(~np.isfinite(X).all(axis=(1, 2)))[0]]])

@@ -106,6 +106,8 @@ def read_deck(path: str | Path) -> Deck:
     unit, unit_warnings = find_length_unit(every_line, bulk)
     skipped, refused, skip_warnings = _skipped(bulk, others)
     counts = {name: _cards(raws) for name, raws in (*bulk.raw.items(), *others.items())}
+    eigen = _eigen(bulk, case)
+    unfound = () if eigen or case.method is None else (_no_method(path, case.method),)
     return Deck(
         path=path,
         files=sections.files,
@@ -113,10 +115,10 @@ def read_deck(path: str | Path) -> Deck:
         case=case,
         params=_params(bulk, sections.case),
         length_unit=unit,
-        eigen=_eigen(bulk, case),
+        eigen=eigen,
         counts=counts,
         skipped=skipped,
-        warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections)),
+        warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections), *unfound),
         refused=refused,
     )
 
@@ -151,6 +153,13 @@ def _eigen(bulk: Bulk, case: CaseControl) -> EigenRequest | None:
     if name == "EIGRL":
         return EigenRequest(card.v1, card.v2, card.nd)
     return EigenRequest(card.f1, card.f2, card.nd)
+
+
+def _no_method(path: Path, method: int) -> str:
+    return (
+        f"{path}: METHOD = {method} selects no EIGRL or EIGR of the deck; how many modes to find "
+        "is left to trueup"
+    )
 
 
 def _solution(sections: Any) -> tuple[str, ...]:

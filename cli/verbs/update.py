@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from ...core.errors import CheckError, InputError
 from ..console import working
 from ..options import Output
@@ -39,7 +41,7 @@ def run_update(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ..writing import default_folder, fill_run_folder
 
     if not study.parameters:
-        raise InputError(
+        raise typer.BadParameter(
             "no parameter is named; say what may move, for example -p 'PBAR 11 I1' (repeatable)"
         )
     if study.modes is not None:

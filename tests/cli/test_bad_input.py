@@ -110,7 +110,11 @@ def test_a_parameter_that_names_no_card(
 
 
 def test_an_update_of_nothing(call: Call, inputs: Path) -> None:
-    assert "no parameter is named" in refused(call, inputs, verb="update")
+    out = inputs.parent / "run"
+    said = call("update", inputs / "duct.bdf", inputs / "duct_test.unv", "--out", out)
+    assert said.status == 2
+    assert "no parameter is named" in said.err
+    assert not out.exists()
 
 
 HINGED = """SOL 103

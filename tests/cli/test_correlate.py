@@ -145,9 +145,12 @@ def test_an_existing_run_folder_is_kept_unless_forced(
     assert said.status == 1
     assert "exists; give --force" in said.sentence
     assert {p: p.read_bytes() for p in folder.iterdir()} == before
+    (folder / "notes.txt").write_text("mine")
     again = call("correlate", "--study", folder / "study.toml", "--out", folder, "--force",
                  "--quiet")  # fmt: skip
     assert (again.status, again.out, again.err) == (0, "", "")
+    assert (folder / "notes.txt").read_text() == "mine"
+    (folder / "notes.txt").unlink()
     assert (folder / "result.json").read_bytes() == before[folder / "result.json"]
 
 

@@ -65,6 +65,30 @@ def test_lengths_and_shapes_are_converted_to_the_decks_unit(analysis, unit, fact
     np.testing.assert_allclose(placed.observation.distance, 0.0, atol=1e-9)
 
 
+def test_a_frequency_below_zero_is_refused_and_one_of_zero_pairs_with_nothing(analysis):
+    geometry, modes = analysis
+    test = measured(analysis)
+    wrong, still = test.modes.frequencies_hz.copy(), test.modes.frequencies_hz.copy()
+    wrong[2] *= -1.0
+    still[2] = 0.0
+    with pytest.raises(InputError, match=r"mode 3 of the test has a frequency of -\d"):
+        place_test(geometry, modes, replace(test, modes=replace(test.modes, frequencies_hz=wrong)))
+    placed = place_test(
+        geometry, modes, replace(test, modes=replace(test.modes, frequencies_hz=still)), "m"
+    )
+    assert any("test mode 3: the frequency is 0 Hz or blank" in w for w in placed.warnings)
+    found = compare(geometry, modes, placed).correlation
+    assert [p.test for p in found.pairs] == [0, 1, 3, 4]
+
+
+def test_nodes_all_in_one_place_are_no_geometry(analysis):
+    geometry, modes = analysis
+    test = measured(analysis)
+    flat = replace(test, geometry=replace(test.geometry, xyz=0.0 * test.geometry.xyz))
+    with pytest.raises(InputError, match="all 13 nodes of the test lie at one position"):
+        place_test(geometry, modes, flat, "m")
+
+
 def test_sensors_off_the_model_are_left_out_aloud(analysis):
     geometry, modes = analysis
     test = measured(analysis)

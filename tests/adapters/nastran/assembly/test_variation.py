@@ -130,8 +130,8 @@ def test_derivatives_are_those_of_the_matrices(deck):
         ("MAT1 1 G", r"G is blank on MAT1 1 \(.*deck.bdf line 28\)"),
         ("PROD 4 C", r"C is blank on PROD 4"),
         ("PELAS 6 K", r"changes neither stiffness nor mass"),
-        ("MAT1 1 NU", r"parameter 'MAT1 1 NU'.*MAT1 1 .*Poisson's ratio is 1.5"),
-        ("PBARL 3 DIM3", r"parameter 'PBARL 3 DIM3'.*PBARL 3 .*BOX do not fit together"),
+        ("MAT1 1 NU [0.9, 5]", r"parameter 'MAT1 1 NU'.*MAT1 1 .*Poisson's ratio is 1.5"),
+        ("PBARL 3 DIM3 [0.9, 5]", r"parameter 'PBARL 3 DIM3'.*PBARL 3 .*BOX do not fit together"),
     ],
 )
 def test_a_parameter_that_cannot_be(deck, parameter, message):

@@ -1,0 +1,35 @@
+"""Matrices as they come: what is rounding and what is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core.errors import InputError
+from trueup.core.pencil import Pencil
+
+
+def chain(mass):
+    n = len(mass)
+    K = sp.diags([np.full(n, 3.0), np.full(n - 1, -1.0), np.full(n - 1, -1.0)], [0, 1, -1])
+    return sp.csr_matrix(K), sp.lil_matrix(np.diag(mass))
+
+
+@pytest.mark.parametrize("noise", [-1e-17, 0.0, 1e-17])
+def test_what_a_rotation_leaves_of_no_mass_is_no_mass(noise):
+    K, M = chain([1.0, 2.0, noise, 1.0])
+    M[2, 3] = M[3, 2] = 1e-16
+    cleaned = Pencil(K, M).M
+    np.testing.assert_array_equal(cleaned.toarray(), np.diag([1.0, 2.0, 0.0, 1.0]))
+
+
+def test_a_small_mass_is_a_mass():
+    K, M = chain([1.0, 2.0, 1e-6, 1.0])
+    np.testing.assert_array_equal(Pencil(K, M).M.toarray(), M.toarray())
+
+
+def test_a_negative_mass_is_refused():
+    K, M = chain([1.0, 2.0, -1e-6, 1.0])
+    with pytest.raises(InputError, match="mass at degree of freedom 3 is negative"):
+        Pencil(K, M)
