@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from ..core.geometry import Geometry
 from ..core.modes import Modes
 from .formats import DECK, OP4, PUNCH, RESULTS, RUNS, STORE, UNIVERSAL, kind_of_file
 
+_REPEATED = re.compile(r"_\d+$")
 KINDS = (DECK, UNIVERSAL, STORE, RESULTS, OP4, PUNCH, RUNS)
 
 
@@ -179,7 +181,9 @@ def _store(path: Path, cargo: Cargo) -> None:
     for name, matrix in content.matrices.items():
         rows, columns = (content.dofs.get(f"{side}/{name}") for side in ("rows", "columns"))
         used |= {f"{side}/{name}" for side in ("rows", "columns")}
-        cargo.add("matrices", name, matrix_of(name, matrix, rows, columns))
+        own = _REPEATED.sub("", name)  # a second matrix of one name was given a number
+        own = own if own in content.matrices else name
+        cargo.add("matrices", name, matrix_of(own, matrix, rows, columns))
     dofs = {k: v for k, v in content.dofs.items() if k not in used}
     for key, value in (
         ("test_geometry", content.test_geometry), ("mac", content.mac), ("dofs", dofs),

@@ -62,7 +62,8 @@ def op4_formatted(matrices: Iterable[NastranMatrix]) -> Iterator[bytes]:
 
 
 def _name(m: NastranMatrix) -> str:
-    if not (m.name.isascii() and m.name[:1].isalpha() and m.name.isalnum()):
+    plain = m.name.replace("_", "")
+    if not (m.name.isascii() and m.name[:1].isalpha() and plain.isalnum()):
         raise InputError(
             f"{m.name!r} is no name for a matrix in Nastran: letters and digits, a letter first"
         )

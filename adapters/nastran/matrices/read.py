@@ -18,7 +18,7 @@ from .hdf5 import read_hdf5_matrices
 from .op2 import read_op2_matrices
 from .op4 import is_op4, kind_of, list_op4, read_op4
 from .op4_binary import Header
-from .write import MAP
+from .write import MAP, USE
 
 _PUNCH_SUFFIXES = (".pch", ".asm")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -96,16 +96,23 @@ def _mapped(
 
 def _with_own_maps(matrices: Sequence[NastranMatrix]) -> Sequence[NastranMatrix]:
     """Take up the maps that `write_op4` has put beside the matrices."""
-    names = [m.name for m in matrices if m.name.startswith(MAP) and m.matrix.shape[1] == 2]
-    if not names:
+    tables = [m for m in matrices if m.name.startswith(MAP) and m.matrix.shape[1] == 2]
+    uses = next((m.matrix.toarray() for m in matrices if m.name == USE), None)
+    others = [m for m in matrices if m not in tables and m.name != USE]
+    if not tables or uses is None or uses.shape != (len(others), 2):
         return matrices
-    tables = (m.matrix.toarray() for m in matrices if m.name in names)
-    maps = {len(t): DofMap(t[:, 0].astype(np.int64), t[:, 1].astype(np.int64)) for t in tables}
-    return [
-        replace(m, rows=maps.get(m.matrix.shape[0]), columns=maps.get(m.matrix.shape[1]))
-        for m in matrices
-        if m.name not in names
-    ]
+    maps: list[DofMap | None] = [None]
+    for table in tables:
+        point, component = table.matrix.toarray().astype(np.int64).T
+        maps.append(DofMap(point, component))
+    if uses.min() < 0 or uses.max() >= len(maps):
+        return matrices
+    result = []
+    for m, (row, column) in zip(others, uses.astype(int).tolist(), strict=True):
+        sides = zip((maps[row], maps[column]), m.matrix.shape, strict=True)
+        rows, columns = (d if d is not None and len(d) == n else None for d, n in sides)
+        result.append(replace(m, rows=rows, columns=columns))
+    return result
 
 
 def _is_structural(m: NastranMatrix) -> bool:

@@ -16,14 +16,17 @@ from .dmig_write import dmig_text
 from .op4_write import op4_binary, op4_formatted
 
 MAP = "DOFMAP"
-"""Name of the matrix (n, 2) of points and components that stands in an OP4 for its dof map."""
+"""Name of the matrix (n, 2) of points and components that stands in an OP4 for a dof map."""
+USE = "DOFUSE"
+"""Name of the matrix (n_matrix, 2) of the map's number, from 1, of rows and columns; 0: none."""
 
 
 def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bool = False) -> None:
     """Write an OP4 file, sparse ("bigmat") and in double precision.
 
     OP4 has no place for dof maps: each is added as a matrix DOFMAP (DOFMAP2, ...) of two columns,
-    point and component (0: scalar point), by which `read_matrices` gives it back.
+    point and component (0: scalar point); DOFUSE says which map belongs to the rows and columns
+    of which matrix, in the order of the file. By these `read_matrices` gives them back.
 
     Parameters
     ----------
@@ -36,7 +39,7 @@ def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bo
     Raises
     ------
     InputError
-        A name that Nastran does not take, two maps of one size, a file that cannot be written.
+        A name that Nastran does not take, a file that cannot be written.
     """
     write = op4_formatted if formatted else op4_binary
     _write(Path(path), write([*matrices, *_maps(matrices)]))
@@ -54,25 +57,30 @@ def write_dmig(path: Path | str, matrices: Sequence[NastranMatrix]) -> None:
 
 
 def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
-    found: dict[int, DofMap] = {}
-    for m in matrices:
-        for kind in (m.rows, m.columns):
-            if kind is None:
-                continue
-            known = found.setdefault(len(kind), kind)
-            if not np.array_equal(known.keys, kind.keys):
-                raise InputError(
-                    f"the rows of matrix {m.name} are other degrees of freedom than those of "
-                    "another matrix of that size: write them to separate files"
-                )
-    return [
+    """Return the maps as matrices, and which of them belongs to the rows and columns of which."""
+    found: list[DofMap] = []
+
+    def number(one: DofMap | None) -> int:
+        if one is None:
+            return 0
+        for k, known in enumerate(found, 1):
+            if np.array_equal(known.keys, one.keys):
+                return k
+        found.append(one)
+        return len(found)
+
+    uses = np.array([[number(m.rows), number(m.columns)] for m in matrices], float)
+    if not found:
+        return []
+    maps = [
         NastranMatrix(
             MAP if not k else f"{MAP}{k + 1}",
             sp.csc_matrix(np.column_stack([m.point, m.component]).astype(np.float64)),
             RECTANGULAR,
         )
-        for k, m in enumerate(found.values())
+        for k, m in enumerate(found)
     ]
+    return [*maps, NastranMatrix(USE, sp.csc_matrix(uses), RECTANGULAR)]
 
 
 def _write(target: Path, parts: Iterator[bytes]) -> None:

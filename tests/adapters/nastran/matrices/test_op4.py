@@ -358,3 +358,23 @@ def test_a_matrix_of_ten_million_rows_stays_sparse(tmp_path: Path) -> None:
     (again,) = read_op4(path)
     assert (again.matrix != matrix).nnz == 0
     assert again.matrix.data.nbytes < 2e6
+
+
+def test_maps_of_one_size_and_matrices_without_any_come_back(tmp_path: Path) -> None:
+    one = DofMap(np.array([1, 1, 5]), np.array([1, 3, 0]))
+    two = DofMap(np.array([2, 3, 4]), np.array([1, 1, 1]))
+    K = sp.csc_matrix(np.diag([1.0, 2.0, 3.0]))
+    matrices = [
+        NastranMatrix("KAA", K, 6, one, one),
+        NastranMatrix("PLAIN", K, 6),
+        NastranMatrix("GOA", sp.csc_matrix(np.ones((3, 3))), 2, two, one),
+        NastranMatrix("LOOP_END", sp.csc_matrix(np.ones((1, 1))), 2),
+    ]
+    path = tmp_path / "maps.op4"
+    write_op4(path, matrices)
+    again = read_matrices(path)
+    assert [m.name for m in again] == [m.name for m in matrices]
+    for a, b in zip(again, matrices, strict=True):
+        for x, y in ((a.rows, b.rows), (a.columns, b.columns)):
+            assert (x is None) == (y is None)
+            assert x is None or np.array_equal(x.keys, y.keys)
