@@ -14,6 +14,8 @@ from .refinement import Fit, solve_shapes
 _RISK = 0.01  # that noise alone makes one root somewhere in a band
 _MARGIN = 2.0  # beyond what that risk allows, since noise is never quite white
 _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
+_MARGIN_OF_NEEDLES = 20.0  # and for one much narrower, which noise of a single line may make
+_NEEDLE = 0.3  # lines that those are narrower than
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
 _SEEN = 0.05  # of one function, over the width of a mode: what artefacts make of it
 _WHITE = 2.0  # variance over that of the differences, below which noise is white
@@ -46,8 +48,9 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
         own = inverse.reshape(m, 2, m, 2)[np.arange(m), :, np.arange(m), :]
         by_row = np.einsum("oka,kab,okb->ko", x[rows], np.linalg.inv(own), x[rows])
         lost += np.sum(by_row / variance[:, rows], axis=1)
-    narrow = -fit.poles.real / np.pi < np.median(np.diff(f))
-    margin = np.where(narrow, _MARGIN_OF_SPIKES, _MARGIN)
+    width = -fit.poles.real / np.pi / np.median(np.diff(f))
+    margin = np.where(width < 1.0, _MARGIN_OF_SPIKES, _MARGIN)
+    margin = np.where(width < _NEEDLE, _MARGIN_OF_NEEDLES, margin)
     explained = lost / (margin * best_of_noise(data, f, len(x)))
     return np.asarray(np.minimum(explained, visibility(data, f, fit, F)))
 
