@@ -17,6 +17,12 @@ from .sparse_sum import select
 
 Bools = Any
 
+_ALONG = 1.0 - 1e-6
+"""Share of a direction in one component from which it is that component's."""
+
+_NOTHING = 1e-13
+"""Stiffness beside the largest of the same grid that is rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Equations:
@@ -189,12 +195,20 @@ def _resolve_cycle(
 
 
 def unsupported(
-    stiffness: sp.csr_matrix, triple: Ints, member: Ints, mass: sp.csr_matrix | None, ratio: float
+    stiffness: sp.csr_matrix,
+    triple: Ints,
+    member: Ints,
+    mass: sp.csr_matrix | None,
+    ratio: float,
+    turning: Bools | None = None,
 ) -> Ints:
     """Find degrees of freedom along which a grid has no stiffness, alone of all its neighbours.
 
     The three translations of a grid, and its three rotations, are looked at together: for each
-    direction in which their 3 x 3 stiffness is singular the strongest component is taken.
+    direction in which their 3 x 3 stiffness is singular the strongest component is taken. A weak
+    rotation about a direction between the components, as about the normal of a curved shell, is
+    left alone unless it has no stiffness at all: to fix one component there would tie the
+    structure to the ground by what little there is.
 
     Parameters
     ----------
@@ -207,6 +221,8 @@ def unsupported(
         When given, only directions without mass are taken.
     ratio : float
         Smallest stiffness relative to the largest of the same triple that counts as stiffness.
+    turning : (n,) bool, optional
+        Which are rotations.
 
     Returns
     -------
@@ -225,11 +241,16 @@ def unsupported(
     K = _blocks(stiffness, dof)
     M = None if mass is None else _blocks(mass, dof)
     absent = dof < 0
+    turns = np.zeros(len(ids), bool)
+    if turning is not None:
+        turns[number] = turning[rows]
     for _ in range(3):
         trial = _unit_size(K) if M is None else _unit_size(K) + _unit_size(M)
         trial[absent[:, :, None] & np.eye(3, dtype=bool)] = 1.0
         values, vectors = np.linalg.eigh(trial)
-        which = np.flatnonzero((values[:, 0] < ratio) & ~absent.all(axis=1))
+        fixed = ~turns | (np.abs(vectors[:, :, 0]).max(axis=1) > _ALONG)
+        weak = values[:, 0] < np.where(fixed, ratio, min(ratio, _NOTHING))
+        which = np.flatnonzero(weak & ~absent.all(axis=1))
         if not len(which):
             break
         direction = np.where(absent, 0.0, vectors[:, :, 0])[which]

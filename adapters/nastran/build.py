@@ -242,7 +242,9 @@ def _remove_singular(
     triple = np.where(reduced.kept < 6 * len(points.ids), reduced.kept // 3, -1)
     automatic = deck.params.get("AUTOSPC", "YES") != "NO"
     smallest = deck.param("EPZERO", _EPZERO)
-    loose = unsupported(K, triple, reduced.kept % 3, None if automatic else M, smallest)
+    loose = unsupported(
+        K, triple, reduced.kept % 3, None if automatic else M, smallest, triple % 2 == 1
+    )
     if not len(loose):
         return terms, reduced, (), ()
     left = np.setdiff1d(np.arange(K.shape[0]), loose)

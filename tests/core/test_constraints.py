@@ -91,6 +91,15 @@ class TestUnsupported:
         K = sp.csr_matrix(np.eye(3) - np.outer(v, v))
         assert unsupported(K, np.zeros(3, int), np.arange(3), None, 1e-8).tolist() == [1]
 
+    @pytest.mark.parametrize(("weak", "goes"), [(1e-10, False), (1e-15, True)])
+    def test_a_weak_rotation_about_a_skew_direction_stays(self, weak, goes):
+        v = np.array([0.6, 0.8, 0.0])
+        K = sp.csr_matrix(np.eye(3) - (1.0 - weak) * np.outer(v, v))
+        turning = np.ones(3, bool)
+        found = unsupported(K, np.ones(3, int), np.arange(3), None, 1e-8, turning)
+        assert found.tolist() == ([1] if goes else [])
+        assert unsupported(K, np.zeros(3, int), np.arange(3), None, 1e-8, ~turning).tolist() == [1]
+
     def test_a_line_of_stiffness_leaves_one_component(self):
         v = np.array([1.0, 2.0, 2.0]) / 3.0
         K = sp.csr_matrix(np.outer(v, v))
