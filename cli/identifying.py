@@ -33,6 +33,13 @@ def with_modes(measurement: Measurement) -> Measurement:
         for k, (f, remark) in enumerate(zip(found.modes.frequencies_hz, found.remarks, strict=True))
         if remark
     ]
+    rigid = [f"{k + 1} ({found.modes.frequencies_hz[k]:.2f} Hz)"
+             for k in np.flatnonzero(found.suspension)]  # fmt: skip
+    if rigid:
+        poor.append(
+            f"identified mode(s) {', '.join(rigid)} move the whole body without deforming it: "
+            "motions on the suspension, to which a free model has no partner"
+        )
     return replace(
         measurement,
         modes=found.real_modes,
@@ -107,8 +114,14 @@ def _mode(found: Identification, k: int) -> dict[str, Any]:
     return {
         **{key: float(values[k]) for key, values in each.items()},
         "close_pair_possible": bool(found.close_pair_possible[k]),
+        "rigid_body_share": _finite(found.rigid_share[k]),
+        "suspension": bool(found.suspension[k]),
         "remark": found.remarks[k],
     }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def _places(dofs: Dofs) -> list[dict[str, Any]]:

@@ -187,9 +187,16 @@ def identify_table(result: Result) -> Table:
             percent(mode.get("mpc"), 1),
             fixed(mode.get("mpd"), 1),
             general(quality, 3),
-            "a close pair may hide here" if mode.get("close_pair_possible") else "",
+            _identified(mode),
         )
     return table
+
+
+def _identified(mode: Mapping[str, Any]) -> str:
+    notes = [str(mode["remark"])] if mode.get("remark") else []
+    notes += ["moves as a rigid body (suspension)"] if mode.get("suspension") else []
+    notes += ["a close pair may hide here"] if mode.get("close_pair_possible") else []
+    return "; ".join(notes)
 
 
 def inspect_table(entry: Result) -> Table:

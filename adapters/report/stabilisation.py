@@ -133,6 +133,7 @@ def modes_table(found: Identification) -> Table:
     rows = []
     for k in range(len(found.modes)):
         notes = [found.remarks[k]] if found.remarks[k] else []
+        notes += ["moves as a rigid body (suspension)"] if found.suspension[k] else []
         notes += ["a close pair may hide here"] if found.close_pair_possible[k] else []
         quality = float(found.quality[k])
         rows.append(

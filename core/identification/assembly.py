@@ -13,6 +13,7 @@ from .bands import cmif
 from .model_error import CHAIN, pole_errors
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .result import Background, Identification, Indicator, background_response, residual_terms
+from .rigid import rigid_share
 from .scaling import driving_points, scale
 from .shapes import real_shapes, turned_to_principal_phase
 from .stabilisation import Chart
@@ -133,6 +134,7 @@ def assemble(
         quality=quality,
         significance=t.significance,
         close_pair_possible=pair,
+        rigid_share=rigid_share(real, survey.outputs, geometry),
         remarks=remarks,
         bands=backgrounds,
         chart=_joined_chart(fits, charts),

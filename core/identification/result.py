@@ -11,6 +11,7 @@ from ..dofs import Dofs
 from ..frfs import Frfs
 from ..modes import Modes
 from .bands import Band
+from .rigid import RIGID
 from .stabilisation import Chart
 from .synthesis import modal_response
 
@@ -87,6 +88,8 @@ class Identification:
         What the mode explains over what noise would; all are above 1.
     close_pair_possible : (n_mode,) bool
         Whether a second root may hide behind this one, unseen by the references.
+    rigid_share : (n_mode,) float
+        Share of each real shape in the rigid-body motions of the sensors; NaN unknown.
     remarks : tuple of str
         One per mode; empty for a mode without reproach.
     bands : tuple of Background
@@ -112,12 +115,18 @@ class Identification:
     quality: Floats
     significance: Floats
     close_pair_possible: Numbers
+    rigid_share: Floats
     remarks: tuple[str, ...]
     bands: tuple[Background, ...]
     chart: Chart
     cmif: Indicator
     quantity: str
     warnings: tuple[str, ...]
+
+    @property
+    def suspension(self) -> Numbers:
+        """Modes that move the whole body as one, (n_mode,) bool."""
+        return np.asarray(self.rigid_share > RIGID)
 
     @property
     def poles(self) -> Numbers:
