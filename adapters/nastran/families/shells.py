@@ -20,6 +20,9 @@ from .normals import shell_normals
 
 SHELL_PROPERTIES = ("PSHELL", "PCOMP", "PCOMPG")
 
+_WARPED = 0.05
+"""Height of a quad's corners over their mean plane beside its diagonal, from which it is said."""
+
 
 Stiffness = Callable[[Floats, ShellSection, float, Floats, Floats | None], Floats]
 """Positions, section, K6ROT, offset, grid normals."""
@@ -181,6 +184,7 @@ def _place(
     xyz = context.points.xyz[nodes]
     xyz = xyz if T is None else T @ xyz
     check_shape(context, name, ids, xyz[:, : kernel.corners])
+    _note_warped(context, name, ids, xyz[:, : kernel.corners])
     return _Placed(name, kernel, cards, ids, nodes, xyz, kernel.axes(xyz), T)
 
 
@@ -326,6 +330,27 @@ def material_angle(context: Context, placed: _Placed, rows: Ints) -> Floats:
             )
         angle[k] = np.arctan2(flat @ y[k], flat @ x[k])
     return angle
+
+
+def _note_warped(context: Context, name: str, ids: Ints, xyz: Floats) -> None:
+    """Say which quads have corners far off their mean plane (Nastran's GEOMCHECK Q4_WARP)."""
+    if xyz.shape[1] != 4:
+        return
+    d1, d2 = xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1]
+    normal = np.cross(d1, d2)
+    off = 0.25 * (xyz[:, 0] - xyz[:, 1] + xyz[:, 2] - xyz[:, 3])
+    height = np.abs((off * normal).sum(axis=1)) / np.linalg.norm(normal, axis=1)
+    diagonal = 0.5 * (np.linalg.norm(d1, axis=1) + np.linalg.norm(d2, axis=1))
+    factor = height / diagonal
+    warped = np.flatnonzero(factor > _WARPED)
+    if not len(warped):
+        return
+    worst = int(warped[np.argmax(factor[warped])])
+    others = f" (and {len(warped) - 1} more elements less so)" if len(warped) > 1 else ""
+    context.notes.append(
+        f"{context.bulk.place(name, int(ids[worst]))} is warped: its corners stand "
+        f"{100.0 * factor[worst]:.0f} % of its diagonal off their mean plane{others}"
+    )
 
 
 def check_shape(context: Context, name: str, ids: Ints, xyz: Floats) -> None:

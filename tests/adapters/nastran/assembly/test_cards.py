@@ -124,6 +124,18 @@ class TestProperties:
         assert _max_change(found, plain) < 1e-4
 
 
+class TestShapes:
+    grids = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,{}\n"
+    rest = "CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,7.,,.3,1.\n"
+
+    def test_a_warped_quad_is_said(self, model):
+        found = model(self.grids.format(1.5) + self.rest)
+        assert any("CQUAD4 7 (" in w and "is warped" in w for w in found.warnings)
+
+    def test_a_nearly_flat_one_is_not(self, model):
+        assert not any("warped" in w for w in model(self.grids.format(0.2) + self.rest).warnings)
+
+
 class TestTemperature:
     rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
     table = "MATT1,1,3\nTABLEM1,3\n,0.,4.,100.,16.,ENDT\n"
