@@ -8,7 +8,10 @@ from typing import Any
 from ..matrices.hdf5 import list_hdf5_matrices
 from ..matrices.op2 import list_op2_matrices
 from .modes import HDF5, HEAD_READERS, OP2, kind_of_results
+from .op2 import unread_op2_blocks
 from .table import ModeHead
+
+_OTHER = "neither modes nor their eigenvalues"
 
 
 def describe_results(path: Path | str) -> dict[str, Any]:
@@ -29,6 +32,7 @@ def describe_results(path: Path | str) -> dict[str, Any]:
     kind = kind_of_results(path)
     heads, names = HEAD_READERS[kind](path)
     matrices = dict(_LISTS[kind](path)) if kind in _LISTS else {}
+    unread = unread_op2_blocks(path) if kind == OP2 else {}
     contents: dict[str, Any] = {"modes": [_modes(t) for t in heads]}
     if matrices:
         contents["matrices"] = {name: f"{n} x {m}" for name, (n, m) in matrices.items()}
@@ -37,9 +41,9 @@ def describe_results(path: Path | str) -> dict[str, Any]:
         "format": kind,
         "contents": {**contents, "tables": list(names)},
         "skipped": [
-            {"what": name, "line": None, "why": "neither modes nor their eigenvalues"}
+            {"what": name, "line": None, "why": unread.get(name, _OTHER)}
             for name in names
-            if not _is_read(name) and name not in matrices
+            if name in unread or (not _is_read(name) and name not in matrices)
         ],
     }
 

@@ -13,8 +13,9 @@ from ....core.errors import InputError
 from ....core.modes import Modes
 from ..grids import Points, read_points
 from ..read import Deck
+from . import hdf5, op2
 from .f06 import is_f06, read_f06_tables
-from .hdf5 import grids_with_own_systems, read_hdf5_heads, read_hdf5_tables
+from .hdf5 import read_hdf5_heads, read_hdf5_tables
 from .op2 import read_op2_heads, read_op2_tables
 from .punch import is_punched_result, read_punch_tables
 from .table import ModeHead, ModeTable
@@ -78,8 +79,8 @@ def read_modes(
     Raises
     ------
     InputError
-        No modes in the file, several subcases to choose from, grids that the deck lacks, an HDF5
-        file with displacement systems but no deck.
+        No modes in the file, several subcases to choose from, grids that the deck lacks, a file
+        that tells of displacement systems but no deck.
     """
     path = Path(path)
     kind = kind_of_results(path)
@@ -90,14 +91,22 @@ def read_modes(
             f"{path} holds no eigenvectors (it holds {held}): ask Nastran for DISPLACEMENT in "
             "a SOL 103 run"
         )
-    if kind == HDF5 and deck is None and len(grids_with_own_systems(path)):
-        grid = grids_with_own_systems(path)[0]
-        raise InputError(
-            f"{path}: grid {grid} has a displacement system of its own: name the deck as well"
-        )
+    if deck is None and kind in _OWN_SYSTEMS and not all(t.basic for t in tables):
+        turned = _OWN_SYSTEMS[kind](path)
+        if len(turned):
+            raise InputError(
+                f"{path}: grid {turned[0]} has a displacement system of its own: name the deck as "
+                "well"
+            )
     chosen = _of_subcase(tables, deck, subcase, path)
     table = _joined([_without_conjugates(t) for t in chosen], path)
     return _modes(table, None if deck is None else read_points(deck.bulk), path)
+
+
+_OWN_SYSTEMS: dict[str, Callable[[Path], Ints]] = {
+    HDF5: hdf5.grids_with_own_systems,
+    OP2: op2.grids_with_own_systems,
+}
 
 
 def _tables(

@@ -20,6 +20,8 @@ _DISPLACEMENTS, _EIGENVECTORS = 1, 7  # table codes
 _MAGNITUDE_PHASE = 3  # format code
 _VECTORS = re.compile(r"[BR]?O(UG|PHIG)(?!.*F$)")
 """Names of blocks with displacements of all points; those that end in F are of the fluid."""
+_GRID_CARD = (4501, 45, 1)
+"""Key of the GRID cards in GEOM1."""
 _SUPERELEMENT = re.compile(r"SUPERELEMENT\s+(\d+)")
 _TITLES = (50, 96)  # first word and number of words of title, subtitle and label
 _LAMA_WIDTH = 7
@@ -80,8 +82,47 @@ def read_op2_heads(path: Path) -> tuple[list[ModeHead], tuple[str, ...]]:
         return [_head(file, group) for group in _groups(file)], _names(file)
 
 
+def grids_with_own_systems(path: Path) -> Ints:
+    """Return the grids whose displacement system (CD) is not basic, where the file says so."""
+    with Op2File(path) as file:
+        for block in file.blocks:
+            for record in block.records if block.name.startswith("GEOM1") else ():
+                words = file.integers(record)
+                if tuple(words[:3].tolist()) == _GRID_CARD:
+                    return _own_systems(words[3:])
+    return np.zeros(0, np.int64)
+
+
+def _own_systems(words: Ints) -> Ints:
+    """Grids out of rows ID, CP, X, Y, Z, CD, PS, SEID; positions take one word each or two."""
+    for width, cd in ((8, 5), (11, 8)):
+        if len(words) % width:
+            continue
+        table = words.reshape(-1, width)
+        ids, systems = table[:, 0], table[:, cd]
+        if (ids > 0).all() and (np.diff(ids) > 0).all() and (systems >= -1).all():
+            return np.asarray(ids[systems > 0])
+    return np.zeros(0, np.int64)
+
+
 def _names(file: Op2File) -> tuple[str, ...]:
     return tuple(dict.fromkeys(block.name for block in file.blocks))
+
+
+def unread_op2_blocks(path: Path) -> dict[str, str]:
+    """Return the blocks of displacements that hold modes trueup does not read, and why."""
+    found: dict[str, str] = {}
+    with Op2File(path) as file:
+        for block in file.blocks:
+            if block.name.lstrip("BR").startswith(("OUG", "OPHIG")) and block.records:
+                head = file.integers(block.records[0])
+                if not _VECTORS.match(block.name):
+                    found[block.name] = "modes of the fluid"
+                elif len(head) > 1 and int(head[1]) // 1000 & 2:
+                    found[block.name] = "sorted by points; ask Nastran for SORT1"
+                elif len(head) > 1 and int(head[0]) // 10 not in (_REAL, _COMPLEX):
+                    found[block.name] = "displacements that are no modes"
+    return found
 
 
 def _groups(file: Op2File) -> list[list[_Vector]]:

@@ -326,3 +326,39 @@ def test_only_some_modes_of_every_kind_of_file(name):
     some, whole = read_modes(path, modes=[2, 5]), read_modes(path)
     assert np.array_equal(some.shapes, whole.shapes[:, [1, 4]])
     assert np.array_equal(some.frequencies_hz, whole.frequencies_hz[[1, 4]])
+
+
+@pytest.mark.parametrize("double", [False, True])
+def test_displacement_systems_that_the_file_tells_of_need_the_deck(tmp_path, double):
+    """GEOM1 of the same file; positions of one word (MSC) or two (newer files)."""
+    for systems, name, refused in (
+        ([0, 5, 0, 0], "OUGV1", True), ([0, 5, 0, 0], "BOUGV1", False), ([0] * 4, "OUGV1", False),
+    ):  # fmt: skip
+        w = Writer()
+        w.label()
+        grids = struct.pack("<3i", 4501, 45, 1)
+        for point, cd in zip(sorted(POINTS), systems, strict=True):
+            grids += struct.pack("<2i3d3i" if double else "<2i3f3i", point, 0, 1, 2, 3, cd, 0, 0)
+        w.block("GEOM1", (101, 0, 0, 0, 0, 0, 0), [[grids]])
+        w.out += modal_file(4, "<", name, label=False)
+        path = tmp_path / "a.op2"
+        path.write_bytes(w.done())
+        if refused:
+            with pytest.raises(InputError, match="grid 7 has a displacement system of its own"):
+                read_modes(path)
+        else:
+            check(read_modes(path))
+
+
+def test_modes_sorted_by_points_are_listed_as_not_read(tmp_path):
+    w = Writer()
+    w.label()
+    head = bytearray(w.vector_header(1, 4.0))
+    head[4:8] = struct.pack("<i", 2007)
+    w.block("OUGV2", (101, 0, 0, 0, 0, 0, 1), [[bytes(head)], [w.vector([1], [1], [[0.0] * 6])]])
+    path = tmp_path / "a.op2"
+    path.write_bytes(w.done())
+    (skipped,) = describe_results(path)["skipped"]
+    assert (skipped["what"], "SORT1" in skipped["why"]) == ("OUGV2", True)
+    with pytest.raises(InputError, match="no eigenvectors"):
+        read_modes(path)
