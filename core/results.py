@@ -9,6 +9,7 @@ import numpy as np
 
 from .comparison import Comparison
 from .correlate import Correlation
+from .disagreement import Disagreement
 from .modes import Modes
 from .parameter import Parameter
 from .updating import Iteration, Updated
@@ -59,6 +60,43 @@ def correlation_tables(found: Correlation, test: Modes, analysis: Modes) -> Tabl
             "cluster_width": found.criteria.cluster_width,
             "rotate": found.criteria.rotate,
         },
+    }
+
+
+def disagreement_tables(c: Comparison, found: Disagreement) -> Table:
+    """Return the maps of a misfit: at grids, by mode and by sensor."""
+    ids = c.geometry.ids[found.places]
+    maps = {"mass": found.mass, "stiffness": found.stiffness, "ground": found.ground}
+    labels = c.observation.sensors.labels
+    return {
+        "grids": ids.tolist(),
+        "values": found.motion.tolist(),
+        **{name: values.tolist() for name, values in maps.items()},
+        "peaks": [
+            {
+                "of": name,
+                "grid": int(ids[k]),
+                "xyz": c.geometry.xyz[found.places[k]].tolist(),
+                "explained": float(values[k]),
+            }
+            for name, values in maps.items()
+            for k in [int(np.argmax(values))]
+        ],
+        "modes": [
+            {
+                "test": p.test + 1,
+                "analysis": p.analysis + 1,
+                "shape": float(s),
+                "frequency": float(f),
+            }
+            for p, s, f in zip(
+                c.correlation.pairs, found.misfit.by_mode, found.misfit.frequency, strict=True
+            )
+        ],
+        "sensors": [
+            {"sensor": label, "misfit": float(m), "comac": float(k)}
+            for label, m, k in zip(labels, found.misfit.by_sensor, found.misfit.comac, strict=True)
+        ],
     }
 
 

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
-from . import colour, discovery_sections, reading, sections, viewer
+from . import colour, disagreement, discovery_sections, reading, sections, viewer
 from .headline import VERDICTS, figures, story
 from .markup import esc, tag
 from .overlay import Overlay
@@ -111,6 +111,7 @@ def _sections(
     return [
         discovery_sections.findings(result, geometry, sensors_xyz),
         discovery_sections.gap(result),
+        disagreement.section(result, geometry),
         sections.pairs(result),
         sections.matrices(result),
         viewer.shapes(shapes),

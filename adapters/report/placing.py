@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...core.arrays import Floats, Ints
 from ...core.geometry import Geometry
@@ -92,12 +93,15 @@ def findings(
     return credible + numbered
 
 
-def misfit(result: Result, geometry: Geometry | None) -> Floats | None:
-    """Misfit by node of the geometry, 0..1 of its largest, NaN unknown; None without any."""
+def misfit(result: Result, geometry: Geometry | None, of: str = "values") -> Floats | None:
+    """Return a map of the misfit by node of the geometry, 0..1 of its largest; None without any.
+
+    Nodes without a value have that of the nearest node with one.
+    """
     if geometry is None:
         return None
     told = reading.part(result, "misfit")
-    grids, values = reading.numbers(told.get("grids")), reading.numbers(told.get("values"))
+    grids, values = reading.numbers(told.get("grids")), reading.numbers(told.get(of))
     rows = [
         (g, v)
         for g, v in zip(grids, values, strict=False)
@@ -107,10 +111,12 @@ def misfit(result: Result, geometry: Geometry | None) -> Floats | None:
         return None
     index = geometry.index_of(np.array([int(g) for g, _ in rows], dtype=np.int64))
     amount = np.array([v for _, v in rows])
-    field = np.full(len(geometry.ids), np.nan)
     known = index >= 0
-    field[index[known]] = amount[known] / max(float(np.max(np.abs(amount))), 1e-300)
-    return field if known.any() else None
+    if not known.any():
+        return None
+    amount = amount[known] / max(float(np.max(np.abs(amount))), 1e-300)
+    nearest = cKDTree(geometry.xyz[index[known]]).query(geometry.xyz)[1]
+    return np.asarray(amount[nearest])
 
 
 def direction(value: object) -> Floats | None:

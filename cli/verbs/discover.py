@@ -33,7 +33,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.comparison import compare, place_test
     from ...core.discovery.discover import Request
     from ...core.discovery.discover import discover as find
-    from ...core.results import correlate_tables
+    from ...core.results import correlate_tables, disagreement_tables
     from ..inplace import put_in_place
     from ..pipeline import criteria_of, highest_frequency, read_measurement
     from ..runfolder import refuse_existing, run_folder
@@ -73,6 +73,9 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         )
     before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
 
+    with working("mapping where model and test disagree", output):
+        maps = disagreement_maps(before, structure, solution.vectors)
+
     def told(what: str) -> None:
         if output.verbose:
             stderr().print(what, markup=False)
@@ -101,11 +104,24 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             *found.warnings,
             *done["refused"],
         ]
+        result["before"]["warnings"] = result["after"]["warnings"] = []
         result["pairs"] = correlate_tables(after)["pairs"]
+        if maps is not None:
+            result["misfit"] = disagreement_tables(before, maps)
         fill_run_folder(work, study, result, before, after)
         if output.in_place:
             put_in_place(done["text"], work, result)
     return result, run
+
+
+def disagreement_maps(before: Any, structure: Any, free_shapes: Any) -> Any:
+    """Return the maps of the misfit, or None where nothing pairs or the test side was turned."""
+    from ...core.disagreement import disagreement
+
+    if not before.correlation.pairs or before.correlation.criteria.rotate == "test":
+        return None
+    deck = structure.model.deck_point
+    return disagreement(before, structure.members, structure.displacement, free_shapes, deck)
 
 
 def complete(
@@ -220,7 +236,7 @@ def discover_tables(
     done: dict[str, Any],
 ) -> dict[str, Any]:
     """Return result.json of a discovery."""
-    from ...core.results import correlation_tables, gap
+    from ...core.results import correlate_tables, gap
 
     out = set(found.held_out_modes)
 
@@ -293,6 +309,6 @@ def discover_tables(
         ],
         "would_decide": list(found.would_decide),
         "noise_scale": found.noise_scale,
-        "before": correlation_tables(before.correlation, before.test, before.analysis),
-        "after": correlation_tables(after.correlation, after.test, after.analysis),
+        "before": correlate_tables(before),
+        "after": correlate_tables(after),
     }

@@ -158,7 +158,22 @@ def discovery() -> dict[str, Any]:
                 "after": CLOSED,
                 "held_out": {"before": GAP | {"pairs": 1}, "after": CLOSED | {"pairs": 1}},
             },
-            "misfit": {"grids": [1, 8], "values": [0.5, 2.0]},
+            "misfit": {
+                "grids": [1, 8],
+                "values": [0.5, 2.0],
+                "mass": [0.1, 0.4],
+                "stiffness": [0.3, 0.2],
+                "ground": [0.0, 0.0],
+                "peaks": [
+                    {"of": "mass", "grid": 8, "xyz": [0.0, 0.0, 0.0], "explained": 0.4},
+                    {"of": "stiffness", "grid": 1, "xyz": [0.0, 0.0, 0.0], "explained": 0.3},
+                ],
+                "modes": [{"test": 1, "analysis": 2, "shape": 3.21, "frequency": -4.5}],
+                "sensors": [
+                    {"sensor": "12:Z", "misfit": 1.5, "comac": 0.98},
+                    {"sensor": "11:Z", "misfit": 7.5, "comac": 0.61},
+                ],
+            },
             "alignment": BEFORE["alignment"],
         }
     )

@@ -1,0 +1,200 @@
+"""Where a model and a test disagree: by mode, by sensor, and over the structure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
+
+from .arrays import Floats, Ints, frozen
+from .comparison import Comparison
+from .correlation import realised
+from .evidence import (
+    Linearisation,
+    linearise,
+    mass_evidence,
+    patches_of,
+    root_of,
+    stiffness_evidence,
+)
+from .geometry import Geometry
+from .misfit import Misfit, misfit, paired_shapes, spread
+from .noise import Noise, estimate_noise, given_noise
+
+_PLACES = 3000
+_ELEMENTS = 20_000
+_REACH = 0.06
+"""Radius of a patch of the maps, beside the size of the structure."""
+_FEW_SENSORS = 6
+_SHAPE_NOISE = 0.03
+_TRANSLATIONS = (1, 2, 3)
+
+
+class ElementGroup(Protocol):
+    """Elements of one kind, with their matrices."""
+
+    corners: Ints
+
+    def matrices(self, rows: Ints, p: Floats) -> tuple[Floats | None, Floats | None]:
+        """Stiffness and mass of some of them, each (n, m, m)."""
+        ...
+
+    def coordinates(self, rows: Ints) -> Ints:
+        """Rows of the element displacements, (n, m)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Disagreement:
+    """Maps of a misfit.
+
+    Parameters
+    ----------
+    misfit : Misfit
+        By mode and by sensor, in standard deviations of the measurement.
+    places : (n_place,) int
+        Rows of the geometry where the maps below are given.
+    motion : (n_place,) float
+        Misfit of the sensors around, standard deviations.
+    mass, stiffness, ground : (n_place,) float
+        Share of the misfit's sum of squares that mass added, stiffness lost or gained, or a
+        spring to ground added around the place would take away, to first order.
+    total : float
+        That sum of squares, frequencies included, less a common scale of all eigenvalues.
+    """
+
+    misfit: Misfit
+    places: Ints
+    motion: Floats
+    mass: Floats
+    stiffness: Floats
+    ground: Floats
+    total: float
+
+
+def disagreement(
+    compared: Comparison,
+    groups: Sequence[ElementGroup],
+    displacement: sp.csr_matrix,
+    free_shapes: Floats,
+    p: Floats,
+) -> Disagreement:
+    """Map where a model and a test disagree.
+
+    Parameters
+    ----------
+    compared : Comparison
+        Rotated on the analysis side or not at all.
+    groups : sequence of ElementGroup
+    displacement : (n, n_free) sparse
+        Element displacements from the free degrees of freedom.
+    free_shapes : (n_free, n_mode) float
+        The analysis modes on the free degrees of freedom, mass-normalised.
+    p : (n_parameter,) float
+        Where the element matrices are taken.
+
+    Returns
+    -------
+    Disagreement
+
+    Raises
+    ------
+    InputError
+        There are no pairs, or the test side was rotated.
+
+    Notes
+    -----
+    First-order maps show where to look. They locate nothing where shapes change much; the search
+    for effects does not use them.
+    """
+    geometry, found, seen = compared.geometry, compared.correlation, compared.observation
+    hz = compared.analysis.frequencies_hz
+    at_sensors = np.asarray(seen.matrix @ compared.analysis.shapes)
+    noise = _noise(compared, at_sensors)
+    pairs = paired_shapes(found, at_sensors, compared.test.shapes)
+    measured = misfit(found, pairs, noise)
+    places = _evenly(geometry.xyz, _PLACES)
+    centres = geometry.xyz[places]
+    motion, _ = spread(measured.by_sensor, seen.xyz, centres)
+    lin = linearise(found, pairs, noise, hz, at_sensors)
+    radius = _REACH * geometry.size
+    moves = _translations(compared, geometry)
+    mass = mass_evidence(lin, moves, patches_of(centres, geometry.xyz, radius))
+    springs = [stiffness_evidence(lin, moves[places, c : c + 1]) for c in range(3)]
+    ground = np.max([np.where(e.size > 0.0, e.explained, 0.0) for e in springs], axis=0)
+    stiffness = _stiffness(lin, groups, displacement, free_shapes, p, geometry, centres, radius)
+    total = max(mass.total, float(np.finfo(float).tiny))
+    return Disagreement(
+        measured,
+        places,
+        frozen(motion),
+        frozen(mass.explained / total),
+        frozen(stiffness / total),
+        frozen(ground / total),
+        mass.total,
+    )
+
+
+def _noise(compared: Comparison, at_sensors: Floats) -> Noise:
+    shapes = realised(compared.test.shapes)
+    if len(shapes) < _FEW_SENSORS:
+        return given_noise(shapes, _SHAPE_NOISE)
+    hz = compared.analysis.frequencies_hz
+    rigid = int(np.count_nonzero(hz < 1e-3 * max(float(hz.max(initial=0.0)), 1e-300)))
+    return estimate_noise(hz, at_sensors, compared.test.frequencies_hz, shapes, rigid)
+
+
+def _evenly(xyz: Floats, most: int) -> Ints:
+    """At most `most` rows of points, spread over all of them."""
+    return np.unique(np.linspace(0, len(xyz) - 1, min(len(xyz), most)).round().astype(np.int64))
+
+
+def _translations(compared: Comparison, geometry: Geometry) -> Floats:
+    """Return the translations of every node in the analysis modes, (n_node, 3, n_mode)."""
+    dofs, shapes = compared.analysis.dofs, compared.analysis.shapes
+    out = np.zeros((len(geometry.ids), 3, shapes.shape[1]))
+    row = geometry.index_of(dofs.node)
+    for component in _TRANSLATIONS:
+        mine = (dofs.component == component) & (row >= 0)
+        out[row[mine], component - 1] = shapes[mine]
+    return out
+
+
+def _stiffness(
+    lin: Linearisation,
+    groups: Sequence[ElementGroup],
+    displacement: sp.csr_matrix,
+    free_shapes: Floats,
+    p: Floats,
+    geometry: Geometry,
+    centres: Floats,
+    radius: float,
+) -> Floats:
+    """Find what stiffness around each place explains, the best kind of element, (n_place,)."""
+    best = np.zeros(len(centres))
+    count = sum(len(g.corners) for g in groups)
+    moved = np.asarray(displacement @ free_shapes)
+    for group in groups:
+        share = max(1, len(group.corners) * _ELEMENTS // max(count, 1))
+        rows = _evenly(np.zeros((len(group.corners), 3)), share)
+        if not len(rows):
+            continue
+        K, _ = group.matrices(rows, p)
+        if K is None:
+            continue
+        strain = root_of(K, moved[group.coordinates(rows)])
+        middle = geometry.xyz[group.corners[rows]].mean(axis=1)
+        near = patches_of(centres, middle, max(radius, _spacing(middle)))
+        best = np.maximum(best, stiffness_evidence(lin, strain, near).explained)
+    return best
+
+
+def _spacing(xyz: Floats) -> float:
+    """Distance within which every point has another, or 0."""
+    if len(xyz) < 2:
+        return 0.0
+    return float(np.max(cKDTree(xyz).query(xyz, k=[2])[0]))
