@@ -107,6 +107,7 @@ class Bulk:
 
 
 _NAME = re.compile(r"[A-Z][A-Z0-9_/]*")
+_NUMBER = re.compile(r"-?\d+\.?\d*")
 _SEPARATOR = re.compile(r"[,\t ]")
 
 
@@ -309,10 +310,13 @@ def _check_unique(numbered: Mapping[str, Mapping[int, Raw]], files: tuple[Path, 
 def _check_length(raw: Raw, files: tuple[Path, ...]) -> None:
     """Refuse a line of free fields that holds more than a line can."""
     for k, line in enumerate(raw.lines):
-        if line.count(",") > 9 and any(f.strip() for f in line.split(",")[10:]):
+        if line.count(",") < 9:
+            continue
+        label, *rest = line.split(",")[9:]
+        if _NUMBER.fullmatch(label.strip()) or any(f.strip() for f in rest):
             raise InputError(
-                f"{files[raw.file]} line {raw.line + k}: {raw.name} has more than ten fields on a "
-                "line: put what follows the ninth on the next line"
+                f"{files[raw.file]} line {raw.line + k}: {raw.name} has more than eight values on "
+                "a line: put what follows the eighth on the next line"
             )
 
 

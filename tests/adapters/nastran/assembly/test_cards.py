@@ -171,7 +171,8 @@ BAD = [
     ),
     ("MAT1,1,inf,,.3", r"MAT1 1: field 3 holds 'inf'"),
     ("MAT1,1,-7.+4,,.3", r"MAT1 1 \(.*deck.bdf line \d+\): E is -70000"),
-    ("RBE3,7,,5,123,1.,123,1,2,3,4,5", r"line \d+: RBE3 has more than ten fields on a line"),
+    ("RBE3,7,,5,123,1.,123,1,2,3", r"line \d+: RBE3 has more than eight values on a line"),
+    ("RBE3,7,,5,123,1.,123,1,2,3,4,5", r"line \d+: RBE3 has more than eight values on a line"),
 ]
 
 
