@@ -161,11 +161,12 @@ def _scheme(context: Context, name: str, kernel: Kernel, key: Key) -> str:
     words = ("" if w is None else str(w).upper() for w in (card.integ, card.isop))
     asked = tuple(table.get(w, w) for table, w in zip((_INTEGRATION, _SCHEME), words, strict=True))
     found = kernel.schemes.get((asked[0], asked[1]))
-    if found is None:
-        raise InputError(
-            f"{place}: the integration IN = {asked[0] or 'blank'}, ISOP = {asked[1]} is not "
-            f"supported for {name} with {kernel.geometry.nodes} nodes"
+    if found is None:  # as the Quick Reference Guide says, PSOLID remark 10
+        context.notes.append(
+            f"{place}: no integration IN = {asked[0] or 'blank'}, ISOP = {asked[1]} exists "
+            f"for {name} with {kernel.geometry.nodes} nodes: the default is used, as in Nastran"
         )
+        return kernel.schemes["", "REDUCED"]
     return found
 
 

@@ -136,6 +136,32 @@ class TestShapes:
         assert not any("warped" in w for w in model(self.grids.format(0.2) + self.rest).warnings)
 
 
+class TestIntegration:
+    corners = "GRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\nGRID,4,,,1.\nGRID,5,,,,1.\nGRID,6,,1.,,1.\n"
+    brick = (
+        corners
+        + "GRID,7,,1.,1.,1.\nGRID,8,,,1.,1.\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nMAT1,1,7.,,.3,1.\n"
+    )
+
+    @pytest.mark.parametrize(
+        ("options", "same", "said"),
+        [
+            ("", True, False),
+            (",,BUBBLE,,REDUCED", True, False),
+            (",,0,,0", True, False),
+            (",,1,,1", True, True),
+            (",,TWO,,FULL", False, False),
+            (",,2,,1", False, False),
+            (",,TWO", False, False),
+        ],
+    )
+    def test_what_the_table_does_not_hold_is_the_default(self, model, options, same, said):
+        default = model(self.brick + "PSOLID,1,1\n")
+        found = model(self.brick + f"PSOLID,1,1{options}\n")
+        assert (_max_change(found, default) < 1e-12) == same
+        assert any("integration" in w for w in found.warnings) == said
+
+
 class TestTemperature:
     rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
     table = "MATT1,1,3\nTABLEM1,3\n,0.,4.,100.,16.,ENDT\n"
