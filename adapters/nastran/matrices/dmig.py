@@ -13,6 +13,7 @@ from ....core.errors import InputError
 from ..cards import Fields, cut, fields_of, to_float
 from ..lines import Line
 from .content import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from .dmig_punched import parts, punched_columns
 
 _WIDE = 72
 _LETTERLESS = (b"D", b"E")
@@ -57,24 +58,36 @@ def read_dmig(path: Path | str, names: Iterable[str] | None = None) -> tuple[Nas
         A file that cannot be read, a card that is not one of DMIG's: the line.
     """
     path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    if b"\0" in data[:4096]:
-        raise InputError(f"{path} is not a text file: a punch file is expected")
-    lines = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
     wanted = None if names is None else {n.upper() for n in names}
     found: dict[str, Entries] = {}
-    for start, stop, card in _cards(lines, path):
-        _take(card, path, start, found, lines[start:stop])
+    try:
+        for number, part in parts(path):
+            if b"\0" in part[:4096]:
+                raise InputError(f"{path} is not a text file: a punch file is expected")
+            _take_part(part, number, path, found)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     matrices = (
         matrix_of_entries(name, e) for name, e in found.items() if not wanted or name in wanted
     )
     return tuple(matrices)
 
 
-def _cards(lines: list[bytes], path: Path) -> Iterable[tuple[int, int, Fields | None]]:
+def _take_part(part: bytes, number: int, path: Path, found: dict[str, Entries]) -> None:
+    """Take some whole cards: all at once where they are as Nastran punches them."""
+    punched = punched_columns(part, {name: e.is_complex for name, e in found.items()})
+    if punched is not None:
+        for name, (columns, rows, values) in punched.items():
+            found[name].columns.append(columns)
+            found[name].rows.append(rows)
+            found[name].values.append(values)
+        return
+    lines = part.split(b"\n")
+    for start, stop, card in _cards(lines, path, number):
+        _take(card, path, number + start, found, lines[start:stop])
+
+
+def _cards(lines: list[bytes], path: Path, number: int) -> Iterable[tuple[int, int, Fields | None]]:
     """Yield line range and fields of each DMIG card; no fields where it is in punched form."""
     at = 0
     count = len(lines)
@@ -93,7 +106,7 @@ def _cards(lines: list[bytes], path: Path) -> Iterable[tuple[int, int, Fields | 
         if punched and b"," not in lines[start] and b"\t" not in b"".join(block):
             yield start, at, None
         else:
-            yield start, at, _fields(block, path, start)
+            yield start, at, _fields(block, path, number + start)
 
 
 def _fields(block: list[bytes], path: Path, start: int) -> Fields:

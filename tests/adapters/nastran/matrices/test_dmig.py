@@ -131,3 +131,51 @@ def test_a_matrix_without_dof_map_cannot_be_punched(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no dof map"):
         write_dmig(tmp_path / "a.pch", [NastranMatrix("K", sp.csc_matrix(np.eye(2)))])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("complex_", [False, True])
+@pytest.mark.parametrize("number", ["{:16.9E}", "{:<16.9E}", "D", "letterless"])
+def test_columns_read_at_once_equal_those_read_card_by_card(
+    tmp_path: Path, complex_: bool, number: str
+) -> None:
+    """A comment among the cards sends all of them the slow way."""
+    rng = np.random.default_rng(8)
+
+    def printed(value: float) -> str:
+        if number == "D":
+            return f"{value:16.9E}".replace("E", "D")
+        if number == "letterless":
+            return f"{value:16.9E}".replace("E", "").rjust(16)
+        return number.format(value)
+
+    lines = [f"DMIG    KAAX           0       6       {4 if complex_ else 2}       0"]
+    for j in range(1, 6):
+        lines.append(f"DMIG*   KAAX            {j:16d}{1 + j % 3:16d}")
+        for i in range(1, j + 1):
+            values = [printed(v) for v in rng.normal(size=2 if complex_ else 1) * 10.0 ** (9 * j)]
+            component = f"{1 + i % 3:16d}"
+            lines.append(f"*       {i:16d}{component}{''.join(values)}")
+    lines.append(f"DMIG*   KAAX            {100001:16d}{0:16d}")
+    lines.append(f"*       {100001:16d}{'':16}{printed(4.0)}")
+    fast, slow = tmp_path / "fast.pch", tmp_path / "slow.pch"
+    fast.write_text("\n".join(lines) + "\n")
+    slow.write_text("\n".join([*lines[:-2], "$ by hand", *lines[-2:]]) + "\n")
+    (a,), (b,) = read_matrices(fast), read_matrices(slow)
+    assert np.array_equal(a.rows.keys, b.rows.keys)
+    assert np.array_equal(a.matrix.toarray(), b.matrix.toarray())
+    assert a.matrix.nnz == 5 * 5 + 1
+
+
+def test_a_file_of_several_parts_names_the_line_of_a_fault(tmp_path: Path) -> None:
+    lines = ["DMIG    KAAX           0       6       2       0"]
+    for j in range(1, 30_000):
+        lines += [f"DMIG*   KAAX            {j:16d}{1:16d}", f"*       {j:16d}{1:16d}{1.5:16.9E}"]
+    path = tmp_path / "big.pch"
+    path.write_text("\n".join(lines) + "\n")
+    (found,) = read_matrices(path)
+    assert found.matrix.shape == (29_999, 29_999)
+    at = 2 * 25_000
+    lines[at] = lines[at].replace("1.5", "abc")
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(InputError, match=f"line {at}: this DMIG"):
+        read_matrices(path)
