@@ -71,7 +71,7 @@ READ: dict[str, Kind] = {
     **{name: Kind("", "#") for name in ("NSM", "NSM1", "NSML", "NSML1", "NSMADD")},
     # constraints
     **_same("SPC SPC1 SPCADD MPC MPCADD", ""),
-    **_same("RBE1 RBE2 RBE3 RBAR RROD", "eid"),
+    **_same("RBE1 RBE2 RBE3 RBAR RBAR1 RROD", "eid"),
     **{name: Kind("", "") for name in ("ASET", "ASET1", "OMIT", "OMIT1")},
     **{name: Kind("", "") for name in ("SUPORT", "SUPORT1")},
     # the rest
@@ -142,7 +142,7 @@ REFUSED: dict[str, str] = {
         "its stiffness or mass is not supported",
     ),
     **dict.fromkeys(
-        _words("RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT RBAR1 RGYRO CYJOIN CYAX"),
+        _words("RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT RGYRO CYJOIN CYAX"),
         "this rigid element or constraint is not supported",
     ),
     **dict.fromkeys(

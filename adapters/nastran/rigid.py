@@ -1,4 +1,4 @@
-"""Rigid elements as equations: RBE1, RBE2, RBE3, RBAR, RROD; one routine a card, in one table."""
+"""Rigid elements as equations: RBE1, RBE2, RBE3, RBAR, RBAR1, RROD; a routine a card, one table."""
 
 from __future__ import annotations
 
@@ -59,6 +59,7 @@ def components_of(digits: object, place: str) -> list[int]:
         Anything else.
     """
     text = str(digits or "").strip()
+    text = "" if text == "0" else text
     if any(d not in "123456" for d in text):
         raise InputError(f"{place}: components {text!r} are not digits from 1 to 6")
     return sorted(int(d) for d in set(text))
@@ -93,6 +94,12 @@ def rbar(rows: Rows, card: Card, place: str) -> None:
             for grid in (int(card.ga), int(card.gb))
         ]
     _rigid_body(rows, independent, dependent, place)
+
+
+def rbar1(rows: Rows, card: Card, place: str) -> None:
+    """Components CB of GB follow the rigid motion of GA."""
+    components = card.cb or "123456"
+    _rigid_body(rows, [(int(card.ga), "123456")], [(int(card.gb), components)], place)
 
 
 def rbe1(rows: Rows, card: Card, place: str) -> None:
@@ -262,6 +269,7 @@ def _add_trimmed(rows: Rows, dof: int, columns: list[int], row: Floats, place: s
 RIGID: dict[str, Callable[[Rows, Card, str], None]] = {
     "RBE2": rbe2,
     "RBAR": rbar,
+    "RBAR1": rbar1,
     "RBE1": rbe1,
     "RBE3": rbe3,
     "RROD": rrod,

@@ -70,6 +70,26 @@ class TestSets:
         assert by_range.free_labels == listed.free_labels
 
 
+class TestRigidBars:
+    @pytest.mark.parametrize(
+        "card",
+        [
+            "RBAR,7,1,2,123456,0,0,123456",
+            "RBAR,7,1,2,123456",
+            "RBAR,7,1,2",
+            "RBAR,7,2,1,,123456",
+            "RBAR1,7,1,2,123456",
+            "RBAR1,7,1,2",
+            "RBE1,7,1,123456\n,UM,2,123456",
+        ],
+    )
+    def test_all_ways_to_write_one_are_an_rbe2(self, model, card):
+        grids = "GRID,1,,0.,0.,0.\nGRID,2,,1.,2.,3.\nCELAS2,9,1.,1,1\nCONM2,8,2,,1.\n"
+        one, other = model(grids + card), model(grids + "RBE2,7,1,123456,2")
+        assert one.free_labels == other.free_labels
+        np.testing.assert_allclose(one.expansion.toarray(), other.expansion.toarray(), atol=1e-13)
+
+
 class TestWhatIsLeftOut:
     def test_heat_elements_are_in_the_decks_warnings(self, deck):
         found = deck(GRID + MASS + "CELAS2,1,900.,1,1\nCHBDYG,5,,AREA4\n")
