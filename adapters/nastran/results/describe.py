@@ -68,6 +68,7 @@ def _is_read(name: str) -> bool:
         "DISPLACEMENTS",
         "real eigenvalues",
         "real eigenvectors",
+        "complex eigenvectors",
         "NODAL/EIGENVECTOR",
         "NODAL/EIGENVECTOR_CPLX",
         "SUMMARY/EIGENVALUE",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 import re
 from pathlib import Path
 
@@ -12,7 +14,9 @@ from .vectors import Vector, tables_of
 
 _VALUE = re.compile(r"\bEIGENVALUE =\s*([-+.\dE]+)")
 _TITLE = re.compile(r"R E A L\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
-_COMPLEX = re.compile(r"C O M P L E X\s+E I G E N V E C T O R")
+_COMPLEX = re.compile(r"C O M P L E X\s+E I G E N V E C T O R\s+N ?O ?\.\s+(\d+)")
+_ROOT = re.compile(r"COMPLEX EIGENVALUE =\s*([-+.\dE]+)\s*,\s*([-+.\dE]+)")
+_SECOND_ROW = re.compile(r"^\s{14,}([-+.\dE]+(?:\s+[-+.\dE]+)*)\s*$")
 _SUBCASE = re.compile(r"\bSUBCASE\s+(\d+)")
 _SUPERELEMENT = re.compile(r"\bSUPERELEMENT\s+(\d+)")
 _ROW = re.compile(r"^[0 ]\s*(\d+)\s+([GS])\s+(\S.*)$")
@@ -26,7 +30,7 @@ def is_f06(text: str) -> bool:
 
 
 def read_f06_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
-    """Read all real eigenvectors of an F06.
+    """Read all eigenvectors of an F06, real or complex.
 
     Returns
     -------
@@ -64,8 +68,10 @@ class _Printed:
 
     def _new_page(self) -> None:
         self.reading: Vector | None = None
+        self.is_complex, self.polar = False, False
         self.in_summary = False
-        self.subcase, self.superelement, self.value = 0, 0, 0.0
+        self.subcase, self.superelement = 0, 0
+        self.value: complex = 0.0
 
     def take(self, line: str, k: int) -> None:
         if line[:1] == "1":
@@ -77,12 +83,20 @@ class _Printed:
 
     def _take(self, line: str, k: int) -> None:
         self._take_head(line)
-        if found := _TITLE.search(line):
-            self.names["real eigenvectors"] = None
+        real, both = _TITLE.search(line), _COMPLEX.search(line)
+        if found := real or both:
+            self.is_complex = both is not None
+            self.names[f"{'complex' if both else 'real'} eigenvectors"] = None
             self.reading = Vector(self.subcase, self.superelement, int(found[1]), self.value)
             self.vectors.append(self.reading)
+        elif "(MAGNITUDE/PHASE)" in line:
+            self.polar = True
         elif self.reading is not None:
-            _add_row(self.reading, line, k, self.path)
+            second = _SECOND_ROW.match(line) if self.is_complex else None
+            if second is not None and self.reading.rows:
+                _add_second(self.reading, second[1], self.polar)
+            else:
+                _add_row(self.reading, line, k, self.path)
         elif self.in_summary and (found := _SUMMARY_ROW.match(line)):
             self.masses[int(found[1])] = to_float(found[6])
 
@@ -93,10 +107,25 @@ class _Printed:
             self.superelement = int(found[1])
         if _SUMMARY.search(line):
             self.in_summary, self.names["real eigenvalues"] = True, None
-        elif _COMPLEX.search(line):
-            self.names["complex eigenvectors"] = None
+        elif found := _ROOT.search(line):
+            self.value = complex(to_float(found[1]), to_float(found[2]))
         elif found := _VALUE.search(line):
             self.value = to_float(found[1])
+
+
+def _add_second(vector: Vector, text: str, polar: bool) -> None:
+    """Put the imaginary parts, or the phases, of a point beside what its first line gave."""
+    point, scalar, first = vector.rows[-1]
+    second = [to_float(v) for v in text.split()]
+    if len(second) != len(first):
+        raise ValueError(text)
+    if polar:
+        row = tuple(
+            a * cmath.rect(1.0, math.radians(b)) for a, b in zip(first, second, strict=True)
+        )
+    else:
+        row = tuple(a + 1j * b for a, b in zip(first, second, strict=True))
+    vector.rows[-1] = (point, scalar, row)
 
 
 def _add_row(vector: Vector, line: str, k: int, path: Path) -> None:

@@ -133,3 +133,38 @@ def test_an_f06_in_axes_of_its_grids_is_turned_by_the_deck() -> None:
     a = read_modes(there / "mode_solid_shell_bar.f06", deck)
     b = read_modes(there / "mode_solid_shell_bar.op2", deck)
     assert abs(a.shapes - b.shapes).max() < 2e-6 * abs(b.shapes).max()
+
+
+@pytest.mark.parametrize("polar", [False, True])
+def test_complex_eigenvectors_of_an_f06(tmp_path: Path, polar: bool) -> None:
+    """Two lines a grid: real and imaginary parts, or magnitudes and phases."""
+    rng = np.random.default_rng(9)
+    zeta, omega = 0.02, 2 * np.pi * np.array([8.0, 21.0])
+    root = omega * (-zeta + 1j * np.sqrt(1 - zeta**2))
+    shapes = rng.normal(size=(2, 3, 6)) + 1j * rng.normal(size=(2, 3, 6))
+    lines = ["1 N A S T R A N"]
+    for k, (value, shape) in enumerate(zip(root, shapes, strict=True), 1):
+        kind = "(MAGNITUDE/PHASE)" if polar else "(REAL/IMAGINARY)"
+        lines += [
+            "1    TITLE                                                          PAGE",
+            f"0{'':60}SUBCASE 1",
+            f"0     COMPLEX EIGENVALUE = {value.real:13.6E}, {value.imag:13.6E}",
+            f"{'':30}C O M P L E X   E I G E N V E C T O R   NO. {k:10d}",
+            f"{'':50}{kind}",
+            " ",
+            "      POINT ID.   TYPE          T1             T2             T3",
+        ]
+        for grid, row in zip((4, 7, 90), shape, strict=True):
+            first, second = (
+                (np.abs(row), np.angle(row, deg=True)) if polar else (row.real, row.imag)
+            )
+            lines.append(f"0{grid:13d} {'G':>6}     " + "  ".join(f"{v:13.6E}" for v in first))
+            lines.append(f" {'':13} {'':>6}     " + "  ".join(f"{v:13.6E}" for v in second))
+    path = tmp_path / "a.f06"
+    path.write_text("\n".join(lines) + "\n")
+    modes = read_modes(path)
+    np.testing.assert_allclose(modes.frequencies_hz, [8.0, 21.0], rtol=1e-6)
+    np.testing.assert_allclose(modes.damping, zeta, rtol=1e-5)
+    np.testing.assert_allclose(modes.shapes, shapes.reshape(2, -1).T, atol=1e-5)
+    assert modes.dofs.node[::6].tolist() == [4, 7, 90]
+    assert describe_results(path)["skipped"] == []
