@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
-from .moments import BandData
+from .moments import BandData, basis
 from .refinement import Fit
-from .significance import memory_of_residual
+from .significance import energy_by_line, memory_of_residual
 
 CHAIN = 1e-3
 """Relative error over the width of a mode that the best measuring chain has.
@@ -26,7 +26,9 @@ def pole_errors(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Numbers]:
 
     A window blurs functions over neighbouring lines. Where the residual shows that the model does
     not describe the lines around a narrow mode, its decay rate may be too large by about what a
-    Hann window adds, σ²/(decay) with σ² the variance of its kernel.
+    Hann window adds, σ²/(decay) with σ² the variance of its kernel. Whatever else a residual
+    holds that is not noise, such as modes not found, moved the pole by about as much as a change
+    of the pole would have to be to make that residual.
 
     Returns
     -------
@@ -35,12 +37,15 @@ def pole_errors(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Numbers]:
     blurred : (n_mode,) bool
         Modes narrower than a few lines whose residual is not noise.
     """
-    ratio, scatter = memory_of_residual(data, f, fit)
+    memory = memory_of_residual(data, f, fit)
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     decay = np.abs(fit.poles.real)
-    blurred = (ratio > _MEMORY + _SURE * scatter) & (2.0 * decay < _MANY * spacing)
+    wrong = memory.ratio > _MEMORY + _SURE * memory.scatter
+    blurred = wrong & (2.0 * decay < _MANY * spacing)
     blur = np.where(blurred, np.minimum(_WINDOW * spacing**2 / decay, decay), 0.0)
-    covariance = np.zeros((len(decay), 2, 2))
-    covariance[:, 0, 0] = (CHAIN * decay) ** 2 + blur**2
-    covariance[:, 1, 1] = (CHAIN * decay) ** 2
+    slope = energy_by_line(data, fit, basis(data, fit.poles)[:, 1])
+    moved = memory.systematic / np.maximum(np.sum(slope * memory.near, axis=0), 1e-300)
+    common = (CHAIN * decay) ** 2 + np.where(wrong, np.minimum(moved, decay**2), 0.0)
+    covariance = common[:, None, None] * np.eye(2)
+    covariance[:, 0, 0] += blur**2
     return covariance, np.asarray(blurred)

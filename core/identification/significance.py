@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -17,7 +17,7 @@ _MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
 _MARGIN_OF_NEEDLES = 20.0  # and for one much narrower, which noise of a single line may make
 _NEEDLE = 0.3  # lines that those are narrower than
 _DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
-_SEEN = 0.05  # of one function, over the width of a mode: what artefacts make of it
+_SEEN = 0.03  # of one function, over the width of a mode: what artefacts make of it
 _WHITE = 2.0  # variance over that of the differences, below which noise is white
 _LEAST_SEEN = 12.0  # lines to either side of a mode over which that is judged
 _LISTENED = 200  # functions enough to tell the colour of the residual
@@ -59,19 +59,13 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     """Compare the energy of each mode within its half-power band with that of the functions.
 
     Windows, leakage and small nonlinearities leave traces that noise does not explain and that
-    are no modes. They are taken to reach 5 % of one function; a root on which n functions agree
+    are no modes. They are taken to reach 3 % of one function; a root on which n functions agree
     may be n times weaker. 1 where a mode is at that limit.
     """
     n_line = len(f)
     by_line = np.einsum("oin,oin->n", data.y, data.y)
     energy = by_line[:n_line] + by_line[n_line:]
-    r = fit.shapes[:, None, :] * fit.participation[None, :, :]
-    r = np.where(data.weight[:, :, None] > 0.0, r, 0.0)
-    re, im = (np.einsum("oik,oik->k", a, a) for a in (r.real, r.imag))
-    cross = np.einsum("oik,oik->k", r.real, r.imag)
-    by_line = F[:, 0, :, 0] ** 2 * re + F[:, 0, :, 1] ** 2 * im
-    by_line += 2.0 * F[:, 0, :, 0] * F[:, 0, :, 1] * cross
-    own = by_line[:n_line] + by_line[n_line:]
+    own = energy_by_line(data, fit, F[:, 0])
     hz, half = np.abs(fit.poles) / (2.0 * np.pi), np.abs(fit.poles.real) / (2.0 * np.pi)
     result = np.empty(len(hz))
     for k in range(len(hz)):
@@ -79,6 +73,22 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
         near = gap <= max(half[k], float(gap.min()))
         result[k] = own[near, k].sum() / max(float(energy[near].sum()), 1e-300)
     return np.asarray(result * (data.weight.sum() / _SEEN) ** 2)
+
+
+def energy_by_line(data: BandData, fit: Fit, F: Floats) -> Floats:
+    """Sum over the functions of the squares of each mode's part in them, (n_line, n_mode).
+
+    Parameters
+    ----------
+    F : (2 n_line, n_mode, 2) float
+        Of the values or of the derivative, see `basis`.
+    """
+    r = fit.shapes[:, None, :] * fit.participation[None, :, :]
+    r = np.where(data.weight[:, :, None] > 0.0, r, 0.0)
+    re, im = (np.einsum("oik,oik->k", a, a) for a in (r.real, r.imag))
+    cross = np.einsum("oik,oik->k", r.real, r.imag)
+    by_line = F[..., 0] ** 2 * re + F[..., 1] ** 2 * im + 2.0 * F[..., 0] * F[..., 1] * cross
+    return np.asarray(by_line.reshape(2, -1, len(fit.poles)).sum(axis=0))
 
 
 def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:
@@ -163,39 +173,58 @@ def colour(left: Floats, f: Floats, fit: Fit) -> Floats:
     return np.asarray(np.maximum(envelope @ energy / envelope.sum(axis=1) / mean, 1.0))
 
 
-def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Floats]:
-    """Compare the residual around each mode with noise without memory from line to line.
+@dataclass(frozen=True, eq=False)
+class Memory:
+    """What the residual around each mode holds besides noise of single lines.
 
-    The variance of white noise equals that of its fourth difference over 70. What a faulty model
-    leaves, and the noise of windowed records, changes slowly from line to line.
-
-    Returns
-    -------
+    Parameters
+    ----------
     ratio : (n_mode,) float
         Variance over that of the differences; about 1 for white noise.
     scatter : (n_mode,) float
         Standard deviation of the ratio for white noise.
+    systematic : (n_mode,) float
+        Sum of squares over all functions in excess of white noise.
+    near : (n_line, n_mode) bool
+        The lines looked at.
+    """
+
+    ratio: Floats
+    scatter: Floats
+    systematic: Floats
+    near: Numbers
+
+
+def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
+    """Compare the residual around each mode with noise without memory from line to line.
+
+    The variance of white noise equals that of its fourth difference over 70. What a faulty model
+    leaves, and the noise of windowed records, changes slowly from line to line.
     """
     some = slice(None, None, max(1, int(data.weight.sum()) // _LISTENED))
     heard = replace(data, y=data.y[some], weight=data.weight[some])
     fitted = replace(fit, shapes=fit.shapes[some])
     left = residual_lines(heard, fitted, basis(heard, fit.poles, derivative=False))
-    n_line = len(f)
-    lines = left.reshape(-1, 2, n_line)
+    lines = left.reshape(-1, 2, len(f))
     functions = lines[:, 0] + 1j * lines[:, 1]
     square = np.sum(np.abs(functions) ** 2, axis=0)
     rough = np.sum(np.abs(np.diff(functions, n=4, axis=1)) ** 2, axis=0) / 70.0
     spacing = float(np.median(np.diff(f)))
-    ratio, scatter = np.ones(len(fit.poles)), np.ones(len(fit.poles))
-    for k, pole in enumerate(fit.poles):
-        half = max(2.0 * abs(pole.real) / np.pi, _LEAST_SEEN * spacing)
-        centre = float(np.clip(abs(pole) / (2.0 * np.pi), f[0], f[-1]))
-        near = np.abs(f - centre) <= half
-        ratio[k] = square[near].mean() / max(float(rough[near[2:-2]].mean()), 1e-300)
-        scatter[k] = 2.0 / np.sqrt(np.count_nonzero(near) * heard.weight.sum())
-    return ratio, scatter
+    half = np.maximum(2.0 * np.abs(fit.poles.real) / np.pi, _LEAST_SEEN * spacing)
+    centre = np.clip(np.abs(fit.poles) / (2.0 * np.pi), f[0], f[-1])
+    near = np.abs(f[:, None] - centre) <= half
+    count = near.sum(axis=0)
+    level = square @ near / count
+    white = rough @ near[2:-2] / near[2:-2].sum(axis=0)
+    heard_of, all_of = float(heard.weight.sum()), float(data.weight.sum())
+    return Memory(
+        level / np.maximum(white, 1e-300),
+        2.0 / np.sqrt(count * heard_of),
+        np.maximum(level - white, 0.0) * count * all_of / heard_of,
+        near,
+    )
 
 
 def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
     """Tell for each mode whether the residual around it is about noise without memory."""
-    return np.asarray(memory_of_residual(data, f, fit)[0] < _WHITE)
+    return np.asarray(memory_of_residual(data, f, fit).ratio < _WHITE)
