@@ -13,12 +13,21 @@ from ...core.errors import InputError
 from .editing.add import add_cards
 from .editing.decktext import DeckText
 from .editing.edit import edit_cards, read_value, set_values
-from .editing.find import find_card, free_id
+from .editing.find import Card, find_card, free_id
 from .editing.split import split_property
 from .parameters import FieldRef
 from .read import Deck
 
 Row = list[Any]
+
+_SHELL = ("PSHELL", "PCOMP", "PCOMPG")
+_PROPERTIES = {
+    **dict.fromkeys(("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6"), _SHELL),
+    "CBAR": ("PBAR", "PBARL"),
+    "CBEAM": ("PBEAM", "PBEAML"),
+    "CROD": ("PROD",),
+}
+"""Properties by the elements that may have them."""
 
 
 @dataclass(frozen=True)
@@ -79,31 +88,41 @@ def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
 
 
 def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    grid, number = finding.where["grids"][0], free_id(text, "element")
-    k = float(finding.magnitude["stiffness"])
-    rows: list[Row] = [
-        ["CELAS2", number + i, k, grid, c] for i, c in enumerate(finding.magnitude["components"])
-    ]
+    grids, number = finding.where["grids"], free_id(text, "element")
+    part = float(finding.magnitude["stiffness"]) / len(grids)
+    at = [(g, c) for g in grids for c in finding.magnitude["components"]]
+    rows: list[Row] = [["CELAS2", number + i, part, g, c] for i, (g, c) in enumerate(at)]
     return Adopted(
-        add_cards(text, rows, _note(finding), ("GRID", grid)), tuple(_shown(r) for r in rows)
+        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
     )
 
 
-def _by_property(deck: Deck, elements: list[int]) -> dict[int, list[int]]:
-    """Elements of a patch by the property they refer to."""
-    out: dict[int, list[int]] = {}
-    for name in ("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6"):
+def _by_property(
+    text: DeckText, deck: Deck, elements: list[int]
+) -> dict[tuple[str, int], list[int]]:
+    """Elements of a patch by the property they refer to in the text as it stands.
+
+    An effect written before may have given some of them a property of their own.
+    """
+    out: dict[tuple[str, int], list[int]] = {}
+    for name, properties in _PROPERTIES.items():
         table = deck.bulk.table(name)
         for e in elements:
             if e in table:
-                out.setdefault(int(table[e].pid), []).append(e)
+                number = int(find_card(text, name, e).text(1) or e)
+                card = next((p for p in properties if _has(text, p, number)), properties[0])
+                out.setdefault((card, number), []).append(e)
     return out
+
+
+def _has(text: DeckText, card: str, number: int) -> bool:
+    return any(n == number for s in text.segments for _, n in text.rows_in(s, card))
 
 
 def _local_stiffness(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     cards = []
-    for pid, elements in _by_property(deck, finding.where["elements"]).items():
-        split = split_property(text, "PSHELL", pid, elements, _note(finding))
+    for (card, pid), elements in _by_property(text, deck, finding.where["elements"]).items():
+        split = split_property(text, card, pid, elements, _note(finding))
         values = {}
         for new in split.materials.values():
             for name in ("E", "G"):
@@ -113,47 +132,57 @@ def _local_stiffness(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
                     values[ref] = old * float(finding.magnitude["factor"])
                     cards.append(f"MAT1 {new} {name} = {values[ref]:.6g}")
         text = set_values(split.deck, values)
-        cards.append(f"PSHELL {split.property} on {len(elements)} elements")
+        cards.append(f"{card} {split.property} on {len(elements)} elements")
     return Adopted(text, tuple(cards))
 
 
 def _distributed_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     cards = []
     per_area = float(finding.magnitude["mass_per_area"])
-    for pid, elements in _by_property(deck, finding.where["elements"]).items():
-        split = split_property(text, "PSHELL", pid, elements, _note(finding), copy_materials=False)
-        ref = FieldRef("PSHELL", split.property, "NSM")
+    for (card, pid), elements in _by_property(text, deck, finding.where["elements"]).items():
+        split = split_property(text, card, pid, elements, _note(finding), copy_materials=False)
+        ref = FieldRef(card, split.property, "NSM")
         old = read_value(split.deck, ref) or 0.0
         text = set_values(split.deck, {ref: old + per_area})
-        cards.append(f"PSHELL {split.property} NSM = {old + per_area:.6g}")
+        cards.append(f"{card} {split.property} NSM = {old + per_area:.6g}")
     return Adopted(text, tuple(cards))
 
 
 def _joint(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     """Put a coincident grid at a beam's end: rigid in translation, sprung in rotation."""
-    return _detached(text, deck, finding, [int(e) for e in finding.where["elements"]], [4, 5, 6])
+    elements = [int(e) for e in finding.where["elements"]]
+    return _detached(text, deck, finding, elements, [4, 5, 6], finding.where["grids"][0])
 
 
 def _support(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    """Put a coincident grid between the support and everything attached to it."""
-    grid = finding.where["grids"][0]
-    attached = []
-    for name in ("CBAR", "CBEAM", "CROD", "CQUAD4", "CTRIA3"):
-        for number, card in deck.bulk.table(name).items():
-            if grid in [n for n in card.node_ids if n]:
-                attached.append(int(number))
-    return _detached(text, deck, finding, attached, list(finding.magnitude["components"]))
+    """Put a coincident grid between every support and everything attached to it."""
+    components = list(finding.magnitude["components"])
+    cards: list[str] = []
+    for grid in finding.where["grids"]:
+        attached = []
+        for name in ("CBAR", "CBEAM", "CROD", "CQUAD4", "CTRIA3"):
+            for number, card in deck.bulk.table(name).items():
+                if grid in [n for n in card.node_ids if n]:
+                    attached.append(int(number))
+        done = _detached(text, deck, finding, attached, components, grid)
+        text, cards = done.deck, [*cards, *done.cards]
+    return Adopted(text, tuple(cards))
 
 
 def _detached(
-    text: DeckText, deck: Deck, finding: Finding, elements: list[int], components: list[int]
+    text: DeckText,
+    deck: Deck,
+    finding: Finding,
+    elements: list[int],
+    components: list[int],
+    grid: int,
 ) -> Adopted:
-    grid = finding.where["grids"][0]
+    """Attach some elements of a grid to a new one, sprung in some components and else rigid."""
     new, number = free_id(text, "grid"), free_id(text, "element")
     xyz = _grid_xyz(deck, grid)
     cd = int(deck.bulk.table("GRID")[grid].cd or 0)
     stiff = "".join(str(c) for c in range(1, 7) if c not in components)
-    k = float(finding.magnitude["stiffness"])
+    k = float(finding.magnitude["stiffness"]) / len(finding.where["grids"])
     rows: list[Row] = [
         ["GRID", new, 0, *(float(v) for v in xyz), cd],
         ["RBE2", number, grid, stiff, new],
@@ -164,13 +193,20 @@ def _detached(
         table = deck.bulk.table(name)
         for e in elements:
             if e in table:
-                nodes = list(table[e].node_ids)
-                edits.append((find_card(text, name, e), {2 + nodes.index(grid): new}))
+                member = find_card(text, name, e)
+                places = range(2, 2 + len(table[e].node_ids))
+                edits.append((member, {next(i for i in places if _is(member, i, grid)): new}))
     changed = edit_cards(text, edits)
     return Adopted(
         add_cards(changed, rows, _note(finding), ("GRID", grid)),
         (*(_shown(r) for r in rows), f"elements {elements} moved to grid {new}"),
     )
+
+
+def _is(card: Card, field: int, number: int) -> bool:
+    """Whether a field of a card holds a number; an earlier effect may have changed it."""
+    text = card.text(field)
+    return text.isdigit() and int(text) == number
 
 
 def _shown(row: Row) -> str:

@@ -69,22 +69,27 @@ def _supports(
         (t.coefficient(p) * t.matrix[held] for t in stiffness[1:]),
         stiffness[0].coefficient(p) * stiffness[0].matrix[held],
     )
-    diagonal = np.array([t.matrix.diagonal()[held] for t in stiffness])
-    own = np.array([t.coefficient(p) for t in stiffness]) @ diagonal
-    slopes = np.array(
-        [[t.coefficient_derivative(p, k) for t in stiffness] for k in range(len(p))]
-    ).reshape(len(p), len(stiffness))
+    coupling = K[:, held].tocsr()
     root = (K @ displacement).tocsr()
-    live = (np.diff(root.indptr) > 0) & (own > 0.0)
-    if not live.any():
+    live = np.flatnonzero((np.diff(root.indptr) > 0) & (coupling.diagonal() > 0.0))
+    if not len(live):
         return None
+    own = held[live]
+    among = [t.matrix[own][:, own] for t in stiffness]
+    slopes = tuple(
+        sum(
+            (t.coefficient_derivative(p, k) * A for t, A in zip(stiffness, among, strict=True)),
+            sp.csr_matrix((len(own), len(own))),
+        ).tocsr()
+        for k in range(len(p))
+    )
     return Supports(
-        points.ids[held[live] // 6],
-        held[live] % 6 + 1,
-        points.xyz[held[live] // 6],
+        points.ids[own // 6],
+        own % 6 + 1,
+        points.xyz[own // 6],
         root[live],
-        own[live],
-        (slopes @ diagonal[:, live]).T / own[live, None],
+        coupling[live][:, live],
+        slopes,
     )
 
 

@@ -50,7 +50,11 @@ def plan(seed: int) -> Plan:
     weights = np.array([w for _, w in SCENARIOS], dtype=float)
     scenario = SCENARIOS[int(rng.choice(len(SCENARIOS), p=weights / weights.sum()))][0]
     n = 2 if scenario == "two effects" else 1 if "effect" in scenario else 0
-    kinds = tuple(str(k) for k in rng.choice(hide.possible(s), size=n, replace=False))
+    possible = hide.possible(s)
+    rarely = np.array([hide.RARE if k in hide.SELDOM else 1.0 for k in possible])
+    kinds = tuple(
+        str(k) for k in rng.choice(possible, size=n, replace=False, p=rarely / rarely.sum())
+    )
     faults: tuple[str, ...] = ()
     if "fault" in scenario:
         choice = ["sensor_polarity", "sensor_gain", "sensor_swap"]
@@ -73,7 +77,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
         return place
     s = STRUCTURES[p.structure](np.random.default_rng([p.seed, 2]))
     rng = np.random.default_rng([p.seed, 3])
-    fine = mesh(s, 2, True)
+    fine = mesh(s, s.refine, True)
     bare = calculix.solve(s, fine, hide.joined([], {}), cache, s.modes)
     scene = hide.Scene(s, fine, bare, rng)
     drawn = [_noticed(k, scene, cache) for k in p.kinds]

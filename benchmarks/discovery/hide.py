@@ -246,6 +246,10 @@ KINDS: dict[str, Callable[[Scene], tuple[Truth, Entry]]] = {
 }
 
 
+SELDOM, RARE = ("tuned_absorber", "local_damper"), 0.4
+"""Kinds that are hidden less often than the others, and how often beside them."""
+
+
 def possible(s: Structure) -> list[str]:
     """Return the kinds that this structure can have."""
     never = set()

@@ -88,7 +88,8 @@ class Structure:
     `clamped` says of points (n, 3) which are held; `axes` are the measured directions ("normal"
     to the surface, or letters of "xyz"); `wording` names the scalable properties
     for the truth file; `turned` where the places of the sensors tell how they
-    are turned, so that the test may come in a frame of its own.
+    are turned, so that the test may come in a frame of its own; `refine`
+    is how many times finer the mesh of the truth is, its elements quadratic besides.
     """
 
     name: str
@@ -104,6 +105,7 @@ class Structure:
     axes: str = "normal"
     sensors: tuple[int, int] = (30, 50)
     turned: bool = False
+    refine: int = 2
     wording: dict[int, str] = field(default_factory=dict)
 
 

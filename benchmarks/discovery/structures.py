@@ -26,13 +26,13 @@ def straight(group: int, p: Vec, q: Vec, n: int, plane: Vec, name: str = "") -> 
 
 
 def panel(rng: np.random.Generator) -> Structure:
-    """Free rectangular plate with two long and two cross stiffeners, two thicknesses."""
+    """Free rectangular plate with three long and two cross stiffeners, two thicknesses."""
     w, h = 900.0, 600.0
     t = float(rng.choice([2.0, 2.5, 3.0]))
-    cut = int(rng.choice([8, 10, 12]))
-    x = cut / 24 * w
-    lines = [straight(11, (0, y, 0), (w, y, 0), 24, (0, 0, 1)) for y in (150.0, 450.0)]
-    lines += [straight(12, (c, 0, 0), (c, h, 0), 16, (0, 0, 1)) for c in (225.0, 675.0)]
+    cut = int(rng.choice([10, 15]))
+    x = cut / 30 * w
+    lines = [straight(11, (0, y, 0), (w, y, 0), 30, (0, 0, 1)) for y in (90.0, 300.0, 510.0)]
+    lines += [straight(12, (c, 0, 0), (c, h, 0), 20, (0, 0, 1)) for c in (240.0, 660.0)]
     return Structure(
         "panel",
         "STIFFENED PANEL",
@@ -41,11 +41,12 @@ def panel(rng: np.random.Generator) -> Structure:
         {1: t, 2: t},
         {11: Bar(14.0, 12.0), 12: Bar(12.0, 12.0)},
         (
-            flat(1, (0, 0, 0), (x, 0, 0), (0, h, 0), cut, 16),
-            flat(2, (x, 0, 0), (w - x, 0, 0), (0, h, 0), 24 - cut, 16),
+            flat(1, (0, 0, 0), (x, 0, 0), (0, h, 0), cut, 20),
+            flat(2, (x, 0, 0), (w - x, 0, 0), (0, h, 0), 30 - cut, 20),
         ),
         tuple(lines),
         14,
+        sensors=(38, 43),
         wording={1: "t1", 2: "t2", 11: "long", 12: "cross"},
     )
 
@@ -60,7 +61,7 @@ def _ring(r: float, z: float, phase: float = 0.0) -> Callable[[Floats], Floats]:
 
 def wheel(rng: np.random.Generator) -> Structure:
     """Free annular disc with rim and hub stiffeners."""
-    r0, r1, r2 = 60.0, 260.0, 380.0
+    r0, r1, r2 = 60.0, 220.0, 380.0
     t = float(rng.choice([5.0, 6.0, 7.0]))
 
     def annulus(a: float, b: float) -> Callable[[Floats, Floats], Floats]:
@@ -76,22 +77,23 @@ def wheel(rng: np.random.Generator) -> Structure:
         760.0,
         STEEL,
         {1: t, 2: 0.8 * t},
-        {11: Bar(18.0, 16.0), 12: Bar(20.0, 20.0)},
+        {11: Bar(20.0, 15.0), 12: Bar(22.0, 18.0)},
         (
-            Patch(1, annulus(r0, r1), 5, 40),
-            Patch(2, annulus(r1, r2), 3, 40),
+            Patch(1, annulus(r0, r1), 5, 60),
+            Patch(2, annulus(r1, r2), 5, 60),
         ),
-        (Line(11, _ring(r2, 0.0), 40, (0, 0, 1)), Line(12, _ring(r0, 0.0), 40, (0, 0, 1))),
-        18,
+        (Line(11, _ring(r2, 0.0), 60, (0, 0, 1)), Line(12, _ring(r0, 0.0), 60, (0, 0, 1))),
+        20,
+        sensors=(46, 51),
         wording={1: "t1", 2: "t2", 11: "rim", 12: "hub"},
     )
 
 
 def duct(rng: np.random.Generator) -> Structure:
     """Free cylinder with flanges, one rib and a framed port."""
-    r, length = 300.0, 600.0
-    nt, nz = 44, 11
-    z0, t0 = 4, int(rng.integers(0, nt - 6))
+    r, length = 450.0, 900.0
+    nt, nz = 72, 26
+    z0, t0 = 12, int(rng.integers(0, nt - 6))
 
     def point(u: Floats, v: Floats) -> Floats:
         a = 2.0 * np.pi * u
@@ -114,7 +116,7 @@ def duct(rng: np.random.Generator) -> Structure:
     return Structure(
         "duct",
         "BYPASS DUCT",
-        600.0,
+        900.0,
         ALUMINIUM,
         {1: 1.6},
         {11: Bar(14.0, 14.0), 12: Bar(12.0, 12.0), 21: Bar(9.0, 9.0)},
@@ -124,14 +126,15 @@ def duct(rng: np.random.Generator) -> Structure:
             Line(12, _ring(r, length), nt, (0, 0, 1)),
             *(Line(21, along(*p), max(abs(p[1] - p[0]), p[3] - p[2]), out) for p in port),
         ),
-        18,
-        sensors=(50, 70),
+        24,
+        sensors=(68, 78),
+        refine=1,
         wording={1: "t1", 11: "front", 12: "rear", 21: "port"},
     )
 
 
 def _frame(
-    name: str, title: str, a: float, b: float, storey: float, floors: int, braced: bool
+    name: str, title: str, a: float, b: float, storey: float, floors: int, braces: int
 ) -> tuple[list[Line], float]:
     feet = [(0.0, 0.0), (a, 0.0), (a, b), (0.0, b)]
     lines: list[Line] = []
@@ -146,7 +149,7 @@ def _frame(
             lines.append(
                 straight(2, (*p, top), (*q, top), 4, (0, 0, 1), f"beam {i + 1} floor {f + 1}")
             )
-        if braced:
+        if f < braces:
             i = f % 4
             p, q = feet[i], feet[(i + 1) % 4]
             side = (0.0, 1.0, 0.0) if i % 2 == 0 else (1.0, 0.0, 0.0)
@@ -155,8 +158,8 @@ def _frame(
 
 
 def tower(rng: np.random.Generator) -> Structure:
-    """Braced frame of four storeys on clamped feet."""
-    lines, top = _frame("tower", "", 400.0, 320.0, float(rng.choice([450.0, 500.0])), 4, True)
+    """Frame of five storeys on clamped feet with one brace."""
+    lines, top = _frame("tower", "", 400.0, 320.0, float(rng.choice([450.0, 500.0])), 5, 1)
     return Structure(
         "tower",
         "FRAME TOWER",
@@ -168,8 +171,8 @@ def tower(rng: np.random.Generator) -> Structure:
         tuple(lines),
         14,
         clamped=lambda p: p[:, 2] < 1e-6,
-        axes="xy",
-        sensors=(26, 40),
+        axes="xyz",
+        sensors=(38, 43),
         turned=True,
         wording={1: "col", 2: "beam", 3: "brace"},
     )
@@ -178,7 +181,7 @@ def tower(rng: np.random.Generator) -> Structure:
 def frame(rng: np.random.Generator) -> Structure:
     """Cantilever frame of two storeys with a jib, on clamped feet."""
     a, b, storey = float(rng.choice([500.0, 600.0])), 300.0, 400.0
-    lines, top = _frame("frame", "", a, b, storey, 2, False)
+    lines, top = _frame("frame", "", a, b, storey, 2, 0)
     for y in (0.0, b):
         lines.append(straight(3, (a, y, top), (a + 500.0, b / 2, top), 4, (0, 0, 1), f"jib y={y}"))
     return Structure(

@@ -9,12 +9,12 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from ..arrays import Floats
+from ..arrays import Floats, Ints
 from ..eigen import Eigensolution
 from ..model import Model, Term
 
 _DEPENDENT = 1e-5
-_CHUNK = 256
+_CHUNK = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,29 +118,44 @@ def build_basis(
     )
 
 
-def missing_flexibility(
-    model: Model, solution: Eigensolution, basis: Basis, root: sp.csr_matrix
-) -> Floats:
-    """Flexibility of loads that the basis does not have, (n_row,).
+class Flexibility:
+    """The flexibility of loads that a basis does not have, found when asked for, then kept.
 
     Parameters
     ----------
-    root : (n_row, n_free) sparse
-        Loads. The flexibility is that of K − σM with the shift of `solution`.
+    model : Model
+    solution : Eigensolution
+        Its factor is used; the flexibility is that of K − σM with its shift.
+    basis : Basis
+    root : (n · q, n_free) sparse
+        Loads of n candidates, q each.
     """
-    K, M = model.K(), model.M()
-    out = np.empty(root.shape[0])
-    V = basis.vectors
-    A = V.T @ (K @ V) - solution.sigma * (V.T @ (M @ V))
-    for start in range(0, len(out), _CHUNK):
-        rows = root[start : start + _CHUNK]
-        X = _solve(solution, K, M, np.asarray(rows.T.todense()))
-        seen = np.asarray(rows @ V)
-        exact = np.asarray(rows.multiply(X.T).sum(axis=1)).ravel()
-        out[start : start + _CHUNK] = exact - np.einsum(
-            "ij,ij->i", seen, np.linalg.solve(A, seen.T).T
-        )
-    return np.maximum(out, 0.0)
+
+    def __init__(
+        self, model: Model, solution: Eigensolution, basis: Basis, root: sp.csr_matrix, each: int
+    ) -> None:
+        self._K, self._M = model.K(), model.M()
+        self._solution = solution
+        self._V = basis.vectors
+        self._root = root
+        A = basis.vectors.T @ ((self._K - solution.sigma * self._M) @ basis.vectors)
+        self._inverse = np.linalg.inv(A)
+        self._kept = np.full((root.shape[0] // max(each, 1), max(each, 1)), np.nan)
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return what the basis lacks, (len(rows), q)."""
+        wanted = np.unique(rows)
+        new = wanted[np.isnan(self._kept[wanted, 0])] if len(wanted) else wanted
+        q = self._kept.shape[1]
+        for start in range(0, len(new), _CHUNK):
+            some = new[start : start + _CHUNK]
+            own = self._root[(some[:, None] * q + np.arange(q)).ravel()]
+            X = _solve(self._solution, self._K, self._M, np.asarray(own.T.todense()))
+            seen = np.asarray(own @ self._V)
+            exact = np.asarray(own.multiply(X.T).sum(axis=1)).ravel()
+            lost = exact - np.einsum("ij,ij->i", seen @ self._inverse, seen)
+            self._kept[some] = np.maximum(lost, 0.0).reshape(-1, q)
+        return np.asarray(self._kept[rows])
 
 
 def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,6 +11,17 @@ import scipy.sparse as sp
 
 from ..arrays import Floats, Ints
 from .basis import Basis
+
+_RIGID = 1e-4
+"""ω² m times the flexibility that an attached mass has at least."""
+
+
+class Rows(Protocol):
+    """Rows of candidates on a basis; an array (n, q, r), or something that makes them."""
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return the rows of some candidates, (n, q, r)."""
+        ...
 
 
 class Law(Protocol):
@@ -45,6 +56,33 @@ class MassLaw:
         return np.asarray(np.exp(theta)[:, None])
 
 
+@dataclass(frozen=True, eq=False)
+class AttachedLaw:
+    """A mass m = e^θ on a basis that lacks the flexibility `missing` (n, q) where it sits.
+
+    Each of the q directions gets a coordinate of its own: m on a spring 1/missing, which is what
+    the mass is to a structure that moves as the basis can. `top` is an eigenvalue above those of
+    interest: springs so stiff that they do not matter below it stay finite.
+    """
+
+    missing: Rows
+    top: float
+    on: str = "A"
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return m."""
+        return np.asarray(np.exp(theta)[:, None])
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return dm/dθ."""
+        return np.asarray(np.exp(theta)[:, None])
+
+    def springs(self, theta: Floats, rows: Ints) -> Floats:
+        """Return the stiffness between the structure and the mass, (n, q)."""
+        rigid = _RIGID / (np.exp(theta)[:, None] * self.top)
+        return np.asarray(1.0 / (self.missing[rows] + rigid))
+
+
 @dataclass(frozen=True)
 class FactorLaw:
     """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
@@ -67,7 +105,7 @@ class SpringLaw:
     On a basis that lacks the flexibility `missing` (n, 1) it is worth k / (1 + k·missing).
     """
 
-    missing: Floats
+    missing: Rows
     on: str = "K"
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
@@ -152,23 +190,34 @@ class Candidates:
     def __len__(self) -> int:
         return len(self.xyz)
 
-    def factors(self, basis: Basis) -> Floats:
+    def factors(self, basis: Basis) -> Rows:
         """Return the rows of `root` on the basis, (n, q, r)."""
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
 
-    def on_basis(self, missing: Floats) -> Candidates:
-        """Return the candidates with the law that holds on a basis.
+    def law_at(
+        self,
+        rows: Ints,
+        missing: Floats | None,
+        log_p: Floats | None = None,
+        top: float = 0.0,
+    ) -> Law:
+        """Return the law of some rows alone.
 
-        `missing` (n · q,) is the flexibility of each row that the basis does not have: a
-        coordinate released on a basis that is too stiff by it would give too little.
+        Parameters
+        ----------
+        rows : (n,) int
+        missing : (n, q) float or None
+            Flexibility of each row that the basis does not have. What is released or attached on
+            a basis that is too stiff by it would do too little.
+        log_p : (n_parameter,) float, optional
+            Where the parameters stand.
+        top : float
+            An eigenvalue above those of interest.
         """
-        every = np.arange(len(self))
-        return replace(self, law=self.law_at(every, missing.reshape(len(self), -1)))
-
-    def law_at(self, rows: Ints, missing: Floats | None, log_p: Floats | None = None) -> Law:
-        """Return the law of some rows alone, on a basis that lacks `missing` (n, q), at `log_p`."""
         law = self.law
+        if isinstance(law, MassLaw) and missing is not None:
+            return AttachedLaw(missing, top)
         if isinstance(law, SpringLaw):
             lost = law.missing[rows]
             return SpringLaw(lost if missing is None else lost + missing)
@@ -182,7 +231,7 @@ class Candidates:
     @property
     def needs_flexibility(self) -> bool:
         """Whether the law depends on what a basis lacks."""
-        return isinstance(self.law, SpringLaw | ReleaseLaw)
+        return self.rows_each > 0 and isinstance(self.law, MassLaw | SpringLaw | ReleaseLaw)
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""

@@ -14,24 +14,25 @@ from ..comparison import Placed
 from ..correlation import realised
 from ..eigen import Eigensolution
 from ..errors import TrueupError
-from .basis import build_basis, missing_flexibility
+from .basis import Flexibility, build_basis
 from .candidates import Candidates, Suspect
 from .evidence import Evidence, Noise
 from .findings import Alternative, Discovery, Finding, MovedParameter
 from .fitting import Fit, Prior, Problem, evaluate, fit
 from .judge import (
     Judgement,
+    burden,
     credible_places,
     deviations,
     enough,
     held_out,
     judge,
-    price,
     summary,
     times,
 )
 from .kinds import KINDS
 from .kinds.scale import Scale
+from .mesh_error import lumping
 from .places import region
 from .polish import polished
 from .search import Effort, Found, Searcher
@@ -39,7 +40,8 @@ from .sensors import Fault, find_faults
 from .structure import Structure, thinned
 from .wording import magnitude_of, sentence_of, test_sentence
 
-_TREND = (0.01, 0.05)
+_MESH = (1.0, -1.0, 1.05)
+"""Spread and bounds of the error of the mesh, see `mesh_error`."""
 _SIGNIFICANT = 3.0
 _SURE = 0.6
 _RITZ = 110
@@ -147,11 +149,12 @@ def _prepared(
     basis = build_basis(model, request.solution, targets)
     observed = np.asarray(request.placed.observation.matrix @ basis.motion)[sensors]
     prior = Prior(
-        np.append(request.spread, _TREND[0]),
-        np.append(np.log([q.lower for q in model.parameters]), -_TREND[1]),
-        np.append(np.log([q.upper for q in model.parameters]), _TREND[1]),
+        np.append(request.spread, _MESH[0]),
+        np.append(np.log([q.lower for q in model.parameters]), _MESH[1]),
+        np.append(np.log([q.upper for q in model.parameters]), _MESH[2]),
     )
-    problem = Problem(e, basis, observed, (), (), prior, min(basis.size, _RITZ), targets + 4)
+    mesh = lumping(request.structure, basis.vectors)
+    problem = Problem(e, basis, observed, mesh, (), (), prior, min(basis.size, _RITZ), targets + 4)
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
@@ -171,8 +174,7 @@ def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
         request.structure.model.geometry.size,
         float((2.0 * np.pi * np.median(hz)) ** 2),
     )
-    made = (make(request.structure, scale) for make in KINDS.values())
-    return [c for c in made if c is not None]
+    return [c for make in KINDS.values() for c in make(request.structure, scale)]
 
 
 def _weighed(
@@ -194,7 +196,9 @@ def _weighed(
     while verdict.accepted and {verdict.accepted, verdict.accepted - 1} - done:
         for k in {verdict.accepted, verdict.accepted - 1} - done:
             with suppress(TrueupError):
-                levels[k] = polished(model, made, observation, searcher.problem, levels[k], modes)
+                levels[k] = polished(
+                    request.structure, made, observation, searcher.problem, levels[k], modes
+                )
             done.add(k)
         kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
         verdict, found = judge(searcher, kept), kept
@@ -207,40 +211,37 @@ def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidat
     size = model.geometry.size
     small = problem.turned(null.vectors)
     small = replace(small, modes=min(80, small.basis.size))
-    catalogue = [
-        c.on_basis(missing_flexibility(model, request.solution, small.basis, c.root))
-        if c.needs_flexibility and len(c) * c.rows_each <= 3000
-        else c
+    missing = tuple(
+        Flexibility(model, request.solution, small.basis, c.root, c.rows_each)
+        if c.needs_flexibility
+        else None
         for c in made
-    ]
-    factors = tuple(c.factors(small.basis) for c in catalogue)
-    small = replace(small, catalogue=tuple(catalogue), factors=factors, turn=None)
-    coarse = tuple(_coarse(c, f, small, size) for c, f in zip(catalogue, factors, strict=True))
+    )
+    factors = tuple(c.factors(small.basis) for c in made)
+    small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
+    coarse = tuple(_coarse(c, f, small, size) for c, f in zip(made, factors, strict=True))
     active = tuple(range(len(problem.prior.spread)))
     return Searcher(small, coarse, active, null.log_p, size, request.effort)
 
 
-def _coarse(c: Candidates, factors: Floats, problem: Problem, size: float) -> Any:
+def _coarse(c: Candidates, factors: Any, problem: Problem, size: float) -> Any:
     """Rows that the first scan looks at: spread over the structure, where anything moves."""
     rows = np.arange(len(c))
-    if c.kind == "point_mass":
-        return thinned(c.xyz, size / 22.0)
     if c.kind == "ground_spring":
-        moves = np.sum(factors[:, 0, : problem.columns] ** 2, axis=1)
+        moves = np.sum(factors[rows][:, 0, : problem.columns] ** 2, axis=1)
         live = np.flatnonzero(moves > 0.02 * moves.max())
         parts = []
         component = np.array([w["components"][0] for w in c.where])
         for k in (1, 2, 3):
             own = live[component[live] == k]
             if len(own):
-                parts.append(own[thinned(c.xyz[own], size / 16.0)])
+                parts.append(own[thinned(c.xyz[own], size / 13.0)])
         return np.concatenate(parts) if parts else rows[:0]
     if "patches" in c.extra:
-        radius = np.array([p.radius for p in c.extra["patches"]])
-        sizes = np.unique(radius)
-        middle = sizes[min(1, len(sizes) - 1)]
-        own = np.flatnonzero(np.isclose(radius, middle))
-        return own[thinned(c.xyz[own], 0.75 * middle)]
+        first = np.flatnonzero([p.first for p in c.extra["patches"]])
+        return first[thinned(c.xyz[first], size / 18.0)] if c.kind == "point_mass" else first
+    if c.kind == "point_mass":
+        return thinned(c.xyz, size / 18.0)
     return rows
 
 
@@ -402,7 +403,7 @@ def _alternatives(
     best = found.levels[verdict.accepted]
 
     def cost(f: Fit) -> float:
-        return f.objective / verdict.scale + sum(price(searcher, s) for s in f.suspects)
+        return f.objective / verdict.scale + burden(searcher, f)
 
     seen: dict[tuple[str, ...], Fit] = {}
     here = tuple(sorted(catalogue[s.kind].kind for s in best.suspects))
@@ -443,8 +444,8 @@ def _would_decide(
     b = evaluate(p, rivals[0].log_p, rivals[0].suspects)
     model = request.structure.model
     rows = np.flatnonzero(model.dofs.component <= 3)
-    motion = p.basis.motion[rows]
-    A, B = motion @ a.vectors[:, a.match], motion @ b.vectors[:, b.match]
+    motion, r = p.basis.motion[rows], p.basis.size
+    A, B = motion @ a.vectors[:r, a.match], motion @ b.vectors[:r, b.match]
     A, B = A / np.linalg.norm(A, axis=0), B / np.linalg.norm(B, axis=0)
     sign = np.where(np.sum(A * B, axis=0) < 0.0, -1.0, 1.0)
     apart = np.abs(A - B * sign)

@@ -64,15 +64,9 @@ class Evidence:
         return Evidence(self.frequencies_hz[modes], part / length, self.noise)
 
 
-def targets(e: Evidence, trend: float) -> Floats:
-    """Eigenvalues at which a model of this mesh should show the test modes, (n_test,).
-
-    The error of a mesh, and of masses lumped on it, grows with the square of the wave number,
-    for bending with the frequency: ln f is taken lower by ``trend`` at the highest test mode and
-    in proportion below.
-    """
-    f = e.frequencies_hz
-    return np.asarray((2.0 * np.pi * f * np.exp(-trend * f / f.max())) ** 2)
+def targets(e: Evidence) -> Floats:
+    """Eigenvalues of the test modes, (n_test,)."""
+    return np.asarray((2.0 * np.pi * e.frequencies_hz) ** 2)
 
 
 def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) -> Floats:
@@ -110,16 +104,12 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     return np.asarray(np.minimum(np.maximum(np.matmul(c**2, W), own**2), 1.0))
 
 
-def mode_costs(
-    e: Evidence, trend: float, eigenvalues: Floats, cross: Floats, gram: Floats
-) -> Floats:
+def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) -> Floats:
     """Misfit of every test mode with every analysis mode.
 
     Parameters
     ----------
     e : Evidence
-    trend : float
-        See `targets`.
     eigenvalues, cross, gram
         See `joint_macs`.
 
@@ -128,7 +118,7 @@ def mode_costs(
     (..., n_test, n) float
         (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
     """
-    omega2 = targets(e, trend)
+    omega2 = targets(e)
     floor = 1e-6 * omega2.min()
     off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
     n = e.noise

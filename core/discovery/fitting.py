@@ -10,7 +10,7 @@ import scipy.linalg as la
 
 from ..arrays import Floats, Ints
 from .basis import Basis
-from .candidates import Catalogue, Law, ReleaseLaw, Suspect
+from .candidates import AttachedLaw, Catalogue, Law, ReleaseLaw, Rows, Suspect
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 
 _DEGENERATE = 2e-3
@@ -21,8 +21,8 @@ _FIRST = np.zeros(1, np.int64)
 class Prior:
     """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter + 1,).
 
-    The last entry is the trend of the mesh error (see `evidence.targets`), not a parameter of
-    the model.
+    The last entry is that of the mesh error (θ of `mesh_error`), not a parameter of the model
+    and not a logarithm.
     """
 
     spread: Floats
@@ -34,19 +34,22 @@ class Prior:
 class Problem:
     """What stays the same while hypotheses compete.
 
-    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r); `modes`
-    eigenpairs are computed, of which the first `columns` may match a test mode.
+    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r), `missing`
+    the flexibility of each that the basis lacks, (n, q), where it matters; `modes` eigenpairs are
+    computed, of which the first `columns` may match a test mode.
     """
 
     evidence: Evidence
     basis: Basis
     sensors: Floats
+    mesh: Floats
     catalogue: Catalogue
-    factors: tuple[Floats, ...]
+    factors: tuple[Rows, ...]
     prior: Prior
     modes: int
     columns: int
 
+    missing: tuple[Rows | None, ...] = ()
     turn: Floats | None = None
     rest: Floats | None = None
 
@@ -64,6 +67,7 @@ class Problem:
             self,
             basis=self.basis.turned(T),
             sensors=self.sensors @ T,
+            mesh=T.T @ self.mesh @ T,
             turn=T if self.turn is None else self.turn @ T,
             rest=rest,
         )
@@ -72,9 +76,14 @@ class Problem:
         """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
         c, U = self.catalogue[kind], self.factors[kind][rows]
         missing = None
+        known = self.missing[kind] if self.missing else None
+        if known is not None:
+            missing = known[rows]
         if self.rest is not None and c.needs_flexibility:
-            missing = np.sum((U @ self.rest) ** 2, axis=-1)
-        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing, log_p)
+            lost = np.sum((U @ self.rest) ** 2, axis=-1)
+            missing = lost if missing is None else missing + lost
+        top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
+        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing, log_p, top)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,32 +109,48 @@ def _matrices(
     problem: Problem, log_p: Floats, suspects: Sequence[Suspect]
 ) -> tuple[Floats, Floats]:
     p = np.exp(log_p)
-    K, M = problem.basis.K(p), problem.basis.M(p)
+    K, M = problem.basis.K(p), problem.basis.M(p) - log_p[-1] * problem.mesh
+    own = []
     for s in suspects:
         rows, law = problem.part(s.kind, np.array([s.row]), log_p)
-        U, c = rows[0], law.value(np.array([s.theta]), _FIRST)[0]
-        target = K if law.on == "K" else M
-        target += (U.T * c) @ U
+        U, theta = rows[0], np.array([s.theta])
+        c = law.value(theta, _FIRST)[0]
+        if isinstance(law, AttachedLaw):
+            k = law.springs(theta, _FIRST)[0]
+            K += (U.T * k) @ U
+            own.append((-(U.T * (k / np.sqrt(c))), k / c))
+        else:
+            target = K if law.on == "K" else M
+            target += (U.T * c) @ U
+    if own:
+        side = np.hstack([a for a, _ in own])
+        corner = np.diag(np.concatenate([b for _, b in own]))
+        K = np.block([[K, side], [side.T, corner]])
+        M = la.block_diag(M, np.eye(len(corner)))
     return K, M
 
 
 def solve(
     problem: Problem, log_p: Floats, suspects: Sequence[Suspect], modes: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Return the lowest eigenvalues and vectors on the basis."""
+    """Return the lowest eigenvalues and vectors on the basis.
+
+    Attached masses have rows of their own after those of the basis, in the order of the
+    suspects, times √m.
+    """
     K, M = _matrices(problem, log_p, suspects)
     n = min(modes or problem.modes, len(K))
     values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
     return values, vectors
 
 
-def misfit(problem: Problem, trend: float, values: Floats, vectors: Floats) -> tuple[float, Ints]:
+def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, Ints]:
     """Return the misfit of a solution and its match."""
     n = min(problem.columns, len(values))
-    shapes = np.asarray(problem.sensors @ vectors[:, :n])
+    shapes = np.asarray(problem.sensors @ vectors[: problem.sensors.shape[1], :n])
     cross = np.asarray(problem.evidence.shapes.T @ shapes)
     gram = np.asarray(shapes.T @ shapes, dtype=float)
-    costs = mode_costs(problem.evidence, trend, values[:n], cross, gram)
+    costs = mode_costs(problem.evidence, values[:n], cross, gram)
     return matched(costs)
 
 
@@ -140,7 +165,7 @@ def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> floa
 def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fit:
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, log_p, suspects)
-    bad, match = misfit(problem, float(log_p[-1]), values, vectors)
+    bad, match = misfit(problem, values, vectors)
     return Fit(
         bad + _prior(problem, log_p, suspects),
         bad,
@@ -222,14 +247,22 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     n, here = len(k), np.arange(len(k))
     p, last = np.exp(now.log_p), len(now.log_p) - 1
     changes: list[tuple[Floats | None, Floats | None]] = [
-        (None, None)
+        (None, -problem.mesh)
         if q == last
         else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
         for q in active
     ]
+    size = problem.basis.size
+    own = size
+    inner: dict[int, slice] = {}
     for s in now.suspects:
         rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
         U, theta = rows[0], np.array([s.theta])
+        if isinstance(law, AttachedLaw):
+            inner[len(changes)] = slice(own, own + len(U))
+            own += len(U)
+            changes.append((None, None))
+            continue
         A = (U.T * law.slope(theta, _FIRST)[0]) @ U
         if isinstance(law, ReleaseLaw):
             for i, q in enumerate(active):
@@ -238,27 +271,26 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
                     follows = (U.T * law.by_parameter(theta, _FIRST, q)[0]) @ U
                     changes[i] = (before + follows, changes[i][1])
         changes.append((A, None) if law.on == "K" else (None, A))
-    shapes = problem.sensors @ V
+    shapes = problem.sensors @ V[:size]
     dlam = np.zeros((len(changes), n))
     dshape = np.zeros((len(changes), len(shapes), n))
     gap = lk[None, :] - lam[:, None]
     close = np.abs(gap) < _DEGENERATE * np.abs(lk)[None, :]
     safe = np.where(close, 1.0, gap)
     for i, (dK, dM) in enumerate(changes):
-        a = V.T @ (dK @ Vk) if dK is not None else 0.0
-        b = V.T @ (dM @ Vk) if dM is not None else np.zeros((V.shape[1], n))
+        a = V[:size].T @ (dK @ Vk[:size]) if dK is not None else 0.0
+        b = V[:size].T @ (dM @ Vk[:size]) if dM is not None else np.zeros((V.shape[1], n))
+        if i in inner:
+            b = V[inner[i]].T @ Vk[inner[i]]
         F = a - b * lk[None, :]
         dlam[i] = F[k, here]
         C = np.where(close, 0.0, F / safe)
         C[k, here] = -0.5 * b[k, here]
         dshape[i] = shapes @ C
-    aim = targets(e, float(now.log_p[-1]))
+    aim = targets(e)
     floor = np.maximum(lk, 1e-6 * aim)
     off = 0.5 * np.log(floor / aim) / noise.frequency
     doff = 0.5 * dlam / floor / noise.frequency
-    for i, q in enumerate(active):
-        if q == last:
-            doff[i] = e.frequencies_hz / e.frequencies_hz.max() / noise.frequency
     a = shapes[:, k]
     length = np.maximum(np.linalg.norm(a, axis=0), np.finfo(float).tiny)
     a = a / length

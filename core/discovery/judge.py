@@ -15,6 +15,8 @@ from .scanning import scan
 from .search import Found, Searcher
 
 _MARGIN = 8.0
+_BESIDE, _SAME_EFFECT = 0.2, 40.0
+"""Suspects of one nature nearer than this part of the structure cost this much more."""
 _PER_MODE = 5.0
 _CREDIBLE = 6.0
 _MOST_NOISE = 3.0
@@ -42,7 +44,30 @@ def noise_scale(e: Evidence, best: Fit) -> float:
 
 def price(searcher: Searcher, suspect: Suspect) -> float:
     """Return what a suspect must lower the objective by: twice ln(places) and a margin."""
-    return 2.0 * float(np.log(max(len(searcher.coarse[suspect.kind]), 2))) + _MARGIN
+    catalogue = searcher.problem.catalogue
+    kind = catalogue[suspect.kind].kind
+    places = sum(
+        len(rows) for c, rows in zip(catalogue, searcher.coarse, strict=True) if c.kind == kind
+    )
+    return 2.0 * float(np.log(max(places, 2))) + _MARGIN
+
+
+def burden(searcher: Searcher, f: Fit) -> float:
+    """Return what all suspects of a hypothesis must lower the objective by.
+
+    Two suspects of one nature side by side are more likely one effect whose shape the catalogue
+    does not have, so the second costs more.
+    """
+    catalogue = searcher.problem.catalogue
+    total = sum(price(searcher, s) for s in f.suspects)
+    for i, s in enumerate(f.suspects):
+        for t in f.suspects[:i]:
+            a, b = catalogue[s.kind], catalogue[t.kind]
+            apart = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row]))
+            if a.law.on == b.law.on and apart < _BESIDE * searcher.size:
+                total += _SAME_EFFECT
+                break
+    return total
 
 
 def judge(searcher: Searcher, found: Found) -> Judgement:
@@ -53,12 +78,10 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     """
     e = searcher.problem.evidence
     scale = noise_scale(e, min(found.levels, key=lambda f: f.objective))
-    costs = [
-        f.objective / scale + sum(price(searcher, s) for s in f.suspects) for f in found.levels
-    ]
+    costs = [f.objective / scale + burden(searcher, f) for f in found.levels]
     accepted = int(np.argmin(costs))
     rivals = [
-        (f.objective / scale + sum(price(searcher, s) for s in f.suspects))
+        f.objective / scale + burden(searcher, f)
         for level in found.rivals
         for f in level
         if not _alike(searcher, f, found.levels[accepted])
@@ -68,17 +91,18 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     return Judgement(scale, accepted, 1.0 / (1.0 + weight), costs[0] - costs[accepted])
 
 
-def enough(searcher: Searcher) -> Callable[[Fit, Fit], bool]:
+def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     """Return the rule that ends the search: one more suspect is not worth its price.
 
     What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
     the assumed one here; `judge` weighs again with what the best hypothesis leaves.
     """
 
-    def rule(previous: Fit, best: Fit) -> bool:
+    def rule(previous: Fit, best: Fit, share: float) -> bool:
         scale = min(noise_scale(searcher.problem.evidence, best), _MOST_NOISE)
-        added = max((price(searcher, s) for s in best.suspects), default=0.0)
-        return (previous.objective - best.objective) / scale < added
+        added = burden(searcher, best) - burden(searcher, previous)
+        added = max(added, *(price(searcher, s) for s in best.suspects))
+        return (previous.objective - best.objective) / scale < share * added
 
     return rule
 

@@ -20,13 +20,15 @@ from ..model import Model
 from .basis import Basis, ReducedTerm
 from .candidates import Candidates, Suspect
 from .fitting import Fit, Problem, fit
+from .mesh_error import lumping
+from .structure import Structure
 
 _DEPENDENT = 1e-6
 _CHANGED = 0.03
 
 
 def polished(
-    model: Model,
+    structure: Structure,
     catalogue: Sequence[Candidates],
     observation: sp.csr_matrix,
     problem: Problem,
@@ -38,7 +40,7 @@ def polished(
 
     Parameters
     ----------
-    model : Model
+    structure : Structure
     catalogue : sequence of Candidates
         As made, their laws not yet fitted to any basis.
     observation : (n_sensor, n_free) sparse
@@ -53,13 +55,15 @@ def polished(
         At most; ends when no magnitude moves by more than a few per cent.
     """
     for _ in range(rounds):
-        basis, chosen = _own_basis(model, catalogue, state, modes)
+        basis, chosen = _own_basis(structure.model, catalogue, state, modes)
         own = replace(
             problem,
             basis=basis,
             sensors=np.asarray(observation @ basis.vectors),
+            mesh=lumping(structure, basis.vectors),
             catalogue=tuple(c for c, _ in chosen),
             factors=tuple(U for _, U in chosen),
+            missing=(),
             modes=min(basis.size, max(modes, problem.columns)),
             turn=None,
             rest=None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Ints
+from .candidates import AttachedLaw
 from .evidence import matched, mode_costs
 from .fitting import Fit, Problem
 
@@ -44,11 +45,15 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         u = U[part]
         places = np.arange(len(U))[part]
         for j, theta in enumerate(trials):
-            c = law.value(np.full(len(places), theta), places)
-            values, Z = _changed(lam, u, c, law.on)
+            at = np.full(len(places), theta)
+            c = law.value(at, places)
+            if isinstance(law, AttachedLaw):
+                values, Z = _attached(lam, u, c, law.springs(at, places))
+            else:
+                values, Z = _changed(lam, u, c, law.on)
             values, Z = values[:, :n], Z[:, :, :n]
             gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
-            costs = mode_costs(problem.evidence, float(state.log_p[-1]), values, cross @ Z, gram)
+            costs = mode_costs(problem.evidence, values, cross @ Z, gram)
             out[part, j] = [matched(x)[0] for x in costs]
     return out
 
@@ -69,6 +74,22 @@ def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats
     H[:, np.arange(n), np.arange(n)] += 1.0
     values, Z = np.linalg.eigh(np.matmul(H * lam, H))
     return values, np.matmul(H, Z)
+
+
+def _attached(lam: Floats, u: Floats, m: Floats, k: Floats) -> tuple[Floats, Floats]:
+    """Eigenpairs of diag(lam) with masses m (g, 1) on springs k (g, q) at rows u, batched.
+
+    The vectors are those of the structure, without the rows of the masses.
+    """
+    g, q, n = u.shape
+    A = np.zeros((g, n + q, n + q))
+    A[:, :n, :n] = np.matmul(u.transpose(0, 2, 1) * k[:, None, :], u)
+    A[:, np.arange(n), np.arange(n)] += lam
+    A[:, n:, :n] = -u * (k / np.sqrt(m))[:, :, None]
+    A[:, :n, n:] = A[:, n:, :n].transpose(0, 2, 1)
+    A[:, np.arange(n, n + q), np.arange(n, n + q)] = k / m
+    values, Z = np.linalg.eigh(A)
+    return values, Z[:, :n]
 
 
 def best_apart(xyz: Floats, score: Floats, distance: float, count: int) -> list[int]:

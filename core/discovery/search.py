@@ -8,6 +8,7 @@ earlier suspect is taken out and looked for anew.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -20,6 +21,21 @@ from .scanning import best_apart, scan
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Changes of θ tried when a suspect moves to a neighbouring place."""
+_HOPELESS = 0.3
+"""A further suspect that gains less than this share of its price before it is moved to better
+neighbours is given up."""
+_NEAR = 0.5
+"""A kind whose best place gains this share of what the best of all gains is followed too."""
+_NEARBY = np.array([-0.35, 0.0, 0.35])
+"""Changes of θ tried around the best places of the first scan."""
+_WORTH = 0.35
+"""A branch that gains less than this share of what the best one gains is not fitted."""
+_CLOSE = 0.35
+"""A hypothesis that gained less than all but this share of what the best gained is not grown."""
+_SOFT = 3.0
+"""How many times the noise counts while branches are looked for."""
+_PROMISING = 10
+"""Neighbouring places, the best at θ as it is, at which those changes are tried."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +44,21 @@ class Effort:
 
     beam: int = 3
     branches: int = 4
+    looked_at: int = 6
+    around: int = 28
+    neighbours: int = 90
+    of_each_kind: int = 2
     most: int = 4
-    search_modes: int = 56
+    search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
+
+
+def _softened(problem: Problem) -> Problem:
+    """Return the problem with more noise: wider valleys, seen from places and sizes further off."""
+    e = problem.evidence
+    wide = replace(e.noise, frequency=_SOFT * e.noise.frequency, shape=_SOFT * e.noise.shape)
+    return replace(problem, evidence=replace(e, noise=wide))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,27 +95,79 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         n = min(self.effort.search_modes, self.problem.basis.size)
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
+        T = T[: self.problem.basis.size]
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
         small = replace(self.problem.turned(T[:, :n], rest), modes=n)
         return small, evaluate(small, state.log_p, state.suspects)
 
-    def branches(self, state: Fit, kinds: Sequence[int], count: int) -> list[tuple[float, Suspect]]:
+    def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
+        """Keep the best branches of all and the best of every kind, if they gain enough."""
+        number: Counter[str] = Counter()
+        kept: list[Suspect] = []
+        for place, (score, s) in enumerate(branches):
+            if kept and base - score < _WORTH * (base - branches[0][0]):
+                break
+            kind = self.problem.catalogue[s.kind].kind
+            number[kind] += 1
+            if place < self.effort.branches or number[kind] <= self.effort.of_each_kind:
+                kept.append(s)
+        return kept
+
+    def _leading(self, fits: Sequence[Fit], base: float) -> list[Fit]:
+        """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
+        most = self.effort.beam - (len(fits[0].suspects) > 1)
+        kept, kinds = list(fits[:most]), set()
+        for f in fits:
+            kind = self.problem.catalogue[f.suspects[-1].kind].kind
+            near = base - f.objective > _NEAR * (base - fits[0].objective)
+            if kind not in kinds and near and not any(f is g for g in kept):
+                kept.append(f)
+            kinds.add(kind)
+        return kept
+
+    def branches(self, state: Fit, count: int) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind by exact evaluation."""
         small, here = self.local(state)
+        small = _softened(small)
         out: list[tuple[float, Suspect]] = []
-        for kind in kinds:
+        for kind in range(len(small.catalogue)):
             c, rows = small.catalogue[kind], self.coarse[kind]
             if not len(rows):
                 continue
             score = scan(small, here, kind, rows, c.trials)
             score[self._taken(state, kind, rows)] = np.inf
-            prior = ((c.trials - c.typical) / c.spread) ** 2
-            total = score + prior[None, :]
-            best = total.min(axis=1)
-            for i in best_apart(c.xyz[rows], best, self.effort.apart * self.size, count):
-                theta = float(c.trials[total[i].argmin()])
-                out.append((float(best[i]), Suspect(kind, int(rows[i]), theta)))
+            total = score + (((c.trials - c.typical) / c.spread) ** 2)[None, :]
+            tried = list(zip(total.min(axis=1), rows, c.trials[total.argmin(axis=1)], strict=True))
+            coarse = best_apart(
+                c.xyz[rows], total.min(axis=1), self.effort.apart * self.size, self.effort.looked_at
+            )
+            done = set(rows.tolist())
+            for i in coarse:
+                near = self._around(kind, int(rows[i]))
+                near = near[~self._taken(state, kind, near)]
+                near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
+                if not len(near):
+                    continue
+                done.update(near.tolist())
+                theta = float(tried[i][2])
+                alike = scan(small, here, kind, near, np.array([theta]))[:, 0]
+                near = near[np.argsort(alike, kind="stable")[: _PROMISING // 2]]
+                trials = theta + _NEARBY
+                fine = scan(small, here, kind, near, trials)
+                fine = fine + (((trials - c.typical) / c.spread) ** 2)[None, :]
+                tried += zip(fine.min(axis=1), near, trials[fine.argmin(axis=1)], strict=True)
+            best = np.array([t[0] for t in tried])
+            every = np.array([t[1] for t in tried], dtype=np.int64)
+            for i in best_apart(c.xyz[every], best, self.effort.apart * self.size, count):
+                out.append((float(best[i]), Suspect(kind, int(every[i]), float(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
+
+    def _around(self, kind: int, row: int) -> Ints:
+        """Places next to one, nearest first."""
+        xyz = self.problem.catalogue[kind].xyz
+        distance = np.linalg.norm(xyz - xyz[row], axis=1)
+        near = np.flatnonzero(distance < self.effort.apart * self.size)
+        return np.asarray(near[np.argsort(distance[near], kind="stable")][: self.effort.around])
 
     def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
         """Places too near to a suspect of the same kind to be a second one, (n,)."""
@@ -106,9 +185,13 @@ class Searcher:
         suspects: Sequence[Suspect],
         iterations: int = 6,
         small: Problem | None = None,
+        soften: bool = False,
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small = small or self.local(state)[0]
+        if soften:
+            near = fit(_softened(small), state.log_p, suspects, self.active, iterations)
+            suspects, state = near.suspects, near
         quick = fit(small, state.log_p, suspects, self.active, iterations)
         return fit(self.problem, quick.log_p, quick.suspects, self.active, 2)
 
@@ -124,18 +207,30 @@ class Searcher:
                     state, moved = better, True
         return state
 
+    def settled(self, state: Fit) -> Fit:
+        """Fit again from the deck's values.
+
+        Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
+        """
+        fresh = np.zeros_like(state.log_p)
+        near = fit(_softened(self.problem), fresh, state.suspects, self.active, 8)
+        again = fit(self.problem, near.log_p, near.suspects, self.active, 8)
+        return again if again.objective < state.objective else state
+
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
         suspect = state.suspects[q]
         others = state.suspects[:q] + state.suspects[q + 1 :]
         c = self.problem.catalogue[suspect.kind]
         distance = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
-        rows = rows[np.argsort(distance[rows], kind="stable")][:160]
+        rows = rows[np.argsort(distance[rows], kind="stable")][: self.effort.neighbours]
         without = evaluate(self.problem, state.log_p, others)
         rows = rows[~self._taken(without, suspect.kind, rows)]
         if not len(rows):
             return None
         small, here = self.local(without)
+        first = scan(small, here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
+        rows = rows[np.argsort(first, kind="stable")[:_PROMISING]]
         trials = suspect.theta + _NEIGHBOURING
         score = scan(small, here, suspect.kind, rows, trials)
         best = score.min(axis=1)
@@ -148,71 +243,95 @@ class Searcher:
                 return trial
         return None
 
-    def reconsidered(self, state: Fit, kinds: Sequence[int]) -> Fit:
-        """Take each suspect out in turn and look for a better one anywhere."""
+    def reconsidered(self, state: Fit) -> Fit:
+        """Take each suspect out in turn and look for a better one anywhere.
+
+        The last of a new state was looked for just so, and is left out in the first round.
+        """
         moved = True
         rounds = 0
         while moved and rounds < 2:
             moved, rounds = False, rounds + 1
-            for q in range(len(state.suspects)):
+            for q in self._doubtful(state, rounds):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
                 without = self.fitted(state, others, 4)
-                for _, branch in self.branches(without, kinds, 3)[:4]:
-                    trial = self.fitted(without, (*others, branch), 6)
+                for _, branch in self.branches(without, 2)[:3]:
+                    trial = self.fitted(without, (*others, branch), 5, soften=True)
                     if trial.objective < state.objective + 0.05 * abs(state.objective):
-                        trial = self.refined(trial)
+                        trial = self.settled(self.refined(trial))
                     if trial.objective < state.objective - 1.0:
                         state, moved = trial, True
                         break
         return state
 
+    def _doubtful(self, state: Fit, rounds: int) -> list[int]:
+        """Suspects to be looked for anew: of many only the one that is missed least."""
+        older = list(range(len(state.suspects) - (rounds == 1)))
+        if len(state.suspects) < 3:
+            return older
+        left = [
+            evaluate(
+                self.problem, state.log_p, state.suspects[:q] + state.suspects[q + 1 :]
+            ).objective
+            for q in older
+        ]
+        return [older[int(np.argmin(left))]]
+
     def run(
-        self, enough: Callable[[Fit, Fit], bool], progress: Callable[[str], None] = lambda _: None
+        self,
+        enough: Callable[[Fit, Fit, float], bool],
+        progress: Callable[[str], None] = lambda _: None,
     ) -> Found:
         """Grow the beam until one more suspect no longer earns its place.
 
         Parameters
         ----------
         enough : callable
-            ``enough(previous, next)``: whether the richer fit is not worth its suspects.
+            ``enough(previous, next, share)``: whether the richer fit is not worth that share of
+            what its suspects cost.
         progress : callable
             Told what happens.
         """
-        everything = tuple(range(len(self.problem.catalogue)))
         levels = [self.null()]
         rivals: list[tuple[Fit, ...]] = [()]
         beam = [levels[0]]
-        kinds: Sequence[int] = everything
         for depth in range(1, self.effort.most + 1):
             progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
             grown: list[Fit] = []
             for state in beam:
-                small = self.local(state)[0]
-                for _, branch in self.branches(state, kinds, self.effort.branches)[:7]:
-                    grown.append(self.fitted(state, (*state.suspects, branch), 5, small))
+                small, here = self.local(state)
+                soft = evaluate(_softened(small), here.log_p, here.suspects).objective
+                for branch in self._varied(self.branches(state, self.effort.branches), soft):
+                    grown.append(self.fitted(state, (*state.suspects, branch), 5, small, True))
+                best = min(grown, key=lambda f: f.objective)
+                if depth > 1 and enough(levels[-1], best, _HOPELESS):
+                    break
             chosen = self._distinct(sorted(grown, key=lambda f: f.objective))
-            beam = sorted(
-                (self.refined(f) for f in chosen[: self.effort.beam]), key=lambda f: f.objective
-            )
-            if not beam:
+            if not chosen:
                 break
+            if depth > 1 and enough(levels[-1], chosen[0], _HOPELESS):
+                levels.append(chosen[0])
+                rivals.append(tuple(chosen[1:12]))
+                break
+            beam = sorted(
+                (
+                    self.settled(self.refined(f))
+                    for f in self._leading(chosen, levels[-1].objective)
+                ),
+                key=lambda f: f.objective,
+            )
             if depth > 1:
-                beam[0] = self.reconsidered(beam[0], kinds)
+                beam[0] = self.reconsidered(beam[0])
             beam = self._distinct(sorted(beam, key=lambda f: f.objective))
             best = beam[0]
             rest = (*beam[1:], *chosen[self.effort.beam :])
             rivals.append(rest[:12])
             previous = levels[-1]
             levels.append(best)
-            if enough(previous, best):
+            if enough(previous, best, 1.0):
                 break
-            strong = {
-                s.kind
-                for f in (*beam, *chosen[:8])
-                for s in f.suspects
-                if f.objective < best.objective + 0.6 * (previous.objective - best.objective)
-            }
-            kinds = sorted(strong) or everything
+            near = best.objective + _CLOSE * (previous.objective - best.objective)
+            beam = [f for f in beam[: self.effort.beam - 1] if f.objective < near]
         return Found(tuple(levels), tuple(rivals))
 
     def _distinct(self, fits: Sequence[Fit]) -> list[Fit]:

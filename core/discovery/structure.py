@@ -56,18 +56,18 @@ class Supports:
     xyz : (n, 3) float
     root : (n, n_free) sparse
         Forces on the free degrees of freedom of a unit displacement of each.
-    own : (n,) float
-        Stiffness of each, all else fixed.
-    elasticity : (n, n_parameter) float
-        ∂ln own/∂ln p.
+    coupling : (n, n) sparse
+        Stiffness among them, all else fixed.
+    slopes : tuple of (n, n) sparse
+        Its derivatives by the parameters, at the deck's values.
     """
 
     grid: Ints
     component: Ints
     xyz: Floats
     root: sp.csr_matrix
-    own: Floats
-    elasticity: Floats
+    coupling: sp.csr_matrix
+    slopes: tuple[sp.csr_matrix, ...]
 
 
 @dataclass(frozen=True, eq=False)

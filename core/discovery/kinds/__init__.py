@@ -16,7 +16,7 @@ from . import (
 )
 from .scale import Scale
 
-KINDS: dict[str, Callable[[Structure, Scale], Candidates | None]] = {
+KINDS: dict[str, Callable[[Structure, Scale], tuple[Candidates, ...]]] = {
     "point_mass": point_mass.candidates,
     "distributed_mass": distributed_mass.candidates,
     "local_stiffness": local_stiffness.candidates,

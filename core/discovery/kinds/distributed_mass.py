@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats
 from ..candidates import Candidates, MassLaw
 from ..structure import Structure
-from .patches import Patch, PatchCandidates, patches_of, where_of
+from .patches import Patch, PatchCandidates, patches_of, unit_mass, where_of
 from .scale import Scale
 
-_RADII = (0.13, 0.22)
+_RADII = (0.062, 0.075, 0.092, 0.11, 0.14, 0.175, 0.22)
+"""Radii beside the size of the structure; what is smaller is a mass at a point."""
 
 
-def candidates(structure: Structure, scale: Scale) -> Candidates | None:
-    """Extra mass, in proportion to the mass that is there, over large patches of elements."""
+def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+    """Extra mass, in proportion to the mass that is there, over patches of elements."""
     patches = patches_of(structure, scale.size, _RADII)
     if not patches:
-        return None
-    return PatchCandidates(
+        return ()
+    made = PatchCandidates(
         kind="distributed_mass",
         xyz=np.array([p.xyz for p in patches]),
         law=MassLaw(),
@@ -34,10 +32,11 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
         extra={
             "structure": structure,
             "patches": patches,
-            "share": _share,
+            "share": unit_mass,
             "areas": np.array([_area(structure, p) for p in patches]),
         },
     )
+    return (made,)
 
 
 def _area(structure: Structure, patch: Patch) -> float:
@@ -46,11 +45,3 @@ def _area(structure: Structure, patch: Patch) -> float:
     last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
     diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
     return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
-
-
-def _share(patch: Patch, M: Floats) -> Any:
-    """Scale element masses so that the patch as a whole has unit mass."""
-    n = M.shape[1]
-    x = np.zeros(n)
-    x[np.arange(0, n, 6)] = 1.0
-    return 1.0 / float(np.einsum("i,nij,j->", x, M, x))

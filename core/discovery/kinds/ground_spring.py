@@ -10,14 +10,13 @@ from .point_mass import points_of, translations
 from .scale import Scale
 
 
-def candidates(structure: Structure, scale: Scale) -> Candidates:
-    """Springs along each basic axis at every grid that is not fixed in it."""
+def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+    """Springs along each basic axis at every grid, shell middle and shell edge that moves."""
     points, xyz, grids = points_of(structure)
-    own = np.flatnonzero(np.diff(points.indptr) == 1)
-    root = translations(structure, points[own])
+    root = translations(structure, points)
     live = np.flatnonzero(np.diff(root.indptr) > 0)
-    at = own[live // 3]
-    return Candidates(
+    at = live // 3
+    made = Candidates(
         kind="ground_spring",
         xyz=xyz[at],
         law=SpringLaw(np.zeros((len(at), 1))),
@@ -31,3 +30,4 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
         typical=float(np.log(0.03 * scale.mass * scale.omega2)),
         spread=2.5,
     )
+    return (made,)

@@ -14,7 +14,7 @@ _KINK = 0.98
 _STEP = 0.01
 
 
-def candidates(structure: Structure, scale: Scale) -> Candidates | None:
+def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give each beam end that meets others a finite rotational stiffness, all axes alike."""
     beams = [m for m in structure.members if m.shape == "line" and m.block.width == 6]
     ends = _joints(structure, beams)
@@ -48,10 +48,10 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
             for g, e in zip(grids, m.ids[chosen[:, 0]], strict=True)
         ]
     if not roots:
-        return None
+        return ()
     stiffness = np.concatenate(own)
     typical = float(np.median(np.log(stiffness)))
-    return Candidates(
+    made = Candidates(
         kind="joint_flexibility",
         xyz=np.concatenate(xyz),
         law=ReleaseLaw(stiffness, np.concatenate(elastic), np.zeros(len(p))),
@@ -62,6 +62,7 @@ def candidates(structure: Structure, scale: Scale) -> Candidates | None:
         typical=typical - 1.0,
         spread=2.5,
     )
+    return (made,)
 
 
 def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: Floats) -> Floats:

@@ -7,17 +7,19 @@ import scipy.sparse as sp
 
 from ..candidates import Candidates, FactorLaw
 from ..structure import Structure
-from .patches import PatchCandidates, patches_of, where_of
+from .patches import Patch, PatchCandidates, bars_of, patches_of, where_of
 from .scale import Scale
 
-_FACTORS = (0.15, 0.4, 0.7, 1.6, 3.0)
+_FACTORS = (0.2, 0.5, 1.6, 3.0)
 
 
-def candidates(structure: Structure, scale: Scale) -> Candidates | None:
-    """Factors on the stiffness of every patch of shell elements."""
-    patches = patches_of(structure, scale.size)
-    if not patches:
-        return None
+def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+    """Factors on the stiffness of every patch of shells and of every bar between two joints."""
+    found = (patches_of(structure, scale.size), bars_of(structure))
+    return tuple(_of(structure, patches) for patches in found if patches)
+
+
+def _of(structure: Structure, patches: list[Patch]) -> Candidates:
     return PatchCandidates(
         kind="local_stiffness",
         xyz=np.array([p.xyz for p in patches]),

@@ -5,28 +5,36 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from ..basis import Basis
 from ..candidates import Candidates
 from ..structure import Members, Structure, thinned
 
 _RANK = 36
-_RADII = (0.05, 0.08, 0.13)
+_RADII = (0.045, 0.056, 0.07, 0.088, 0.11, 0.14, 0.175, 0.22)
+"""Radii of the patches, beside the size of the structure; every third is scanned first."""
 _SPACING = 0.35
-_MOST = 350
+_MOST = 400
+_LONG, _SHORT = 1.25, 0.63
+"""Half sides of an elongated patch beside the radius of the round one of the same area."""
+_STRAIGHT = 0.98
+_REACH = 1.6
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """Elements of one card around a centre."""
+    """Elements of one card around a centre; `first` where the first scan looks at it."""
 
     member: int
     rows: Ints
     xyz: Floats
     radius: float
+    first: bool
 
 
 def patches_of(structure: Structure, size: float, radii: tuple[float, ...] = _RADII) -> list[Patch]:
@@ -37,12 +45,65 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...] = _RA
             continue
         xyz = structure.centroids(m)
         tree = cKDTree(xyz)
-        for r in radii:
-            for c in _centres(xyz, _SPACING * r * size):
-                rows = np.array(sorted(tree.query_ball_point(xyz[c], r * size)), dtype=np.int64)
-                if len(rows) < 0.5 * len(xyz):
-                    out.append(Patch(number, rows, xyz[rows].mean(axis=0), r * size))
+        wide = np.flatnonzero(np.ptp(xyz, axis=0) > 0.1 * size)
+        sides = [np.where(np.arange(3) == k, _LONG, _SHORT) for k in wide] if len(wide) > 1 else []
+        centres = np.concatenate([xyz, structure.model.geometry.xyz[np.unique(m.corners)]])
+        for k, r in enumerate(radii):
+            coarse = set(_centres(xyz, 3.2 * _SPACING * r * size)) if k % 3 == 1 else set()
+            for c in sorted({*_centres(centres, _SPACING * r * size), *coarse}):
+                reach = np.array(tree.query_ball_point(centres[c], _REACH * r * size), np.int64)
+                away = np.abs(xyz[reach] - centres[c]) / (r * size)
+                inside = [np.linalg.norm(away, axis=1) <= 1.0]
+                inside += [np.all(away <= s, axis=1) for s in sides]
+                for shape, which in enumerate(inside):
+                    rows = np.sort(reach[which])
+                    if 0 < len(rows) < 0.5 * len(xyz):
+                        first = shape == 0 and c in coarse
+                        middle = xyz[rows].mean(axis=0)
+                        out.append(Patch(number, rows, middle, r * size, first))
     return _distinct(out)
+
+
+def bars_of(structure: Structure) -> list[Patch]:
+    """Every bar of a frame: the line elements from one joint to the next, off the shells."""
+    n = len(structure.model.geometry.ids)
+    count, shelled = np.zeros(n, np.int64), np.zeros(n, bool)
+    for m in structure.members:
+        if m.shape == "line":
+            np.add.at(count, m.corners[:, :2].ravel(), 1)
+        else:
+            shelled[m.corners.ravel()] = True
+    through = (count == 2) & ~shelled
+    out = []
+    for number, m in enumerate(structure.members):
+        if m.shape != "line" or m.block.width != 6:
+            continue
+        free = np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1))
+        xyz = structure.centroids(m)
+        for rows in _chains(m.corners[free, :2], through, structure.model.geometry.xyz):
+            own = free[rows]
+            length = float(np.ptp(xyz[own], axis=0).max())
+            out.append(Patch(number, own, xyz[own].mean(axis=0), length, True))
+    return out
+
+
+def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
+    """Rows of line elements that continue each other straight at nodes with nothing else."""
+    n = len(ends)
+    rows, columns = [], []
+    order = np.argsort(ends.ravel(), kind="stable")
+    nodes = ends.ravel()[order]
+    pairs = np.flatnonzero((nodes[1:] == nodes[:-1]) & through[nodes[1:]])
+    along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
+    along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
+    for k in pairs:
+        a, b = int(order[k] // 2), int(order[k + 1] // 2)
+        if abs(float(along[a] @ along[b])) > _STRAIGHT:
+            rows.append(a)
+            columns.append(b)
+    graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
+    number, label = connected_components(graph, directed=False)
+    return [np.flatnonzero(label == k) for k in range(number)]
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:
@@ -55,40 +116,58 @@ def _centres(xyz: Floats, spacing: float) -> Ints:
 
 def _distinct(patches: list[Patch]) -> list[Patch]:
     seen: dict[tuple[int, bytes], Patch] = {}
-    for p in patches:
+    for p in sorted(patches, key=lambda q: not q.first):
         seen.setdefault((p.member, p.rows.tobytes()), p)
     return list(seen.values())
+
+
+class PatchRows:
+    """Leading rows of a root of each patch's matrix on a basis, made when asked for, then kept."""
+
+    def __init__(self, candidates: PatchCandidates, basis: Basis) -> None:
+        self._candidates = candidates
+        self._basis = basis
+        structure: Structure = candidates.extra["structure"]
+        self._motion = np.asarray(structure.displacement @ basis.vectors)
+        self._members: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._kept: dict[int, Floats] = {}
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return the rows of some patches, (n, q, r)."""
+        return np.stack([self._one(int(i)) for i in rows])
+
+    def _one(self, i: int) -> Floats:
+        if i not in self._kept:
+            patch: Patch = self._candidates.extra["patches"][i]
+            X, u, Xu = self._member(patch.member)
+            r = self._basis.size
+            A = u[patch.rows].reshape(-1, r).T @ Xu[patch.rows].reshape(-1, r)
+            q = min(_RANK, r)
+            values, vectors = la.eigh(
+                A * self._candidates.share(patch, X[patch.rows]), subset_by_index=(r - q, r - 1)
+            )
+            self._kept[i] = np.ascontiguousarray((vectors * np.sqrt(np.maximum(values, 0.0))).T)
+        return self._kept[i]
+
+    def _member(self, number: int) -> tuple[Floats, Floats, Floats]:
+        """Matrices of the elements of one card, their motion, and the forces of it."""
+        if number not in self._members:
+            structure: Structure = self._candidates.extra["structure"]
+            member = structure.members[number]
+            every = np.arange(len(member.ids))
+            X = self._candidates.matrices(member, every)
+            u = self._motion[member.coordinates(every)]
+            self._members[number] = (X, u, np.matmul(X, u))
+        return self._members[number]
 
 
 @dataclass(frozen=True, eq=False)
 class PatchCandidates(Candidates):
     """Candidates whose matrix is the stiffness or the mass of a patch of elements."""
 
-    def factors(self, basis: Basis) -> Floats:
-        """Return the leading rows of a root of each patch's matrix on the basis, (n, q, r)."""
-        structure: Structure = self.extra["structure"]
-        motion = np.asarray(structure.displacement @ basis.vectors)
-        q = min(_RANK, basis.size)
-        out = np.zeros((len(self), q, basis.size))
-        for number, member in enumerate(structure.members):
-            own = [i for i, p in enumerate(self.extra["patches"]) if p.member == number]
-            if not own:
-                continue
-            used = np.unique(np.concatenate([self.extra["patches"][i].rows for i in own]))
-            X = self._matrices(member, used)
-            place = np.full(len(member.ids), -1, np.int64)
-            place[used] = np.arange(len(used))
-            at = member.coordinates(used)
-            for i in own:
-                patch: Patch = self.extra["patches"][i]
-                rows = place[patch.rows]
-                u = motion[at[rows]]
-                Xu = np.matmul(X[rows], u)
-                A = u.reshape(-1, basis.size).T @ Xu.reshape(-1, basis.size)
-                values, vectors = np.linalg.eigh(A * self._share(patch, X[rows]))
-                root = vectors[:, -q:] * np.sqrt(np.maximum(values[-q:], 0.0))
-                out[i] = root.T
-        return out
+    def factors(self, basis: Basis) -> PatchRows:
+        """Return the leading rows of a root of each patch's matrix on the basis."""
+        return PatchRows(self, basis)
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""
@@ -96,8 +175,8 @@ class PatchCandidates(Candidates):
         patch = self.extra["patches"][row]
         member = structure.members[patch.member]
         at = member.coordinates(patch.rows)
-        X = self._matrices(member, patch.rows)
-        X = X * self._share(patch, X)
+        X = self.matrices(member, patch.rows)
+        X = X * self.share(patch, X)
         m = at.shape[1]
         n = structure.displacement.shape[0]
         A = sp.csr_matrix(
@@ -106,17 +185,26 @@ class PatchCandidates(Candidates):
         D = structure.displacement
         return (D.T @ A @ D).tocsr()
 
-    def _matrices(self, member: Members, rows: Ints) -> Floats:
+    def matrices(self, member: Members, rows: Ints) -> Floats:
+        """Return the matrices of some elements that the effect changes, (n, m, m)."""
         structure: Structure = self.extra["structure"]
         K, M = member.matrices(rows, np.ones(len(structure.model.parameters)))
         X = K if self.law.on == "K" else M
         assert X is not None
         return X
 
-    def _share(self, patch: Patch, X: Floats) -> float:
+    def share(self, patch: Patch, X: Floats) -> float:
         """Return the factor that gives a patch of masses unit mass; 1 for stiffness."""
         share = self.extra.get("share")
         return 1.0 if share is None else float(share(patch, X))
+
+
+def unit_mass(patch: Patch, M: Floats) -> float:
+    """Scale element masses so that the patch as a whole has unit mass."""
+    n = M.shape[1]
+    x = np.zeros(n)
+    x[np.arange(0, n, 6)] = 1.0
+    return 1.0 / float(np.einsum("i,nij,j->", x, M, x))
 
 
 def where_of(structure: Structure, patches: list[Patch]) -> tuple[dict[str, list[int]], ...]:

@@ -8,13 +8,22 @@ import scipy.sparse as sp
 from ...arrays import Floats, Ints
 from ..candidates import Candidates, MassLaw
 from ..structure import Structure
+from .patches import Patch, PatchCandidates, patches_of, unit_mass
 from .scale import Scale
 
+_FEET = (0.024, 0.034, 0.048)
+"""Radii of the footprint of a mass, beside the size of the structure."""
+_SHELLS = ("quad", "tria")
 
-def candidates(structure: Structure, scale: Scale) -> Candidates:
-    """Masses on every grid and in the middle of every shell element."""
+
+def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+    """Masses at points, and masses on small patches of shells.
+
+    Points are grids and the middles of shells and their edges. Equipment has a footprint, and a
+    thin shell gives under a point far more than under a foot, so small patches count as well.
+    """
     points, xyz, grids = points_of(structure)
-    return Candidates(
+    at_points = Candidates(
         kind="point_mass",
         xyz=xyz,
         law=MassLaw(),
@@ -25,6 +34,27 @@ def candidates(structure: Structure, scale: Scale) -> Candidates:
         typical=float(np.log(0.03 * scale.mass)),
         spread=1.5,
     )
+    feet = patches_of(structure, scale.size, _FEET)
+    if not feet:
+        return (at_points,)
+    on_feet = PatchCandidates(
+        kind="point_mass",
+        xyz=np.array([p.xyz for p in feet]),
+        law=MassLaw(),
+        trials=scale.masses(),
+        root=sp.csr_matrix((0, structure.model.n_free)),
+        rows_each=0,
+        where=tuple({"grids": _grids(structure, p)} for p in feet),
+        typical=float(np.log(0.03 * scale.mass)),
+        spread=1.5,
+        extra={"structure": structure, "patches": feet, "share": unit_mass},
+    )
+    return (at_points, on_feet)
+
+
+def _grids(structure: Structure, patch: Patch) -> list[int]:
+    corners = structure.members[patch.member].corners[patch.rows]
+    return [int(g) for g in structure.model.geometry.ids[np.unique(corners)]]
 
 
 def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:
@@ -43,7 +73,7 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[in
         sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
     ]
     for m in structure.members:
-        if m.shape in {"quad", "tria"}:
+        if m.shape in _SHELLS:
             weights.append(_means(m.corners, len(g.ids)))
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)

@@ -27,10 +27,10 @@ class Scale:
     size: float
     omega2: float
 
-    def masses(self, count: int = 3) -> Floats:
+    def masses(self, count: int = 4) -> Floats:
         """Trial masses, ln."""
         return np.asarray(np.log(self.mass * np.geomspace(0.01, 0.09, count)))
 
-    def springs(self, count: int = 3) -> Floats:
+    def springs(self, count: int = 4) -> Floats:
         """Trial stiffnesses, ln."""
         return np.asarray(np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count)))

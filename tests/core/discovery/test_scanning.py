@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 
-from trueup.core.discovery.scanning import _changed, best_apart
+from trueup.core.discovery.scanning import _attached, _changed, best_apart
 
 RNG = np.random.default_rng(1)
 LAM = np.sort(RNG.uniform(1.0, 50.0, 12))
@@ -25,3 +25,25 @@ def test_every_place_is_an_exact_solution_of_the_changed_eigenproblem(on):
 def test_the_best_places_are_apart():
     xyz = np.array([[0.0, 0, 0], [0.1, 0, 0], [5.0, 0, 0], [5.1, 0, 0]])
     assert best_apart(xyz, np.array([2.0, 1.0, 4.0, 3.0]), 1.0, 5) == [1, 3]
+
+
+def test_a_mass_on_springs_is_the_pencil_with_its_coordinates():
+    m, k = np.array([[0.3], [1.0], [2.0], [0.1], [5.0]]), np.full((5, 3), 40.0)
+    values, Z = _attached(LAM, U, m, k)
+    for g in range(5):
+        K = np.zeros((15, 15))
+        K[:12, :12] = np.diag(LAM) + (U[g].T * k[g]) @ U[g]
+        K[12:, :12] = -(k[g][:, None] * U[g])
+        K[:12, 12:] = K[12:, :12].T
+        K[12:, 12:] = np.diag(k[g])
+        M = np.diag(np.r_[np.ones(12), np.full(3, m[g, 0])])
+        expected, vectors = la.eigh(K, M)
+        np.testing.assert_allclose(values[g], expected, rtol=1e-8)
+        np.testing.assert_allclose(np.abs(Z[g]), np.abs(vectors[:12]), atol=1e-6)
+
+
+def test_a_mass_on_rigid_springs_is_a_mass():
+    m = np.full((5, 1), 0.7)
+    stiff, _ = _attached(LAM, U, m, np.full((5, 3), 1e9))
+    rigid, _ = _changed(LAM, U, m, "M")
+    np.testing.assert_allclose(stiff[:, :12], rigid, rtol=1e-5)
