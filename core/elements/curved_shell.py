@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Floats, Ints
 from .batch import arms, congruent, in_chunks, skew, symmetric, transpose, unit
+from .lumping import to_middle_nodes
 from .section import ShellSection
 from .solid_shapes import gauss_tria
 from .transverse_shear import finite_shear
@@ -158,7 +159,8 @@ def tria6_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
     areal_density : (n,) float
         Mass per area.
     coupled : bool
-        Consistent mass; otherwise all of it at the middle nodes, as MSC does.
+        Consistent mass; otherwise all of it at the middle nodes, as MSC does (see
+        `lumping.to_middle_nodes`).
     """
     return _mass(tria6_shape, *gauss_tria(7), 3, xyz, areal_density, coupled)
 
@@ -179,9 +181,7 @@ def _mass(
     if coupled:
         m = transpose(N * weight[..., None]) @ N
     else:
-        share = weight @ N
-        share[:, :corners] = 0.0
-        share *= (weight.sum(axis=1) / share.sum(axis=1))[:, None]
+        share = to_middle_nodes(weight @ N, xyz, corners)
         m = share[:, :, None] * np.eye(N.shape[1])
     M = np.zeros((len(xyz), N.shape[1], 6, N.shape[1], 6))
     for k in range(3):

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Floats
 from .batch import in_chunks, symmetric, transpose
+from .lumping import to_middle_nodes
 from .solid_shapes import (
     HEXA8,
     HEXA20,
@@ -74,8 +75,8 @@ def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Flo
         Node positions, basic frame.
     density : (n,) float
     coupled : bool
-        Consistent mass; otherwise lumped by row sums, all of it at the middle nodes where there
-        are some, as MSC Nastran does with the ten-node tetrahedron and its shells.
+        Consistent mass; otherwise lumped by row sums, where there are middle nodes all of it at
+        these (see `lumping.to_middle_nodes`).
     """
     k = solid.nodes
 
@@ -85,11 +86,10 @@ def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Flo
         weight = detJ * solid.mass_weights * density[part, None]
         m = transpose(N[None] * weight[..., None]) @ N
         if not coupled:
-            diagonal = m.sum(axis=2)
+            share = m.sum(axis=2)
             if len(solid.edges):
-                diagonal[:, : k - len(solid.edges)] = 0.0
-            scale = weight.sum(axis=1) / diagonal.sum(axis=1)
-            m = diagonal[:, :, None] * np.eye(k) * scale[:, None, None]
+                share = to_middle_nodes(share, xyz[part], k - len(solid.edges))
+            m = share[:, :, None] * np.eye(k)
         M = np.zeros((len(m), k, 3, k, 3))
         for i in range(3):
             M[:, :, i, :, i] = m

@@ -1,0 +1,58 @@
+"""Lumped mass of second-order elements."""
+
+import numpy as np
+import pytest
+
+from trueup.core.elements import HEXA20, PENTA15, PYRAMID13, TETRA10, TRIA6_EDGES, tria6_mass
+from trueup.core.elements.solid import solid_mass
+
+CORNERS = {
+    20: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+    15: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]],
+    13: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]],
+    10: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+}
+
+
+def _placed(solid, rng, bend):
+    corner = np.array(CORNERS[solid.nodes], float) * [3.0, 1.0, 0.5]
+    corner = corner + 0.1 * rng.uniform(-1, 1, corner.shape)
+    middle = np.array([0.5 * (corner[i] + corner[j]) for i, j in solid.edges])
+    return np.concatenate([corner, middle + bend * rng.uniform(-1, 1, middle.shape)])
+
+
+def _diagonal(solid, xyz):
+    return np.diag(solid_mass(solid, xyz[None], np.ones(1), False)[0])[::3]
+
+
+def test_straight_tetrahedron():
+    """Opposite edges share 1/5 - d**2 / (10 sum d**2) each, d from middle to middle."""
+    xyz = _placed(TETRA10, np.random.default_rng(1), 0.0)
+    m = _diagonal(TETRA10, xyz)
+    middle = xyz[4:]
+    opposite = [(0, 5), (1, 3), (2, 4)]
+    d = np.array([np.sum((middle[i] - middle[j]) ** 2) for i, j in opposite])
+    expected = 0.2 - 0.1 * d / d.sum()
+    for (i, j), share in zip(opposite, expected, strict=True):
+        assert m[4 + i] / m.sum() == pytest.approx(share, rel=1e-9)
+        assert m[4 + j] / m.sum() == pytest.approx(share, rel=1e-9)
+
+
+@pytest.mark.parametrize("solid", [HEXA20, PENTA15, PYRAMID13, TETRA10], ids=lambda s: str(s.nodes))
+@pytest.mark.parametrize("bend", [0.0, 0.05])
+def test_mass_and_centre_of_gravity_stay(solid, bend):
+    xyz = _placed(solid, np.random.default_rng(solid.nodes), bend)
+    m = _diagonal(solid, xyz)
+    M = solid_mass(solid, xyz[None], np.ones(1), True)[0][::3, ::3]
+    assert m.sum() == pytest.approx(M.sum(), rel=1e-12)
+    np.testing.assert_allclose(m @ xyz, M.sum(axis=0) @ xyz, rtol=1e-10, atol=1e-12)
+    assert not m[: solid.nodes - len(solid.edges)].any()
+    assert (m >= 0.0).all()
+
+
+def test_flat_triangle():
+    corner = np.array([[0.0, 0, 0], [3.0, 0, 0], [0.0, 1.0, 0]])
+    xyz = np.concatenate([corner, [0.5 * (corner[i] + corner[j]) for i, j in TRIA6_EDGES]])
+    m = np.diag(tria6_mass(xyz[None], np.array([2.0]), False)[0])[::6]
+    assert m.sum() == pytest.approx(3.0)
+    np.testing.assert_allclose(m @ xyz / 3.0, corner.mean(axis=0), atol=1e-12)
