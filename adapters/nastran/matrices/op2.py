@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..results.op2records import Op2Block, Op2File, strings_of
+from ..results.op2records import Op2Block, Op2File
 from .columns import Filler, Strings, gather
 from .content import SYMMETRIC, DofMap, NastranMatrix, symmetrised
 from .op2pool import is_pool, pool_matrices
 
 _GRID = 1
+_RUNS = 1 << 14
 _NAMED_ROWS = ("EQEXIN", "EQEXINS")
 _FORMS = (1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 13, 15)
 _COMPLEX = (3, 4)
@@ -55,7 +56,7 @@ def list_op2_matrices(path: Path | str) -> Iterator[tuple[str, tuple[int, int]]]
 def is_matrix(block: Op2Block) -> bool:
     """Whether a data block is a matrix: its records are columns, its trailer that of a matrix."""
     return (
-        any(r.is_column for r in block.records)
+        block.n_column > 0
         and len(block.trailer) >= 5
         and block.trailer[3] in _FORMS
         and block.trailer[4] in (1, 2, 3, 4)
@@ -82,10 +83,11 @@ def _matrix(file: Op2File, block: Op2Block, g_set: DofMap | None) -> NastranMatr
     single = file.word == 4 and kind not in _DOUBLE
     size = (4 if single else 8) * (2 if kind in _COMPLEX else 1)
     number = f"{file.order}{'c' if kind in _COMPLEX else 'f'}{size}"
-    most = sum(r.size for r in block.records) // size
+    table = np.frombuffer(block.runs, np.int64).reshape(-1, 4)
+    most = int((table[:, 3] - table[:, 2]).sum()) // size
     filler = Filler((rows, columns), most, np.complex128 if kind in _COMPLEX else np.float64)
-    for runs in strings_of(file, block):
-        column, row, start, stop = runs.T
+    for first in range(0, len(table), _RUNS):
+        column, row, start, stop = table[first : first + _RUNS].T
         count = (stop - start) // size
         wrong = (row < 0) | (row + count > rows) | (column >= columns) | ((stop - start) % size > 0)
         if wrong.any() or (start % 4).any():  # records begin at multiples of four bytes
@@ -96,6 +98,7 @@ def _matrix(file: Op2File, block: Op2Block, g_set: DofMap | None) -> NastranMatr
             filler.add(Strings(column, row, count, start), values)
         except ValueError:
             raise file.damaged(int(start[0]), f"{block.name} has too many values") from None
+        file.release_between(int(start.min(initial=0)), int(stop.max(initial=0)))
     matrix = filler.matrix()
     square = rows == columns
     if form == SYMMETRIC and square:

@@ -27,7 +27,7 @@ def is_pool(block: Op2Block) -> bool:
     """Whether a data block holds matrices as DMIG cards do."""
     return block.name == "MATPOOL" or (
         bool(block.records) and len(block.trailer) > 2 and not any(block.trailer[2:])
-        and block.name[:1] in "KMB" and not any(r.is_column for r in block.records)
+        and block.name[:1] in "KMB" and not block.n_column
     )  # fmt: skip
 
 

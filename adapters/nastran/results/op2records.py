@@ -11,7 +11,6 @@ from __future__ import annotations
 import mmap
 import struct
 from array import array
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,7 +24,7 @@ from ....core.errors import InputError
 _STARTS = {b"\4\0\0\0": ("<", 4), b"\0\0\0\4": (">", 4), b"\10\0\0\0": ("<", 8),
            b"\0\0\0\10": (">", 8)}  # fmt: skip
 _MARK = 4
-_MOST_RUNS = 1 << 18
+_RELEASE = 1 << 22
 _LABEL = 3
 """First marker of the label that most files start with: the date has three words."""
 
@@ -34,10 +33,9 @@ Span = tuple[int, int]
 
 @dataclass(frozen=True)
 class Op2Record:
-    """A logical record: where its parts stand in the file; a column of a matrix or not."""
+    """A logical record: where its parts stand in the file."""
 
     parts: tuple[Span, ...]
-    is_column: bool
 
     @property
     def size(self) -> int:
@@ -47,12 +45,17 @@ class Op2Record:
 
 @dataclass(frozen=True)
 class Op2Block:
-    """A data block: its name, the words of its trailer and its records after the header."""
+    """A data block: its name, the words of its trailer and its records after the header.
+
+    `runs` are those of the columns of a matrix: column and first row (from 0) and the bytes
+    between which the values stand, four numbers each.
+    """
 
     name: str
     trailer: tuple[int, ...]
-    header: Op2Record
     records: tuple[Op2Record, ...]
+    runs: array[int]
+    n_column: int = 0
 
 
 def is_op2_start(head: bytes) -> bool:
@@ -83,6 +86,7 @@ class Op2File:
             raise InputError(f"cannot read {path}: {error.strerror or error}") from None
         self.order, self.word = start
         self._size = len(self._data)
+        self._run = struct.Struct(self.order + ("5i" if self.word == 4 else "iqiiq"))
         self._mark = struct.Struct(f"{self.order}i")
         self._integer = struct.Struct(self.order + ("i" if self.word == 4 else "q"))
         try:
@@ -127,10 +131,14 @@ class Op2File:
     def release(self, record: Op2Record) -> None:
         """Let the system take back the memory of a record that has been read."""
         for start, stop in record.parts:
-            first = -(-start // mmap.PAGESIZE) * mmap.PAGESIZE
-            whole = (stop - first) // mmap.PAGESIZE * mmap.PAGESIZE
-            if whole > 0 and hasattr(mmap, "MADV_DONTNEED"):
-                self._data.madvise(mmap.MADV_DONTNEED, first, whole)
+            self.release_between(start, stop)
+
+    def release_between(self, start: int, stop: int) -> None:
+        """Let the system take back the memory of some bytes that have been read."""
+        first = -(-start // mmap.PAGESIZE) * mmap.PAGESIZE
+        whole = (stop - first) // mmap.PAGESIZE * mmap.PAGESIZE
+        if whole > 0 and hasattr(mmap, "MADV_DONTNEED"):
+            self._data.madvise(mmap.MADV_DONTNEED, first, whole)
 
     def _words(self, record: Op2Record, kind: str) -> Numbers:
         if len(record.parts) == 1:
@@ -222,6 +230,7 @@ class Op2File:
         (start, stop), at = self._part(at, words)
         trailer = np.frombuffer(self._data[start:stop], self._dtype("i"))
         records: list[Op2Record] = []
+        runs, n_column, seen = array("q"), 0, at
         number, at = self._marker(at)
         while True:
             if number >= 0:
@@ -230,19 +239,48 @@ class Op2File:
             column, at = self._marker(at)
             if one != 1 or column not in (0, 1):
                 raise self.damaged(at, f"the markers of a record of {name} are wrong")
+            if column:
+                number, at = self._column(at, n_column, runs)
+                n_column += 1
+                if at - seen > _RELEASE:
+                    self.release_between(seen, at)
+                    seen = at
+                continue
             parts: list[Span] = []
             words, at = self._marker(at)
             if words == 0:
                 break
             while words > 0:
-                # the marker of a run of a matrix does not count the row that leads it
-                part, at = self._part(at, words + column)
+                part, at = self._part(at, words)
                 parts.append(part)
                 words, at = self._marker(at)
-            records.append(Op2Record(tuple(parts), column == 1))
+            records.append(Op2Record(tuple(parts)))
             number = words
-        header = records[0] if records else Op2Record((), False)
-        return Op2Block(name, tuple(map(int, trailer)), header, tuple(records[1:])), at
+        return Op2Block(name, tuple(map(int, trailer)), tuple(records[1:]), runs, n_column), at
+
+    def _column(self, at: int, column: int, runs: array[int]) -> tuple[int, int]:
+        """Note the runs of a column; return the marker after them and what follows it."""
+        data, word = self._data, self.word
+        while True:
+            try:
+                before, words, after, size, row = self._run.unpack_from(data, at)
+            except struct.error:  # the end of the file, or nearly
+                return self._marker(at)
+            if before != word or after != word:
+                raise self.damaged(at, "a marker is expected")
+            at += 2 * _MARK + word
+            if words <= 0:
+                return words, at
+            start, stop = at + _MARK + word, at + _MARK + size
+            # the marker of a run does not count the row that leads it
+            if size != (words + 1) * word:
+                raise self.damaged(at, f"a record of {words + 1} words is expected")
+            if stop + _MARK > self._size:
+                raise self._cut_short(at)
+            if self._mark.unpack_from(data, stop)[0] != size:
+                raise self.damaged(at, "a record does not close")
+            runs.extend((column, row - 1, start, stop))
+            at = stop + _MARK
 
 
 def _text(raw: bytes, word: int) -> str:
@@ -250,20 +288,3 @@ def _text(raw: bytes, word: int) -> str:
     if word == 8 and not any(raw[k + 4 : k + 8].strip(b" \0") for k in range(0, len(raw), 8)):
         raw = b"".join(raw[k : k + 4] for k in range(0, len(raw), 8))
     return raw.decode("latin-1").strip(" \0")
-
-
-def strings_of(file: Op2File, block: Op2Block) -> Iterator[Ints]:
-    """Yield column and first row (from 0) and bytes start, stop of runs of a matrix, (n, 4)."""
-    found = array("q")
-    column = -1
-    for record in block.records:
-        if not record.is_column:
-            continue
-        column += 1
-        for start, stop in record.parts:
-            (row,) = file._integer.unpack_from(file._data, start)
-            found.extend((column, row - 1, start + file.word, stop))
-        if len(found) > _MOST_RUNS:
-            yield np.array(found, np.int64).reshape(-1, 4)
-            found = array("q")
-    yield np.array(found, np.int64).reshape(-1, 4)

@@ -362,3 +362,19 @@ def test_modes_sorted_by_points_are_listed_as_not_read(tmp_path):
     assert (skipped["what"], "SORT1" in skipped["why"]) == ("OUGV2", True)
     with pytest.raises(InputError, match="no eigenvectors"):
         read_modes(path)
+
+
+def test_a_matrix_of_zeros_and_one_of_many_runs(tmp_path):
+    w = Writer()
+    w.label()
+    w.matrix("NULL", (101, 3, 5, 2, 2, 0, 0), [[], [], []])
+    rows = np.arange(1, 4000, 2)
+    values = RNG.normal(size=len(rows))
+    runs = [(int(r), struct.pack("<d", v)) for r, v in zip(rows, values, strict=True)]
+    w.matrix("LONG", (102, 3, 4000, 2, 2, 0, 0), [[], runs, []])
+    path = tmp_path / "a.op2"
+    path.write_bytes(w.done())
+    long, null = read_matrices(path)
+    assert (null.name, null.matrix.shape, null.matrix.nnz) == ("NULL", (5, 3), 0)
+    assert np.array_equal(long.matrix.toarray()[rows - 1, 1], values)
+    assert long.matrix.nnz == len(rows)
