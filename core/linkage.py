@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints
+from .arrays import Floats, Ints, Numbers
 from .errors import InputError
 from .mechanism import where
 from .model import Model
@@ -17,9 +17,9 @@ _MOVED = 1e-6
 def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
     """Refuse free motions that bend a linkage: an element turns about a grid that is held.
 
-    The free end of a rod that is pinned to the ground at its other end can go sideways as in the
-    translation of a rigid body; but the rod turns. Such a motion needs a translation, of a grid
-    at the other end of an element, that the constraints do not allow.
+    The free grids of a four-bar linkage go sideways as in the translation of a rigid body; but
+    its cranks turn about the ground. No rigid motion moves the free grids so and leaves at rest
+    the grids that are held at the other ends of their elements. (A pendulum is a rigid body.)
 
     Parameters
     ----------
@@ -31,10 +31,10 @@ def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
     InputError
         With the grids and directions that move.
     """
-    fixed, xyz = _held(model)
-    if not modes.shape[1] or not len(fixed):
+    still = np.asarray(abs(sp.csr_matrix(model.expansion)).sum(axis=1)).ravel() == 0.0
+    if not modes.shape[1] or not still.any():
         return
-    moving = [k for k in range(modes.shape[1]) if _turns(model, fixed, xyz, modes[:, k])]
+    moving = [k for k in range(modes.shape[1]) if _turns(model, still, modes[:, k])]
     if moving:
         count = "a motion" if len(moving) == 1 else f"{len(moving)} motions"
         raise InputError(
@@ -44,40 +44,24 @@ def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
         )
 
 
-def _held(model: Model) -> tuple[Ints, Floats]:
-    """Find the translations, as rows of `dofs`, that the user holds, and where they are."""
-    T = sp.csr_matrix(model.expansion)
-    still = np.asarray(abs(T).sum(axis=1)).ravel() == 0.0
-    row = model.geometry.index_of(model.dofs.node)
-    translation = (model.dofs.component >= 1) & (model.dofs.component <= 3)
-    idle = np.isin(model.dofs.node, model.idle)
-    fixed = np.flatnonzero(still & translation & (row >= 0) & ~idle)
-    return fixed, model.geometry.xyz[row[fixed]]
-
-
-def _turns(model: Model, fixed: Ints, xyz: Floats, u: Floats) -> bool:
-    """Whether a rigid motion of the moving grids would move held ones on the same elements."""
+def _turns(model: Model, still: Numbers, u: Floats) -> bool:
+    """Whether no rigid motion moves all moving grids so and leaves the held ones at rest."""
     v = np.asarray(model.expansion @ u)
-    dofs = model.dofs
-    row = model.geometry.index_of(dofs.node)
-    used = np.flatnonzero((dofs.component >= 1) & (dofs.component <= 3) & (row >= 0))
-    used = used[np.abs(v[used]) > _MOVED * np.abs(v).max()]
-    if not len(used):
+    dofs, geometry = model.dofs, model.geometry
+    row = geometry.index_of(dofs.node)
+    translation = (dofs.component >= 1) & (dofs.component <= 3) & (row >= 0)
+    moving = translation & (np.abs(v) > _MOVED * np.abs(v).max())
+    grids = np.unique(row[moving])
+    if not len(grids):
         return False
-    span = model.geometry.size or 1.0
-    centre = model.geometry.xyz[row[used]].mean(axis=0)
-    c, *_ = np.linalg.lstsq(
-        _rigid(dofs.axis[used], (model.geometry.xyz[row[used]] - centre) / span),
-        v[used],
-        rcond=None,
-    )
-    near = np.isin(row[fixed], _neighbours(model, row[used]))
-    wanted = _rigid(dofs.axis[fixed[near]], (xyz[near] - centre) / span) @ c
-    return bool((np.abs(wanted) > 1e-3 * np.abs(v[used]).max()).any())
-
-
-def _rigid(axis: Floats, arm: Floats) -> Floats:
-    return np.hstack([axis, np.cross(arm, axis)])
+    involved = np.isin(row, np.union1d(grids, _neighbours(model, grids)))
+    known = translation & involved & (still | np.isin(row, grids))
+    known &= ~(still & np.isin(dofs.node, model.idle))
+    rows = np.flatnonzero(known)
+    arm = (geometry.xyz[row[rows]] - geometry.xyz[grids].mean(axis=0)) / (geometry.size or 1.0)
+    R = np.hstack([dofs.axis[rows], np.cross(arm, dofs.axis[rows])])
+    c, *_ = np.linalg.lstsq(R, v[rows], rcond=None)
+    return bool(np.abs(R @ c - v[rows]).max() > 1e-3 * np.abs(v[rows]).max())
 
 
 def _neighbours(model: Model, grids: Ints) -> Ints:

@@ -276,11 +276,27 @@ def test_offset_of_a_second_order_shell_is_a_rigid_arm(model, shape, nodes, edge
     assert _max_change(offset, apart) < 1e-12
 
 
+RODS = "PROD,1,1,1.\nMAT1,1,1.,,.3,1.\nPARAM,AUTOSPC,NO\n"
+
+
 def test_a_linkage_is_not_a_rigid_body(model):
-    """A mass on a rod that swings: nothing resists it, and it is not the whole that moves."""
+    """Two cranks and a bar between them: the bar goes sideways, the cranks turn."""
     found = model(
-        "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
-        "PARAM,AUTOSPC,NO"
+        "GRDSET,,,,,,,3456\nGRID,1,,,,,,123456\nGRID,2,,0.,1.\nGRID,3,,2.,1.\n"
+        "GRID,4,,2.,0.,0.,,123456\nCROD,1,1,1,2\nCROD,2,1,2,3\nCROD,3,1,3,4\n" + RODS
     )
-    with pytest.raises(InputError, match=r"mechanism: 2 motions .* at 2:[23], 2:[23];"):
+    with pytest.raises(InputError, match=r"mechanism: a motion .* at 2:1, 3:1;"):
         solve(found, 3)
+
+
+def test_a_pendulum_is_a_rigid_body(model):
+    found = model("GRID,1,,,,,,123456\nGRID,2,,1.,,,,3456\nCROD,1,1,1,2\n" + RODS)
+    assert solve(found, 2).rigid_body_modes == 1
+
+
+def test_a_door_turns_on_its_hinges(model):
+    found = model(
+        "GRID,1,,0.,0.,0.,,123\nGRID,2,,2.,0.,0.,,123\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\n"
+        "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,7.+4,,.3,1.\n"
+    )
+    assert solve(found, 3).rigid_body_modes == 1
