@@ -22,8 +22,8 @@ _LETTERLESS = (b"D", b"E")
 class Entries:
     """The entries of one matrix as they are met: columns and rows as keys of a `DofMap`."""
 
-    def __init__(self, form: int, kind: int) -> None:
-        self.form, self.kind = form, kind
+    def __init__(self, form: int, kind: int, polar: bool = False) -> None:
+        self.form, self.kind, self.polar = form, kind, polar
         self.columns: list[Ints] = []
         self.rows: list[Ints] = []
         self.values: list[Numbers] = []
@@ -127,7 +127,14 @@ def _take(
             _punched(block, found)
         elif len(card) > 2 and card[2] == "0":
             words = [*card, *[None] * 10]
-            found[str(card[1]).upper()] = Entries(int(words[3] or 1), int(words[4] or 2))
+            name = str(card[1]).upper()
+            if name in found and found[name].rows:
+                raise InputError(
+                    f"{path} line {start + 1}: matrix {name} begins a second time: give the file "
+                    "of one run"
+                )
+            polar = int(words[6] or 0) > 0
+            found[name] = Entries(int(words[3] or 1), int(words[4] or 2), polar)
         else:
             _general(card, found)
     except (ValueError, IndexError):
@@ -197,6 +204,8 @@ def matrix_of_entries(name: str, entries: Entries) -> NastranMatrix:
     rows = np.concatenate([*entries.rows, np.zeros(0, np.int64)])
     columns = np.concatenate([*entries.columns, np.zeros(0, np.int64)])
     values = np.concatenate([*entries.values, np.zeros(0)])
+    if entries.polar and entries.is_complex:  # magnitudes and phases in degrees
+        values = values.real * np.exp(1j * np.deg2rad(values.imag))
     row_keys, column_keys = np.unique(rows), np.unique(columns)
     if entries.form not in (RECTANGULAR, 9):
         row_keys = column_keys = np.union1d(row_keys, column_keys)

@@ -179,3 +179,27 @@ def test_a_file_of_several_parts_names_the_line_of_a_fault(tmp_path: Path) -> No
     path.write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match=f"line {at}: this DMIG"):
         read_matrices(path)
+
+
+def test_magnitudes_and_phases(tmp_path: Path) -> None:
+    path = tmp_path / "polar.bdf"
+    path.write_text(
+        "DMIG,B,0,1,3,0,1\n"
+        "DMIG*   B                              1               1\n"
+        "*                      1               1   2.0000000E+00   9.0000000E+01\n"
+    )
+    (found,) = read_matrices(path)
+    np.testing.assert_allclose(found.matrix.toarray(), [[2j]], atol=1e-15)
+
+
+def test_a_matrix_that_begins_twice_is_refused(tmp_path: Path) -> None:
+    """A punch file that a second run was appended to."""
+    once = (
+        "DMIG    KAAX           0       6       2       0\n"
+        "DMIG*   KAAX                           1               1\n"
+        "*                      1               1   2.0000000E+00\n"
+    )
+    path = tmp_path / "twice.pch"
+    path.write_text(once + once)
+    with pytest.raises(InputError, match="line 4: matrix KAAX begins a second time"):
+        read_matrices(path)
