@@ -12,6 +12,8 @@ from .content import Skipped
 from .nodes import NodeTable
 from .systems import BASIC, CoordinateSystem
 
+_TURNED = 1e-6  # difference of direction cosines from which axes are not the same
+
 
 @dataclass(frozen=True, eq=False)
 class NodeFrames:
@@ -34,13 +36,19 @@ class NodeFrames:
 
 def node_frames(
     tables: Sequence[NodeTable],
-    systems: Mapping[int, CoordinateSystem],
+    systems: Sequence[Mapping[int, CoordinateSystem]],
     warnings: list[str],
     skipped: list[Skipped],
 ) -> NodeFrames:
-    """Merge node tables; of a node given twice the first is kept, and another place is told."""
+    """Merge node tables; of a node given twice the first is kept, and another place is told.
+
+    `systems` are those that each table may refer to.
+    """
     undefined: dict[int, int] = {}
-    parts = [_placed(table, systems, undefined, warnings) for table in tables]
+    parts = [
+        _placed(table, known, undefined, warnings)
+        for table, known in zip(tables, systems, strict=True)
+    ]
     for number, count in undefined.items():
         warnings.append(
             f"coordinate system {number}, used by {count} node(s), is not defined (dataset 18 or "
@@ -51,7 +59,14 @@ def node_frames(
     ids, xyz, frames = (np.concatenate(p) for p in zip(*parts, strict=True))
     of_row = np.repeat(np.arange(len(tables)), [len(p[0]) for p in parts])
     keep = _first_of_each(ids, xyz, [tables[k] for k in of_row], warnings, skipped)
-    return NodeFrames(ids[keep], xyz[keep], frames[keep])
+    kept = NodeFrames(ids[keep], xyz[keep], frames[keep])
+    turned = np.abs(frames - kept.at(ids)).max(axis=(1, 2)) > _TURNED
+    if turned.any():
+        warnings.append(
+            f"node(s) {some(np.unique(ids[turned]))} are given again with another displacement "
+            "system; the first is kept for all files"
+        )
+    return kept
 
 
 def _placed(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -40,6 +40,7 @@ class _Gathered:
     nodes: list[NodeTable] = field(default_factory=list)
     elements: list[Element] = field(default_factory=list)
     systems: dict[int, CoordinateSystem] = field(default_factory=dict)
+    systems_of: dict[str, dict[int, CoordinateSystem]] = field(default_factory=dict)
     traces: list[Trace] = field(default_factory=list)
     shapes: list[Shape] = field(default_factory=list)
     functions: list[Record] = field(default_factory=list)
@@ -113,7 +114,10 @@ def _content(files: Sequence[Path], wanted: Selection, exact_lines: bool) -> Uni
             warnings += source.warnings
             for section in source.sections:
                 _read(source, section, gathered)
-        frames = node_frames(gathered.nodes, gathered.systems, warnings, gathered.skipped)
+        known = [
+            {**gathered.systems, **gathered.systems_of.get(t.path, {})} for t in gathered.nodes
+        ]
+        frames = node_frames(gathered.nodes, known, warnings, gathered.skipped)
         units = agreed_units(gathered.units, gathered.skipped)
         unit = units.length_unit if units else None
         report = Report(gathered.skipped, warnings, gathered.failed)
@@ -202,14 +206,18 @@ def _traces(source: Source, section: Section, into: _Gathered) -> int:
 
 
 def _systems_18(source: Source, section: Section, into: _Gathered) -> int:
-    found = read_18(source, section, into.systems)
-    into.systems.update(found)
-    return len(found)
+    own = into.systems_of.get(source.name, {})
+    return _defined(read_18(source, section, {**into.systems, **own}), source, into)
 
 
 def _systems_2420(source: Source, section: Section, into: _Gathered) -> int:
-    found = read_2420(source, section)
+    return _defined(read_2420(source, section), source, into)
+
+
+def _defined(found: Mapping[int, CoordinateSystem], source: Source, into: _Gathered) -> int:
+    """Note systems for all files, and that those of a file go before other files' of one number."""
     into.systems.update(found)
+    into.systems_of.setdefault(source.name, {}).update(found)
     return len(found)
 
 

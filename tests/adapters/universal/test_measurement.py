@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.adapters.universal import read_test
+from trueup.adapters.universal import read_test, read_universal
 from trueup.core.errors import InputError
 
 NODES = [(k, np.cos(k), np.sin(k), 0.1 * k) for k in range(1, 9)]
@@ -45,6 +45,30 @@ def test_local_displacement_systems_are_honoured(uff, write):
     dofs = read_test(write(text)).modes.dofs
     np.testing.assert_allclose(dofs.axis, [[x, y, 0.0] for _, x, y, _ in NODES], atol=1e-12)
     np.testing.assert_array_equal(dofs.component, 1)
+
+
+def test_files_of_a_roving_survey_number_their_systems_for_themselves(uff, write):
+    """System 4 is another one in each file; each file's nodes stand in their own."""
+    turns = [np.eye(3), np.eye(3)[[1, 2, 0]]]
+    paths = []
+    for k, turn in enumerate(turns):
+        nodes = NODES[4 * k : 4 * k + 4]
+        text = uff.systems_2420((4, 0, [*turn, [0, 0, 0]]))
+        text += uff.nodes_2411(nodes, displacement=4)
+        paths.append(write(text, f"part{k}.unv"))
+    shape = uff.shape_55({n[0]: (1.0, 2.0, 3.0) for n in NODES})
+    modes = read_universal([*paths, write(shape, "shape.unv")]).modes
+    axes = modes.dofs.axis.reshape(-1, 3, 3)
+    np.testing.assert_allclose(axes[:4], np.tile(turns[0], (4, 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(axes[4:], np.tile(turns[1], (4, 1, 1)), atol=1e-12)
+
+
+def test_a_node_in_two_systems_is_told(uff, write):
+    one = uff.nodes_2411(NODES)
+    turned = uff.systems_2420((4, 0, [*np.eye(3)[[1, 2, 0]], [0, 0, 0]]))
+    turned += uff.nodes_2411(NODES[:2], displacement=4)
+    content = read_universal([write(one, "one.unv"), write(turned, "two.unv")])
+    assert any("node(s) 1, 2 are given again with another" in w for w in content.warnings)
 
 
 def test_no_unit_is_told(uff, write):
