@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ..arrays import Bools, Floats, Numbers
 from ..geometry import Geometry
 from ..modes import Modes
 from .bands import cmif
@@ -15,7 +15,7 @@ from .quality import correlation, multivariate_indicator, phase_collinearity, ph
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .rigid import rigid_share
 from .scaling import driving_points, scale
-from .shapes import real_shapes, turned_to_principal_phase
+from .shapes import known_components, real_shapes, turned_to_principal_phase
 from .stabilisation import Chart
 from .survey import Survey
 from .sweeps import BandFit
@@ -87,11 +87,12 @@ def assemble(
     hz = np.abs(t.poles) / (2.0 * np.pi)
     damping = -t.poles.real / np.abs(t.poles)
     raw = t.shapes / survey.output_weight[:, None]
-    shapes = turned_to_principal_phase(raw)
+    known = known_components(t.shape_covariance)
+    shapes = turned_to_principal_phase(raw, known)
     rotation = np.sum(shapes * raw.conj(), axis=0)
     rotation /= np.maximum(np.abs(rotation), 1e-300)
     participation = t.participation / survey.input_weight[:, None] / rotation
-    real = real_shapes(hz, shapes, survey.output_weight)
+    real = real_shapes(hz, shapes, survey.output_weight, known)
     turn = np.stack([rotation.real, -rotation.imag], axis=1)
     variance = np.einsum("ka,okab,kb->ok", turn, t.shape_covariance, turn)
     shape_std = np.sqrt(np.maximum(variance, 0.0)) / survey.output_weight[:, None]
@@ -104,13 +105,13 @@ def assemble(
     f_std, z_std = frequency_and_damping_errors(t.poles, t.pole_covariance)
     backgrounds, quality = _backgrounds(survey, fits, t, hz)
     pair = _pair_possible(survey, t, warnings)
-    mpc = phase_collinearity(shapes)
+    mpc = phase_collinearity(np.where(known, shapes, 0.0))
     physical = survey.values / survey.output_weight[:, None, None]
     physical /= survey.input_weight[None, :, None]
     mif = multivariate_indicator(survey.values, survey.order)
     near = np.array([int(np.argmin(np.abs(survey.frequencies_hz - x))) for x in hz], dtype=int)
     at_mode = np.array([mif[max(k - 2, 0) : k + 3].min() for k in near])
-    remarks = _remarks(survey, hz, t, quality, mpc, shape_std, real / real_size)
+    remarks = _remarks(survey, hz, t, quality, mpc, shape_std, real / real_size, known)
     warnings += _blurred(hz, t.blurred)
     if not len(hz):
         warnings.append("no mode stands out of the noise")
@@ -129,7 +130,7 @@ def assemble(
         participation=participation,
         references=survey.inputs,
         mpc=mpc,
-        mpd=phase_deviation(shapes),
+        mpd=phase_deviation(np.where(known, shapes, 0.0)),
         mode_indicator=1.0 - at_mode,
         quality=quality,
         significance=t.significance,
@@ -225,17 +226,28 @@ def _blurred(hz: Floats, blurred: Numbers) -> list[str]:
 
 
 def _remarks(
-    survey: Survey, hz: Floats, t: _Table, quality: Floats, mpc: Floats, std: Floats, real: Floats
+    survey: Survey,
+    hz: Floats,
+    t: _Table,
+    quality: Floats,
+    mpc: Floats,
+    std: Floats,
+    real: Floats,
+    known: Bools,
 ) -> tuple[str, ...]:
     texts = []
-    f = survey.frequencies_hz
+    f, labels = survey.frequencies_hz, survey.outputs.labels
     for k in range(len(hz)):
         found = []
         if quality[k] < _POOR_QUALITY:
             found.append(f"synthesised and measured functions agree to {quality[k]:.2f} only")
         if mpc[k] < _POOR_MPC:
             found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
-        spread = np.sqrt(np.mean(std[:, k] ** 2) / np.mean(real[:, k] ** 2))
+        sure = known[:, k]
+        spread = np.sqrt(np.mean(std[sure, k] ** 2) / np.mean(real[sure, k] ** 2))
+        if not sure.all() and (std[~sure, k] > _KNOWN * np.abs(real[:, k][sure]).max()).any():
+            where = [labels[o] for o in np.flatnonzero(~sure)[:5]]
+            found.append(f"its shape is hardly known at {', '.join(where)}")
         if spread > _WEAK:
             found.append(f"uncertain shape ({100 * spread:.0f} %)")
         width = abs(t.poles[k].real) / np.pi

@@ -4,24 +4,46 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ..arrays import Bools, Floats, Numbers
 from ..clusters import clusters_by_bandwidth
 
 _PAIR_WIDTH = 0.01  # frequencies closer than this are a subspace
+_DOUBTFUL = 4.0  # standard error over the median one's, above which a component is not known
 _PARALLEL = 0.4  # ratio of singular values below which real shapes of a pair are nearly one
 
 
-def turned_to_principal_phase(shapes: Numbers) -> Numbers:
-    """Divide each column by the phase that makes it most real; largest component positive."""
-    phase = 0.5 * np.angle(np.sum(shapes**2, axis=0))
+def known_components(covariance: Floats) -> Bools:
+    """Tell which components of each shape are about as well known as its others.
+
+    A sensor that was measured only with references which hardly drive a mode says nothing of it.
+
+    Parameters
+    ----------
+    covariance : (n_output, n_mode, 2, 2) float
+        Of real and imaginary parts, in a scale in which the sensors are alike.
+
+    Returns
+    -------
+    (n_output, n_mode) bool
+    """
+    variance = np.trace(covariance, axis1=2, axis2=3)
+    return np.asarray(variance <= _DOUBTFUL**2 * np.median(variance, axis=0))
+
+
+def turned_to_principal_phase(shapes: Numbers, known: Bools) -> Numbers:
+    """Divide each column by the phase that makes what is known of it most real.
+
+    The largest known component becomes positive.
+    """
+    phase = 0.5 * np.angle(np.sum(np.where(known, shapes, 0.0) ** 2, axis=0))
     turned = shapes * np.exp(-1j * phase)
     if len(turned):
-        largest = np.argmax(np.abs(turned), axis=0)
+        largest = np.argmax(np.abs(np.where(known, turned, 0.0)), axis=0)
         turned = turned * np.where(turned[largest, np.arange(turned.shape[1])].real < 0, -1, 1)
     return np.asarray(turned)
 
 
-def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats) -> Floats:
+def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats, known: Bools) -> Floats:
     """Real shapes of complex ones already turned to their principal phase.
 
     Modes that stand alone keep their real part. A close pair is a subspace: its complex shapes
@@ -34,6 +56,8 @@ def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats) -> Floa
     shapes : (n_output, n_mode) complex
     weight : (n_output,) float
         One over the noise, for the subspace.
+    known : (n_output, n_mode) bool
+        Components that may say what is parallel.
 
     Returns
     -------
@@ -44,12 +68,15 @@ def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats) -> Floa
         columns = list(group)
         if len(columns) < 2 or len(shapes) <= len(columns):
             continue
-        size = np.linalg.norm(weight[:, None] * shapes[:, columns], axis=0)
-        Z = weight[:, None] * shapes[:, columns] / size
-        u, _, _ = np.linalg.svd(np.concatenate([Z.real, Z.imag], axis=1), full_matrices=False)
-        basis = u[:, : len(columns)]
-        inside = basis.T @ Z.real
-        w, s, vt = np.linalg.svd(inside)
+        rows = known[:, columns].all(axis=1)
+        if np.count_nonzero(rows) <= len(columns):
+            continue
+        Z = weight[:, None] * shapes[:, columns]
+        size = np.linalg.norm(Z[rows], axis=0)
+        parts = np.concatenate([(Z / size).real, (Z / size).imag], axis=1)
+        _, sigma, v = np.linalg.svd(parts[rows], full_matrices=False)
+        basis = parts @ (v[: len(columns)].T / sigma[: len(columns)])
+        w, s, vt = np.linalg.svd(basis[rows].T @ parts[rows, : len(columns)])
         if s[-1] < _PARALLEL * s[0]:
             real[:, columns] = (basis @ (w @ vt)) * size / weight[:, None]
     return real

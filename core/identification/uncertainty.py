@@ -199,10 +199,13 @@ def _shape_errors(
     # the part that comes through poles and participation, without the common complex scale
     t = T.reshape(n_output, m, 2, -1)
     z = t[:, :, 0] + 1j * t[:, :, 1]
+    # which is that of the components that are known
     psi = fit.shapes
+    weight = 1.0 / np.maximum(np.trace(result, axis1=2, axis2=3), 1e-300)
+    share = weight * np.abs(psi) ** 2
     common = (
-        np.einsum("ok,okt->kt", psi.conj(), z)
-        / np.maximum(np.sum(np.abs(psi) ** 2, axis=0), 1e-300)[:, None]
+        np.einsum("ok,okt->kt", weight * psi.conj(), z)
+        / np.maximum(np.sum(share, axis=0), 1e-300)[:, None]
     )
     z = z - psi[:, :, None] * common
     root = _root(cov)

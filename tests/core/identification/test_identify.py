@@ -8,6 +8,7 @@ import pytest
 from trueup.core.dofs import Dofs
 from trueup.core.identification import identify
 from trueup.core.identification.model_error import CHAIN
+from trueup.core.identification.synthesis import modal_response, poles_from
 
 
 def subspace_mac(a, b):
@@ -120,6 +121,29 @@ def test_one_reference_says_that_a_pair_may_hide(survey):
     assert len(result.modes) == 1
     assert result.close_pair_possible.all()
     assert any("close pair may hide" in w for w in result.warnings)
+
+
+def test_a_sensor_that_cannot_see_a_mode_spoils_no_other(survey):
+    """One reference stands on a node line of mode 2, and one sensor was measured with it only."""
+    frfs, truth = survey(23, frequencies=[40.0, 60.0], n_response=12, n_line=600, outside=False)
+    poles = poles_from(truth.frequencies_hz, truth.damping)
+    shapes = truth.shapes.copy()
+    shapes[0, 1] = 0.0
+    part = shapes[[0, 11]] / (2j * poles.imag * truth.mass)
+    values = modal_response(frfs.frequencies_hz, poles, shapes, part)
+    rng = np.random.default_rng(0)
+    e = rng.standard_normal(values.shape) + 1j * rng.standard_normal(values.shape)
+    values += 0.01 * np.sqrt(np.mean(np.abs(values) ** 2, axis=2, keepdims=True)) * e
+    values[7, 1] = np.nan
+    result = identify(replace(frfs, values=values))
+    assert "hardly known at 8:Z" in result.remarks[1]
+    assert result.remarks[0] == ""
+    others = np.arange(12) != 7
+    assert mac(result.real_modes.shapes[others, 1], shapes[others, 1].real) > 0.999
+    assert result.shape_std[others, 1].max() < 0.02
+    assert result.shape_std[7, 1] > 0.5
+    assert np.abs(result.real_modes.shapes[others, 1]).max() == pytest.approx(1.0)
+    assert result.mpc[1] > 0.99
 
 
 def test_references_that_see_one_and_the_same_count_as_one(survey):

@@ -91,19 +91,21 @@ def test_a_reversed_force_is_named():
 
 def test_real_shapes_of_a_lone_mode_is_its_real_part():
     shape = np.random.default_rng(0).standard_normal((8, 1)) * np.exp(2.1j)
-    turned = turned_to_principal_phase(shape)
+    turned = turned_to_principal_phase(shape, np.ones(shape.shape, bool))
     assert np.abs(turned.imag).max() < 1e-12
     largest = turned[np.argmax(np.abs(turned))]
     assert largest.real > 0.0
-    assert real_shapes(np.array([5.0]), turned, np.ones(8)) == pytest.approx(turned.real)
+    assert real_shapes(
+        np.array([5.0]), turned, np.ones(8), np.ones(turned.shape, bool)
+    ) == pytest.approx(turned.real)
 
 
 def test_real_shapes_of_a_mixed_pair_span_the_real_pair():
     """Any complex mixture of two real shapes; here one with nearly parallel real parts."""
     pair = np.linalg.qr(np.random.default_rng(0).standard_normal((12, 2)))[0]
     mixture = pair @ np.array([[1.0, 1.0], [0.6j, -0.6j]])
-    turned = turned_to_principal_phase(mixture)
+    turned = turned_to_principal_phase(mixture, np.ones(mixture.shape, bool))
     assert np.linalg.svd(turned.real)[1][1] < 1e-9
-    real = real_shapes(np.array([50.0, 50.01]), turned, np.ones(12))
+    real = real_shapes(np.array([50.0, 50.01]), turned, np.ones(12), np.ones(turned.shape, bool))
     assert np.linalg.svd(pair.T @ np.linalg.qr(real)[0])[1] == pytest.approx([1.0, 1.0])
     assert np.linalg.svd(real)[1][1] > 0.5
