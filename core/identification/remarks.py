@@ -1,0 +1,76 @@
+"""What is to be said of each mode, and of all."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Floats, Numbers
+from .survey import Survey
+from .table import KNOWN, ModeTable, Physical
+
+_POOR_QUALITY = 0.9
+_POOR_MPC = 0.7
+_WEAK = 0.05  # relative standard error of the shape above which it is called uncertain
+_INPUT_RANK = 0.02  # singular value ratio below which references see one and the same
+
+
+def pair_possible(t: ModeTable, warnings: list[str]) -> Numbers:
+    """Flag the modes behind which the references cannot see a second root; say why."""
+    n = len(t.poles)
+    if not n:
+        return np.zeros(0, bool)
+    part = t.participation / np.linalg.norm(t.participation, axis=0)
+    singular = np.linalg.svd(part, compute_uv=False)
+    if len(t.participation) == 1:
+        warnings.append(
+            "one reference cannot tell two roots at the same frequency apart: a close pair may "
+            "hide behind any of the modes"
+        )
+        return np.ones(n, bool)
+    if n > 1 and len(singular) > 1 and singular[1] < _INPUT_RANK * singular[0]:
+        warnings.append(
+            "all references excite the same combination of modes, as one reference would: a "
+            "close pair may hide behind any of the modes"
+        )
+        return np.ones(n, bool)
+    return np.zeros(n, bool)
+
+
+def of_leakage(hz: Floats, blurred: Numbers) -> list[str]:
+    """Name the modes whose damping a window may have raised."""
+    if not blurred.any():
+        return []
+    which = ", ".join(f"{f:.2f}" for f in hz[blurred][:5])
+    which += ", ..." if np.count_nonzero(blurred) > 5 else ""
+    return [
+        f"{np.count_nonzero(blurred)} mode(s) ({which} Hz) are narrow for the lines and leave a "
+        "residual that is not noise (leakage): their damping may be too high, as its standard "
+        "error says"
+    ]
+
+
+def of_modes(
+    survey: Survey, t: ModeTable, p: Physical, quality: Floats, mpc: Floats
+) -> tuple[str, ...]:
+    """Say what makes each mode a poor one; empty for a mode without reproach."""
+    texts = []
+    f, labels = survey.frequencies_hz, survey.outputs.labels
+    real = p.real / p.real_size
+    for k, hz in enumerate(t.hz):
+        found = []
+        if quality[k] < _POOR_QUALITY:
+            found.append(f"synthesised and measured functions agree to {quality[k]:.2f} only")
+        if mpc[k] < _POOR_MPC:
+            found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
+        sure, std, shape = p.known[:, k], p.std[:, k], real[:, k]
+        if np.any(std[~sure] > KNOWN * np.abs(shape[sure]).max(initial=0.0)):
+            where = [labels[o] for o in np.flatnonzero(~sure)[:5]]
+            found.append(f"its shape is hardly known at {', '.join(where)}")
+        spread = np.sqrt(np.mean(std[sure] ** 2) / np.mean(shape[sure] ** 2))
+        if spread > _WEAK:
+            found.append(f"uncertain shape ({100 * spread:.0f} %)")
+        width = abs(t.poles[k].real) / np.pi
+        if hz - f[0] < width or f[-1] - hz < width:
+            found.append("at the edge of the measured range")
+        texts.append("; ".join(found))
+    return tuple(texts)
