@@ -15,6 +15,7 @@ from .synthesis import derivative_order
 MIN_LINES = 16
 _MODEL_ERROR = 0.01  # relative error that a response is assumed to have besides its noise
 _TOO_SMOOTH = 1e-5  # noise over rms below which functions were computed, not measured
+_OF_MANY = {"is": "are", "has": "have", "holds": "hold"}
 _NOISE_ONLY = 0.7  # noise over rms above which a response holds nothing else
 
 
@@ -201,7 +202,9 @@ def _name_functions(
     o, i = responses.labels, references.labels
     shown = ", ".join(f"{o[a]}/{i[b]}" for a, b in list(zip(rows, columns, strict=True))[:5])
     more = f" and {len(rows) - 5} more" if len(rows) > 5 else ""
-    warnings.append(f"{name}: {shown}{more} {what}: left out")
+    verb, rest = what.split(" ", 1)
+    verb = _OF_MANY[verb] if len(rows) > 1 else verb
+    warnings.append(f"{name}: {shown}{more} {verb} {rest}: left out")
 
 
 def _one_component(

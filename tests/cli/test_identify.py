@@ -217,8 +217,8 @@ def test_dead_and_coherence_like_channels_are_named(frf: Path, call: Call) -> No
     answer = call("identify", frf)
     said = " ".join(answer.err.split())
     assert answer.status == 0
-    assert "3:Z/1:Z, 3:Z/2:Z is the same at every line (a dead channel): left out" in said
-    assert "4:Z/1:Z, 4:Z/2:Z is real and between 0 and 1 (a coherence" in said
+    assert "3:Z/1:Z, 3:Z/2:Z are the same at every line (a dead channel): left out" in said
+    assert "4:Z/1:Z, 4:Z/2:Z are real and between 0 and 1 (a coherence" in said
     write_universal(frf, geometry=geometry(), frfs=replace(survey(), values=values * 0 + 1))
     assert "no frequency response that can be fitted" in call("identify", frf).sentence
 
@@ -241,6 +241,31 @@ def test_garteur_frfs_correlate_in_one_command(
     assert min(p["analysis"] for p in result["pairs"]) > 6
     assert min(p["mac"] for p in result["pairs"]) > 0.8
     assert any("one reference cannot tell" in w for w in result["warnings"])
+    assert any("weigh by their standard errors" in w for w in result["warnings"])
+    assert any("seem computed" in w for w in result["warnings"])
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not DATA.is_dir(), reason="real data absent")
+def test_an_update_says_what_the_identified_modes_weigh(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: Call
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    case = DATA / "cases" / "duct"
+    flanges = ["-p", "PBAR 11 I1, PBAR 11 I2", "-p", "PBAR 12 I1, PBAR 12 I2"]
+    weights = []
+    for test in ("duct_frf.unv", "duct_test.unv"):
+        answer = call(
+            "update", case / "duct.bdf", case / test, *flanges, "--residuals", "frequencies",
+            "--json", "-", "--quiet",
+        )  # fmt: skip
+        assert answer.status == 0
+        weights.append(json.loads(answer.out)["weights"])
+    assert weights[1] is None
+    assert len(weights[0]["frequency_std_percent"]) == 24
+    assert 0.0 < max(weights[0]["frequency_std_percent"]) < 0.01
+    assert 0.1 < max(weights[0]["shape_std_percent"]) < 1.0
+    assert len(weights[0]["sensor_weights"]) == 71
 
 
 @pytest.mark.slow
