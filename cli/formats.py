@@ -102,10 +102,7 @@ def kind_of_file(path: Path) -> str:
     if not head.strip():
         raise InputError(f"{path} is empty")
     if head.startswith(_HDF5_SIGNATURE):
-        try:
-            return STORE if is_store(path) else RESULTS
-        except (KeyError, RuntimeError):
-            raise InputError(f"{path} is a damaged HDF5 file") from None
+        return STORE if is_store(path) else RESULTS
     if head.lstrip()[:3].split() == [b"-1"] or path.suffix.lower() in _UNIVERSAL_SUFFIXES:
         return UNIVERSAL
     return _nastran_kind(path, head)

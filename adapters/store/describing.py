@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .content import FORMAT, VERSION
-from .reading import opened
+from .reading import DAMAGE, opened
 
 if TYPE_CHECKING:
     import h5py
@@ -23,7 +23,7 @@ def is_store(path: str | os.PathLike[str]) -> bool:
     try:
         with h5py.File(source, "r") as file:
             return bool(file.attrs.get("format") == FORMAT)
-    except (OSError, KeyError, RuntimeError):  # what HDF5 says of a damaged header
+    except DAMAGE:  # what HDF5 says of a damaged header
         return False
 
 

@@ -62,24 +62,32 @@ def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
     except OSError as error:
         raise _damaged(source, error) from error
     with file:
-        if file.attrs.get("format") != FORMAT:
+        try:
+            form, version = file.attrs.get("format"), file.attrs.get("version")
+        except DAMAGE as error:
+            raise _damaged(source, error) from error
+        if form != FORMAT:
             raise InputError(f"{source} is an HDF5 file but no store of trueup")
-        version = file.attrs.get("version")
         if version != VERSION:
             raise InputError(
                 f"{source} is a store of version {version}; this trueup reads version {VERSION}"
             )
         try:
             yield file
-        except _DAMAGE as error:
+        except DAMAGE as error:
             raise _damaged(source, error) from error
 
 
-_DAMAGE = (InputError, OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError)
+DAMAGE = (
+    InputError, OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError,
+    MemoryError,
+)  # fmt: skip
+"""What h5py raises for damaged files."""
 
 
 def _damaged(source: Path, error: Exception) -> InputError:
-    return InputError(f"{source} is a damaged store: {str(error).strip(chr(39))}")
+    reason = " ".join(str(error).strip(chr(39)).split())[:200] or type(error).__name__
+    return InputError(f"{source} is a damaged store: {reason}")
 
 
 def _named(file: h5py.File, key: str, read: Callable[[h5py.Group], Any]) -> dict[str, Any]:

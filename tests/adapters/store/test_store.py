@@ -302,3 +302,57 @@ def test_damaged_stores_are_one_sentence(tmp_path: Path) -> None:
         file["modes/analysis/shapes"] = np.eye(3)
     with pytest.raises(InputError, match=r"damaged store: mode shapes of deck has shape"):
         read_store(path)
+
+
+def test_a_store_cut_anywhere_ends_in_content_or_one_sentence(tmp_path: Path) -> None:
+    """Not with bytes changed at random: HDF5 itself can hang on those (H5Aread)."""
+    good, path = tmp_path / "good.h5", tmp_path / "bad.h5"
+    write_store(good, **example())
+    raw = good.read_bytes()
+    for cut in range(1, len(raw), max(len(raw) // 80, 1)):
+        path.write_bytes(raw[:cut])
+        is_store(path)
+        for read in (read_store, describe_store):
+            with pytest.raises(InputError):
+                read(path)
+
+
+def test_whatever_is_missing_ends_in_content_or_one_sentence(tmp_path: Path) -> None:
+    """Each data set, group and attribute taken away in turn."""
+    good, path = tmp_path / "good.h5", tmp_path / "bad.h5"
+    write_store(good, **example())
+    items: list[tuple[str, str]] = []
+    with h5py.File(good) as file:
+        items += [("/", a) for a in file.attrs]
+        file.visititems(lambda n, o: items.extend([(n, ""), *((n, a) for a in o.attrs)]))
+    refused = 0
+    for name, attribute in items:
+        path.write_bytes(good.read_bytes())
+        with h5py.File(path, "r+") as file:
+            if attribute:
+                del file[name].attrs[attribute]
+            else:
+                del file[name]
+        for read in (read_store, describe_store):
+            try:
+                read(path)
+            except InputError as error:
+                refused += 1
+                assert "\n" not in str(error)  # noqa: PT017
+    assert refused > 20
+
+
+def test_functions_read_back_equal(tmp_path: Path) -> None:
+    said = {
+        "abscissa": np.arange(5) / 8.0, "values": np.arange(5) + 1j, "response": (3, -1),
+        "reference": (0, 0), "function": "spectrum", "quantity": "acceleration", "per": "unknown",
+        "over": "frequency", "abscissa_unit": "Hz", "ordinate_unit": "m/s²", "ids": ("a", ""),
+    }  # fmt: skip
+    path = tmp_path / "a.h5"
+    write_store(path, functions={"spectrum/00001": said})
+    (again,) = read_store(path).functions.values()
+    assert np.array_equal(again["values"], said["values"])
+    assert np.array_equal(again["abscissa"], said["abscissa"])
+    assert {k: v for k, v in again.items() if k not in ("values", "abscissa")} == {
+        k: v for k, v in said.items() if k not in ("values", "abscissa")
+    }
