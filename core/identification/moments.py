@@ -17,6 +17,8 @@ import numpy as np
 
 from ..arrays import Floats, Ints, Numbers
 
+_IN_TURN = ["einsum_path", (0, 1), (0, 1)]  # of three factors, without looking for a better order
+
 Solver = Callable[[Floats, Floats], Floats]
 
 
@@ -168,7 +170,7 @@ def shape_normals(G: Floats, participation: Numbers) -> Floats:
     """
     L = turned(participation)
     n = 2 * participation.shape[1]
-    per_input = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, G[0, :, :, 0], L, optimize=True)
+    per_input = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, G[0, :, :, 0], L, optimize=_IN_TURN)
     return np.asarray(per_input.reshape(len(L), n, n))
 
 
@@ -188,12 +190,12 @@ def reduced_normal(
     L = turned(participation)
     n_input, m = participation.shape
     vv, vd, dd = G[0, :, :, 0], G[0, :, :, 1], G[1, :, :, 1]
-    pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=True)
-    part = np.einsum("ikaf,kfKF->ikaKF", L, vv, optimize=True)
+    pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=_IN_TURN)
+    part = np.einsum("ikaf,kfKF->ikaKF", L, vv)
     own = shape_normals(G, participation)
     tensor = np.zeros((m, 2, 1 + n_input, m, 2, 1 + n_input))
-    pole_pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=True)
-    pole_part = np.einsum("ikbf,kfKF->ikbKF", L, vd.transpose(2, 3, 0, 1), optimize=True)
+    pole_pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=_IN_TURN)
+    pole_part = np.einsum("ikbf,kfKF->ikbKF", L, vd.transpose(2, 3, 0, 1))
     for w, rows in patterns:
         P = turned(shapes[rows])
         flat = P.reshape(len(rows), -1)
@@ -209,7 +211,7 @@ def reduced_normal(
             Q[:, :, 0, :, :, 1 + i] += w[i] * pole_part[i]
             Q[:, :, 1 + i, :, :, 0] += w[i] * pole_part[i].transpose(2, 3, 0, 1)
             Q[:, :, 1 + i, :, :, 1 + i] += w[i] * vv
-        tensor += np.einsum("kafKAF,kftKFT->katKAT", moment, Q, optimize=True)
+        tensor += np.einsum("kafKAF,kftKFT->katKAT", moment, Q)
     n_p = 2 * m
     S = np.empty((n_p * (1 + n_input), n_p * (1 + n_input)))
     first, rest = slice(0, 1), slice(1, None)
@@ -238,7 +240,7 @@ def normal(G: Floats, participation: Numbers, shapes: Numbers, weight: Floats) -
     flat = P.reshape(n_output, -1)
     moment = np.stack([(flat * weight[:, [i]]).T @ flat for i in range(n_input)])
     moment = moment.reshape(n_input, m, 2, 2, m, 2, 2)
-    z = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=True)
+    z = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=_IN_TURN)
     pole_pole = np.einsum("ikabKAB,ikbKB->kaKA", moment, z, optimize=True)
     dv = np.einsum("ikbf,kfKF->ikbKF", L, vd.transpose(2, 3, 0, 1), optimize=True)
     pole_part = np.einsum("ikabKAF,ikbKF->kaKAi", moment, dv, optimize=True)
@@ -251,7 +253,7 @@ def normal(G: Floats, participation: Numbers, shapes: Numbers, weight: Floats) -
     block = np.zeros((n_p, n_input, n_p, n_input))
     block[:, np.arange(n_input), :, np.arange(n_input)] = part_part.reshape(n_input, n_p, n_p)
     common[n_p:, n_p:] = block.reshape(n_l, n_l)
-    x = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=True)
+    x = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=_IN_TURN)
     x = (weight @ x.reshape(n_input, -1)).reshape(n_output, m, 2, m, 2)
     shape_pole = np.einsum("okaKB,oKAB->okaKA", x, P, optimize=True)
     h = np.einsum("ikaf,kfKF->iKFka", L, vv, optimize=True).reshape(n_input, m, 2, n_p)
