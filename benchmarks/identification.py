@@ -13,7 +13,6 @@ line of JSON; `..._over_ours` above 1 is in trueup's favour.
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import json
 import sys
 import time
@@ -105,10 +104,11 @@ def beside_sdypy(quick: bool) -> dict[str, Any]:
         f, z = errors(ours.modes.frequencies_hz, ours.modes.damping)
         result |= {"frequency_rms": f, "damping_rms": z}
         _say(f"trueup    {seconds:6.2f} s, frequency rms {f:.2e}, damping rms {z:.2e}")
-    if importlib.util.find_spec("sdypy") is None:
+    try:
+        from sdypy import EMA
+    except ImportError:
         _say("sdypy-EMA is not installed: no comparison")
         return result
-    from sdypy import EMA
 
     def theirs() -> Any:
         model = EMA.Model(
