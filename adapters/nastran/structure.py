@@ -21,7 +21,7 @@ _DOUBTED: dict[str, tuple[tuple[str, ...], float, tuple[float, float]]] = {
     "PSHELL": (("T",), 0.06, (0.7, 1.4)),
     "PBAR": (("I1", "I2"), 0.4, (0.25, 4.0)),
     "PELAS": (("K",), 0.4, (0.25, 4.0)),
-    "MAT1": (("E",), 0.05, (0.7, 1.4)),
+    "MAT1": (("E",), 0.1, (0.7, 1.4)),
 }
 _ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "K": "k", "E": "e"}
 

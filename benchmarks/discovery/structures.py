@@ -183,7 +183,11 @@ def frame(rng: np.random.Generator) -> Structure:
     a, b, storey = float(rng.choice([500.0, 600.0])), 300.0, 400.0
     lines, top = _frame("frame", "", a, b, storey, 2, 0)
     for y in (0.0, b):
-        lines.append(straight(3, (a, y, top), (a + 500.0, b / 2, top), 4, (0, 0, 1), f"jib y={y}"))
+        end = (a + 500.0, b / 2 + (y - b / 2) / 3, top)
+        lines.append(straight(3, (a, y, top), end, 4, (0, 0, 1), f"jib y={y}"))
+    lines.append(
+        straight(3, (a + 500.0, b / 3, top), (a + 500.0, 2 * b / 3, top), 2, (0, 0, 1), "jib end")
+    )
     return Structure(
         "frame",
         "CANTILEVER FRAME",

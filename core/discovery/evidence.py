@@ -37,7 +37,7 @@ class Noise:
     shape: float = 0.05
     independent: float = 12.0
     robust: float = 40.0
-    mixing: float = 0.012
+    mixing: float = 0.02
 
 
 @dataclass(frozen=True, eq=False)

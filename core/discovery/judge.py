@@ -14,7 +14,7 @@ from .fitting import Fit, evaluate
 from .scanning import scan
 from .search import Found, Searcher
 
-_MARGIN = 8.0
+_MARGIN = 10.0
 _BESIDE, _SAME_EFFECT = 0.2, 40.0
 """Suspects of one nature nearer than this part of the structure cost this much more."""
 _PER_MODE = 5.0

@@ -28,6 +28,8 @@ _NEAR = 0.5
 """A kind whose best place gains this share of what the best of all gains is followed too."""
 _NEARBY = np.array([-0.35, 0.0, 0.35])
 """Changes of θ tried around the best places of the first scan."""
+_FEW = 300
+"""Places of all kinds up to which more of them are fitted, the known parameters with them."""
 _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
 _CLOSE = 0.35
@@ -105,13 +107,20 @@ class Searcher:
         number: Counter[str] = Counter()
         kept: list[Suspect] = []
         for place, (score, s) in enumerate(branches):
-            if kept and base - score < _WORTH * (base - branches[0][0]):
+            hopeless = base - score < _WORTH * (base - branches[0][0])
+            if kept and hopeless and not self._small:
                 break
             kind = self.problem.catalogue[s.kind].kind
             number[kind] += 1
-            if place < self.effort.branches or number[kind] <= self.effort.of_each_kind:
+            each = self.effort.of_each_kind * (4 if self._small else 1)
+            if place < self.effort.branches or number[kind] <= each:
                 kept.append(s)
         return kept
+
+    @property
+    def _small(self) -> bool:
+        """Whether there are so few places that many of them can be fitted."""
+        return sum(len(rows) for rows in self.coarse) < _FEW
 
     def _leading(self, fits: Sequence[Fit], base: float) -> list[Fit]:
         """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
@@ -264,6 +273,18 @@ class Searcher:
                         break
         return state
 
+    def _fair(self, poorer: Fit, best: Fit) -> Fit:
+        """Return the poorer hypothesis, or the better one with a suspect less if that fits better.
+
+        A richer hypothesis must not win because its parameters came into a better valley.
+        """
+        for q in range(len(best.suspects)):
+            others = best.suspects[:q] + best.suspects[q + 1 :]
+            trial = fit(self.problem, best.log_p, others, self.active, 12)
+            if trial.objective < poorer.objective:
+                poorer = trial
+        return poorer
+
     def _doubtful(self, state: Fit, rounds: int) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
         older = list(range(len(state.suspects) - (rounds == 1)))
@@ -292,16 +313,17 @@ class Searcher:
         progress : callable
             Told what happens.
         """
-        levels = [self.null()]
+        levels = [self.settled(self.null())]
         rivals: list[tuple[Fit, ...]] = [()]
         beam = [levels[0]]
         for depth in range(1, self.effort.most + 1):
             progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
             grown: list[Fit] = []
             for state in beam:
+                count = self.effort.branches * (3 if self._small else 1)
                 small, here = self.local(state)
                 soft = evaluate(_softened(small), here.log_p, here.suspects).objective
-                for branch in self._varied(self.branches(state, self.effort.branches), soft):
+                for branch in self._varied(self.branches(state, count), soft):
                     grown.append(self.fitted(state, (*state.suspects, branch), 5, small, True))
                 best = min(grown, key=lambda f: f.objective)
                 if depth > 1 and enough(levels[-1], best, _HOPELESS):
@@ -326,6 +348,7 @@ class Searcher:
             best = beam[0]
             rest = (*beam[1:], *chosen[self.effort.beam :])
             rivals.append(rest[:12])
+            levels[-1] = self._fair(levels[-1], best)
             previous = levels[-1]
             levels.append(best)
             if enough(previous, best, 1.0):

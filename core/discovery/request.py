@@ -1,0 +1,37 @@
+"""What discovery is asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ..arrays import Floats
+from ..comparison import Placed
+from ..eigen import Eigensolution
+from .search import Effort
+from .structure import Structure
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What discovery is asked.
+
+    Parameters
+    ----------
+    structure : Structure
+        Its model carries the known parameters that may be off.
+    spread : (n_parameter,) float
+        Standard deviation of ln p of each.
+    solution : Eigensolution
+        Of the deck as it is, its factor kept, with modes to well above the test's.
+    placed : Placed
+        The test on the model.
+    mass : float
+        Of the structure, deck units.
+    """
+
+    structure: Structure
+    spread: Floats
+    solution: Eigensolution
+    placed: Placed
+    mass: float
+    effort: Effort = field(default_factory=Effort)

@@ -1,0 +1,251 @@
+"""From the hypotheses that are left to what a person is told."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Floats
+from .candidates import Candidates, Suspect
+from .findings import Alternative, Discovery, Finding, MovedParameter
+from .fitting import Fit, evaluate, fit
+from .judge import Judgement, burden, credible_places, deviations, summary, times
+from .places import region
+from .request import Request
+from .search import Found, Searcher
+from .sensors import Fault
+from .wording import magnitude_of, sentence_of, test_sentence
+
+_SIGNIFICANT = 3.0
+_SURE = 0.6
+_UNEXPLAINED = 8.0
+_SHAPE = {"M": 0.05, "K": 0.12}
+"""Error of ln magnitude, for masses and stiffnesses, that comes of a place or patch which is not
+quite the true one and of the mesh: as measured on generated cases (`benchmarks/discovery`)."""
+_IN_CATALOGUE, _LEFT_OVER = 0.93, 0.05
+"""Share of clear findings that are right, and how it falls with the noise scale: measured there."""
+
+
+def told(
+    request: Request,
+    searcher: Searcher,
+    found: Found,
+    verdict: Judgement,
+    zero: Fit,
+    faults: tuple[Fault, ...],
+    out: tuple[Any, Any],
+) -> Discovery:
+    """Say what the search amounts to: verdict, findings, alternatives, what would decide."""
+    best = found.levels[verdict.accepted]
+    n_active = len(best.active)
+    spread = deviations(best, verdict.scale)
+    alternatives = _alternatives(request, searcher, found, verdict)
+    findings = [
+        _finding(request, searcher, best, k, verdict, float(spread[n_active + k]), alternatives)
+        for k in range(len(best.suspects))
+    ]
+    nodes = request.placed.observation.sensors.node
+    xyz = request.placed.observation.xyz
+    named = {
+        (f.kind, tuple(int(nodes[i]) for i in f.sensors)): _fault(f, nodes, xyz)
+        for f in faults
+        if f.kind != "doubled"
+    }
+    accused = list(named.values())
+    moved = _moved(request, searcher, best, spread)
+    null = found.levels[0]
+    gained = (zero.objective - null.objective) / verdict.scale
+    matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
+    warnings = tuple(
+        f"sensor {int(nodes[f.sensors[0]])} reads twice what all the others say, as if two "
+        "measurements of it had been added up; its values were halved for the search"
+        for f in faults
+        if f.kind == "doubled"
+    )
+    word = "no_gap"
+    decide: tuple[str, ...] = ()
+    if findings and verdict.posterior >= _SURE:
+        word = "effect"
+    elif findings:
+        word, decide = "undecided", _would_decide(request, searcher, found, verdict)
+    elif verdict.scale > _UNEXPLAINED:
+        word = "undecided"
+        decide = (
+            f"the best explanation leaves {verdict.scale:.0f} times the misfit of a right model; "
+            "further sensors or modes, or an effect that the catalogue does not have",
+        )
+    elif accused:
+        word = "test_fault"
+    elif matters:
+        word = "parameters_only"
+    return Discovery(
+        word,
+        (*findings, *accused),
+        alternatives,
+        moved,
+        verdict.scale,
+        summary(found.levels),
+        verdict.evidence,
+        tuple(int(i) + 1 for i in np.flatnonzero(out[0])),
+        tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
+        tuple((f.kind, tuple(int(nodes[i]) for i in f.sensors), f.factor) for f in faults),
+        decide,
+        warnings,
+    )
+
+
+def _finding(
+    request: Request,
+    searcher: Searcher,
+    best: Fit,
+    number: int,
+    verdict: Judgement,
+    deviation: float,
+    alternatives: tuple[Alternative, ...],
+) -> Finding:
+    s = best.suspects[number]
+    c = searcher.problem.catalogue[s.kind]
+    geometry = request.structure.model.geometry
+    size = float(np.exp(s.theta))
+    spread = float(np.hypot(deviation, _SHAPE["M" if c.law.on == "M" else "K"]))
+    low, high = (float(np.exp(s.theta + d * 1.96 * spread)) for d in (-1.0, 1.0))
+    places = credible_places(searcher, best, number, verdict.scale)
+    where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
+    where["region"] = region(geometry, c.xyz[s.row])
+    magnitude = magnitude_of(c, s.row, size)
+    next_best = alternatives[0] if alternatives else None
+    return Finding(
+        "model",
+        c.kind,
+        where,
+        magnitude,
+        (low, high),
+        tuple({**c.where[r], "xyz": c.xyz[r].tolist(), "weight": w} for r, w in places),
+        _confidence(verdict),
+        sentence_of(c.kind, magnitude, where["region"], (low, high), next_best),
+        {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
+    )
+
+
+def _confidence(verdict: Judgement) -> float:
+    """Chance that a finding is right.
+
+    The posterior compares hypotheses of the catalogue. That one of them is true is less than
+    sure, the less so the more misfit even the best one leaves.
+    """
+    return verdict.posterior * _IN_CATALOGUE / (1.0 + _LEFT_OVER * (verdict.scale - 1.0))
+
+
+def _radius(c: Candidates, s: Suspect) -> float:
+    return float(c.extra["patches"][s.row].radius) if "patches" in c.extra else 0.0
+
+
+def _fault(f: Fault, nodes: Any, xyz: Floats) -> Finding:
+    sensors = [int(nodes[i]) for i in f.sensors]
+    magnitude = {"factor": f.factor} if f.kind == "sensor_gain" else {}
+    where = {
+        "sensors": sensors,
+        "xyz": xyz[f.sensors[0]].tolist(),
+        "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
+    }
+    sure = 1.0 - 1.0 / (1.0 + f.gain_in_fit)
+    interval = None
+    if magnitude:
+        interval = (f.factor - 1.96 * f.deviation, f.factor + 1.96 * f.deviation)
+    return Finding(
+        "test",
+        f.kind,
+        where,
+        magnitude,
+        interval,
+        (),
+        sure,
+        test_sentence(f.kind, sensors, f.factor),
+    )
+
+
+def _moved(
+    request: Request, searcher: Searcher, best: Fit, spread: Floats
+) -> tuple[MovedParameter, ...]:
+    """Known parameters as the completed deck takes them.
+
+    In the deck there is no trend for the error of the mesh: moduli, thicknesses and inertias
+    have to absorb it, so they are fitted once more without it, the effects as found.
+    """
+    n = len(request.structure.model.parameters)
+    start = np.array(best.log_p)
+    start[-1] = 0.0
+    flat = fit(searcher.problem, start, best.suspects, tuple(range(n)), 20)
+    return tuple(
+        MovedParameter(
+            k,
+            float(np.exp(flat.log_p[k])),
+            float(np.exp(flat.log_p[k])) * float(spread[best.active.index(k)]),
+            abs(float(best.log_p[k])) > _SIGNIFICANT * float(spread[best.active.index(k)]),
+        )
+        for k in range(n)
+    )
+
+
+def _alternatives(
+    request: Request, searcher: Searcher, found: Found, verdict: Judgement
+) -> tuple[Alternative, ...]:
+    """Best rival of every combination of kinds, and the known parameters alone."""
+    catalogue = searcher.problem.catalogue
+    best = found.levels[verdict.accepted]
+
+    def cost(f: Fit) -> float:
+        return f.objective / verdict.scale + burden(searcher, f)
+
+    seen: dict[tuple[str, ...], Fit] = {}
+    here = tuple(sorted(catalogue[s.kind].kind for s in best.suspects))
+    for f in sorted((f for level in found.rivals for f in level), key=cost):
+        seen.setdefault(tuple(sorted(catalogue[s.kind].kind for s in f.suspects)), f)
+    out = []
+    for kinds, f in seen.items():
+        if kinds == here:
+            continue
+        places = tuple(tuple(float(v) for v in catalogue[s.kind].xyz[s.row]) for s in f.suspects)
+        ratio = times(cost(f) - cost(best))
+        words = " and ".join(k.replace("_", " ") for k in kinds)
+        spot = region(request.structure.model.geometry, np.array(places[0]))
+        out.append(
+            Alternative(kinds, places, ratio, f"{words} {spot}: {ratio:.3g} times less likely")
+        )
+    if verdict.accepted:
+        ratio = times(cost(found.levels[0]) - cost(best))
+        out.append(
+            Alternative((), (), ratio, f"the known parameters alone: {ratio:.3g} times less likely")
+        )
+    return tuple(sorted(out, key=lambda a: a.times_less_likely))[:8]
+
+
+def _would_decide(
+    request: Request, searcher: Searcher, found: Found, verdict: Judgement
+) -> tuple[str, ...]:
+    """Say which place, measured, tells the two best hypotheses apart."""
+    best = found.levels[verdict.accepted]
+    rivals = sorted(
+        (f for level in found.rivals for f in level if len(f.suspects) == len(best.suspects)),
+        key=lambda f: f.objective,
+    )
+    if not rivals:
+        return ()
+    p = searcher.problem
+    a = evaluate(p, best.log_p, best.suspects)
+    b = evaluate(p, rivals[0].log_p, rivals[0].suspects)
+    model = request.structure.model
+    rows = np.flatnonzero(model.dofs.component <= 3)
+    motion, r = p.basis.motion[rows], p.basis.size
+    A, B = motion @ a.vectors[:r, a.match], motion @ b.vectors[:r, b.match]
+    A, B = A / np.linalg.norm(A, axis=0), B / np.linalg.norm(B, axis=0)
+    sign = np.where(np.sum(A * B, axis=0) < 0.0, -1.0, 1.0)
+    apart = np.abs(A - B * sign)
+    row, mode = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    grid = int(model.dofs.node[rows[row]])
+    axis = "XYZ"[int(model.dofs.component[rows[row]]) - 1]
+    return (
+        f"a sensor at grid {grid} in direction {axis}: there mode {int(mode) + 1} differs most "
+        "between the two best explanations",
+    )
