@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
+from .shapes import KNOWN
 from .survey import Survey
-from .table import KNOWN, ModeTable, Physical
+from .table import ModeTable, Physical
 
 _POOR_QUALITY = 0.9
 _POOR_MPC = 0.7

@@ -8,17 +8,21 @@ from ..arrays import Bools, Floats, Numbers
 from ..clusters import clusters_by_bandwidth
 
 _PAIR_WIDTH = 0.01  # frequencies closer than this are a subspace
+KNOWN = 0.3
+"""Relative standard error of a component that a shape may be scaled by."""
+
 _DOUBTFUL = 4.0  # standard error over the median one's, above which a component is not known
 _PARALLEL = 0.4  # ratio of singular values below which real shapes of a pair are nearly one
 
 
-def known_components(covariance: Floats) -> Bools:
-    """Tell which components of each shape are about as well known as its others.
+def known_components(shapes: Numbers, covariance: Floats) -> Bools:
+    """Tell which components of each shape are known: by themselves, or as well as its others.
 
     A sensor that was measured only with references which hardly drive a mode says nothing of it.
 
     Parameters
     ----------
+    shapes : (n_output, n_mode) complex
     covariance : (n_output, n_mode, 2, 2) float
         Of real and imaginary parts, in a scale in which the sensors are alike.
 
@@ -27,7 +31,8 @@ def known_components(covariance: Floats) -> Bools:
     (n_output, n_mode) bool
     """
     variance = np.trace(covariance, axis1=2, axis2=3)
-    return np.asarray(variance <= _DOUBTFUL**2 * np.median(variance, axis=0))
+    as_others = variance <= _DOUBTFUL**2 * np.median(variance, axis=0)
+    return np.asarray(as_others | (variance <= KNOWN**2 * np.abs(shapes) ** 2))
 
 
 def turned_to_principal_phase(shapes: Numbers, known: Bools) -> Numbers:

@@ -8,13 +8,10 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Numbers
 from .model_error import CHAIN, pole_errors
-from .shapes import known_components, real_shapes, turned_to_principal_phase
+from .shapes import KNOWN, known_components, real_shapes, turned_to_principal_phase
 from .survey import Survey
 from .sweeps import BandFit
 from .uncertainty import errors
-
-KNOWN = 0.3
-"""Relative standard error of a component that a shape may be scaled by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +100,7 @@ class Physical:
 def physical(survey: Survey, t: ModeTable) -> Physical:
     """Take the weighting of the survey out of a table, turn shapes and find real ones."""
     raw = t.shapes / survey.output_weight[:, None]
-    known = known_components(t.shape_covariance)
+    known = known_components(t.shapes, t.shape_covariance)
     shapes = turned_to_principal_phase(raw, known)
     rotation = np.sum(shapes * raw.conj(), axis=0)
     rotation /= np.maximum(np.abs(rotation), 1e-300)

@@ -6,7 +6,11 @@ import pytest
 from trueup.core.dofs import Dofs
 from trueup.core.geometry import Geometry
 from trueup.core.identification.scaling import driving_points, scale
-from trueup.core.identification.shapes import real_shapes, turned_to_principal_phase
+from trueup.core.identification.shapes import (
+    known_components,
+    real_shapes,
+    turned_to_principal_phase,
+)
 from trueup.core.identification.synthesis import poles_from
 
 POLES = poles_from(np.array([10.0, 17.0, 31.0]), np.array([0.01, 0.02, 0.005]))
@@ -109,3 +113,11 @@ def test_real_shapes_of_a_mixed_pair_span_the_real_pair():
     real = real_shapes(np.array([50.0, 50.01]), turned, np.ones(12), np.ones(turned.shape, bool))
     assert np.linalg.svd(pair.T @ np.linalg.qr(real)[0])[1] == pytest.approx([1.0, 1.0])
     assert np.linalg.svd(real)[1][1] > 0.5
+
+
+def test_large_components_with_large_errors_are_known_and_lost_ones_are_not():
+    """Noise that follows the response makes large components uncertain, but not unknown."""
+    shapes = np.array([[1.0], [1.0], [1.0], [50.0], [1.0]]) + 0j
+    std = np.array([0.01, 0.01, 0.01, 0.5, 0.5])
+    covariance = (std**2)[:, None, None, None] * np.eye(2)
+    assert known_components(shapes, covariance)[:, 0].tolist() == [True, True, True, True, False]
