@@ -47,8 +47,8 @@ class Effort:
     beam: int = 3
     branches: int = 4
     looked_at: int = 6
-    around: int = 28
-    neighbours: int = 90
+    around: int = 22
+    neighbours: int = 60
     of_each_kind: int = 2
     most: int = 4
     search_modes: int = 48
@@ -222,8 +222,8 @@ class Searcher:
         Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
         """
         fresh = np.zeros_like(state.log_p)
-        near = fit(_softened(self.problem), fresh, state.suspects, self.active, 8)
-        again = fit(self.problem, near.log_p, near.suspects, self.active, 8)
+        near = fit(_softened(self.problem), fresh, state.suspects, self.active, 6)
+        again = fit(self.problem, near.log_p, near.suspects, self.active, 6)
         return again if again.objective < state.objective else state
 
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
@@ -259,7 +259,7 @@ class Searcher:
         """
         moved = True
         rounds = 0
-        while moved and rounds < 2:
+        while moved and rounds < 1:
             moved, rounds = False, rounds + 1
             for q in self._doubtful(state, rounds):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
