@@ -101,7 +101,11 @@ def _searched(
     one = merged(searcher, best)
     if one is not best:
         with suppress(TrueupError):
-            one = _polished(request, searcher, made, one, sensors)
+            as_many = found.levels[len(one.suspects)]
+            one = min(
+                (_polished(request, searcher, made, f, sensors) for f in (one, as_many)),
+                key=lambda f: f.objective,
+            )
             levels = (*found.levels[: verdict.accepted], one)
             scale = max(verdict.scale, noise_scale(problem.evidence, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)

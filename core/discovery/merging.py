@@ -22,7 +22,8 @@ _MASSES = {"point_mass", "distributed_mass"}
 def merged(searcher: Searcher, state: Fit) -> Fit:
     """Return a hypothesis with neighbours of one nature made one; the same if there are none.
 
-    Masses and springs add up, at the place of the largest; of patches of stiffness the one that
+    Masses and springs add up, at the place of the largest, a mass that is spread out in part as a
+    whole; of patches of stiffness the one that
     changes most stays. Nothing is fitted again.
     """
     left = list(state.suspects)
@@ -35,9 +36,15 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
         c = searcher.problem.catalogue[first.kind]
         if same and c.kind != "local_stiffness":
             total = sum(float(np.exp(s.theta)) for s in (first, *same))
+            spread = [s for s in (first, *same) if _is_spread(searcher, s)]
+            first = max(spread or [first], key=lambda s: _size(searcher, s))
             first = replace(first, theta=float(np.log(total)))
         kept.append(first)
     return state if len(kept) == len(state.suspects) else replace(state, suspects=tuple(kept))
+
+
+def _is_spread(searcher: Searcher, s: Suspect) -> bool:
+    return searcher.problem.catalogue[s.kind].kind == "distributed_mass"
 
 
 def _size(searcher: Searcher, s: Suspect) -> float:
