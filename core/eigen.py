@@ -146,7 +146,7 @@ def solve(
     pencil = Pencil.of(model, p)
     owner = model if isinstance(model, Model) else None
     none = np.zeros((pencil.n, 0))
-    body = rigid_body(owner, pencil) if owner else RigidBody(none, none, 0)
+    body = rigid_body(owner, pencil) if owner else RigidBody(none, none, ())
     rigid = body.modes
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
     wanted = n_modes if n_modes is not None or fmax is not None else _DEFAULT_MODES
@@ -176,7 +176,7 @@ def solve(
     keep = len(values) if wanted is None else min(wanted, len(values))
     if limit is not None:
         keep = min(keep, int(np.count_nonzero(values <= limit)))
-    notes += _notes(body.pieces, n_zero, wanted if limit is None else None, len(values))
+    notes += _notes(pencil, body, n_zero, wanted if limit is None else None, len(values))
     X = vectors[:, :keep]
     gram = X.T @ (pencil.M @ X)
     checks = {
@@ -264,9 +264,22 @@ def _refuse_mechanism(model: Model | None, pencil: Pencil, body: RigidBody, Z: F
     ]
 
 
-def _notes(pieces: int, n_zero: int, wanted: int | None, found: int) -> list[str]:
+def _notes(
+    pencil: Pencil, body: RigidBody, n_zero: int, wanted: int | None, found: int
+) -> list[str]:
     notes = []
-    if pieces > 1:
+    pieces = len(body.pieces)
+    if pieces and body.held:
+        rows = body.pieces[0]
+        grids = dict.fromkeys(pencil.name(int(r)).split(":")[0] for r in rows)
+        shown = ", ".join(list(grids)[:6]) + (", ..." if len(grids) > 6 else "")
+        part = "a part moves" if pieces == 1 else f"{pieces} parts move"
+        notes.append(
+            f"{part} freely that {'is' if pieces == 1 else 'are'} not connected to the rest, "
+            f"which is held: {'' if pieces == 1 else 'one of them '}at {shown}; check that "
+            "nothing is disconnected by mistake"
+        )
+    elif pieces > 1:
         notes.append(
             f"the model is {pieces} separate free pieces with {n_zero} rigid-body modes in all: "
             "check that nothing is disconnected by mistake"

@@ -34,13 +34,16 @@ class RigidBody:
     motions : (n_free, k) float
         All rigid motions, with strain energy or without, of the pieces that nothing holds in
         translation, M-orthonormal.
-    pieces : int
-        Number of separate pieces that have rigid-body modes.
+    pieces : tuple of (k,) int
+        Rows of each separate piece that has rigid-body modes, the smallest first.
+    held : int
+        Number of separate pieces that have none.
     """
 
     modes: Floats
     motions: Floats
-    pieces: int
+    pieces: tuple[Ints, ...]
+    held: int = 0
 
     def split(self, pencil: Pencil, Z: Floats) -> tuple[Floats, Floats, Floats]:
         """Tell motions that are nearly those of a rigid body from mechanisms.
@@ -92,16 +95,25 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     mass = pencil.M @ U
     modes: list[tuple[Ints, Floats]] = []
     motions: list[tuple[Ints, Floats]] = []
-    pieces = 0
+    pieces: list[Ints] = []
+    held = 0
     for rows in _groups(label):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
         found = _strain_free(u, mu, ku, noise[rows])
-        pieces += found.shape[1] > 0
+        if found.shape[1]:
+            pieces.append(rows)
+        else:
+            held += 1
         modes.append((rows, found))
         if (np.abs(ku[:, :3]) <= noise[rows, None]).all():
             motions.append((rows, _orthonormal(u, mu)))
-    return RigidBody(_assembled(modes, pencil.n), _assembled(motions, pencil.n), pieces)
+    return RigidBody(
+        _assembled(modes, pencil.n),
+        _assembled(motions, pencil.n),
+        tuple(sorted(pieces, key=len)),
+        held,
+    )
 
 
 def _assembled(parts: Sequence[tuple[Ints, Floats]], n: int) -> Floats:

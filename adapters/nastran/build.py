@@ -81,7 +81,26 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     groups = tuple(g for family in FAMILIES.values() for g in family(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
-    return Structure(points, groups, blocks, (*context.notes, *_unused_masses(deck)))
+    notes = (*context.notes, *_unused_masses(deck), *_shared_numbers(deck, groups))
+    return Structure(points, groups, blocks, notes)
+
+
+def _shared_numbers(deck: Deck, groups: Sequence[Group]) -> tuple[str, ...]:
+    """Say when elements of different cards have one number, which Nastran refuses."""
+    owner: dict[int, str] = {}
+    shared = []
+    for group in groups:
+        if group.shape:
+            new = dict.fromkeys(group.ids.tolist(), group.card)
+            shared += [i for i in owner.keys() & new.keys() if owner[i] != new[i]]
+            owner |= new
+    if not shared:
+        return ()
+    shown = ", ".join(map(str, sorted(shared)[:5])) + (", ..." if len(shared) > 5 else "")
+    return (
+        f"{deck.path}: elements of different cards share the number {shown}; Nastran wants every "
+        "element number once",
+    )
 
 
 def _unused_masses(deck: Deck) -> tuple[str, ...]:

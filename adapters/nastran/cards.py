@@ -238,6 +238,11 @@ def _reason(error: BaseException) -> str:
     text = " ".join(line.strip() for line in str(error).splitlines() if line.strip())
     if "norm(" in text or "coords are colinear" in text.lower():
         return "its three points coincide or stand in a line"
+    literal = re.search(
+        r"(?:invalid literal for int|could not convert string to float).*?'(.*?)'", text
+    )
+    if literal:
+        return f"{literal.group(1)!r} stands where a number belongs"
     text = re.split(r"\s*(?:card\s*=|\bfields?=\[|\['|BDFCard|\[\")", text)[0].strip(" ;:,")
     return text[:160] or "the card cannot be read"
 

@@ -112,6 +112,7 @@ def _group(
     ids = np.array([c.eid for c in cards], dtype=np.int64)
     kept = kept_nodes(present, kernel.corners, kernel.geometry.nodes)
     rows_of = points.rows(nodes_of(cards, kept), name, ids)
+    _refuse_repeated(context, name, ids, rows_of)
     T = spread(kernel.geometry.edges, kept)
     xyz = points.xyz[rows_of] if T is None else T @ points.xyz[rows_of]
     check_volume(context, name, ids, kernel, xyz)
@@ -135,6 +136,18 @@ def _group(
     sources = tuple(_sources(context, key) for key in keys)
     corners = rows_of[:, : kernel.corners]
     return Group(name, ids, 2 * rows_of, 3, matrices, sources, of, kernel.shape, corners)
+
+
+def _refuse_repeated(context: Context, name: str, ids: Ints, rows_of: Ints) -> None:
+    """Raise `InputError` for an element that names a grid twice."""
+    ordered = np.sort(rows_of, axis=1)
+    twice = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
+    if twice.any():
+        place = context.bulk.place(name, int(ids[np.flatnonzero(twice)[0]]))
+        raise InputError(
+            f"{place} names a grid twice; use the element of the shape it stands for "
+            "(CPENTA, CPYRAM, CTETRA)"
+        )
 
 
 def _stiffness(kernel: Kernel, xyz: Floats, C: Floats, schemes: list[str]) -> Floats:

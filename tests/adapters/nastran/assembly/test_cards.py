@@ -300,3 +300,34 @@ def test_a_door_turns_on_its_hinges(model):
         "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,7.+4,,.3,1.\n"
     )
     assert solve(found, 3).rigid_body_modes == 1
+
+
+PLATE = (
+    "GRID,1,,0.,0.,0.,,123456\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.,,123456\n"
+    "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.01,1,,1\nMAT1,1,7.+10,,.3,2700.\n"
+)
+
+
+def test_a_part_that_is_not_connected_is_named(model):
+    """A bar that floats beside a clamped plate, and a clamped plate alone."""
+    bar = "GRID,81,,0.,0.,2.\nGRID,82,,1.,0.,2.\nCBAR,9,9,81,82,0.,0.,1.\nPBAR,9,1,1.,1.,1.,1.\n"
+    found = solve(model(PLATE + bar), 12)
+    assert any("not connected to the rest" in w and "81, 82" in w for w in found.warnings)
+    assert not solve(model(PLATE), 4).warnings
+
+
+def test_a_solid_that_names_a_grid_twice_is_refused(model):
+    grids = "".join(
+        f"GRID,{1 + i + 2 * j + 4 * k},,{i}.,{j}.,{k}.\n"
+        for i in (0, 1)
+        for j in (0, 1)
+        for k in (0, 1)
+    )
+    with pytest.raises(InputError, match=r"CHEXA 5 \(.*\) names a grid twice"):
+        model(grids + "CHEXA,5,1,1,2,4,3,5,6\n,8,8\nPSOLID,1,1\nMAT1,1,1.,,.3,1.")
+
+
+def test_elements_of_different_cards_with_one_number_are_said(model):
+    bar = "CBAR,1,9,2,3,0.,0.,1.\nPBAR,9,1,1.,1.,1.,1.\n"
+    found = model(PLATE + bar)
+    assert any("share the number 1" in w for w in found.warnings)
