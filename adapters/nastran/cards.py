@@ -231,6 +231,9 @@ class CardReader:
         return cls.add_card(card)
 
 
+_NO_NUMBER = re.compile(r"(?:invalid literal for int|could not convert string to float).*?'(.*?)'")
+
+
 def _reason(error: BaseException) -> str:
     """Boil a pyNastran message down to one sentence."""
     if isinstance(error, (KeyError, TypeError, IndexError, AttributeError)):
