@@ -246,7 +246,7 @@ def _say_changed(records: Sequence[Record], quantity: str, report: Report) -> No
     if others:
         report.warnings.append(
             f"{others[0].where}: {len(others)} response(s) are not {quantity} as the others and "
-            "were multiplied by i omega"
+            "were multiplied by i omega as often as that takes"
         )
     named = [r for r in records if r.head.named]
     if named:

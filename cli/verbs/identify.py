@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from ...core.identification import Identification
 
 _FILES = (".unv", ".uff", ".h5")
+_MOST_NAMED = 20
 
 
 def identify(
@@ -62,7 +64,11 @@ def identify(
         "schema": "trueup/identify/1",
         "frf": [str(p) for p in frf],
         **identify_tables(found),
-        "warnings": [*content.warnings, *found.warnings],
+        "warnings": [
+            *content.warnings,
+            *_lost(content.skipped),
+            *found.warnings,
+        ],
     }
     if alone:
         if not len(found.modes):
@@ -81,6 +87,14 @@ def identify(
         console.print(f"{'modes' if alone else 'run folder'}: {target}", markup=False)
     if not quiet:
         _tell(result, content, verbose)
+
+
+def _lost(skipped: Sequence[Any]) -> list[str]:
+    """Name the responses that could not be used, the first few one by one."""
+    lost = [str(s) for s in skipped if s.harm == "lost"]
+    more = len(lost) - _MOST_NAMED
+    told = f"{more} further functions were not read; trueup inspect lists them"
+    return [*lost[:_MOST_NAMED], *([told] if more > 0 else [])]
 
 
 def _refuse(target: Path, frf: list[Path], force: bool) -> None:

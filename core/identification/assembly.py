@@ -57,6 +57,7 @@ def assemble(
         mass = scaling.modal_mass / size**2
         return Modes(t.hz, shapes / size, survey.outputs, damping, mass, survey.source)
 
+    indicator = _indicator_at(survey, t.hz)
     return Identification(
         modes=modes(p.shapes, p.size),
         real_modes=modes(p.real, p.real_size),
@@ -67,12 +68,12 @@ def assemble(
         references=survey.inputs,
         mpc=mpc,
         mpd=phase_deviation(sure),
-        mode_indicator=_indicator_at(survey, t.hz),
+        mode_indicator=indicator,
         quality=quality,
         significance=t.significance,
         close_pair_possible=pair,
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
-        remarks=of_modes(survey, t, p, quality, mpc),
+        remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
         chart=_joined_chart(fits, charts),
         cmif=_cmif(survey),

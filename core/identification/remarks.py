@@ -11,6 +11,7 @@ from .table import ModeTable, Physical
 
 _POOR_QUALITY = 0.9
 _POOR_MPC = 0.7
+_POOR_INDICATOR = 0.3
 _WEAK = 0.05  # relative standard error of the shape above which it is called uncertain
 _INPUT_RANK = 0.02  # singular value ratio below which references see one and the same
 
@@ -51,7 +52,7 @@ def of_leakage(hz: Floats, blurred: Numbers) -> list[str]:
 
 
 def of_modes(
-    survey: Survey, t: ModeTable, p: Physical, quality: Floats, mpc: Floats
+    survey: Survey, t: ModeTable, p: Physical, quality: Floats, mpc: Floats, indicator: Floats
 ) -> tuple[str, ...]:
     """Say what makes each mode a poor one; empty for a mode without reproach."""
     texts = []
@@ -63,6 +64,8 @@ def of_modes(
             found.append(f"synthesised and measured functions agree to {quality[k]:.2f} only")
         if mpc[k] < _POOR_MPC:
             found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
+        if indicator[k] < _POOR_INDICATOR:
+            found.append(f"no clear resonance of all responses (mode indicator {indicator[k]:.2f})")
         sure, std, shape = p.known[:, k], p.std[:, k], real[:, k]
         if np.any(std[~sure] > KNOWN * np.abs(shape[sure]).max(initial=0.0)):
             where = [labels[o] for o in np.flatnonzero(~sure)[:5]]

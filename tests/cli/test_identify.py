@@ -284,3 +284,11 @@ def test_duct_frfs_pair_as_its_modes_do(
     assert len(paired[1]) >= 10
     for hz in paired[1]:
         assert np.abs(paired[0] / hz - 1.0).min() < 5e-3
+
+
+def test_a_function_that_is_there_twice_is_told(frf: Path, call: Call) -> None:
+    frf.write_bytes(2 * frf.read_bytes())
+    answer = call("identify", frf, "--json", "-")
+    assert answer.status == 0
+    warnings = json.loads(answer.out)["warnings"]
+    assert sum("were read before; the first is kept" in w for w in warnings) == 8

@@ -28,6 +28,8 @@ _FEW = 64
 """Strings of fewer columns than these are found column by column, else side by side."""
 _BATCH, _MOST_COLUMNS = 1 << 20, 1 << 15
 """Bytes and numbers of columns that are looked at together."""
+_MOST_ROWS = 500_000_000
+"""More than any model has; a damaged header says more."""
 _HEADER = {24: 4, 48: 8}
 """Bytes of a matrix header record: bytes of a word."""
 
@@ -134,6 +136,11 @@ class _File:
         name = raw.decode("latin-1").strip(" \0").upper()
         if kind not in (1, 2, 3, 4) or ncol < 0:
             raise InputError(f"{self.path}: matrix {name!r} has a type {kind} that is not known")
+        if max(abs(nrow), ncol) > _MOST_ROWS:
+            raise InputError(
+                f"{self.path} is damaged: matrix {name!r} says that it has {abs(nrow)} rows and "
+                f"{ncol} columns"
+            )
         return Header(name, (abs(nrow), ncol), form, kind, nrow < 0 or nrow >= _BIGMAT_FROM)
 
 

@@ -378,3 +378,13 @@ def test_maps_of_one_size_and_matrices_without_any_come_back(tmp_path: Path) -> 
         for x, y in ((a.rows, b.rows), (a.columns, b.columns)):
             assert (x is None) == (y is None)
             assert x is None or np.array_equal(x.keys, y.keys)
+
+
+def test_a_header_of_more_rows_than_any_model_has_is_damage(tmp_path):
+    path = tmp_path / "a.op4"
+    write_op4(path, [NastranMatrix("AMAT", sp.csc_matrix((4, 4)))])
+    whole = bytearray(path.read_bytes())
+    whole[8:12] = struct.pack("<i", 1_500_000_000)
+    path.write_bytes(whole)
+    with pytest.raises(InputError, match="AMAT' says that it has 1500000000 rows"):
+        read_op4(path)
