@@ -15,9 +15,8 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
@@ -25,7 +24,7 @@ import numpy as np
 import scipy.sparse as sp
 from universal import compare as compare_universal
 from universal import large as large_universal
-from universal import survey
+from universal import seconds, survey
 
 from trueup.adapters.nastran import NastranMatrix, read_modes, read_op4, write_op4
 
@@ -57,16 +56,6 @@ for name in sys.argv[1:]:
     done[name] = time.perf_counter() - start
 print(json.dumps(done))
 """
-
-
-def seconds(work: Callable[[], object], repeats: int = 2) -> float:
-    """Best of a few runs."""
-    best = float("inf")
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        best = min(best, time.perf_counter() - start)
-    return best
 
 
 def megabytes(path: Path) -> float:

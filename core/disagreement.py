@@ -117,7 +117,7 @@ def disagreement(
     noise = _noise(compared, at_sensors)
     pairs = paired_shapes(found, at_sensors, compared.test.shapes)
     measured = misfit(found, pairs, noise)
-    places = _evenly(geometry.xyz, _PLACES)
+    places = _evenly(len(geometry.xyz), _PLACES)
     centres = geometry.xyz[places]
     motion, _ = spread(measured.by_sensor, seen.xyz, centres)
     lin = linearise(found, pairs, noise, hz, at_sensors)
@@ -148,9 +148,9 @@ def _noise(compared: Comparison, at_sensors: Floats) -> Noise:
     return estimate_noise(hz, at_sensors, compared.test.frequencies_hz, shapes, rigid)
 
 
-def _evenly(xyz: Floats, most: int) -> Ints:
-    """At most `most` rows of points, spread over all of them."""
-    return np.unique(np.linspace(0, len(xyz) - 1, min(len(xyz), most)).round().astype(np.int64))
+def _evenly(count: int, most: int) -> Ints:
+    """At most `most` of `count` rows, spread over all of them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
 
 
 def _translations(compared: Comparison, geometry: Geometry) -> Floats:
@@ -180,7 +180,7 @@ def _stiffness(
     moved = np.asarray(displacement @ free_shapes)
     for group in groups:
         share = max(1, len(group.corners) * _ELEMENTS // max(count, 1))
-        rows = _evenly(np.zeros((len(group.corners), 3)), share)
+        rows = _evenly(len(group.corners), share)
         if not len(rows):
             continue
         K, _ = group.matrices(rows, p)
