@@ -67,7 +67,7 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
         if wanted:
             own = [c.where[int(r)].get("components") for r in rows]
             rows = rows[[not o or list(o) == wanted for o in own]]
-        return [Suspect(number, int(r), math.log(value)) for r in rows[:count]]
+        return [Suspect(number, int(r), (math.log(value),)) for r in rows[:count]]
     return []
 
 
@@ -78,7 +78,7 @@ def describe(searcher: Any, fit: Any) -> str:
         c = searcher.problem.catalogue[s.kind]
         x = ", ".join(f"{v:.0f}" for v in c.xyz[s.row])
         words.append(
-            f"{c.kind} ({x}) {math.exp(s.theta):.4g} {c.where[s.row].get('components', '')}"
+            f"{c.kind} ({x}) {math.exp(s.theta[0]):.4g} {c.where[s.row].get('components', '')}"
         )
     return f"{fit.objective:8.1f}  " + "; ".join(words)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -25,7 +25,7 @@ class Rows(Protocol):
 
 
 class Law(Protocol):
-    """How the magnitude enters: the matrix of an effect is ``value(θ) · A`` with θ = ln size."""
+    """How the magnitudes enter: the matrix of an effect is ``value(θ) · A`` with θ = ln sizes."""
 
     @property
     def on(self) -> str:
@@ -33,11 +33,11 @@ class Law(Protocol):
         ...
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the factors on the q rows of `rows` at `theta` (n,): (n, q or 1)."""
+        """Return the factors on the q rows of `rows` at `theta` (n, t): (n, q or 1)."""
         ...
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return their derivatives by θ."""
+        """Return their derivatives by each θ, (n, t, q or 1)."""
         ...
 
 
@@ -49,11 +49,11 @@ class MassLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
-        return np.asarray(np.exp(theta)[:, None])
+        return np.asarray(np.exp(theta))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
-        return np.asarray(np.exp(theta)[:, None])
+        return np.asarray(np.exp(theta)[:, :, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +71,21 @@ class AttachedLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
-        return np.asarray(np.exp(theta)[:, None])
+        return np.asarray(np.exp(theta))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
-        return np.asarray(np.exp(theta)[:, None])
+        return np.asarray(np.exp(theta)[:, :, None])
 
     def springs(self, theta: Floats, rows: Ints) -> Floats:
         """Return the stiffness between the structure and the mass, (n, q)."""
-        rigid = _RIGID / (np.exp(theta)[:, None] * self.top)
+        rigid = _RIGID / (np.exp(theta) * self.top)
         return np.asarray(1.0 / (self.missing[rows] + rigid))
+
+    def springs_slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return the derivatives of these stiffnesses by each θ, (n, t, q)."""
+        rigid = _RIGID / (np.exp(theta) * self.top)
+        return np.asarray(rigid * self.springs(theta, rows) ** 2)[:, None, :]
 
 
 @dataclass(frozen=True)
@@ -91,11 +96,11 @@ class FactorLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return f − 1."""
-        return np.asarray(np.expm1(theta)[:, None])
+        return np.asarray(np.expm1(theta))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return df/dθ."""
-        return np.asarray(np.exp(theta)[:, None])
+        return np.asarray(np.exp(theta)[:, :, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +115,13 @@ class SpringLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return what the spring is worth."""
-        k = np.exp(theta)[:, None]
+        k = np.exp(theta)
         return np.asarray(k / (1.0 + k * self.missing[rows]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return its derivative by θ."""
-        k = np.exp(theta)[:, None]
-        return np.asarray(k / (1.0 + k * self.missing[rows]) ** 2)
+        k = np.exp(theta)
+        return np.asarray(k / (1.0 + k * self.missing[rows]) ** 2)[:, None, :]
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,12 +146,12 @@ class ReleaseLaw:
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return −f/(e^θ + d)."""
-        return np.asarray(-self.factor(rows) / (np.exp(theta)[:, None] + self.own[rows]))
+        return np.asarray(-self.factor(rows) / (np.exp(theta) + self.own[rows]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return the derivative by θ."""
-        k = np.exp(theta)[:, None]
-        return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)
+        k = np.exp(theta)
+        return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)[:, None, :]
 
     def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
         """Return the derivative by ln p of a known parameter."""
@@ -164,16 +169,18 @@ class Candidates:
     xyz : (n, 3) float
         Where, deck units.
     law : Law
-    trials : (n_trial,) float
-        Values of θ that the search tries at every place.
+    trials : (n_trial, t) float
+        Values of θ that the search tries at every place, one θ for each of the t magnitudes.
     root : (n · q, n_free) sparse
         A of place i is the sum of the outer products of its q rows.
     rows_each : int
         q.
     where : tuple of dict
         ``grids`` or ``elements`` of each place, ``components`` where the kind has them.
-    typical, spread : float
-        Prior of θ: normal with this mean and standard deviation.
+    typical, spread : (t,) float
+        Prior of θ: normal with these means and standard deviations.
+    steps : (t,) float
+        What is a step of each θ where a search moves it.
     """
 
     kind: str
@@ -183,12 +190,22 @@ class Candidates:
     root: sp.csr_matrix
     rows_each: int
     where: tuple[dict[str, Any], ...]
-    typical: float
-    spread: float
+    typical: Floats
+    spread: Floats
+    steps: Floats = field(default_factory=lambda: np.ones(1))
     extra: dict[str, Any] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.xyz)
+
+    def surprise(self, theta: Floats) -> Floats:
+        """Return −2 ln of the prior density of θ (n, t), up to a constant, (n,)."""
+        return np.asarray(np.sum(((theta - self.typical) / self.spread) ** 2, axis=-1))
+
+    def around(self, theta: Sequence[float], changes: Floats) -> Floats:
+        """Return θ (t,) with each magnitude in turn moved by `changes` (n,) steps, (≤ n·t, t)."""
+        moves = changes[:, None, None] * np.diag(self.steps)
+        return np.asarray(theta + np.unique(moves.reshape(-1, len(self.steps)), axis=0))
 
     def factors(self, basis: Basis) -> Rows:
         """Return the rows of `root` on the basis, (n, q, r)."""
@@ -241,11 +258,28 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Suspect:
-    """One candidate with a magnitude: which kind (number in the catalogue), which place, θ."""
+    """One candidate with its magnitudes: kind (number in the catalogue), place, θ of each."""
 
     kind: int
     row: int
-    theta: float
+    theta: tuple[float, ...]
+
+    def moved(self, theta: Floats) -> Suspect:
+        """Return the candidate with magnitudes `theta` (t,)."""
+        return replace(self, theta=tuple(float(v) for v in theta))
+
+
+def magnitudes(suspects: Sequence[Suspect]) -> Floats:
+    """Return θ of all suspects one after the other, (n_magnitude,)."""
+    return np.array([v for s in suspects for v in s.theta], dtype=float)
+
+
+def changed(suspects: Sequence[Suspect], step: Floats) -> tuple[Suspect, ...]:
+    """Return the suspects with `step` (n_magnitude,) added to their magnitudes."""
+    ends = np.cumsum([len(s.theta) for s in suspects])
+    return tuple(
+        s.moved(s.theta + d) for s, d in zip(suspects, np.split(step, ends)[:-1], strict=True)
+    )
 
 
 Catalogue = Sequence[Candidates]

@@ -10,10 +10,21 @@ import scipy.linalg as la
 
 from ..arrays import Floats, Ints
 from .basis import Basis
-from .candidates import AttachedLaw, Catalogue, Law, ReleaseLaw, Rows, Suspect
+from .candidates import (
+    AttachedLaw,
+    Catalogue,
+    Law,
+    ReleaseLaw,
+    Rows,
+    Suspect,
+    changed,
+    magnitudes,
+)
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 
 _DEGENERATE = 2e-3
+_REACH = 0.8
+"""Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
 _FIRST = np.zeros(1, np.int64)
 
 
@@ -156,10 +167,9 @@ def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, In
 
 def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> float:
     total = float(np.sum((log_p / problem.prior.spread) ** 2))
-    for s in suspects:
-        c = problem.catalogue[s.kind]
-        total += ((s.theta - c.typical) / c.spread) ** 2
-    return total
+    return total + sum(
+        float(problem.catalogue[s.kind].surprise(np.array([s.theta]))[0]) for s in suspects
+    )
 
 
 def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fit:
@@ -204,7 +214,9 @@ def fit(
     """
     now = evaluate(problem, np.array(log_p), suspects)
     damping = 0.0
-    H = np.zeros((len(active) + len(suspects),) * 2)
+    steps = [problem.catalogue[s.kind].steps for s in suspects]
+    reach = _REACH * np.concatenate([np.ones(len(active)), *steps])
+    H = np.zeros((len(reach),) * 2)
     for _ in range(iterations):
         H, g = _normal_equations(problem, now, active)
         if not len(g):
@@ -214,7 +226,7 @@ def fit(
             step = -la.solve(
                 H + damping * np.diag(np.diag(H)) + 1e-9 * np.eye(len(H)), g, assume_a="pos"
             )
-            trial = _stepped(problem, now, active, np.clip(step, -0.8, 0.8))
+            trial = _stepped(problem, now, active, np.clip(step, -reach, reach))
             if trial.objective < now.objective:
                 better, damping = trial, 0.3 * damping
                 break
@@ -232,56 +244,22 @@ def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) ->
     log_p = np.array(now.log_p)
     log_p[list(active)] += step[: len(active)]
     log_p = np.clip(log_p, problem.prior.lower, problem.prior.upper)
-    suspects = [
-        replace(s, theta=s.theta + float(d))
-        for s, d in zip(now.suspects, step[len(active) :], strict=True)
-    ]
-    return evaluate(problem, log_p, suspects)
+    return evaluate(problem, log_p, changed(now.suspects, step[len(active) :]))
 
 
 def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
     """Hessian and gradient of half the objective, robust weights included."""
     e, noise = problem.evidence, problem.evidence.noise
     V, lam, k = now.vectors, now.eigenvalues, now.match
-    Vk, lk = V[:, k], lam[k]
+    lk = lam[k]
     n, here = len(k), np.arange(len(k))
-    p, last = np.exp(now.log_p), len(now.log_p) - 1
-    changes: list[tuple[Floats | None, Floats | None]] = [
-        (None, -problem.mesh)
-        if q == last
-        else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
-        for q in active
-    ]
-    size = problem.basis.size
-    own = size
-    inner: dict[int, slice] = {}
-    for s in now.suspects:
-        rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
-        U, theta = rows[0], np.array([s.theta])
-        if isinstance(law, AttachedLaw):
-            inner[len(changes)] = slice(own, own + len(U))
-            own += len(U)
-            changes.append((None, None))
-            continue
-        A = (U.T * law.slope(theta, _FIRST)[0]) @ U
-        if isinstance(law, ReleaseLaw):
-            for i, q in enumerate(active):
-                before = changes[i][0]
-                if before is not None:
-                    follows = (U.T * law.by_parameter(theta, _FIRST, q)[0]) @ U
-                    changes[i] = (before + follows, changes[i][1])
-        changes.append((A, None) if law.on == "K" else (None, A))
-    shapes = problem.sensors @ V[:size]
-    dlam = np.zeros((len(changes), n))
-    dshape = np.zeros((len(changes), len(shapes), n))
+    products, shapes = _products(problem, now, active), problem.sensors @ V[: problem.basis.size]
+    dlam = np.zeros((len(products), n))
+    dshape = np.zeros((len(products), len(shapes), n))
     gap = lk[None, :] - lam[:, None]
     close = np.abs(gap) < _DEGENERATE * np.abs(lk)[None, :]
     safe = np.where(close, 1.0, gap)
-    for i, (dK, dM) in enumerate(changes):
-        a = V[:size].T @ (dK @ Vk[:size]) if dK is not None else 0.0
-        b = V[:size].T @ (dM @ Vk[:size]) if dM is not None else np.zeros((V.shape[1], n))
-        if i in inner:
-            b = V[inner[i]].T @ Vk[inner[i]]
+    for i, (a, b) in enumerate(products):
         F = a - b * lk[None, :]
         dlam[i] = F[k, here]
         C = np.where(close, 0.0, F / safe)
@@ -306,18 +284,53 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     d = d - a * np.einsum("sj,psj->pj", a, d)[:, None]
     d = (d - t * np.einsum("sj,psj->pj", t, d)[:, None]) * scale
     w = np.sqrt(1.0 / (1.0 + (off**2 + np.sum(rest**2, axis=0)) / noise.robust))
-    J = np.concatenate([doff * w, (d * w).reshape(len(changes), -1)], axis=1)
+    J = np.concatenate([doff * w, (d * w).reshape(len(products), -1)], axis=1)
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
-    spread = np.concatenate(
-        [
-            problem.prior.spread[list(active)],
-            [problem.catalogue[s.kind].spread for s in now.suspects],
-        ]
-    )
-    mean = np.concatenate(
-        [np.zeros(len(active)), [problem.catalogue[s.kind].typical for s in now.suspects]]
-    )
-    x = np.concatenate([now.log_p[list(active)], [s.theta for s in now.suspects]])
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    spread = np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
+    mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
+    x = np.concatenate([now.log_p[list(active)], magnitudes(now.suspects)])
     H = H + np.diag(1.0 / spread**2)
     return H, g + (x - mean) / spread**2
+
+
+def _products(problem: Problem, now: Fit, active: Sequence[int]) -> list[tuple[Floats, Floats]]:
+    """Vᵀ ∂K V and Vᵀ ∂M V by each unknown, on the right only the modes that match."""
+    V, k = now.vectors, now.match
+    size, last, p = problem.basis.size, len(now.log_p) - 1, np.exp(now.log_p)
+    S, own, none = V[:size], size, np.zeros((V.shape[1], len(k)))
+    changes: list[tuple[Floats | None, Floats | None]] = [
+        (None, -problem.mesh)
+        if q == last
+        else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
+        for q in active
+    ]
+    of_suspects: list[tuple[Floats, Floats]] = []
+    for s in now.suspects:
+        rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
+        U, theta = rows[0], np.array([s.theta])
+        u, slopes = U @ S, law.slope(theta, _FIRST)[0]
+        if isinstance(law, AttachedLaw):
+            x = V[own : own + len(U)] / np.sqrt(law.value(theta, _FIRST)[0])[:, None]
+            own += len(U)
+            stretch, springs = u - x, law.springs_slope(theta, _FIRST)[0]
+            of_suspects += [
+                ((stretch.T * dk) @ stretch[:, k], (x.T * dm) @ x[:, k])
+                for dk, dm in zip(springs, slopes, strict=True)
+            ]
+            continue
+        for c in slopes:
+            change = (u.T * c) @ u[:, k]
+            of_suspects.append((change, none) if law.on == "K" else (none, change))
+        if isinstance(law, ReleaseLaw):
+            for i, q in enumerate(active):
+                before = changes[i][0]
+                if before is not None:
+                    follows = (U.T * law.by_parameter(theta, _FIRST, q)[0]) @ U
+                    changes[i] = (before + follows, changes[i][1])
+
+    def product(change: Floats | None) -> Floats:
+        return none if change is None else np.asarray(S.T @ (change @ S[:, k]))
+
+    return [*((product(dK), product(dM)) for dK, dM in changes), *of_suspects]

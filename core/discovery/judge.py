@@ -38,7 +38,8 @@ class Judgement:
 
 def noise_scale(e: Evidence, best: Fit) -> float:
     """Return how many times the assumed variance the best fit leaves, at least 1."""
-    freedom = _PER_MODE * len(e.frequencies_hz) - len(best.active) - 2 * len(best.suspects)
+    found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
+    freedom = _PER_MODE * len(e.frequencies_hz) - len(best.active) - found
     return max(1.0, best.misfit / max(freedom, 1.0))
 
 
@@ -145,7 +146,7 @@ def credible_places(
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     without = evaluate(searcher.problem, best.log_p, others)
     small, here = searcher.local(without)
-    trials = suspect.theta + np.array([-0.3, 0.0, 0.3])
+    trials = c.around(suspect.theta, np.array([-0.3, 0.0, 0.3]))
     score = scan(small, here, suspect.kind, rows, trials).min(axis=1) / scale
     off = score - score.min()
     kept = np.flatnonzero(off < _CREDIBLE)

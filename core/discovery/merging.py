@@ -35,10 +35,10 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
         left = [s for s in left if not any(s is t for t in same)]
         c = searcher.problem.catalogue[first.kind]
         if same and c.kind != "local_stiffness":
-            total = sum(float(np.exp(s.theta)) for s in (first, *same))
+            total = np.sum([np.exp(s.theta) for s in (first, *same)], axis=0)
             spread = [s for s in (first, *same) if _is_spread(searcher, s)]
             first = max(spread or [first], key=lambda s: _size(searcher, s))
-            first = replace(first, theta=float(np.log(total)))
+            first = first.moved(np.log(total))
         kept.append(first)
     return state if len(kept) == len(state.suspects) else replace(state, suspects=tuple(kept))
 
@@ -49,7 +49,8 @@ def _is_spread(searcher: Searcher, s: Suspect) -> bool:
 
 def _size(searcher: Searcher, s: Suspect) -> float:
     c = searcher.problem.catalogue[s.kind]
-    return abs(s.theta) if c.kind == "local_stiffness" else float(np.exp(s.theta))
+    theta = s.theta[0]
+    return abs(theta) if c.kind == "local_stiffness" else float(np.exp(theta))
 
 
 def _one(searcher: Searcher, s: Suspect, t: Suspect) -> bool:

@@ -18,7 +18,7 @@ from ..eigen import solve
 from ..factor import factorise
 from ..model import Model
 from .basis import Basis, ReducedTerm
-from .candidates import Candidates, Suspect
+from .candidates import Candidates, Suspect, magnitudes
 from .fitting import Fit, Problem, fit
 from .mesh_error import lumping
 from .structure import Structure
@@ -70,14 +70,14 @@ def polished(
         )
         suspects = [Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects)]
         new = fit(own, state.log_p, suspects, tuple(range(len(state.log_p))), 20)
-        moved = [abs(a.theta - b.theta) for a, b in zip(new.suspects, state.suspects, strict=True)]
+        moved = np.abs(magnitudes(new.suspects) - magnitudes(state.suspects))
         state = replace(
             new,
             suspects=tuple(
                 replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
             ),
         )
-        if max(moved, default=0.0) < _CHANGED:
+        if np.all(moved < _CHANGED):
             break
     return state
 

@@ -26,7 +26,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         Number in the catalogue.
     rows : (n,) int
         Places.
-    trials : (n_trial,) float
+    trials : (n_trial, t) float
         Values of θ.
 
     Returns
@@ -45,7 +45,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         u = U[part]
         places = np.arange(len(U))[part]
         for j, theta in enumerate(trials):
-            at = np.full(len(places), theta)
+            at = np.tile(theta, (len(places), 1))
             c = law.value(at, places)
             if isinstance(law, AttachedLaw):
                 values, Z = _attached(lam, u, c, law.springs(at, places))

@@ -20,14 +20,14 @@ from .fitting import Fit, Problem, evaluate, fit, solve
 from .scanning import best_apart, scan
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
-"""Changes of θ tried when a suspect moves to a neighbouring place."""
+"""Steps of θ tried when a suspect moves to a neighbouring place."""
 _HOPELESS = 0.3
 """A further suspect that gains less than this share of its price before it is moved to better
 neighbours is given up."""
 _NEAR = 0.5
 """A kind whose best place gains this share of what the best of all gains is followed too."""
 _NEARBY = np.array([-0.35, 0.0, 0.35])
-"""Changes of θ tried around the best places of the first scan."""
+"""Steps of θ tried around the best places of the first scan."""
 _FEW = 300
 """Places of all kinds up to which more of them are fitted, the known parameters with them."""
 _WORTH = 0.35
@@ -145,7 +145,7 @@ class Searcher:
                 continue
             score = scan(small, here, kind, rows, c.trials)
             score[self._taken(state, kind, rows)] = np.inf
-            total = score + (((c.trials - c.typical) / c.spread) ** 2)[None, :]
+            total = score + c.surprise(c.trials)
             tried = list(zip(total.min(axis=1), rows, c.trials[total.argmin(axis=1)], strict=True))
             coarse = best_apart(
                 c.xyz[rows], total.min(axis=1), self.effort.apart * self.size, self.effort.looked_at
@@ -158,17 +158,16 @@ class Searcher:
                 if not len(near):
                     continue
                 done.update(near.tolist())
-                theta = float(tried[i][2])
-                alike = scan(small, here, kind, near, np.array([theta]))[:, 0]
+                theta = tried[i][2]
+                alike = scan(small, here, kind, near, theta[None])[:, 0]
                 near = near[np.argsort(alike, kind="stable")[: _PROMISING // 2]]
-                trials = theta + _NEARBY
-                fine = scan(small, here, kind, near, trials)
-                fine = fine + (((trials - c.typical) / c.spread) ** 2)[None, :]
+                trials = c.around(theta, _NEARBY)
+                fine = scan(small, here, kind, near, trials) + c.surprise(trials)
                 tried += zip(fine.min(axis=1), near, trials[fine.argmin(axis=1)], strict=True)
             best = np.array([t[0] for t in tried])
             every = np.array([t[1] for t in tried], dtype=np.int64)
             for i in best_apart(c.xyz[every], best, self.effort.apart * self.size, count):
-                out.append((float(best[i]), Suspect(kind, int(every[i]), float(tried[i][2]))))
+                out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
 
     def _around(self, kind: int, row: int) -> Ints:
@@ -240,13 +239,13 @@ class Searcher:
         small, here = self.local(without)
         first = scan(small, here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
         rows = rows[np.argsort(first, kind="stable")[:_PROMISING]]
-        trials = suspect.theta + _NEIGHBOURING
+        trials = c.around(suspect.theta, _NEIGHBOURING)
         score = scan(small, here, suspect.kind, rows, trials)
         best = score.min(axis=1)
         for i in np.argsort(best, kind="stable")[:3]:
             if rows[i] == suspect.row:
                 continue
-            moved = replace(suspect, row=int(rows[i]), theta=float(trials[score[i].argmin()]))
+            moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
             trial = self.fitted(state, (*state.suspects[:q], moved, *state.suspects[q + 1 :]), 4)
             if trial.objective < state.objective - 0.3:
                 return trial

@@ -38,12 +38,13 @@ def told(
 ) -> Discovery:
     """Say what the search amounts to: verdict, findings, alternatives, what would decide."""
     best = found.levels[verdict.accepted]
-    n_active = len(best.active)
     spread = deviations(best, verdict.scale)
+    ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
+    own = np.split(spread, ends[:-1])[1:]
     alternatives = _alternatives(request, searcher, found, verdict)
     findings = [
-        _finding(request, searcher, best, k, verdict, float(spread[n_active + k]), alternatives)
-        for k in range(len(best.suspects))
+        _finding(request, searcher, best, k, verdict, deviation, alternatives)
+        for k, deviation in enumerate(own)
     ]
     nodes = request.placed.observation.sensors.node
     xyz = request.placed.observation.xyz
@@ -101,29 +102,30 @@ def _finding(
     best: Fit,
     number: int,
     verdict: Judgement,
-    deviation: float,
+    deviation: Floats,
     alternatives: tuple[Alternative, ...],
 ) -> Finding:
     s = best.suspects[number]
     c = searcher.problem.catalogue[s.kind]
     geometry = request.structure.model.geometry
-    size = float(np.exp(s.theta))
-    spread = float(np.hypot(deviation, _SHAPE["M" if c.law.on == "M" else "K"]))
-    low, high = (float(np.exp(s.theta + d * 1.96 * spread)) for d in (-1.0, 1.0))
+    sizes = np.exp(s.theta)
+    spread = np.hypot(deviation, _SHAPE["M" if c.law.on == "M" else "K"])
+    intervals = sizes[:, None] * np.exp(1.96 * spread[:, None] * np.array([-1.0, 1.0]))
     places = credible_places(searcher, best, number, verdict.scale)
     where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
     where["region"] = region(geometry, c.xyz[s.row])
-    magnitude = magnitude_of(c, s.row, size)
+    magnitude = magnitude_of(c, s.row, sizes)
+    interval = (float(intervals[0, 0]), float(intervals[0, 1]))
     next_best = alternatives[0] if alternatives else None
     return Finding(
         "model",
         c.kind,
         where,
         magnitude,
-        (low, high),
+        interval,
         tuple({**c.where[r], "xyz": c.xyz[r].tolist(), "weight": w} for r, w in places),
         _confidence(verdict),
-        sentence_of(c.kind, magnitude, where["region"], (low, high), next_best),
+        sentence_of(c.kind, magnitude, where["region"], interval, next_best),
         {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
     )
 

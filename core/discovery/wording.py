@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..arrays import Floats
 from .candidates import Candidates
 from .findings import Alternative
 
@@ -29,10 +30,10 @@ _TEST = {
 }
 
 
-def magnitude_of(c: Candidates, row: int, size: float) -> dict[str, Any]:
+def magnitude_of(c: Candidates, row: int, sizes: Floats) -> dict[str, Any]:
     """Return the magnitudes of a finding by the words of the interface."""
-    where = c.where[row]
-    if c.kind in {"point_mass"}:
+    where, size = c.where[row], float(sizes[0])
+    if c.kind == "point_mass":
         return {"mass": size}
     if c.kind == "distributed_mass":
         area = c.extra.get("areas")

@@ -27,8 +27,8 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         root=sp.csr_matrix((0, structure.model.n_free)),
         rows_each=0,
         where=where_of(structure, patches),
-        typical=float(np.log(0.05 * scale.mass)),
-        spread=1.5,
+        typical=np.array([np.log(0.05 * scale.mass)]),
+        spread=np.array([1.5]),
         extra={
             "structure": structure,
             "patches": patches,

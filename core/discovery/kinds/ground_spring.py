@@ -27,7 +27,7 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
             {"grids": grids[i], "components": [int(c)]}
             for i, c in zip(at, live % 3 + 1, strict=True)
         ),
-        typical=float(np.log(0.03 * scale.mass * scale.omega2)),
-        spread=2.5,
+        typical=np.array([np.log(0.03 * scale.mass * scale.omega2)]),
+        spread=np.array([2.5]),
     )
     return (made,)

@@ -55,12 +55,12 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         kind="joint_flexibility",
         xyz=np.concatenate(xyz),
         law=ReleaseLaw(stiffness, np.concatenate(elastic), np.zeros(len(p))),
-        trials=typical + np.log([0.003, 0.03, 0.3, 3.0]),
+        trials=(typical + np.log([0.003, 0.03, 0.3, 3.0]))[:, None],
         root=sp.vstack(roots).tocsr(),
         rows_each=3,
         where=tuple(where),
-        typical=typical - 1.0,
-        spread=2.5,
+        typical=np.array([typical - 1.0]),
+        spread=np.array([2.5]),
     )
     return (made,)
 

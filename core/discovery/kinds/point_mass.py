@@ -31,8 +31,8 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         root=translations(structure, points),
         rows_each=3,
         where=tuple({"grids": g} for g in grids),
-        typical=float(np.log(0.03 * scale.mass)),
-        spread=1.5,
+        typical=np.array([np.log(0.03 * scale.mass)]),
+        spread=np.array([1.5]),
     )
     feet = patches_of(structure, scale.size, _FEET)
     if not feet:
@@ -45,8 +45,8 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         root=sp.csr_matrix((0, structure.model.n_free)),
         rows_each=0,
         where=tuple({"grids": _grids(structure, p)} for p in feet),
-        typical=float(np.log(0.03 * scale.mass)),
-        spread=1.5,
+        typical=np.array([np.log(0.03 * scale.mass)]),
+        spread=np.array([1.5]),
         extra={"structure": structure, "patches": feet, "share": unit_mass},
     )
     return (at_points, on_feet)

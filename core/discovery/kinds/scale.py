@@ -28,9 +28,9 @@ class Scale:
     omega2: float
 
     def masses(self, count: int = 4) -> Floats:
-        """Trial masses, ln."""
-        return np.asarray(np.log(self.mass * np.geomspace(0.01, 0.09, count)))
+        """Trial masses, ln, (count, 1)."""
+        return np.asarray(np.log(self.mass * np.geomspace(0.01, 0.09, count)))[:, None]
 
     def springs(self, count: int = 4) -> Floats:
-        """Trial stiffnesses, ln."""
-        return np.asarray(np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count)))
+        """Trial stiffnesses, ln, (count, 1)."""
+        return np.asarray(np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count)))[:, None]

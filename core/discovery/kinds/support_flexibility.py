@@ -87,12 +87,12 @@ def _released(s: Supports, places: list[Ints]) -> Candidates | None:
         kind="support_flexibility",
         xyz=np.array(xyz),
         law=ReleaseLaw(own, elastic, np.zeros(len(s.slopes))),
-        trials=typical + np.log([0.001, 0.006, 0.04, 0.25, 2.0]),
+        trials=(typical + np.log([0.001, 0.006, 0.04, 0.25, 2.0]))[:, None],
         root=(sum(turns[1:], turns[0]) @ s.root).tocsr(),
         rows_each=most,
         where=tuple(where),
-        typical=typical - 2.5,
-        spread=2.5,
+        typical=np.array([typical - 2.5]),
+        spread=np.array([2.5]),
     )
 
 

@@ -26,27 +26,27 @@ def fit(*suspects):
 
 
 def test_masses_side_by_side_are_one_with_the_mass_of_both():
-    got = merged(searcher(), fit(Suspect(0, 1, np.log(0.2)), Suspect(1, 0, np.log(0.6))))
+    got = merged(searcher(), fit(Suspect(0, 1, (np.log(0.2),)), Suspect(1, 0, (np.log(0.6),))))
     (one,) = got.suspects
     assert (one.kind, one.row) == (1, 0)
     assert np.exp(one.theta) == pytest.approx(0.8)
 
 
 def test_masses_apart_stay_two():
-    state = fit(Suspect(0, 0, 0.0), Suspect(0, 2, 0.0))
+    state = fit(Suspect(0, 0, (0.0,)), Suspect(0, 2, (0.0,)))
     assert merged(searcher(), state) is state
 
 
 def test_a_mass_and_a_spring_at_one_place_stay_two():
-    state = fit(Suspect(0, 0, 0.0), Suspect(3, 0, 0.0))
+    state = fit(Suspect(0, 0, (0.0,)), Suspect(3, 0, (0.0,)))
     assert merged(searcher(), state) is state
 
 
 def test_of_overlapping_patches_the_one_that_changes_most_stays():
-    got = merged(searcher(), fit(Suspect(2, 0, np.log(0.9)), Suspect(2, 1, np.log(0.4))))
-    assert got.suspects == (Suspect(2, 1, np.log(0.4)),)
+    got = merged(searcher(), fit(Suspect(2, 0, (np.log(0.9),)), Suspect(2, 1, (np.log(0.4),))))
+    assert got.suspects == (Suspect(2, 1, (np.log(0.4),)),)
 
 
 def test_springs_side_by_side_add_up():
-    got = merged(searcher(), fit(Suspect(3, 0, np.log(10.0)), Suspect(3, 1, np.log(5.0))))
+    got = merged(searcher(), fit(Suspect(3, 0, (np.log(10.0),)), Suspect(3, 1, (np.log(5.0),))))
     assert np.exp(got.suspects[0].theta) == pytest.approx(15.0)
