@@ -4,158 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints
+from ..arrays import Floats
 from .basis import Basis
-
-_RIGID = 1e-4
-"""ω² m times the flexibility that an attached mass has at least."""
-
-
-class Rows(Protocol):
-    """Rows of candidates on a basis; an array (n, q, r), or something that makes them."""
-
-    def __getitem__(self, rows: Ints) -> Floats:
-        """Return the rows of some candidates, (n, q, r)."""
-        ...
-
-
-class Law(Protocol):
-    """How the magnitudes enter: the matrix of an effect is ``value(θ) · A`` with θ = ln sizes."""
-
-    @property
-    def on(self) -> str:
-        """Which matrix it changes, ``K`` or ``M``."""
-        ...
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the factors on the q rows of `rows` at `theta` (n, t): (n, q or 1)."""
-        ...
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return their derivatives by each θ, (n, t, q or 1)."""
-        ...
-
-
-@dataclass(frozen=True)
-class MassLaw:
-    """A mass m = e^θ adds m·A to M."""
-
-    on: str = "M"
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return m."""
-        return np.asarray(np.exp(theta))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return dm/dθ."""
-        return np.asarray(np.exp(theta)[:, :, None])
-
-
-@dataclass(frozen=True, eq=False)
-class AttachedLaw:
-    """A mass m = e^θ on a basis that lacks the flexibility `missing` (n, q) where it sits.
-
-    Each of the q directions gets a coordinate of its own: m on a spring 1/missing, which is what
-    the mass is to a structure that moves as the basis can. `top` is an eigenvalue above those of
-    interest: springs so stiff that they do not matter below it stay finite.
-    """
-
-    missing: Rows
-    top: float
-    on: str = "A"
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return m."""
-        return np.asarray(np.exp(theta))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return dm/dθ."""
-        return np.asarray(np.exp(theta)[:, :, None])
-
-    def springs(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the stiffness between the structure and the mass, (n, q)."""
-        rigid = _RIGID / (np.exp(theta) * self.top)
-        return np.asarray(1.0 / (self.missing[rows] + rigid))
-
-    def springs_slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the derivatives of these stiffnesses by each θ, (n, t, q)."""
-        rigid = _RIGID / (np.exp(theta) * self.top)
-        return np.asarray(rigid * self.springs(theta, rows) ** 2)[:, None, :]
-
-
-@dataclass(frozen=True)
-class FactorLaw:
-    """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
-
-    on: str = "K"
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return f − 1."""
-        return np.asarray(np.expm1(theta))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return df/dθ."""
-        return np.asarray(np.exp(theta)[:, :, None])
-
-
-@dataclass(frozen=True, eq=False)
-class SpringLaw:
-    """A spring k = e^θ adds k·A to K.
-
-    On a basis that lacks the flexibility `missing` (n, 1) it is worth k / (1 + k·missing).
-    """
-
-    missing: Rows
-    on: str = "K"
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return what the spring is worth."""
-        k = np.exp(theta)
-        return np.asarray(k / (1.0 + k * self.missing[rows]))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return its derivative by θ."""
-        k = np.exp(theta)
-        return np.asarray(k / (1.0 + k * self.missing[rows]) ** 2)[:, None, :]
-
-
-@dataclass(frozen=True, eq=False)
-class ReleaseLaw:
-    """A connection that was rigid gets the stiffness k = f e^θ.
-
-    Each freed coordinate, condensed, takes f q qᵀ / (e^θ + d) from K, with q the forces that its
-    unit displacement puts on the rest and d its own stiffness, both for the deck as it is, and f
-    the factor by which the known parameters change them: a release all but cancels d, so that it
-    has to follow. `own` (n, q) holds d, `elasticity` (n, q, n_parameter) ∂ln d/∂ln p, `log_p`
-    (n_parameter,) where the parameters stand.
-    """
-
-    own: Floats
-    elasticity: Floats
-    log_p: Floats
-    on: str = "K"
-
-    def factor(self, rows: Ints) -> Floats:
-        """Return f, (n, q)."""
-        return np.asarray(np.exp(self.elasticity[rows] @ self.log_p))
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return −f/(e^θ + d)."""
-        return np.asarray(-self.factor(rows) / (np.exp(theta) + self.own[rows]))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the derivative by θ."""
-        k = np.exp(theta)
-        return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)[:, None, :]
-
-    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
-        """Return the derivative by ln p of a known parameter."""
-        return np.asarray(self.elasticity[rows, :, parameter] * self.value(theta, rows))
+from .laws import Law, Rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,43 +68,10 @@ class Candidates:
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
 
-    def law_at(
-        self,
-        rows: Ints,
-        missing: Floats | None,
-        log_p: Floats | None = None,
-        top: float = 0.0,
-    ) -> Law:
-        """Return the law of some rows alone.
-
-        Parameters
-        ----------
-        rows : (n,) int
-        missing : (n, q) float or None
-            Flexibility of each row that the basis does not have. What is released or attached on
-            a basis that is too stiff by it would do too little.
-        log_p : (n_parameter,) float, optional
-            Where the parameters stand.
-        top : float
-            An eigenvalue above those of interest.
-        """
-        law = self.law
-        if isinstance(law, MassLaw) and missing is not None:
-            return AttachedLaw(missing, top)
-        if isinstance(law, SpringLaw):
-            lost = law.missing[rows]
-            return SpringLaw(lost if missing is None else lost + missing)
-        if isinstance(law, ReleaseLaw):
-            own = law.own[rows]
-            left = own if missing is None else np.maximum(own - missing, 1e-6 * own)
-            at = law.log_p if log_p is None else log_p[: len(law.log_p)]
-            return ReleaseLaw(left, law.elasticity[rows], at)
-        return law
-
     @property
     def needs_flexibility(self) -> bool:
         """Whether the law depends on what a basis lacks."""
-        return self.rows_each > 0 and isinstance(self.law, MassLaw | SpringLaw | ReleaseLaw)
+        return self.rows_each > 0 and self.law.needs_flexibility
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""

@@ -10,17 +10,9 @@ import scipy.linalg as la
 
 from ..arrays import Floats, Ints
 from .basis import Basis
-from .candidates import (
-    AttachedLaw,
-    Catalogue,
-    Law,
-    ReleaseLaw,
-    Rows,
-    Suspect,
-    changed,
-    magnitudes,
-)
+from .candidates import Catalogue, Suspect, changed, magnitudes
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
+from .laws import AttachedLaw, Law, ReleaseLaw, Rows
 
 _DEGENERATE = 2e-3
 _REACH = 0.8
@@ -94,7 +86,8 @@ class Problem:
             lost = np.sum((U @ self.rest) ** 2, axis=-1)
             missing = lost if missing is None else missing + lost
         top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        return U if self.turn is None else U @ self.turn, c.law_at(rows, missing, log_p, top)
+        law = c.law.on_basis(rows, missing, log_p, top)
+        return U if self.turn is None else U @ self.turn, law
 
 
 @dataclass(frozen=True, eq=False)

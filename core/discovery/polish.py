@@ -132,7 +132,7 @@ def _own_basis(
         one = replace(
             c,
             xyz=c.xyz[[s.row]],
-            law=c.law_at(np.array([s.row]), None),
+            law=c.law.on_basis(np.array([s.row]), None, state.log_p, 0.0),
             where=(c.where[s.row],),
         )
         chosen.append((one, U[None]))

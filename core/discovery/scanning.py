@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Ints
-from .candidates import AttachedLaw
 from .evidence import matched, mode_costs
 from .fitting import Fit, Problem
+from .laws import AttachedLaw
 
 _CHUNK = 256
 

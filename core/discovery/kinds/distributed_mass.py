@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ..candidates import Candidates, MassLaw
+from ..candidates import Candidates
+from ..laws import MassLaw
 from ..structure import Structure
 from .patches import Patch, PatchCandidates, patches_of, unit_mass, where_of
 from .scale import Scale

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..candidates import Candidates, SpringLaw
+from ..candidates import Candidates
+from ..laws import SpringLaw
 from ..structure import Structure
 from .point_mass import points_of, translations
 from .scale import Scale

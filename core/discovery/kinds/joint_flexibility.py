@@ -6,7 +6,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates, ReleaseLaw
+from ..candidates import Candidates
+from ..laws import ReleaseLaw
 from ..structure import Members, Structure
 from .scale import Scale
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ..candidates import Candidates, FactorLaw
+from ..candidates import Candidates
+from ..laws import FactorLaw
 from ..structure import Structure
 from .patches import Patch, PatchCandidates, bars_of, patches_of, where_of
 from .scale import Scale

@@ -6,7 +6,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates, MassLaw
+from ..candidates import Candidates
+from ..laws import MassLaw
 from ..structure import Structure
 from .patches import Patch, PatchCandidates, patches_of, unit_mass
 from .scale import Scale

@@ -9,7 +9,8 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates, ReleaseLaw
+from ..candidates import Candidates
+from ..laws import ReleaseLaw
 from ..structure import Structure, Supports, thinned
 from .scale import Scale
 
