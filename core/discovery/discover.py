@@ -21,7 +21,7 @@ from .judge import Judgement, enough, held_out, judge, noise_scale
 from .kinds import KINDS
 from .kinds.scale import Scale
 from .merging import merged
-from .mesh_error import lumping
+from .mesh_error import lumping, with_consistent_bars
 from .polish import polished
 from .request import Request as Request
 from .search import Found, Searcher
@@ -149,6 +149,7 @@ def _prepared(
     below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
     targets = int(below.sum())
     basis = build_basis(model, request.solution, targets)
+    basis = with_consistent_bars(request.structure, basis)
     observed = np.asarray(request.placed.observation.matrix @ basis.motion)[sensors]
     prior = Prior(
         np.append(request.spread, _MESH[0]),

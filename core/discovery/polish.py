@@ -20,7 +20,7 @@ from ..model import Model
 from .basis import Basis, ReducedTerm
 from .candidates import Candidates, Suspect, magnitudes
 from .fitting import Fit, Problem, fit
-from .mesh_error import lumping
+from .mesh_error import lumping, with_consistent_bars
 from .structure import Structure
 
 _DEPENDENT = 1e-6
@@ -58,7 +58,7 @@ def polished(
         basis, chosen = _own_basis(structure.model, catalogue, state, modes)
         own = replace(
             problem,
-            basis=basis,
+            basis=with_consistent_bars(structure, basis),
             sensors=np.asarray(observation @ basis.vectors),
             mesh=lumping(structure, basis.vectors),
             catalogue=tuple(c for c, _ in chosen),

@@ -1,12 +1,16 @@
-"""The mesh error as a parameter: lumped minus consistent mass of shells."""
+"""The mesh error: lumped minus consistent mass, a parameter for shells, known for bars."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.mesh_error import lumping
+from trueup.core.discovery.basis import Basis, ReducedTerm
+from trueup.core.discovery.mesh_error import lumping, with_consistent_bars
+from trueup.core.elements.bar import bar_mass, bar_stiffness
+from trueup.core.model import Term
 
 
 def membrane(n, lumped=True):
@@ -32,7 +36,7 @@ def membrane(n, lumped=True):
         (np.ones(points), (6 * np.arange(points) + 2, np.arange(points))), (6 * points, points)
     )
     return SimpleNamespace(
-        members=(member,), displacement=across, model=SimpleNamespace(parameters=())
+        members=(member,), model=SimpleNamespace(parameters=(), expansion=across)
     )
 
 
@@ -52,3 +56,76 @@ def test_it_falls_with_the_square_of_the_elements_in_a_wave():
 def test_a_mass_that_is_not_lumped_has_none():
     wave = np.tile(np.cos(np.pi * np.arange(7) / 6), 2)[:, None]
     assert lumping(membrane(6, lumped=False), wave) == pytest.approx(0.0)
+
+
+def cantilever(n, pins=False):
+    """A clamped beam of unit length, stiffness and mass in n lumped bars, askew in space."""
+    axis = np.array([2.0, -1.0, 2.0]) / 3.0
+    xyz = np.linspace(0.0, 1.0, n + 1)[:, None] * axis
+    corners = np.stack([np.arange(n), np.arange(1, n + 1)], 1)
+    one = np.ones(n)
+    across = np.tile([0.0, 0.0, 1.0], (n, 1))
+    released = np.zeros((n, 6), bool)
+    released[:, 4:] = pins
+    ends = xyz[corners[:, 0]], xyz[corners[:, 1]], across
+    none = np.zeros((n, 6), bool)
+    area = 1e6
+    K = bar_stiffness(*ends, one, one, area * one, one, one, 0.0 * one, one, 0 * one, 0 * one,
+                      released, none)  # fmt: skip
+    M = bar_mass(*ends, one, False)
+    at = (6 * corners[:, :, None] + np.arange(6)).reshape(n, 12)
+    member = SimpleNamespace(
+        shape="line",
+        ids=np.arange(n),
+        corners=corners,
+        block=SimpleNamespace(width=6),
+        matrices=lambda rows, p: (K[rows], M[rows]),
+        coordinates=lambda rows: at[rows],
+    )
+    free = sp.eye(6 * (n + 1), format="csr")[:, 6:]
+    model = SimpleNamespace(parameters=(), expansion=free, geometry=SimpleNamespace(xyz=xyz))
+    structure = SimpleNamespace(members=(member,), model=model)
+    whole = [np.zeros((6 * (n + 1),) * 2) for _ in range(2)]
+    for A, parts in zip(whole, (K, M), strict=True):
+        for rows, part in zip(at, parts, strict=True):
+            A[np.ix_(rows, rows)] += part
+    stiffness, mass = (A[6:, 6:] for A in whole)
+    lumped = ReducedTerm(mass, Term(sp.csr_matrix(mass)))
+    basis = Basis(np.eye(6 * n), np.zeros((0, 6 * n)), (), (lumped,))
+    return structure, basis, stiffness
+
+
+def frequencies(K, M):
+    """Frequencies of bending (each twice), as roots βL of the beam."""
+    mu = la.eigh(M, K, eigvals_only=True)[::-1]
+    return mu[:6:2] ** -0.25
+
+
+CLAMPED_FREE = np.array([1.875104, 4.694091, 7.854757])
+
+
+def test_lumping_makes_a_cantilever_too_slow():
+    _, basis, K = cantilever(4)
+    first = frequencies(K, basis.M(np.ones(0)))[0] ** 2 / CLAMPED_FREE[0] ** 2
+    assert first == pytest.approx(1.0 - 0.028, abs=0.001)
+
+
+def test_bars_with_their_consistent_mass_follow_the_beam():
+    structure, basis, K = cantilever(4)
+    M = with_consistent_bars(structure, basis).M(np.ones(0))
+    assert frequencies(K, M) ** 2 == pytest.approx(CLAMPED_FREE**2, rel=0.01)
+    assert frequencies(K, M)[0] ** 2 == pytest.approx(CLAMPED_FREE[0] ** 2, rel=1e-4)
+
+
+def test_the_whole_mass_stays():
+    structure, _, _ = cantilever(5)
+    structure.model.expansion = sp.eye(36, format="csr")
+    rigid = np.tile(np.r_[0.6, 0.0, 0.8, 0.0, 0.0, 0.0], 6)[:, None]
+    basis = Basis(rigid, np.zeros((0, 1)), (), (ReducedTerm(np.ones((1, 1)), Term(sp.eye(36))),))
+    after = with_consistent_bars(structure, basis).M(np.ones(0))
+    assert after == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_pinned_bar_stays_lumped():
+    structure, basis, _ = cantilever(4, pins=True)
+    assert with_consistent_bars(structure, basis) is basis
