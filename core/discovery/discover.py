@@ -17,7 +17,16 @@ from .candidates import Candidates
 from .evidence import Evidence, Noise
 from .findings import Discovery
 from .fitting import Fit, Prior, Problem, evaluate, fit
-from .judge import Judgement, enough, held_out, judge, noise_scale
+from .judge import (
+    Judgement,
+    contenders,
+    cost,
+    enough,
+    held_out,
+    judge,
+    noise_scale,
+    with_rival,
+)
 from .kinds import KINDS
 from .kinds.scale import Scale
 from .merging import merged
@@ -32,6 +41,9 @@ from .telling import told
 _MESH = (1.0, -1.0, 1.05)
 """Spread and bounds of the error of the mesh, see `mesh_error`."""
 _RITZ = 110
+_CONTESTED, _RIVALS = 30.0, 2
+"""Rivals less than this (twice the log of a likelihood ratio) behind, and so many of them, are
+fitted as carefully as the best."""
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -107,7 +119,7 @@ def _searched(
                 key=lambda f: f.objective,
             )
             levels = (*found.levels[: verdict.accepted], one)
-            scale = max(verdict.scale, noise_scale(problem.evidence, one))
+            scale = max(verdict.scale, noise_scale(problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
     return searcher, found, verdict
 
@@ -145,19 +157,32 @@ def _prepared(
     model, hz = request.structure.model, request.placed.test.frequencies_hz
     sigma = Noise(shape=float(np.hypot(noise, 0.04)))
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    e = Evidence(hz, unit, sigma).take(modes, sensors)
+    whole = Evidence(hz, unit, sigma)
+    e = whole.take(modes, sensors)
     below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
     targets = int(below.sum())
     basis = build_basis(model, request.solution, targets)
     basis = with_consistent_bars(request.structure, basis)
-    observed = np.asarray(request.placed.observation.matrix @ basis.motion)[sensors]
+    observed = np.asarray(request.placed.observation.matrix @ basis.motion)
     prior = Prior(
         np.append(request.spread, _MESH[0]),
         np.append(np.log([q.lower for q in model.parameters]), _MESH[1]),
         np.append(np.log([q.upper for q in model.parameters]), _MESH[2]),
     )
     mesh = lumping(request.structure, basis.vectors)
-    problem = Problem(e, basis, observed, mesh, (), (), prior, min(basis.size, _RITZ), targets + 4)
+    problem = Problem(
+        e,
+        whole,
+        basis,
+        observed[sensors],
+        observed,
+        mesh,
+        (),
+        (),
+        prior,
+        min(basis.size, _RITZ),
+        targets + 4,
+    )
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
@@ -199,7 +224,33 @@ def _weighed(
             done.add(k)
         kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
         verdict, found = judge(searcher, kept), kept
-    return found, verdict
+    return _contested(request, searcher, made, found, verdict, sensors)
+
+
+def _contested(
+    request: Request,
+    searcher: Searcher,
+    made: list[Candidates],
+    found: Found,
+    verdict: Judgement,
+    sensors: Any,
+) -> tuple[Found, Judgement]:
+    """Fit the nearest rivals on bases of their own too, and let the best of all win."""
+    best = cost(searcher, found.levels[verdict.accepted], verdict.scale)
+
+    def behind(f: Fit) -> float:
+        return cost(searcher, f, verdict.scale) - best
+
+    near = sorted(
+        (f for f in contenders(searcher, found, verdict.accepted) if behind(f) < _CONTESTED),
+        key=behind,
+    )[:_RIVALS]
+    for rival in near if verdict.accepted else ():
+        with suppress(TrueupError):
+            found = with_rival(
+                searcher, found, rival, _polished(request, searcher, made, rival, sensors)
+            )
+    return found, judge(searcher, found)
 
 
 def _polished(
@@ -207,10 +258,10 @@ def _polished(
 ) -> Fit:
     """Fit a hypothesis on a basis of its own."""
     model = request.structure.model
-    observation = (request.placed.observation.matrix @ model.expansion).tocsr()[sensors]
+    observation = (request.placed.observation.matrix @ model.expansion).tocsr()
     top = float(request.placed.test.frequencies_hz.max()) * 1.25
     modes = int(np.count_nonzero(_hz(request.solution.eigenvalues) < top)) + 8
-    return polished(request.structure, made, observation, searcher.problem, state, modes)
+    return polished(request.structure, made, observation, sensors, searcher.problem, state, modes)
 
 
 def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidates]) -> Searcher:

@@ -39,12 +39,16 @@ class Problem:
 
     `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r), `missing`
     the flexibility of each that the basis lacks, (n, q), where it matters; `modes` eigenpairs are
-    computed, of which the first `columns` may match a test mode.
+    computed, of which the first `columns` may match a test mode. `evidence` is the part of the
+    test that hypotheses are fitted to, at the rows `sensors` of the basis; `whole` is all of it,
+    at the rows `everywhere`.
     """
 
     evidence: Evidence
+    whole: Evidence
     basis: Basis
     sensors: Floats
+    everywhere: Floats
     mesh: Floats
     catalogue: Catalogue
     factors: tuple[Rows, ...]
@@ -70,10 +74,15 @@ class Problem:
             self,
             basis=self.basis.turned(T),
             sensors=self.sensors @ T,
+            everywhere=self.everywhere @ T,
             mesh=T.T @ self.mesh @ T,
             turn=T if self.turn is None else self.turn @ T,
             rest=rest,
         )
+
+    def entire(self) -> Problem:
+        """Return the problem with all of the test as evidence."""
+        return replace(self, evidence=self.whole, sensors=self.everywhere)
 
     def part(self, kind: int, rows: Ints, log_p: Floats) -> tuple[Floats, Law]:
         """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
@@ -95,7 +104,8 @@ class Fit:
     """A hypothesis with its best parameters and magnitudes.
 
     `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
-    the Gauss-Newton Hessian of half the objective, prior included, active parameters first.
+    the Gauss-Newton Hessian of half the objective, prior included, active parameters first;
+    `unseen` is the misfit of what was held out from the fit, where it was asked for.
     """
 
     objective: float
@@ -107,6 +117,7 @@ class Fit:
     vectors: Floats
     information: Floats
     active: tuple[int, ...]
+    unseen: float | None = None
 
 
 def _matrices(
@@ -180,6 +191,14 @@ def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fi
         np.zeros((0, 0)),
         (),
     )
+
+
+def unseen(problem: Problem, state: Fit) -> float:
+    """Return the misfit of the modes and sensors that were held out from a fit."""
+    values, vectors = solve(problem, state.log_p, state.suspects)
+    all_of_it, _ = misfit(problem.entire(), values, vectors)
+    seen, _ = misfit(problem, values, vectors)
+    return all_of_it - seen
 
 
 def fit(

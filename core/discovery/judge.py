@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Floats
 from .candidates import Suspect
-from .evidence import Evidence
-from .fitting import Fit, evaluate
+from .fitting import Fit, Problem, evaluate, unseen
 from .scanning import scan
 from .search import Found, Searcher
 
@@ -27,20 +26,27 @@ class Judgement:
     """What the search amounts to.
 
     `scale` multiplies every variance: the misfit that the best hypothesis leaves, per degree of
-    freedom, but at least 1. `accepted` is the number of suspects that earn their place.
+    freedom, but at least 1. `accepted` is the number of suspects that earn their place;
+    `foretold` by how much the last of them lowers the misfit of modes and sensors held out from
+    the search, in units of that noise.
     """
 
     scale: float
     accepted: int
     posterior: float
     evidence: float
+    foretold: float
 
 
-def noise_scale(e: Evidence, best: Fit) -> float:
-    """Return how many times the assumed variance the best fit leaves, at least 1."""
+def noise_scale(problem: Problem, best: Fit) -> float:
+    """Return how many times the assumed variance the best fit leaves, at least 1.
+
+    What was held out from the fit counts as well, where its misfit is known.
+    """
+    e = problem.evidence if best.unseen is None else problem.whole
     found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
     freedom = _PER_MODE * len(e.frequencies_hz) - len(best.active) - found
-    return max(1.0, best.misfit / max(freedom, 1.0))
+    return max(1.0, (best.misfit + (best.unseen or 0.0)) / max(freedom, 1.0))
 
 
 def price(searcher: Searcher, suspect: Suspect) -> float:
@@ -72,24 +78,64 @@ def burden(searcher: Searcher, f: Fit) -> float:
 
 
 def judge(searcher: Searcher, found: Found) -> Judgement:
-    """Choose the number of suspects by penalised likelihood.
+    """Choose the number of suspects by penalised likelihood of the whole test.
 
-    The penalty of a suspect is twice the log of the number of places it could have been at (its
-    prior) and a margin; the noise is scaled by what the best hypothesis leaves.
+    Modes and sensors that were held out from the search count as well as those that it fitted:
+    an effect that does not foretell them loses what it gained. The penalty of a suspect is twice
+    the log of the number of places it could have been at (its prior) and a margin; the noise is
+    scaled by what the best hypothesis leaves.
     """
-    e = searcher.problem.evidence
-    scale = noise_scale(e, min(found.levels, key=lambda f: f.objective))
-    costs = [f.objective / scale + burden(searcher, f) for f in found.levels]
+    best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
+    scale = noise_scale(searcher.problem, best)
+    costs = [cost(searcher, f, scale) for f in found.levels]
     accepted = int(np.argmin(costs))
-    rivals = [
-        f.objective / scale + burden(searcher, f)
-        for level in found.rivals
-        for f in level
-        if not _alike(searcher, f, found.levels[accepted])
-    ]
+    rivals = [cost(searcher, f, scale) for f in contenders(searcher, found, accepted)]
     others = np.array([*rivals, *(c for k, c in enumerate(costs) if k < accepted)])
     weight = float(np.sum(np.exp(-0.5 * (others - costs[accepted])))) if len(others) else 0.0
-    return Judgement(scale, accepted, 1.0 / (1.0 + weight), costs[0] - costs[accepted])
+    return Judgement(
+        scale,
+        accepted,
+        1.0 / (1.0 + weight),
+        costs[0] - costs[accepted],
+        _foretold(searcher, found.levels, accepted) / scale,
+    )
+
+
+def cost(searcher: Searcher, f: Fit, scale: float) -> float:
+    """Return what a hypothesis leaves of the whole test, by the noise, and its burden."""
+    left = f.objective + (with_unseen(searcher, f).unseen or 0.0)
+    return left / scale + burden(searcher, f)
+
+
+def with_unseen(searcher: Searcher, f: Fit) -> Fit:
+    """Return a fit that knows what it leaves of the modes and sensors held out."""
+    return f if f.unseen is not None else replace(f, unseen=unseen(searcher.problem, f))
+
+
+def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
+    """Return the rivals that say something else than the accepted hypothesis."""
+    best = found.levels[accepted]
+    return [f for level in found.rivals for f in level if not _alike(searcher, f, best)]
+
+
+def with_rival(searcher: Searcher, found: Found, rival: Fit, fitted: Fit) -> Found:
+    """Return what was found with a rival fitted anew; where it wins it changes places."""
+    k = len(fitted.suspects)
+    levels, rivals = list(found.levels), [list(level) for level in found.rivals]
+    others = [f for f in rivals[k] if f is not rival]
+    scale = noise_scale(searcher.problem, min(found.levels, key=lambda f: f.objective))
+    if cost(searcher, fitted, scale) < cost(searcher, levels[k], scale):
+        levels[k], fitted = fitted, levels[k]
+    rivals[k] = [fitted, *others]
+    return Found(tuple(levels), tuple(tuple(level) for level in rivals))
+
+
+def _foretold(searcher: Searcher, levels: Sequence[Fit], accepted: int) -> float:
+    """Return by how much the last effect lowers the misfit of what was held out."""
+    if not accepted:
+        return 0.0
+    now, before = (with_unseen(searcher, levels[k]).unseen for k in (accepted, accepted - 1))
+    return (before or 0.0) - (now or 0.0)
 
 
 def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
@@ -100,7 +146,7 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     """
 
     def rule(previous: Fit, best: Fit, share: float) -> bool:
-        scale = min(noise_scale(searcher.problem.evidence, best), _MOST_NOISE)
+        scale = min(noise_scale(searcher.problem, best), _MOST_NOISE)
         added = burden(searcher, best) - burden(searcher, previous)
         added = max(added, *(price(searcher, s) for s in best.suspects))
         return (previous.objective - best.objective) / scale < share * added

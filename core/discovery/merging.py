@@ -40,7 +40,11 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
             first = max(spread or [first], key=lambda s: _size(searcher, s))
             first = first.moved(np.log(total))
         kept.append(first)
-    return state if len(kept) == len(state.suspects) else replace(state, suspects=tuple(kept))
+    return (
+        state
+        if len(kept) == len(state.suspects)
+        else replace(state, suspects=tuple(kept), unseen=None)
+    )
 
 
 def _is_spread(searcher: Searcher, s: Suspect) -> bool:

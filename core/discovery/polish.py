@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
+from ..arrays import Bools, Floats
 from ..eigen import solve
 from ..factor import factorise
 from ..model import Model
 from .basis import Basis, ReducedTerm
 from .candidates import Candidates, Suspect, magnitudes
-from .fitting import Fit, Problem, fit
+from .fitting import Fit, Problem, fit, unseen
 from .mesh_error import lumping, with_consistent_bars
 from .structure import Structure
 
@@ -31,6 +31,7 @@ def polished(
     structure: Structure,
     catalogue: Sequence[Candidates],
     observation: sp.csr_matrix,
+    seen: Bools,
     problem: Problem,
     state: Fit,
     modes: int,
@@ -44,7 +45,9 @@ def polished(
     catalogue : sequence of Candidates
         As made, their laws not yet fitted to any basis.
     observation : (n_sensor, n_free) sparse
-        Sensors of the evidence.
+        All sensors.
+    seen : (n_sensor,) bool
+        Those of the evidence.
     problem : Problem
         Evidence and priors.
     state : Fit
@@ -56,10 +59,12 @@ def polished(
     """
     for _ in range(rounds):
         basis, chosen = _own_basis(structure.model, catalogue, state, modes)
+        everywhere = np.asarray(observation @ basis.vectors)
         own = replace(
             problem,
             basis=with_consistent_bars(structure, basis),
-            sensors=np.asarray(observation @ basis.vectors),
+            sensors=everywhere[seen],
+            everywhere=everywhere,
             mesh=lumping(structure, basis.vectors),
             catalogue=tuple(c for c, _ in chosen),
             factors=tuple(U for _, U in chosen),
@@ -76,6 +81,7 @@ def polished(
             suspects=tuple(
                 replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
             ),
+            unseen=unseen(own, new),
         )
         if np.all(moved < _CHANGED):
             break
