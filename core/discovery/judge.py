@@ -156,9 +156,14 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
 
 def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
     """Whether a rival says the same as the best, or the same and something more."""
+    return not _unmatched(searcher, best, f)[0]
+
+
+def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[Suspect]]:
+    """Numbers of the suspects of the best that a rival does not have, and what it has instead."""
     catalogue, near = searcher.problem.catalogue, searcher.effort.apart * searcher.size
-    left = list(f.suspects)
-    for s in best.suspects:
+    left, alone = list(f.suspects), []
+    for k, s in enumerate(best.suspects):
         twin = next(
             (
                 t
@@ -170,9 +175,29 @@ def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
             None,
         )
         if twin is None:
-            return False
-        left.remove(twin)
-    return True
+            alone.append(k)
+        else:
+            left.remove(twin)
+    return alone, left
+
+
+def instead(
+    searcher: Searcher, found: Found, verdict: Judgement, number: int
+) -> list[tuple[Suspect, float]]:
+    """Return suspects of rivals that take the place of one of the accepted, with weights.
+
+    Rivals within a likelihood ratio of exp(3) that differ in this suspect alone; the weight is
+    relative to the accepted hypothesis.
+    """
+    best = found.levels[verdict.accepted]
+    here = cost(searcher, best, verdict.scale)
+    out = []
+    for f in contenders(searcher, found, verdict.accepted):
+        alone, others = _unmatched(searcher, best, f)
+        behind = cost(searcher, f, verdict.scale) - here
+        if alone == [number] and len(others) == 1 and behind < _CREDIBLE:
+            out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))
+    return out
 
 
 def credible_places(

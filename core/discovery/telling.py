@@ -8,9 +8,10 @@ import numpy as np
 
 from ..arrays import Floats
 from .candidates import Candidates, Suspect
+from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
-from .fitting import Fit, evaluate, fit
-from .judge import Judgement, burden, credible_places, deviations, summary, times
+from .fitting import Fit, fit
+from .judge import Judgement, contenders, cost, credible_places, deviations, instead, summary, times
 from .places import region
 from .request import Request
 from .search import Found, Searcher
@@ -20,6 +21,7 @@ from .wording import magnitude_of, sentence_of, test_sentence
 _SIGNIFICANT = 3.0
 _SURE = 0.6
 _UNEXPLAINED = 8.0
+_RIVALS = 3
 _SHAPE = {"M": 0.05, "K": 0.12}
 """Error of ln magnitude, for masses and stiffnesses, that comes of a place or patch which is not
 quite the true one and of the mesh: as measured on generated cases (`benchmarks/discovery`)."""
@@ -43,7 +45,7 @@ def told(
     own = np.split(spread, ends[:-1])[1:]
     alternatives = _alternatives(request, searcher, found, verdict)
     findings = [
-        _finding(request, searcher, best, k, verdict, deviation, alternatives)
+        _finding(request, searcher, found, k, verdict, deviation, alternatives)
         for k, deviation in enumerate(own)
     ]
     nodes = request.placed.observation.sensors.node
@@ -99,19 +101,19 @@ def told(
 def _finding(
     request: Request,
     searcher: Searcher,
-    best: Fit,
+    found: Found,
     number: int,
     verdict: Judgement,
     deviation: Floats,
     alternatives: tuple[Alternative, ...],
 ) -> Finding:
+    best = found.levels[verdict.accepted]
     s = best.suspects[number]
     c = searcher.problem.catalogue[s.kind]
     geometry = request.structure.model.geometry
     sizes = np.exp(s.theta)
     spread = np.hypot(deviation, _SHAPE["M" if c.law.on == "M" else "K"])
     intervals = sizes[:, None] * np.exp(1.96 * spread[:, None] * np.array([-1.0, 1.0]))
-    places = credible_places(searcher, best, number, verdict.scale)
     where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
     where["region"] = region(geometry, c.xyz[s.row])
     magnitude = magnitude_of(c, s.row, sizes)
@@ -123,10 +125,33 @@ def _finding(
         where,
         magnitude,
         interval,
-        tuple({**c.where[r], "xyz": c.xyz[r].tolist(), "weight": w} for r, w in places),
+        _credible(searcher, found, verdict, number),
         _confidence(verdict),
         sentence_of(c.kind, magnitude, where["region"], interval, next_best),
         {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
+    )
+
+
+def _credible(
+    searcher: Searcher, found: Found, verdict: Judgement, number: int
+) -> tuple[dict[str, Any], ...]:
+    """Places, and effects of other kinds, that explain the data about as well as one finding."""
+    catalogue = searcher.problem.catalogue
+    best = found.levels[verdict.accepted]
+    own = best.suspects[number].kind
+    places = [
+        (own, row, weight) for row, weight in credible_places(searcher, best, number, verdict.scale)
+    ]
+    others = [(s.kind, s.row, w) for s, w in instead(searcher, found, verdict, number)]
+    total = sum(w for _, _, w in (*places, *others))
+    return tuple(
+        {
+            **catalogue[kind].where[row],
+            "xyz": catalogue[kind].xyz[row].tolist(),
+            "weight": w / total,
+            "kind": catalogue[kind].kind,
+        }
+        for kind, row, w in (*places, *others)
     )
 
 
@@ -197,26 +222,26 @@ def _alternatives(
     catalogue = searcher.problem.catalogue
     best = found.levels[verdict.accepted]
 
-    def cost(f: Fit) -> float:
-        return f.objective / verdict.scale + burden(searcher, f)
+    def behind(f: Fit) -> float:
+        return cost(searcher, f, verdict.scale) - cost(searcher, best, verdict.scale)
 
     seen: dict[tuple[str, ...], Fit] = {}
     here = tuple(sorted(catalogue[s.kind].kind for s in best.suspects))
-    for f in sorted((f for level in found.rivals for f in level), key=cost):
+    for f in sorted((f for level in found.rivals for f in level), key=behind):
         seen.setdefault(tuple(sorted(catalogue[s.kind].kind for s in f.suspects)), f)
     out = []
     for kinds, f in seen.items():
         if kinds == here:
             continue
         places = tuple(tuple(float(v) for v in catalogue[s.kind].xyz[s.row]) for s in f.suspects)
-        ratio = times(cost(f) - cost(best))
+        ratio = times(behind(f))
         words = " and ".join(k.replace("_", " ") for k in kinds)
         spot = region(request.structure.model.geometry, np.array(places[0]))
         out.append(
             Alternative(kinds, places, ratio, f"{words} {spot}: {ratio:.3g} times less likely")
         )
     if verdict.accepted:
-        ratio = times(cost(found.levels[0]) - cost(best))
+        ratio = times(behind(found.levels[0]))
         out.append(
             Alternative((), (), ratio, f"the known parameters alone: {ratio:.3g} times less likely")
         )
@@ -226,28 +251,25 @@ def _alternatives(
 def _would_decide(
     request: Request, searcher: Searcher, found: Found, verdict: Judgement
 ) -> tuple[str, ...]:
-    """Say which place, measured, tells the two best hypotheses apart."""
+    """Say which sensors and modes tell the best hypotheses apart."""
     best = found.levels[verdict.accepted]
-    rivals = sorted(
-        (f for level in found.rivals for f in level if len(f.suspects) == len(best.suspects)),
-        key=lambda f: f.objective,
-    )
-    if not rivals:
-        return ()
-    p = searcher.problem
-    a = evaluate(p, best.log_p, best.suspects)
-    b = evaluate(p, rivals[0].log_p, rivals[0].suspects)
-    model = request.structure.model
-    rows = np.flatnonzero(model.dofs.component <= 3)
-    motion, r = p.basis.motion[rows], p.basis.size
-    A, B = motion @ a.vectors[:r, a.match], motion @ b.vectors[:r, b.match]
-    A, B = A / np.linalg.norm(A, axis=0), B / np.linalg.norm(B, axis=0)
-    sign = np.where(np.sum(A * B, axis=0) < 0.0, -1.0, 1.0)
-    apart = np.abs(A - B * sign)
-    row, mode = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    grid = int(model.dofs.node[rows[row]])
-    axis = "XYZ"[int(model.dofs.component[rows[row]]) - 1]
+    near = sorted(
+        contenders(searcher, found, verdict.accepted),
+        key=lambda f: cost(searcher, f, verdict.scale),
+    )[:_RIVALS]
+    simpler = found.levels[: verdict.accepted][-1:]
+    rivals = tuple((_in_words(request, searcher, f), f) for f in (*near, *simpler))
+    p, model = searcher.problem, request.structure.model
     return (
-        f"a sensor at grid {grid} in direction {axis}: there mode {int(mode) + 1} differs most "
-        "between the two best explanations",
+        *further_sensors(p, model, best, rivals),
+        *further_modes(p, model, best, rivals),
     )
+
+
+def _in_words(request: Request, searcher: Searcher, f: Fit) -> str:
+    if not f.suspects:
+        return "the known parameters alone"
+    last = f.suspects[-1]
+    c = searcher.problem.catalogue[last.kind]
+    spot = region(request.structure.model.geometry, c.xyz[last.row])
+    return f"{'' if len(f.suspects) < 2 else 'one with '}{c.kind.replace('_', ' ')} {spot}"

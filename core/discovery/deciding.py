@@ -1,0 +1,131 @@
+"""What to measure next: the sensors and modes that tell rival hypotheses apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, Ints
+from ..geometry import Geometry
+from ..model import Model
+from .fitting import Fit, Problem, misfit, solve
+
+_SENSORS = 3
+_APART = 0.1
+"""Sensors are proposed at least this part of the structure apart."""
+_TELLS = 0.1
+"""Least difference of a reading, beside the rms of its shape, that a sensor could tell."""
+_SHIFT = 0.01
+"""Least difference of ln f of a mode that was not measured."""
+_ALIKE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class _Forecast:
+    """Modes that a hypothesis has: `hz` (n,), translations `motion` (n_row, n), unit rms."""
+
+    hz: Floats
+    motion: Floats
+    match: Ints
+
+
+def further_sensors(
+    problem: Problem, model: Model, best: Fit, rivals: tuple[tuple[str, Fit], ...]
+) -> tuple[str, ...]:
+    """Name the grids and directions where the explanations differ most.
+
+    Parameters
+    ----------
+    problem : Problem
+    model : Model
+        For its grids.
+    best : Fit
+    rivals : tuple of (str, Fit)
+        Others in words, most likely first.
+
+    Returns
+    -------
+    tuple of str
+        At most three, apart from each other, of what all the rivals together gain.
+    """
+    if not rivals:
+        return ()
+    rows = np.flatnonzero(model.dofs.component <= 3)
+    own = _forecast(problem, best, rows)
+    a = own.motion[:, own.match]
+    apart = np.stack([_differences(a, _forecast(problem, f, rows)) for _, f in rivals])
+    told = np.einsum("rdm->d", np.minimum(apart, 1.0) ** 2)
+    out: list[str] = []
+    chosen: list[Floats] = []
+    g = model.geometry
+    for d in np.argsort(-told, kind="stable"):
+        rival, mode = np.unravel_index(int(np.argmax(apart[:, d])), (len(apart), a.shape[1]))
+        if apart[rival, d, mode] < _TELLS or len(out) == _SENSORS:
+            break
+        xyz = _xyz(g, int(model.dofs.node[rows[d]]))
+        if any(np.linalg.norm(xyz - c) < _APART * g.size for c in chosen):
+            continue
+        chosen.append(xyz)
+        axis = "XYZ"[int(model.dofs.component[rows[d]]) - 1]
+        out.append(
+            f"a sensor at grid {int(model.dofs.node[rows[d]])} in direction {axis}: there mode "
+            f"{int(mode) + 1} of those searched differs by {100.0 * apart[rival, d, mode]:.0f} % "
+            f"of its rms between the best explanation and {rivals[rival][0]}"
+        )
+    return tuple(out)
+
+
+def further_modes(
+    problem: Problem, model: Model, best: Fit, rivals: tuple[tuple[str, Fit], ...]
+) -> tuple[str, ...]:
+    """Name the mode that was not measured whose frequency differs most between explanations.
+
+    Parameters
+    ----------
+    problem, model, best, rivals
+        As for `further_sensors`.
+    """
+    if not rivals:
+        return ()
+    rows = np.flatnonzero(model.dofs.component <= 3)
+    own = _forecast(problem, best, rows)
+    top = 1.5 * float(problem.whole.frequencies_hz.max())
+    measured = np.zeros(len(own.hz), bool)
+    measured[own.match] = True
+    new = np.flatnonzero(~measured & (own.hz < top) & (own.hz > 1e-3 * top))
+    name, f = rivals[0]
+    other = _forecast(problem, f, rows)
+    if not len(new) or not len(other.hz):
+        return ()
+    mac = (own.motion[:, new].T @ other.motion) ** 2 / float(len(rows)) ** 2
+    twin = np.argmax(mac, axis=1)
+    shift = np.abs(np.log(other.hz[twin] / own.hz[new]))
+    shift = np.where(mac.max(axis=1) > _ALIKE, shift, 0.0)
+    k = int(np.argmax(shift))
+    if shift[k] < _SHIFT:
+        return ()
+    return (
+        f"the mode near {own.hz[new[k]]:.4g} Hz, which was not measured: the best explanation has "
+        f"it at {own.hz[new[k]]:.4g} Hz, {name} at {other.hz[twin[k]]:.4g} Hz",
+    )
+
+
+def _forecast(problem: Problem, f: Fit, rows: Ints) -> _Forecast:
+    values, vectors = solve(problem, f.log_p, f.suspects)
+    n = min(problem.columns, len(values))
+    motion = problem.basis.motion[rows] @ vectors[: problem.basis.size, :n]
+    length = np.sqrt(np.mean(motion**2, axis=0))
+    motion = motion / np.maximum(length, np.finfo(float).tiny)
+    hz = np.sqrt(np.maximum(values[:n], 0.0)) / (2.0 * np.pi)
+    return _Forecast(hz, motion, misfit(problem, values, vectors)[1])
+
+
+def _differences(a: Floats, other: _Forecast) -> Floats:
+    """Differences of the matched shapes, (n_row, n_test), signs as alike as they can be."""
+    b = other.motion[:, other.match]
+    return np.asarray(np.abs(a - b * np.where(np.sum(a * b, axis=0) < 0.0, -1.0, 1.0)))
+
+
+def _xyz(g: Geometry, node: int) -> Floats:
+    return np.asarray(g.xyz[int(g.index_of(np.array([node]))[0])])
