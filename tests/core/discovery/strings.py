@@ -1,0 +1,96 @@
+"""A taut string with beads between two walls: the smallest structure that can lack something."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from trueup.core.discovery.basis import Basis, ReducedTerm
+from trueup.core.discovery.candidates import Candidates
+from trueup.core.discovery.evidence import Evidence, Noise
+from trueup.core.discovery.fitting import Prior, Problem
+from trueup.core.discovery.laws import MassLaw, SpringLaw
+from trueup.core.discovery.search import Effort, Searcher
+from trueup.core.model import Factor, Term
+
+N = 32
+X = np.arange(1, N + 1) / (N + 1.0)
+K = (2.0 * np.eye(N) - np.eye(N, k=1) - np.eye(N, k=-1)) * (N + 1.0) ** 2
+M = np.eye(N)
+SEEN = np.arange(0, N, 2)
+
+
+def hidden(tension=1.0, masses=(), springs=()):
+    """K and M of the truth; masses and springs are (bead, size)."""
+    k, m = tension * K, np.array(M)
+    for bead, size in masses:
+        m[bead, bead] += size
+    for bead, size in springs:
+        k[bead, bead] += size
+    return k, m
+
+
+def measured(truth, n_modes=12, scatter=(0.001, 0.01), seed=3):
+    """Frequencies [Hz] and shapes at every other bead, with scatter of both."""
+    rng = np.random.default_rng(seed)
+    values, vectors = la.eigh(*truth)
+    hz = np.sqrt(values[:n_modes]) / (2.0 * np.pi)
+    hz = hz * np.exp(scatter[0] * rng.standard_normal(n_modes))
+    shapes = vectors[SEEN, :n_modes]
+    shapes = shapes + scatter[1] * rng.standard_normal(shapes.shape) / np.sqrt(N)
+    return hz, shapes / np.linalg.norm(shapes, axis=0)
+
+
+def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> Searcher:
+    """A search for masses and springs on the string, its tension a known parameter."""
+    hz, shapes = measured(truth, n_modes, scatter, seed)
+    whole = Evidence(hz, shapes, Noise(0.002, 0.03, float(len(SEEN)), 40.0, 1e-4))
+    kept = ~np.isin(np.arange(n_modes), modes_out)
+    values, vectors = la.eigh(K, M)
+    lower, upper = 0.2, 5.0
+    linear = Factor(0, ((lower + upper) / 2.0, (upper - lower) / 2.0), lower, upper)
+    basis = Basis(
+        vectors,
+        vectors,
+        (ReducedTerm(np.diag(values), Term(sp.csr_matrix(K), (linear,))),),
+        (ReducedTerm(np.eye(N), Term(sp.csr_matrix(M))),),
+    )
+    xyz = np.column_stack([X, np.zeros(N), np.zeros(N)])
+    where = tuple({"grids": [i + 1], "components": [1]} for i in range(N))
+    root = sp.identity(N, format="csr")
+
+    def of(kind, law, trials, typical):
+        return Candidates(
+            kind=kind,
+            xyz=xyz,
+            law=law,
+            trials=np.log(trials)[:, None],
+            root=root,
+            rows_each=1,
+            where=where,
+            typical=np.array([np.log(typical)]),
+            spread=np.array([1.5]),
+        )
+
+    catalogue = (
+        of("point_mass", MassLaw(), np.array([0.5, 1.0, 2.0, 4.0]), 1.0),
+        of("ground_spring", SpringLaw(np.zeros((N, 1))), np.array([50.0, 200.0, 800.0]), 200.0),
+    )
+    factors = tuple(c.factors(basis) for c in catalogue)
+    prior = Prior(np.array([0.2, 1.0]), np.array([-1.0, -1.0]), np.array([1.0, 1.0]))
+    problem = Problem(
+        whole.take(kept, np.ones(len(SEEN), bool)),
+        whole,
+        basis,
+        vectors[SEEN],
+        vectors[SEEN],
+        np.zeros((N, N)),
+        catalogue,
+        factors,
+        prior,
+        24,
+        16,
+    )
+    every = tuple(np.arange(N) for _ in catalogue)
+    return Searcher(problem, every, (0,), np.zeros(2), 1.0, Effort(apart=0.07, near=0.1))

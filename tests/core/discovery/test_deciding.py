@@ -1,0 +1,57 @@
+"""What would decide between two explanations of a string of beads."""
+
+import numpy as np
+import scipy.sparse as sp
+from tests.core.discovery.strings import SEEN, N, X, hidden, searcher
+
+from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.deciding import further_modes, further_sensors
+from trueup.core.discovery.fitting import fit
+from trueup.core.geometry import Geometry
+from trueup.core.model import Dofs, Model
+
+GRIDS = np.arange(1, N + 1)
+
+
+def model():
+    xyz = np.column_stack([X, np.zeros(N), np.zeros(N)])
+    dofs = Dofs(GRIDS, np.ones(N, dtype=np.int64))
+    eye = sp.identity(N, format="csr")
+    return Model(Geometry(GRIDS, xyz), dofs, eye, (), ())
+
+
+def two(first, second):
+    s = searcher(hidden(masses=[(7, 2.0)]))
+    null = s.null()
+    fits = [fit(s.problem, null.log_p, q, (0,), 20) for q in (first, second)]
+    return s.problem, fits
+
+
+def test_a_sensor_is_proposed_where_the_two_explanations_differ_most():
+    p, (best, rival) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 24, (0.7,)),))
+    said = further_sensors(p, model(), best, (("a mass near grid 25", rival),))
+    assert 1 <= len(said) <= 3
+    grid = int(said[0].split("grid ")[1].split()[0])
+    a, b = (p.basis.motion @ f.vectors[:N, f.match] for f in (best, rival))
+    a, b = (x / np.sqrt(np.mean(x**2, axis=0)) for x in (a, b))
+    b = b * np.sign(np.sum(a * b, axis=0))
+    told = np.sum(np.minimum(np.abs(a - b), 1.0) ** 2, axis=1)
+    assert told[grid - 1] == told.max()
+    assert "a mass near grid 25" in said[0]
+
+
+def test_explanations_that_say_the_same_need_no_sensor_and_no_mode():
+    p, (best, same) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 7, (0.7,)),))
+    assert further_sensors(p, model(), best, (("the same", same),)) == ()
+    assert further_modes(p, model(), best, (("the same", same),)) == ()
+    assert further_sensors(p, model(), best, ()) == ()
+
+
+def test_a_mode_beyond_those_measured_is_proposed_with_both_frequencies():
+    p, (best, rival) = two((Suspect(0, 7, (0.7,)),), ())
+    (said,) = further_modes(p, model(), best, (("the tension alone", rival),))
+    low, high = (float(part.split(" Hz")[0]) for part in said.split(" at ")[1:])
+    assert abs(np.log(high / low)) > 0.01
+    measured = p.whole.frequencies_hz
+    assert low > measured.max() * 0.97
+    assert len(SEEN) == p.whole.shapes.shape[0]

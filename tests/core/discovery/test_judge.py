@@ -1,0 +1,93 @@
+"""Searching and judging on a string of beads, where the truth is in the catalogue."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.fitting import fit
+from trueup.core.discovery.judge import cost, credible_places, enough, instead, judge, with_unseen
+from trueup.core.discovery.search import Found
+
+
+def found_in(s):
+    found = s.run(enough(s))
+    return found, judge(s, found)
+
+
+def kinds(s, f):
+    return [s.problem.catalogue[q.kind].kind for q in f.suspects]
+
+
+@pytest.mark.parametrize("bead", [5, 11])
+def test_a_bead_heavier_than_it_should_be_is_found_beside_a_wrong_tension(bead):
+    s = searcher(hidden(tension=1.1, masses=[(bead, 2.0)]), modes_out=(4, 10))
+    found, verdict = found_in(s)
+    best = found.levels[verdict.accepted]
+    assert kinds(s, best) == ["point_mass"]
+    assert best.suspects[0].row == bead
+    assert np.exp(best.suspects[0].theta[0]) == pytest.approx(2.0, rel=0.05)
+    assert np.exp(best.log_p[0]) == pytest.approx(1.1, rel=0.01)
+    assert verdict.posterior > 0.5
+    assert verdict.foretold > 0.0
+
+
+def test_a_spring_to_ground_is_found():
+    s = searcher(hidden(springs=[(9, 300.0)]), modes_out=(4, 10))
+    found, verdict = found_in(s)
+    best = found.levels[verdict.accepted]
+    assert kinds(s, best) == ["ground_spring"]
+    assert best.suspects[0].row == 9
+    assert np.exp(best.suspects[0].theta[0]) == pytest.approx(300.0, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("tension", [1.0, 1.15])
+def test_where_nothing_is_missing_nothing_is_named(tension, seed):
+    s = searcher(hidden(tension=tension), modes_out=(4, 10), seed=seed)
+    _, verdict = found_in(s)
+    assert verdict.accepted == 0
+
+
+def test_an_effect_that_does_not_foretell_what_was_held_out_loses_what_it_gained():
+    s = searcher(hidden(masses=[(7, 2.0)]), modes_out=(1, 4, 7, 10))
+    null = s.null()
+    right = fit(s.problem, null.log_p, (Suspect(0, 7, (0.7,)),), (0,), 20)
+    wrong = fit(s.problem, null.log_p, (Suspect(0, 20, (0.7,)),), (0,), 20)
+    assert with_unseen(s, right).unseen < with_unseen(s, null).unseen
+    rich = replace(wrong, objective=right.objective, misfit=right.misfit)
+    assert cost(s, rich, 1.0) > cost(s, right, 1.0) + 10.0
+
+
+def test_the_unseen_is_what_the_whole_test_has_beside_the_part():
+    s = searcher(hidden(masses=[(7, 2.0)]))
+    null = s.null()
+    assert with_unseen(s, null).unseen == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_credible_set_holds_the_truth_and_its_weights_are_shares():
+    s = searcher(hidden(masses=[(7, 1.0)]), scatter=(0.002, 0.02))
+    found, verdict = found_in(s)
+    best = found.levels[verdict.accepted]
+    places = credible_places(s, best, 0, verdict.scale)
+    assert 7 in [row for row, _ in places]
+    assert sum(w for _, w in places) == pytest.approx(1.0)
+
+
+def test_a_rival_of_another_kind_that_fits_as_well_is_told():
+    s = searcher(hidden(masses=[(7, 1.0)]))
+    null = s.null()
+    best = fit(s.problem, null.log_p, (Suspect(0, 7, (0.0,)),), (0,), 20)
+    rival = replace(
+        fit(s.problem, null.log_p, (Suspect(1, 7, (5.0,)),), (0,), 20),
+        objective=best.objective + 2.0,
+        unseen=0.0,
+    )
+    found = Found((null, best), ((), (rival,)))
+    verdict = judge(s, found)
+    ((other, weight),) = instead(s, found, verdict, 0)
+    assert (other.kind, other.row) == (1, 7)
+    assert weight == pytest.approx(np.exp(-1.0), rel=1e-6)
+    assert verdict.posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), rel=1e-3)
