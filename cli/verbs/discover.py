@@ -309,6 +309,11 @@ def discover_tables(
         ],
         "would_decide": list(found.would_decide),
         "noise_scale": found.noise_scale,
+        "judgement": {
+            "evidence": found.evidence_for,
+            "posterior": found.posterior,
+            "foretold": found.foretold,
+        },
         "before": correlate_tables(before),
         "after": correlate_tables(after),
     }

@@ -65,7 +65,9 @@ class Discovery:
     """The verdict with everything that led to it.
 
     `evidence_for` is twice the log of how much more likely the verdict is than the known
-    parameters alone.
+    parameters alone; `posterior` its probability among the hypotheses compared; `foretold` by how
+    much the last effect lowers the misfit of what was held out from the search, in units of the
+    noise found.
     """
 
     verdict: str
@@ -75,6 +77,8 @@ class Discovery:
     noise_scale: float
     objectives: tuple[float, ...]
     evidence_for: float
+    posterior: float
+    foretold: float
     held_out_modes: tuple[int, ...]
     held_out_sensors: tuple[int, ...]
     corrected_sensors: tuple[tuple[str, tuple[int, ...], float], ...]

@@ -90,6 +90,8 @@ def told(
         verdict.scale,
         summary(found.levels),
         verdict.evidence,
+        verdict.posterior,
+        verdict.foretold,
         tuple(int(i) + 1 for i in np.flatnonzero(out[0])),
         tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
         tuple((f.kind, tuple(int(nodes[i]) for i in f.sensors), f.factor) for f in faults),
