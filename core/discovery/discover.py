@@ -217,8 +217,8 @@ def _weighed(
     levels = list(found.levels)
     done: set[int] = set()
     verdict = judge(searcher, found)
-    while verdict.accepted and {verdict.accepted, verdict.accepted - 1} - done:
-        for k in {verdict.accepted, verdict.accepted - 1} - done:
+    while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
+        for k in wanted:
             with suppress(TrueupError):
                 levels[k] = _polished(request, searcher, made, levels[k], sensors)
             done.add(k)

@@ -15,6 +15,8 @@ from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 from .laws import AttachedLaw, Law, ReleaseLaw, Rows
 
 _DEGENERATE = 2e-3
+_SOFT = 3.0
+"""How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
 """Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
 _FIRST = np.zeros(1, np.int64)
@@ -105,7 +107,9 @@ class Fit:
 
     `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
     the Gauss-Newton Hessian of half the objective, prior included, active parameters first;
-    `unseen` is the misfit of what was held out from the fit, where it was asked for.
+    `unseen` is the misfit of what was held out from the fit, `in_deck` the ln p (n_parameter,)
+    that a deck with these effects needs, where no correction of its mesh helps; both where they
+    were asked for.
     """
 
     objective: float
@@ -118,6 +122,14 @@ class Fit:
     information: Floats
     active: tuple[int, ...]
     unseen: float | None = None
+    in_deck: Floats | None = None
+
+
+def softened(problem: Problem) -> Problem:
+    """Return the problem with more noise: wider valleys, seen from places and sizes further off."""
+    e = problem.evidence
+    wide = replace(e.noise, frequency=_SOFT * e.noise.frequency, shape=_SOFT * e.noise.shape)
+    return replace(problem, evidence=replace(e, noise=wide))
 
 
 def _matrices(

@@ -19,12 +19,14 @@ from ..factor import factorise
 from ..model import Model
 from .basis import Basis, ReducedTerm
 from .candidates import Candidates, Suspect, magnitudes
-from .fitting import Fit, Problem, fit, unseen
+from .fitting import Fit, Problem, fit, softened, unseen
 from .mesh_error import lumping, with_consistent_bars
 from .structure import Structure
 
 _DEPENDENT = 1e-6
 _CHANGED = 0.03
+_HELD = 1e-3
+"""Standard deviation of a magnitude that is to stay."""
 
 
 def polished(
@@ -82,10 +84,28 @@ def polished(
                 replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
             ),
             unseen=unseen(own, new),
+            in_deck=_in_deck(replace(own, basis=basis), new),
         )
         if np.all(moved < _CHANGED):
             break
     return state
+
+
+def _in_deck(own: Problem, found: Fit) -> Floats:
+    """Return ln p of the known parameters for a deck, the effects as found, (n_parameter,).
+
+    A deck has neither the trend for the error of the mesh nor masses better than its elements':
+    moduli, thicknesses and inertias have to absorb both.
+    """
+    held = tuple(
+        replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), _HELD))
+        for c, s in zip(own.catalogue, found.suspects, strict=True)
+    )
+    own = replace(own, catalogue=held)
+    n = len(found.log_p) - 1
+    start = np.append(found.log_p[:n], 0.0)
+    near = fit(softened(own), start, found.suspects, tuple(range(n)), 20)
+    return fit(own, near.log_p, found.suspects, tuple(range(n)), 20).log_p[:n]
 
 
 def _own_basis(

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Ints
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, fit, solve
+from .fitting import Fit, Problem, evaluate, fit, softened, solve
 from .scanning import best_apart, scan
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
@@ -34,8 +34,6 @@ _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
 _CLOSE = 0.35
 """A hypothesis that gained less than all but this share of what the best gained is not grown."""
-_SOFT = 3.0
-"""How many times the noise counts while branches are looked for."""
 _PROMISING = 10
 """Neighbouring places, the best at θ as it is, at which those changes are tried."""
 
@@ -54,13 +52,6 @@ class Effort:
     search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
-
-
-def _softened(problem: Problem) -> Problem:
-    """Return the problem with more noise: wider valleys, seen from places and sizes further off."""
-    e = problem.evidence
-    wide = replace(e.noise, frequency=_SOFT * e.noise.frequency, shape=_SOFT * e.noise.shape)
-    return replace(problem, evidence=replace(e, noise=wide))
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +128,7 @@ class Searcher:
     def branches(self, state: Fit, count: int) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind by exact evaluation."""
         small, here = self.local(state)
-        small = _softened(small)
+        small = softened(small)
         out: list[tuple[float, Suspect]] = []
         for kind in range(len(small.catalogue)):
             c, rows = small.catalogue[kind], self.coarse[kind]
@@ -198,7 +189,7 @@ class Searcher:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small = small or self.local(state)[0]
         if soften:
-            near = fit(_softened(small), state.log_p, suspects, self.active, iterations)
+            near = fit(softened(small), state.log_p, suspects, self.active, iterations)
             suspects, state = near.suspects, near
         quick = fit(small, state.log_p, suspects, self.active, iterations)
         return fit(self.problem, quick.log_p, quick.suspects, self.active, 2)
@@ -221,7 +212,7 @@ class Searcher:
         Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
         """
         fresh = np.zeros_like(state.log_p)
-        near = fit(_softened(self.problem), fresh, state.suspects, self.active, 6)
+        near = fit(softened(self.problem), fresh, state.suspects, self.active, 6)
         again = fit(self.problem, near.log_p, near.suspects, self.active, 6)
         return again if again.objective < state.objective else state
 
@@ -321,7 +312,7 @@ class Searcher:
             for state in beam:
                 count = self.effort.branches * (3 if self._small else 1)
                 small, here = self.local(state)
-                soft = evaluate(_softened(small), here.log_p, here.suspects).objective
+                soft = evaluate(softened(small), here.log_p, here.suspects).objective
                 for branch in self._varied(self.branches(state, count), soft):
                     grown.append(self.fitted(state, (*state.suspects, branch), 5, small, True))
                 best = min(grown, key=lambda f: f.objective)

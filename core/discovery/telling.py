@@ -10,7 +10,7 @@ from ..arrays import Floats
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
-from .fitting import Fit, fit
+from .fitting import Fit
 from .judge import Judgement, contenders, cost, credible_places, deviations, instead, summary, times
 from .places import region
 from .request import Request
@@ -56,7 +56,7 @@ def told(
         if f.kind != "doubled"
     }
     accused = list(named.values())
-    moved = _moved(request, searcher, best, spread)
+    moved = _moved(best, spread)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
     matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
@@ -194,26 +194,17 @@ def _fault(f: Fault, nodes: Any, xyz: Floats) -> Finding:
     )
 
 
-def _moved(
-    request: Request, searcher: Searcher, best: Fit, spread: Floats
-) -> tuple[MovedParameter, ...]:
-    """Known parameters as the completed deck takes them.
-
-    In the deck there is no trend for the error of the mesh: moduli, thicknesses and inertias
-    have to absorb it, so they are fitted once more without it, the effects as found.
-    """
-    n = len(request.structure.model.parameters)
-    start = np.array(best.log_p)
-    start[-1] = 0.0
-    flat = fit(searcher.problem, start, best.suspects, tuple(range(n)), 20)
+def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
+    """Known parameters as the completed deck takes them."""
+    values = best.log_p[:-1] if best.in_deck is None else best.in_deck
     return tuple(
         MovedParameter(
             k,
-            float(np.exp(flat.log_p[k])),
-            float(np.exp(flat.log_p[k])) * float(spread[best.active.index(k)]),
+            float(np.exp(value)),
+            float(np.exp(value)) * float(spread[best.active.index(k)]),
             abs(float(best.log_p[k])) > _SIGNIFICANT * float(spread[best.active.index(k)]),
         )
-        for k in range(n)
+        for k, value in enumerate(values)
     )
 
 
