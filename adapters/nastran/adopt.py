@@ -203,6 +203,37 @@ def _detached(
     )
 
 
+def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+    """Put a grid on a spring that moves only in the direction of the finding.
+
+    It hangs on the grid itself where that is one grid in basic axes, else on a grid that follows
+    all the grids named.
+    """
+    grids, (c,) = finding.where["grids"], finding.magnitude["components"]
+    m, hz = float(finding.magnitude["mass"]), float(finding.magnitude["frequency_hz"])
+    new, number = free_id(text, "grid"), free_id(text, "element")
+    xyz = [float(v) for v in np.mean([_grid_xyz(deck, g) for g in grids], axis=0)]
+    host, rows = grids[0], list[Row]()
+    if len(grids) > 1:
+        moves = "123" if len(grids) > 2 else "123456"
+        host, new = new, new + 1
+        rows += [
+            ["GRID", host, 0, *xyz, 0, "456"],
+            ["RBE3", number, None, host, "123", 1.0, moves, *grids],
+        ]
+    elif deck.bulk.table("GRID")[host].cd:
+        host, new = new, new + 1
+        rows += [["GRID", host, 0, *xyz, 0], ["RBE2", number, grids[0], "123456", host]]
+    rows += [
+        ["GRID", new, 0, *xyz, 0, "".join(str(k) for k in range(1, 7) if k != c)],
+        ["CELAS2", number + 1, m * (2.0 * np.pi * hz) ** 2, host, c, new, c],
+        ["CONM2", number + 2, new, None, m],
+    ]
+    return Adopted(
+        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
+    )
+
+
 def _is(card: Card, field: int, number: int) -> bool:
     """Whether a field of a card holds a number; an earlier effect may have changed it."""
     text = card.text(field)
@@ -222,4 +253,5 @@ _WRITERS: dict[str, Callable[[DeckText, Deck, Finding], Adopted]] = {
     "distributed_mass": _distributed_mass,
     "joint_flexibility": _joint,
     "support_flexibility": _support,
+    "tuned_absorber": _absorber,
 }

@@ -37,6 +37,8 @@ class Candidates:
         Prior of θ: normal with these means and standard deviations.
     steps : (t,) float
         What is a step of each θ where a search moves it.
+    lower, upper : (t,) float
+        Bounds of θ.
     """
 
     kind: str
@@ -49,6 +51,8 @@ class Candidates:
     typical: Floats
     spread: Floats
     steps: Floats = field(default_factory=lambda: np.ones(1))
+    lower: Floats = field(default_factory=lambda: np.full(1, -np.inf))
+    upper: Floats = field(default_factory=lambda: np.full(1, np.inf))
     extra: dict[str, Any] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -61,7 +65,16 @@ class Candidates:
     def around(self, theta: Sequence[float], changes: Floats) -> Floats:
         """Return θ (t,) with each magnitude in turn moved by `changes` (n,) steps, (≤ n·t, t)."""
         moves = changes[:, None, None] * np.diag(self.steps)
-        return np.asarray(theta + np.unique(moves.reshape(-1, len(self.steps)), axis=0))
+        return self.within(theta + np.unique(moves.reshape(-1, len(self.steps)), axis=0))
+
+    def within(self, theta: Floats) -> Floats:
+        """Return θ (..., t) moved into the bounds."""
+        return np.asarray(np.clip(theta, self.lower, self.upper))
+
+    @property
+    def tunings(self) -> int:
+        """Number of trial values of all magnitudes but the first, 1 where there is but one."""
+        return len({tuple(trial[1:]) for trial in self.trials.tolist()})
 
     def factors(self, basis: Basis) -> Rows:
         """Return the rows of `root` on the basis, (n, q, r)."""
@@ -97,12 +110,13 @@ def magnitudes(suspects: Sequence[Suspect]) -> Floats:
     return np.array([v for s in suspects for v in s.theta], dtype=float)
 
 
-def changed(suspects: Sequence[Suspect], step: Floats) -> tuple[Suspect, ...]:
-    """Return the suspects with `step` (n_magnitude,) added to their magnitudes."""
+Catalogue = Sequence[Candidates]
+
+
+def changed(catalogue: Catalogue, suspects: Sequence[Suspect], step: Floats) -> tuple[Suspect, ...]:
+    """Return the suspects with `step` (n_magnitude,) added to their magnitudes, within bounds."""
     ends = np.cumsum([len(s.theta) for s in suspects])
     return tuple(
-        s.moved(s.theta + d) for s, d in zip(suspects, np.split(step, ends)[:-1], strict=True)
+        s.moved(catalogue[s.kind].within(s.theta + d))
+        for s, d in zip(suspects, np.split(step, ends)[:-1], strict=True)
     )
-
-
-Catalogue = Sequence[Candidates]

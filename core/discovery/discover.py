@@ -44,6 +44,8 @@ _RITZ = 110
 _CONTESTED, _RIVALS = 30.0, 2
 """Rivals less than this (twice the log of a likelihood ratio) behind, and so many of them, are
 fitted as carefully as the best."""
+_ALONG_AXES = {"ground_spring", "tuned_absorber"}
+"""Kinds with one direction at a point, looked at only where something moves that way."""
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -202,6 +204,7 @@ def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
         request.mass,
         request.structure.model.geometry.size,
         float((2.0 * np.pi * np.median(hz)) ** 2),
+        (float(hz.min()), float(hz.max())),
     )
     return [c for make in KINDS.values() for c in make(request.structure, scale)]
 
@@ -286,7 +289,7 @@ def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidat
 def _coarse(c: Candidates, factors: Any, problem: Problem, size: float) -> Any:
     """Rows that the first scan looks at: spread over the structure, where anything moves."""
     rows = np.arange(len(c))
-    if c.kind == "ground_spring":
+    if c.kind in _ALONG_AXES:
         moves = np.sum(factors[rows][:, 0, : problem.columns] ** 2, axis=1)
         live = np.flatnonzero(moves > 0.02 * moves.max())
         parts = []

@@ -268,7 +268,7 @@ def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) ->
     log_p = np.array(now.log_p)
     log_p[list(active)] += step[: len(active)]
     log_p = np.clip(log_p, problem.prior.lower, problem.prior.upper)
-    return evaluate(problem, log_p, changed(now.suspects, step[len(active) :]))
+    return evaluate(problem, log_p, changed(problem.catalogue, now.suspects, step[len(active) :]))
 
 
 def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:

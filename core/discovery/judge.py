@@ -50,13 +50,18 @@ def noise_scale(problem: Problem, best: Fit) -> float:
 
 
 def price(searcher: Searcher, suspect: Suspect) -> float:
-    """Return what a suspect must lower the objective by: twice ln(places) and a margin."""
+    """Return what a suspect must lower the objective by: twice ln(choices) and a margin.
+
+    The choices are the places and, where a kind is tuned, what it may be tuned to.
+    """
     catalogue = searcher.problem.catalogue
     kind = catalogue[suspect.kind].kind
-    places = sum(
-        len(rows) for c, rows in zip(catalogue, searcher.coarse, strict=True) if c.kind == kind
+    choices = sum(
+        len(rows) * c.tunings
+        for c, rows in zip(catalogue, searcher.coarse, strict=True)
+        if c.kind == kind
     )
-    return 2.0 * float(np.log(max(places, 2))) + _MARGIN
+    return 2.0 * float(np.log(max(choices, 2))) + _MARGIN
 
 
 def burden(searcher: Searcher, f: Fit) -> float:

@@ -105,15 +105,46 @@ class AttachedLaw:
         """Return dm/dθ."""
         return np.asarray(np.exp(theta)[:, :, None])
 
+    def own(self, theta: Floats) -> tuple[Floats, Floats]:
+        """Return the flexibility of its spring on any basis (n, 1), and its slopes (n, t)."""
+        rigid = _RIGID / (np.exp(theta) * self.top)
+        return rigid, -rigid
+
     def springs(self, theta: Floats, rows: Ints) -> Floats:
         """Return the stiffness between the structure and the mass, (n, q)."""
-        rigid = _RIGID / (np.exp(theta) * self.top)
-        return np.asarray(1.0 / (self.missing[rows] + rigid))
+        return np.asarray(1.0 / (self.missing[rows] + self.own(theta)[0]))
 
     def springs_slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return the derivatives of these stiffnesses by each θ, (n, t, q)."""
-        rigid = _RIGID / (np.exp(theta) * self.top)
-        return np.asarray(rigid * self.springs(theta, rows) ** 2)[:, None, :]
+        k = self.springs(theta, rows)
+        return np.asarray(-self.own(theta)[1][:, :, None] * k[:, None, :] ** 2)
+
+
+@dataclass(frozen=True, eq=False)
+class TunedLaw(AttachedLaw):
+    """A mass m = e^θ₁ on a spring that tunes it to f = e^θ₂ Hz, with no top.
+
+    On a basis that lacks flexibility where it sits its spring m (2πf)² is in line with that.
+    """
+
+    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
+        """Return the absorber in line with what the basis lacks."""
+        lost = self.missing[rows]
+        return TunedLaw(lost if missing is None else lost + missing, top)
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return m."""
+        return np.asarray(np.exp(theta[:, :1]))
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return dm/dθ."""
+        m = np.exp(theta[:, :1])
+        return np.stack([m, np.zeros_like(m)], axis=1)
+
+    def own(self, theta: Floats) -> tuple[Floats, Floats]:
+        """Return 1/(m (2πf)²) and its slopes."""
+        soft = np.exp(-theta[:, :1] - 2.0 * theta[:, 1:]) / (2.0 * np.pi) ** 2
+        return soft, np.hstack([-soft, -2.0 * soft])
 
 
 @dataclass(frozen=True)

@@ -127,7 +127,7 @@ def _own_basis(
             loads.append(A)
         if c.law.on == "K":
             K = (K + change).tocsr()
-        else:
+        elif c.law.on == "M":
             M = (M + change).tocsr()
     solution = solve((K, M), n_modes=modes, count=False)
     phi = solution.vectors

@@ -26,8 +26,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         Number in the catalogue.
     rows : (n,) int
         Places.
-    trials : (n_trial, t) float
-        Values of θ.
+    trials : (n_trial, t) or (n, n_trial, t) float
+        Values of θ, the same everywhere or for each place.
 
     Returns
     -------
@@ -36,7 +36,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     """
     U, law = problem.part(kind, rows, state.log_p)
     lam = np.maximum(state.eigenvalues, 0.0)
-    out = np.empty((len(rows), len(trials)))
+    trials = np.broadcast_to(trials, (len(rows), *trials.shape[-2:]))
+    out = np.empty(trials.shape[:2])
     S2 = problem.sensors.T @ problem.sensors
     cross = problem.evidence.shapes.T @ problem.sensors
     n = min(problem.columns, len(lam))
@@ -44,8 +45,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         part = slice(start, start + _CHUNK)
         u = U[part]
         places = np.arange(len(U))[part]
-        for j, theta in enumerate(trials):
-            at = np.tile(theta, (len(places), 1))
+        for j in range(trials.shape[1]):
+            at = trials[part, j]
             c = law.value(at, places)
             if isinstance(law, AttachedLaw):
                 values, Z = _attached(lam, u, c, law.springs(at, places))

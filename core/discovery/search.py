@@ -18,6 +18,7 @@ from ..arrays import Bools, Floats, Ints
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, fit, softened, solve
 from .scanning import best_apart, scan
+from .tuning import promising
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
@@ -34,6 +35,8 @@ _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
 _CLOSE = 0.35
 """A hypothesis that gained less than all but this share of what the best gained is not grown."""
+_MANY = 30
+"""Sizes of a kind up to which every one is tried exactly at every place of the first scan."""
 _PROMISING = 10
 """Neighbouring places, the best at θ as it is, at which those changes are tried."""
 
@@ -52,6 +55,8 @@ class Effort:
     search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
+    exact_places: int = 30
+    exact_sizes: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +139,12 @@ class Searcher:
             c, rows = small.catalogue[kind], self.coarse[kind]
             if not len(rows):
                 continue
-            score = scan(small, here, kind, rows, c.trials)
-            score[self._taken(state, kind, rows)] = np.inf
-            total = score + c.surprise(c.trials)
-            tried = list(zip(total.min(axis=1), rows, c.trials[total.argmin(axis=1)], strict=True))
+            rows, trials = self._worth_trying(small, here, kind)
+            total = scan(small, here, kind, rows, trials) + c.surprise(trials)
+            total[self._taken(state, kind, rows)] = np.inf
+            each = np.broadcast_to(trials, (*total.shape, trials.shape[-1]))
+            chosen = each[np.arange(len(rows)), total.argmin(axis=1)]
+            tried = list(zip(total.min(axis=1), rows, chosen, strict=True))
             coarse = best_apart(
                 c.xyz[rows], total.min(axis=1), self.effort.apart * self.size, self.effort.looked_at
             )
@@ -160,6 +167,20 @@ class Searcher:
             for i in best_apart(c.xyz[every], best, self.effort.apart * self.size, count):
                 out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
+
+    def _worth_trying(self, small: Problem, here: Fit, kind: int) -> tuple[Ints, Floats]:
+        """Return the places of the first scan, and what is tried at each.
+
+        Where a kind has very many sizes, those that promise most to first order are tried, at the
+        places that do.
+        """
+        c, rows = small.catalogue[kind], self.coarse[kind]
+        if len(c.trials) <= _MANY:
+            return rows, c.trials
+        cost = promising(small, here, kind, rows, c.trials) + c.surprise(c.trials)
+        best = np.argsort(cost, axis=1, kind="stable")[:, : self.effort.exact_sizes]
+        order = np.argsort(cost.min(axis=1), kind="stable")[: self.effort.exact_places]
+        return rows[order], c.trials[best[order]]
 
     def _around(self, kind: int, row: int) -> Ints:
         """Places next to one, nearest first."""

@@ -18,6 +18,9 @@ _SAYS = {
     "{components} is missing {region}: it",
     "support_flexibility": "The support gives {region}, direction {components}, with a stiffness "
     "of about {stiffness:.3g} (deck units): it",
+    "tuned_absorber": "About {mass:.3g} of mass (deck units) on a spring tuned to "
+    "{frequency_hz:.4g} Hz in direction {components} is missing {region}: an absorber, which adds "
+    "a mode,",
     "joint_flexibility": "The joint gives {region} with a rotational stiffness of about "
     "{stiffness:.3g} (deck units): it",
 }
@@ -30,8 +33,17 @@ _TEST = {
 }
 
 
-def magnitude_of(c: Candidates, row: int, sizes: Floats) -> dict[str, Any]:
-    """Return the magnitudes of a finding by the words of the interface."""
+def magnitude_of(c: Candidates, row: int, sizes: Floats, intervals: Floats) -> dict[str, Any]:
+    """Return the magnitudes of a finding by the words of the interface.
+
+    Parameters
+    ----------
+    c : Candidates
+    row : int
+    sizes : (t,) float
+    intervals : (t, 2) float
+        95 %; that of the first magnitude stands beside the magnitudes, in the finding.
+    """
     where, size = c.where[row], float(sizes[0])
     if c.kind == "point_mass":
         return {"mass": size}
@@ -41,6 +53,13 @@ def magnitude_of(c: Candidates, row: int, sizes: Floats) -> dict[str, Any]:
         return {"mass": size, "mass_per_area": per_area}
     if c.kind == "local_stiffness":
         return {"factor": size}
+    if c.kind == "tuned_absorber":
+        return {
+            "mass": size,
+            "frequency_hz": float(sizes[1]),
+            "frequency_hz_interval": intervals[1].tolist(),
+            "components": where["components"],
+        }
     return {"stiffness": size, "components": where.get("components", [])}
 
 

@@ -13,6 +13,7 @@ from . import (
     local_stiffness,
     point_mass,
     support_flexibility,
+    tuned_absorber,
 )
 from .scale import Scale
 
@@ -23,4 +24,5 @@ KINDS: dict[str, Callable[[Structure, Scale], tuple[Candidates, ...]]] = {
     "ground_spring": ground_spring.candidates,
     "support_flexibility": support_flexibility.candidates,
     "joint_flexibility": joint_flexibility.candidates,
+    "tuned_absorber": tuned_absorber.candidates,
 }

@@ -21,11 +21,14 @@ class Scale:
         Diagonal of its box.
     omega2 : float
         (rad/s)² in the middle of the measured band.
+    band_hz : (float, float)
+        Lowest and highest frequency that was measured.
     """
 
     mass: float
     size: float
     omega2: float
+    band_hz: tuple[float, float]
 
     def masses(self, count: int = 4) -> Floats:
         """Trial masses, ln, (count, 1)."""
