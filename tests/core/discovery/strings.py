@@ -10,7 +10,7 @@ from trueup.core.discovery.basis import Basis, ReducedTerm
 from trueup.core.discovery.candidates import Candidates
 from trueup.core.discovery.evidence import Evidence, Noise
 from trueup.core.discovery.fitting import Prior, Problem
-from trueup.core.discovery.laws import MassLaw, SpringLaw
+from trueup.core.discovery.laws import MassLaw, SpringLaw, TunedLaw
 from trueup.core.discovery.search import Effort, Searcher
 from trueup.core.model import Factor, Term
 
@@ -21,9 +21,16 @@ M = np.eye(N)
 SEEN = np.arange(0, N, 2)
 
 
-def hidden(tension=1.0, masses=(), springs=()):
-    """K and M of the truth; masses and springs are (bead, size)."""
-    k, m = tension * K, np.array(M)
+def hidden(tension=1.0, masses=(), springs=(), absorbers=()):
+    """K and M of the truth; masses and springs are (bead, size), absorbers (bead, mass, Hz).
+
+    The masses of the absorbers come after the beads.
+    """
+    k, m = la.block_diag(tension * K, np.zeros((len(absorbers),) * 2)), np.eye(N + len(absorbers))
+    for own, (bead, size, hz) in enumerate(absorbers, N):
+        stiffness = size * (2.0 * np.pi * hz) ** 2
+        k[np.ix_([bead, own], [bead, own])] += stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        m[own, own] = size
     for bead, size in masses:
         m[bead, bead] += size
     for bead, size in springs:
@@ -43,7 +50,7 @@ def measured(truth, n_modes=12, scatter=(0.001, 0.01), seed=3):
 
 
 def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> Searcher:
-    """A search for masses and springs on the string, its tension a known parameter."""
+    """A search for masses, springs and absorbers on the string, its tension a known parameter."""
     hz, shapes = measured(truth, n_modes, scatter, seed)
     whole = Evidence(hz, shapes, Noise(0.002, 0.03, float(len(SEEN)), 40.0, 1e-4))
     kept = ~np.isin(np.arange(n_modes), modes_out)
@@ -59,23 +66,35 @@ def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> 
     xyz = np.column_stack([X, np.zeros(N), np.zeros(N)])
     where = tuple({"grids": [i + 1], "components": [1]} for i in range(N))
     root = sp.identity(N, format="csr")
+    tuned = np.geomspace(0.93 * hz[0], 1.07 * hz[-1], 60)
 
-    def of(kind, law, trials, typical):
+    def of(kind, law, trials, typical, spread=(1.5,), **more):
         return Candidates(
             kind=kind,
             xyz=xyz,
             law=law,
-            trials=np.log(trials)[:, None],
+            trials=np.log(trials),
             root=root,
             rows_each=1,
             where=where,
-            typical=np.array([np.log(typical)]),
-            spread=np.array([1.5]),
+            typical=np.log(typical),
+            spread=np.array(spread),
+            **more,
         )
 
     catalogue = (
-        of("point_mass", MassLaw(), np.array([0.5, 1.0, 2.0, 4.0]), 1.0),
-        of("ground_spring", SpringLaw(np.zeros((N, 1))), np.array([50.0, 200.0, 800.0]), 200.0),
+        of("point_mass", MassLaw(), [[0.5], [1.0], [2.0], [4.0]], [1.0]),
+        of("ground_spring", SpringLaw(np.zeros((N, 1))), [[50.0], [200.0], [800.0]], [200.0]),
+        of(
+            "tuned_absorber",
+            TunedLaw(np.zeros((N, 1)), 0.0),
+            [(m, hz) for m in (0.25, 0.5, 1.0, 2.0) for hz in tuned],
+            [0.5, np.sqrt(tuned[0] * tuned[-1])],
+            (1.0, 0.5 * np.log(tuned[-1] / tuned[0])),
+            steps=np.array([1.0, 0.15]),
+            lower=np.array([-np.inf, np.log(tuned[0])]),
+            upper=np.array([np.inf, np.log(tuned[-1])]),
+        ),
     )
     factors = tuple(c.factors(basis) for c in catalogue)
     prior = Prior(np.array([0.2, 1.0]), np.array([-1.0, -1.0]), np.array([1.0, 1.0]))
