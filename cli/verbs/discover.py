@@ -208,22 +208,17 @@ def _on(placed: Any, model: Any, again: Any) -> Any:
 
 
 def _corrected(placed: Any, found: Any) -> Any:
-    """Return the test as sound sensors would have read it."""
-    from ...core.modes import Modes
+    """Return the test as sound sensors would have read it, less what cannot be known."""
+    from ...core.discovery.sensors import corrected, lost
 
-    nodes = placed.observation.sensors.node
-    shapes = np.array(placed.test.shapes)
-    for kind, sensors, factor in found.corrected_sensors:
-        rows = [int(np.flatnonzero(nodes == n)[0]) for n in sensors]
-        if kind == "sensor_swap":
-            shapes[rows] = shapes[rows[::-1]]
-        else:
-            shapes[rows] = shapes[rows] / factor
-    t = placed.test
-    return replace(
-        placed,
-        test=Modes(t.frequencies_hz, shapes, t.dofs, t.damping, t.generalized_mass, t.source),
-    )
+    shapes = corrected(placed.test.shapes, found.corrected_sensors)
+    left = ~lost(found.corrected_sensors, len(shapes))
+    errors = placed.errors
+    if errors is not None:
+        errors = replace(errors, shape=errors.shape[left])
+    seen = placed.observation.take(left)
+    test = replace(placed.test, shapes=shapes[left], dofs=seen.sensors)
+    return replace(placed, observation=seen, test=test, errors=errors)
 
 
 def discover_tables(

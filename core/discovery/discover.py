@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Floats
-from ..correlation import realised
 from ..errors import TrueupError
 from .basis import Flexibility, build_basis
+from .bench import Bench
 from .candidates import Candidates
 from .evidence import Evidence, Noise
 from .findings import Discovery
@@ -34,8 +34,8 @@ from .mesh_error import lumping, with_consistent_bars
 from .polish import polished
 from .request import Request as Request
 from .search import Found, Searcher
-from .sensors import Fault, find_faults
 from .structure import thinned
+from .survey import Survey
 from .telling import told
 
 _MESH = (1.0, -1.0, 1.05)
@@ -62,39 +62,37 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
         Told what happens, a few words at a time.
     """
     progress("checking the sensors against each other")
-    shapes = realised(request.placed.test.shapes)
-    hz = request.placed.test.frequencies_hz
+    bench = Bench(request.placed, request.structure.model)
+    hz = bench.survey.frequencies_hz
+    n = len(bench.survey.node)
     modes_out = held_out(len(hz), 4, 6) if len(hz) >= 10 else np.zeros(len(hz), bool)
-    sensors_out = held_out(len(shapes), 5, 10) if len(shapes) >= 30 else np.zeros(len(shapes), bool)
-    analysis = np.asarray(
-        request.placed.observation.matrix
-        @ (request.structure.model.expansion @ request.solution.vectors)
-    )
-    faults, noise = find_faults(shapes, hz, analysis, _hz(request.solution.eigenvalues))
+    sensors_out = held_out(n, 5, 10) if n >= 30 else np.zeros(n, bool)
+    solution = request.solution
+    motion = np.asarray(request.structure.model.expansion @ solution.vectors)
+    first = bench.judged(motion, solution.eigenvalues)
     progress("fitting the known parameters")
-    problem, null, zero = _prepared(
-        request, corrected(shapes, faults), noise, ~modes_out, ~sensors_out
-    )
-    again, noise = find_faults(shapes, hz, *_at_sensors(request, problem, null))
-    merged = _merged(faults, again)
-    if _named(merged) != _named(faults):
-        faults = merged
-        problem, null, zero = _prepared(
-            request, corrected(shapes, faults), noise, ~modes_out, ~sensors_out
-        )
-    searcher, found, verdict = _searched(request, problem, null, ~sensors_out, progress)
+    sensors = ~sensors_out & ~first.doubtful
+    problem, null, zero = _prepared(request, bench.survey, first.noise, ~modes_out, sensors)
+    tested = bench.judged_by(problem, null)
+    if np.any(tested.doubtful != first.doubtful):
+        sensors = ~sensors_out & ~tested.doubtful
+        problem, null, zero = _prepared(request, bench.survey, tested.noise, ~modes_out, sensors)
+    searcher, found, verdict = _searched(request, problem, null, sensors, progress)
     if verdict.accepted:
-        best = found.levels[verdict.accepted]
-        whole = evaluate(searcher.problem, best.log_p, best.suspects)
-        last, noise = find_faults(shapes, hz, *_at_sensors(request, searcher.problem, whole))
-        if _named(last) != _named(faults):
-            progress("searching again: what is missing explains sensors otherwise")
-            faults = last
-            problem, null, zero = _prepared(
-                request, corrected(shapes, faults), noise, ~modes_out, ~sensors_out
-            )
-            searcher, found, verdict = _searched(request, problem, null, ~sensors_out, progress)
-    return told(request, searcher, found, verdict, zero, faults, (modes_out, sensors_out))
+        last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
+        if np.any(last.doubtful & sensors):
+            progress("searching again without sensors that the completed model accuses")
+            sensors = sensors & ~last.doubtful
+            problem, null, zero = _prepared(request, bench.survey, last.noise, ~modes_out, sensors)
+            searcher, found, verdict = _searched(request, problem, null, sensors, progress)
+            last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
+        tested = last
+    return told(request, searcher, found, verdict, zero, tested.faults, (modes_out, sensors_out))
+
+
+def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
+    best = found.levels[verdict.accepted]
+    return evaluate(searcher.problem, best.log_p, best.suspects)
 
 
 def _searched(
@@ -126,40 +124,17 @@ def _searched(
     return searcher, found, verdict
 
 
-def _named(faults: tuple[Fault, ...]) -> set[tuple[str, tuple[int, ...]]]:
-    return {(f.kind, f.sensors) for f in faults}
-
-
 def _hz(eigenvalues: Floats) -> Floats:
     return np.asarray(np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi))
 
 
-def corrected(shapes: Floats, faults: tuple[Fault, ...]) -> Floats:
-    """Return the shapes as sound sensors would have read them."""
-    out = np.array(shapes, dtype=float)
-    for f in faults:
-        rows = list(f.sensors)
-        if f.kind == "sensor_swap":
-            out[rows] = out[rows[::-1]]
-        else:
-            out[rows] /= f.factor
-    return out
-
-
-def _merged(first: tuple[Fault, ...], second: tuple[Fault, ...]) -> tuple[Fault, ...]:
-    """Faults of both passes; where both speak of a sensor the second, better founded, counts."""
-    spoken = {i for f in second for i in f.sensors}
-    return (*second, *(f for f in first if not spoken & set(f.sensors)))
-
-
 def _prepared(
-    request: Request, shapes: Floats, noise: float, modes: Any, sensors: Any
+    request: Request, survey: Survey, noise: float, modes: Any, sensors: Any
 ) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
-    model, hz = request.structure.model, request.placed.test.frequencies_hz
+    model, hz = request.structure.model, survey.frequencies_hz
     sigma = Noise(shape=float(np.hypot(noise, 0.04)))
-    unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    whole = Evidence(hz, unit, sigma)
+    whole = Evidence(hz, survey.unit(), sigma)
     e = whole.take(modes, sensors)
     below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
     targets = int(below.sum())
@@ -189,12 +164,6 @@ def _prepared(
     zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
     return problem, null, zero
-
-
-def _at_sensors(request: Request, problem: Problem, state: Fit) -> tuple[Floats, Floats]:
-    """Return the shapes of a fit at all sensors and its frequencies [Hz]."""
-    everywhere = np.asarray(request.placed.observation.matrix @ problem.basis.motion)
-    return everywhere @ state.vectors[: problem.basis.size], _hz(state.eigenvalues)
 
 
 def _catalogue(request: Request, problem: Problem) -> list[Candidates]:

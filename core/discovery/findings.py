@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from .sensors import Fault
+
 VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
 
 
@@ -81,6 +83,6 @@ class Discovery:
     foretold: float
     held_out_modes: tuple[int, ...]
     held_out_sensors: tuple[int, ...]
-    corrected_sensors: tuple[tuple[str, tuple[int, ...], float], ...]
+    corrected_sensors: tuple[Fault, ...]
     would_decide: tuple[str, ...]
     warnings: tuple[str, ...]

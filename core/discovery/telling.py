@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -50,13 +51,9 @@ def told(
         for k, deviation in enumerate(own)
     ]
     nodes = request.placed.observation.sensors.node
+    labels = request.placed.observation.sensors.labels
     xyz = request.placed.observation.xyz
-    named = {
-        (f.kind, tuple(int(nodes[i]) for i in f.sensors)): _fault(f, nodes, xyz)
-        for f in faults
-        if f.kind != "doubled"
-    }
-    accused = list(named.values())
+    accused = [_fault(f, nodes, labels, xyz) for f in faults if f.kind != "doubled"]
     moved = _moved(best, spread)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
@@ -95,7 +92,7 @@ def told(
         verdict.foretold,
         tuple(int(i) + 1 for i in np.flatnonzero(out[0])),
         tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
-        tuple((f.kind, tuple(int(nodes[i]) for i in f.sensors), f.factor) for f in faults),
+        faults,
         decide,
         warnings,
     )
@@ -171,15 +168,22 @@ def _radius(c: Candidates, s: Suspect) -> float:
     return float(c.extra["patches"][s.row].radius) if "patches" in c.extra else 0.0
 
 
-def _fault(f: Fault, nodes: Any, xyz: Floats) -> Finding:
-    sensors = [int(nodes[i]) for i in f.sensors]
-    magnitude = {"factor": f.factor} if f.kind == "sensor_gain" else {}
-    where = {
+def _fault(f: Fault, nodes: Any, labels: Sequence[str], xyz: Floats) -> Finding:
+    sensors = list(dict.fromkeys(int(nodes[i]) for i in f.sensors))
+    rows = np.count_nonzero(np.isin(nodes, sensors))
+    where: dict[str, Any] = {
         "sensors": sensors,
         "xyz": xyz[f.sensors[0]].tolist(),
         "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
     }
-    sure = 1.0 - 1.0 / (1.0 + f.gain_in_fit)
+    names: list[str] = list(map(str, sensors))
+    if len(f.sensors) < rows:
+        names = where["directions"] = [labels[i] for i in f.sensors]
+    magnitude: dict[str, Any] = {}
+    if f.kind == "sensor_gain":
+        magnitude = {"factor": f.factor}
+    elif f.kind == "sensor_axis":
+        magnitude = {"angle_deg": f.factor, "axis": list(f.axis)}
     interval = None
     if magnitude:
         interval = (f.factor - 1.96 * f.deviation, f.factor + 1.96 * f.deviation)
@@ -190,8 +194,8 @@ def _fault(f: Fault, nodes: Any, xyz: Floats) -> Finding:
         magnitude,
         interval,
         (),
-        sure,
-        test_sentence(f.kind, sensors, f.factor),
+        f.confidence,
+        test_sentence(f.kind, names, f.factor),
     )
 
 

@@ -29,7 +29,7 @@ _TEST = {
     "sensor_polarity": "Sensor {0} reads with the wrong sign in every mode: it is wired backwards",
     "sensor_gain": "Sensor {0} reads {1:.2f} times what all the others say it should",
     "sensor_swap": "Sensors {0} and {2} are swapped: each reads what the other should",
-    "sensor_axis": "Sensor {0} is turned from the axis that the test says",
+    "sensor_axis": "Sensor {0} is turned by {1:.0f}° from the axes that the test says",
 }
 
 
@@ -82,7 +82,10 @@ def sentence_of(
     return text + "."
 
 
-def test_sentence(kind: str, sensors: list[int], factor: float) -> str:
-    """Say what is wrong with a sensor."""
-    other = sensors[1] if len(sensors) > 1 else None
-    return _TEST[kind].format(sensors[0], factor, other) + "."
+def test_sentence(kind: str, sensors: list[str], size: float) -> str:
+    """Say what is wrong with a sensor: a factor, or an angle [deg]."""
+    half = len(sensors) // 2
+    first, other = sensors[:half], sensors[half:]
+    if kind != "sensor_swap":
+        first, other = sensors, []
+    return _TEST[kind].format(", ".join(first), size, ", ".join(other)) + "."

@@ -1,0 +1,105 @@
+"""How likely the readings of a node are if it reads what a fault would make of its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ..arrays import Floats
+from .survey import Prediction
+
+LOCAL = np.array([0.0, 0.015, 0.03, 0.06, 0.12, 0.24, 0.48])
+"""Sizes of what a model may have wrong at one node, over the rms of a shape."""
+_BEFORE = np.array([0.50, 0.20, 0.12, 0.08, 0.05, 0.03, 0.02])
+_WEIGHT = 2.0
+"""So many nodes the assumed shares of those sizes count."""
+_GAIN = 0.02
+"""Scatter of sound gains."""
+_STRAY, _FAR = 0.05, 1.0
+"""Share of modes that may read anything at a node, and how far off they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """One node: what was read and what the others say; see `Prediction` for the arrays."""
+
+    mean: Floats
+    covariance: Floats
+    reading: Floats
+    noise: Floats
+
+    @property
+    def identity(self) -> Floats:
+        """Map of a sound node, (k, k + 3)."""
+        return np.eye(self.reading.shape[1], self.mean.shape[1])
+
+
+def node_of(said: Prediction, number: int, count: int) -> Node:
+    """Return one node with its first `count` rows only."""
+    k = said.rows
+    keep = np.r_[np.arange(count), k : k + 3]
+    return Node(
+        said.mean[number][:, keep],
+        said.covariance[number][:, keep][:, :, keep],
+        said.reading[number][:, :count],
+        said.noise[number][:, :count],
+    )
+
+
+def likelihood(node: Node, maps: Floats) -> Floats:
+    """Log likelihood of the readings of all modes for maps of motion to reading.
+
+    Parameters
+    ----------
+    node : Node
+    maps : (n, k, k + 3) float
+
+    Returns
+    -------
+    (n, n_local) float
+        For each size in `LOCAL` of what the model has wrong there in every mode by itself.
+    """
+    mean = np.einsum("gkq,mq->gmk", maps, node.mean)
+    C = np.einsum("gkq,mqr,glr->gmkl", maps, node.covariance, maps, optimize=True)
+    k = node.reading.shape[1]
+    C[..., np.arange(k), np.arange(k)] += node.noise
+    C += _GAIN**2 * mean[..., :, None] * mean[..., None, :]
+    values, vectors = np.linalg.eigh(C)
+    r = np.einsum("gmkl,gmk->gml", vectors, node.reading - mean)
+    return _mixed(r**2, np.maximum(values, 1e-12))
+
+
+def _mixed(square: Floats, values: Floats) -> Floats:
+    """Sum over modes of the log of a mixture of two normal laws, (n, n_local)."""
+    out = np.empty((len(square), len(LOCAL)))
+    for t, size in enumerate(LOCAL):
+        one = values + size**2
+        far = one + _FAR**2
+        a = -0.5 * np.sum(square / one + np.log(2.0 * np.pi * one), axis=-1)
+        b = -0.5 * np.sum(square / far + np.log(2.0 * np.pi * far), axis=-1)
+        out[:, t] = np.logaddexp(np.log1p(-_STRAY) + a, np.log(_STRAY) + b).sum(axis=-1)
+    return out
+
+
+def local_shares(sound: Floats, rounds: int = 30) -> Floats:
+    """Return the shares of the sizes `LOCAL` among nodes taken as sound (empirical Bayes).
+
+    Parameters
+    ----------
+    sound : (n_node, n_local) float
+        Log likelihoods.
+    """
+    shares = _BEFORE
+    for _ in range(rounds):
+        weight = sound + np.log(shares)
+        each = np.exp(weight - logsumexp(weight, axis=1, keepdims=True))
+        total = each.sum(axis=0) + _WEIGHT * _BEFORE
+        shares = total / total.sum()
+    return np.asarray(shares)
+
+
+def evidence(node: Node, maps: Floats, shares: Floats) -> Floats:
+    """Log likelihood of each map, over all sizes of what the model has wrong there, (n,)."""
+    return np.asarray(logsumexp(likelihood(node, maps) + np.log(shares), axis=1))

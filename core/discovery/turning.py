@@ -1,0 +1,130 @@
+"""A sensor, or a set of two or three, turned on its node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ..arrays import Floats
+
+_STEP = np.radians(1.5)
+_LEAST = np.radians(6.0)
+_TILT, _AROUND = 60, 36
+_SMALL = 0.02
+"""Step of the differences of a log likelihood by a rotation [rad]."""
+
+
+def rotation(vector: Floats) -> Floats:
+    """Return the rotation matrices of rotation vectors (..., 3) [rad], (..., 3, 3).
+
+    Rodrigues' formula.
+    """
+    v = np.asarray(vector, dtype=float)
+    angle = np.linalg.norm(v, axis=-1)
+    u = v / np.where(angle > 0.0, angle, 1.0)[..., None]
+    W = np.zeros((*v.shape[:-1], 3, 3))
+    W[..., 0, 1], W[..., 0, 2], W[..., 1, 2] = -u[..., 2], u[..., 1], -u[..., 0]
+    W -= np.swapaxes(W, -1, -2)
+    s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
+    return np.asarray(np.eye(3) + s * W + (1.0 - c) * (W @ W))
+
+
+def vector_of(Q: Floats) -> Floats:
+    """Return the rotation vector of a rotation matrix, length 0 to π."""
+    from scipy.spatial.transform import Rotation
+
+    return np.asarray(Rotation.from_matrix(Q).as_rotvec())
+
+
+def maps_of(axes: Floats, Q: Floats) -> Floats:
+    """Return what sensors along `axes` (k, 3), turned by Q (n, 3, 3), read, (n, k, k + 3)."""
+    k = len(axes)
+    return np.concatenate([np.zeros((len(Q), k, k)), axes @ np.swapaxes(Q, 1, 2)], axis=2)
+
+
+Evidence = Callable[[Floats], Floats]
+"""From maps (n, k, k + 3) to log likelihoods (n,)."""
+
+
+def about(axes: Floats, axis: Floats, of: Evidence) -> tuple[float, Floats, float]:
+    """Turn about one axis: log evidence, rotation vector, deviation of the angle [rad].
+
+    Every angle but the smallest is as likely before as any other.
+    """
+    angle = np.arange(-np.pi + _STEP, np.pi + 0.5 * _STEP, _STEP)
+    angle = angle[np.abs(angle) > _LEAST]
+    log = of(maps_of(axes, rotation(angle[:, None] * axis)))
+    best = float(angle[np.argmax(log)])
+    weight = np.exp(log - log.max())
+    off = (angle - best + np.pi) % (2.0 * np.pi) - np.pi
+    spread = float(np.sqrt(np.sum(weight * off**2) / weight.sum() + _STEP**2 / 12.0))
+    mean = best + float(np.sum(weight * off) / weight.sum()) if spread < 0.3 else best
+    return float(logsumexp(log) - np.log(len(angle))), mean * np.asarray(axis), spread
+
+
+def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, float] | None:
+    """Turn in space: as `about`, by Laplace's approximation, all rotations as likely before.
+
+    Parameters
+    ----------
+    axes : (3, 3) float
+    start : (3, 3) float
+        A rotation near the best.
+    of : callable
+
+    Returns
+    -------
+    tuple or None
+        None where the readings do not hold the rotation.
+    """
+    Q = start
+    steps = _SMALL * np.array([[0, 0, 0], *np.eye(3), *-np.eye(3)])
+    pairs = [(0, 1), (0, 2), (1, 2)]
+    mixed = [
+        s * np.eye(3)[a] + t * np.eye(3)[b] for a, b in pairs for s in (1, -1) for t in (1, -1)
+    ]
+    steps = np.vstack([steps, _SMALL * np.array(mixed)])
+    for _ in range(4):
+        f = of(maps_of(axes, rotation(steps) @ Q))
+        g = (f[1:4] - f[4:7]) / (2.0 * _SMALL)
+        H = np.diag((f[1:4] + f[4:7] - 2.0 * f[0]) / _SMALL**2)
+        for n, (a, b) in enumerate(pairs):
+            q = f[7 + 4 * n : 11 + 4 * n]
+            H[a, b] = H[b, a] = (q[0] - q[1] - q[2] + q[3]) / (4.0 * _SMALL**2)
+        values = np.linalg.eigvalsh(-H)
+        if values[0] < 1.0:
+            return None
+        step = np.linalg.solve(-H, g)
+        Q = rotation(np.clip(step, -0.2, 0.2)) @ Q
+        if np.abs(step).max() < 0.2 * _SMALL:
+            break
+    best = float(of(maps_of(axes, Q[None]))[0])
+    vector = vector_of(Q)
+    along = vector / max(float(np.linalg.norm(vector)), 1e-12)
+    log = best + 1.5 * np.log(2.0 * np.pi) - 0.5 * np.log(values).sum() - np.log(8.0 * np.pi**2)
+    return float(log), vector, float(np.sqrt(along @ np.linalg.solve(-H, along)))
+
+
+def tilted(axis: Floats, of: Evidence) -> tuple[float, Floats, float]:
+    """Turn one sensor away from its axis: as `about`; all directions as likely before."""
+    other = np.eye(3)[np.argmin(np.abs(axis))]
+    a = np.cross(axis, other)
+    a /= np.linalg.norm(a)
+    b = np.cross(axis, a)
+    cosine = (np.arange(_TILT) + 0.5) * 2.0 / _TILT - 1.0
+    tilt, way = np.meshgrid(
+        np.arccos(cosine), 2.0 * np.pi * np.arange(_AROUND) / _AROUND, indexing="ij"
+    )
+    vector = tilt[..., None] * (np.cos(way)[..., None] * a + np.sin(way)[..., None] * b)
+    kept = (tilt > _LEAST) & (tilt < np.pi - _LEAST)
+    vector, tilt = vector[kept], tilt[kept]
+    log = of(maps_of(axis[None], rotation(vector)))
+    weight = np.exp(log - log.max())
+    weight /= weight.sum()
+    mean = float(np.sum(weight * tilt))
+    best = vector[np.argmax(log)]
+    step = float(np.median(np.diff(np.arccos(cosine))))
+    spread = float(np.sqrt(np.sum(weight * (tilt - mean) ** 2) + step**2 / 12.0))
+    return float(logsumexp(log) - np.log(len(log))), best / np.linalg.norm(best) * mean, spread
