@@ -48,6 +48,14 @@ class Placed:
     warnings: tuple[str, ...] = ()
     errors: ModeErrors | None = None
 
+    def take(self, rows: Numbers) -> Placed:
+        """Return the test at some of its sensors (indices or mask)."""
+        seen, errors = self.observation.take(rows), self.errors
+        test = replace(self.test, shapes=self.test.shapes[rows], dofs=seen.sensors)
+        if errors is not None:
+            errors = replace(errors, shape=errors.shape[rows])
+        return replace(self, observation=seen, test=test, errors=errors)
+
     def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
         """Multiply rows of sensors with the square roots of their weights."""
         if self.errors is None:

@@ -213,12 +213,7 @@ def _corrected(placed: Any, found: Any) -> Any:
 
     shapes = corrected(placed.test.shapes, found.corrected_sensors)
     left = ~lost(found.corrected_sensors, len(shapes))
-    errors = placed.errors
-    if errors is not None:
-        errors = replace(errors, shape=errors.shape[left])
-    seen = placed.observation.take(left)
-    test = replace(placed.test, shapes=shapes[left], dofs=seen.sensors)
-    return replace(placed, observation=seen, test=test, errors=errors)
+    return replace(placed, test=replace(placed.test, shapes=shapes)).take(left)
 
 
 def discover_tables(

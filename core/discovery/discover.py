@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats
+from ..arrays import Bools, Floats
+from ..correlation import realised
 from ..errors import TrueupError
 from .basis import Flexibility, build_basis
 from .bench import Bench
@@ -35,7 +36,6 @@ from .polish import polished
 from .request import Request as Request
 from .search import Found, Searcher
 from .structure import thinned
-from .survey import Survey
 from .telling import told
 
 _MESH = (1.0, -1.0, 1.05)
@@ -63,31 +63,43 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     """
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)
+    solution, n = request.solution, len(bench.survey.node)
     hz = bench.survey.frequencies_hz
-    n = len(bench.survey.node)
     modes_out = held_out(len(hz), 4, 6) if len(hz) >= 10 else np.zeros(len(hz), bool)
     sensors_out = held_out(n, 5, 10) if n >= 30 else np.zeros(n, bool)
-    solution = request.solution
     motion = np.asarray(request.structure.model.expansion @ solution.vectors)
     first = bench.judged(motion, solution.eigenvalues)
     progress("fitting the known parameters")
-    sensors = ~sensors_out & ~first.doubtful
-    problem, null, zero = _prepared(request, bench.survey, first.noise, ~modes_out, sensors)
-    tested = bench.judged_by(problem, null)
+    trial = _Trial(request, first.doubtful, first.noise, modes_out, sensors_out)
+    tested = bench.judged_by(trial.problem, trial.null)
     if np.any(tested.doubtful != first.doubtful):
-        sensors = ~sensors_out & ~tested.doubtful
-        problem, null, zero = _prepared(request, bench.survey, tested.noise, ~modes_out, sensors)
-    searcher, found, verdict = _searched(request, problem, null, sensors, progress)
+        trial = _Trial(request, tested.doubtful, tested.noise, modes_out, sensors_out)
+    searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
         last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
-        if np.any(last.doubtful & sensors):
+        if np.any(last.doubtful & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
-            sensors = sensors & ~last.doubtful
-            problem, null, zero = _prepared(request, bench.survey, last.noise, ~modes_out, sensors)
-            searcher, found, verdict = _searched(request, problem, null, sensors, progress)
+            aside = trial.aside | last.doubtful
+            trial = _Trial(request, aside, last.noise, modes_out, sensors_out)
+            searcher, found, verdict = _searched(trial, progress)
             last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
         tested = last
-    return told(request, searcher, found, verdict, zero, tested.faults, (modes_out, sensors_out))
+    out = modes_out, sensors_out
+    return told(request, searcher, found, verdict, trial.zero, tested.faults, out)
+
+
+class _Trial:
+    """A search without the sensors that are set aside."""
+
+    def __init__(
+        self, request: Request, aside: Bools, noise: float, modes_out: Bools, sensors_out: Bools
+    ) -> None:
+        self.aside = aside
+        self.request = replace(request, placed=request.placed.take(~aside))
+        self.sensors = ~sensors_out[~aside]
+        self.problem, self.null, self.zero = _prepared(
+            self.request, noise, ~modes_out, self.sensors
+        )
 
 
 def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
@@ -95,14 +107,9 @@ def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
     return evaluate(searcher.problem, best.log_p, best.suspects)
 
 
-def _searched(
-    request: Request,
-    problem: Problem,
-    null: Fit,
-    sensors: Any,
-    progress: Callable[[str], None],
-) -> tuple[Searcher, Found, Judgement]:
+def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, Judgement]:
     """Search on sensors taken as sound, and weigh."""
+    request, problem, null, sensors = trial.request, trial.problem, trial.null, trial.sensors
     progress("making the catalogue of effects")
     made = _catalogue(request, problem)
     searcher = _searcher(request, problem, null, made)
@@ -128,13 +135,13 @@ def _hz(eigenvalues: Floats) -> Floats:
     return np.asarray(np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi))
 
 
-def _prepared(
-    request: Request, survey: Survey, noise: float, modes: Any, sensors: Any
-) -> tuple[Problem, Fit, Fit]:
+def _prepared(request: Request, noise: float, modes: Any, sensors: Any) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
-    model, hz = request.structure.model, survey.frequencies_hz
+    model, hz = request.structure.model, request.placed.test.frequencies_hz
+    shapes = realised(request.placed.test.shapes)
+    unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
     sigma = Noise(shape=float(np.hypot(noise, 0.04)))
-    whole = Evidence(hz, survey.unit(), sigma)
+    whole = Evidence(hz, unit, sigma)
     e = whole.take(modes, sensors)
     below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
     targets = int(below.sum())

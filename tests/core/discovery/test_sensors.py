@@ -1,68 +1,182 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from tests.core.discovery.rings import judged, planar, radial, read, survey, vibrating
 
-from trueup.core.discovery.sensors import find_faults
-
-ANGLE = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
-HZ = np.repeat(20.0 * np.arange(2, 9) ** 1.5, 2)
-
-
-def ring():
-    return np.column_stack([f(n * ANGLE) for n in range(2, 9) for f in (np.cos, np.sin)])
+from trueup.core.discovery.sensors import corrected, judge_sensors, lost
+from trueup.core.discovery.turning import rotation
 
 
-def measured(seed=0, noise=0.02):
-    """Modes of a ring that the model does not have right: neighbours mixed, noise added."""
-    rng = np.random.default_rng(seed)
-    mix = np.eye(14) + 0.15 * rng.normal(size=(14, 14)) * np.exp(
-        -np.abs(np.subtract.outer(np.arange(14), np.arange(14)))
-    )
-    shapes = ring() @ mix
-    return shapes + noise * np.sqrt(np.mean(shapes**2, axis=0)) * rng.normal(size=shapes.shape)
+def faults(readings, axes=None):
+    return judged(readings, radial() if axes is None else axes).faults
 
 
-def found(shapes):
-    return find_faults(shapes, HZ, ring(), HZ)[0]
+def named(found):
+    return {(f.kind, tuple(sorted(f.sensors))) for f in found}
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_sound_sensors_are_not_accused(seed):
-    assert found(measured(seed)) == ()
+    assert faults(read(vibrating(seed), radial(), seed=seed)) == ()
 
 
 def test_a_sensor_wired_backwards_is_named():
-    shapes = measured()
-    shapes[7] *= -1.0
-    (fault,) = found(shapes)
+    y = read(vibrating(), radial())
+    y[7] *= -1.0
+    (fault,) = faults(y)
     assert (fault.kind, fault.sensors) == ("sensor_polarity", (7,))
+    assert fault.confidence > 0.9
 
 
-def test_a_wrong_gain_is_named_with_its_factor():
-    shapes = measured()
-    shapes[11] *= 1.5
-    (fault,) = found(shapes)
+@pytest.mark.parametrize("factor", [0.5, 0.6, 1.5, 1.8])
+def test_a_wrong_gain_is_named_with_its_factor(factor):
+    y = read(vibrating(), radial())
+    y[11] *= factor
+    (fault,) = faults(y)
     assert (fault.kind, fault.sensors) == ("sensor_gain", (11,))
-    assert fault.factor == pytest.approx(1.5, rel=0.1)
+    assert abs(fault.factor - factor) < 3.0 * fault.deviation + 0.02 * factor
+
+
+def test_a_gain_that_might_be_scatter_is_no_fault():
+    y = read(vibrating(), radial())
+    y[11] *= 1.05
+    assert faults(y) == ()
 
 
 def test_two_swapped_sensors_are_named_together():
-    shapes = measured()
-    shapes[[5, 18]] = shapes[[18, 5]]
-    (fault,) = found(shapes)
-    assert (fault.kind, set(fault.sensors)) == ("sensor_swap", {5, 18})
+    y = read(vibrating(), radial())
+    y[[5, 18]] = y[[18, 5]]
+    assert named(faults(y)) == {("sensor_swap", (5, 18))}
 
 
 def test_a_reading_counted_twice_is_not_called_a_gain():
-    shapes = measured()
-    shapes[3] *= 2.0
-    (fault,) = found(shapes)
+    y = read(vibrating(), radial())
+    y[3] *= 2.0
+    (fault,) = faults(y)
     assert (fault.kind, fault.sensors, fault.factor) == ("doubled", (3,), 2.0)
 
 
+@pytest.mark.parametrize("degrees", [20.0, 45.0, 90.0])
+def test_a_lone_sensor_turned_away_reads_what_its_node_does_in_other_directions(degrees):
+    axes = radial()
+    axes[9] = axes[9] @ rotation(np.radians([0.0, 0.0, degrees])).T
+    (fault,) = faults(read(vibrating(), axes))
+    assert (fault.kind, fault.sensors) == ("sensor_axis", (9,))
+    assert abs(fault.factor - degrees) < 3.0 * fault.deviation + 1.0
+    assert abs(fault.axis[2]) > 0.9
+
+
+@pytest.mark.parametrize("degrees", [15.0, 30.0, 90.0])
+def test_a_turned_pair_is_named_with_its_angle(degrees):
+    axes = planar()
+    axes[9] = axes[9] @ rotation(np.radians([0.0, 0.0, degrees])).T
+    (fault,) = faults(read(vibrating(), axes), planar())
+    assert (fault.kind, fault.sensors) == ("sensor_axis", (18, 19))
+    assert fault.factor == pytest.approx(degrees, abs=2.0)
+
+
+def test_exchanged_cables_of_a_pair_are_no_turn():
+    """A quarter of a turn reads (y, -x); (y, x) can only be the cables."""
+    y = read(vibrating(), planar())
+    y[9] = y[9][::-1].copy()
+    assert named(faults(y, planar())) == {("sensor_swap", (18, 19))}
+
+
+def test_one_direction_of_a_pair_may_be_wired_backwards():
+    y = read(vibrating(), planar())
+    y[9, 1] *= -1.0
+    assert named(faults(y, planar())) == {("sensor_polarity", (19,))}
+
+
+def test_a_pair_wired_backwards_is_one_fault():
+    """Half a turn reads the same; cables are exchanged more often than that."""
+    y = read(vibrating(), planar())
+    y[9] *= -1.0
+    assert named(faults(y, planar())) == {("sensor_polarity", (18, 19))}
+
+
+def test_directions_of_two_nodes_may_be_swapped():
+    y = read(vibrating(), planar())
+    y[5, 0], y[18, 1] = y[18, 1].copy(), y[5, 0].copy()
+    assert named(faults(y, planar())) == {("sensor_swap", (10, 37))}
+
+
+def test_several_faults_at_once_are_all_named():
+    y = read(vibrating(), radial())
+    y[[5, 18]] = y[[18, 5]]
+    y[7] *= -1.0
+    y[30] *= 0.6
+    assert named(faults(y)) == {
+        ("sensor_swap", (5, 18)),
+        ("sensor_polarity", (7,)),
+        ("sensor_gain", (30,)),
+    }
+
+
+def test_what_a_model_lacks_at_one_spot_is_no_fault_of_the_sensors_there():
+    """Neighbours that move in every mode, each in its own way, as beside a soft foot."""
+    y = read(vibrating(), radial())
+    near = np.array([0.25, 0.5, 0.25])[:, None, None]
+    y[14:17] += near * np.random.default_rng(5).normal(size=14)
+    assert faults(y) == ()
+
+
+def test_where_the_model_says_no_motion_a_gain_cannot_be_accused():
+    motion = vibrating()
+    motion[11] *= 0.1
+    y = read(motion, radial())
+    y[11] *= 1.8
+    test, span = survey(y, radial())
+    span.rows[11] *= 0.1
+    span.around[11] *= 0.1
+    assert judge_sensors(test, span).faults == ()
+
+
 def test_the_noise_of_sound_sensors_is_estimated():
-    _, noise = find_faults(measured(noise=0.03), HZ, ring(), HZ)
-    assert 0.01 < noise < 0.06
+    assert 0.015 < judged(read(vibrating(), radial(), noise=0.03), radial()).noise < 0.05
+
+
+def test_sensors_of_large_standard_error_are_not_accused():
+    y = read(vibrating(), radial())
+    y[7] += 0.8 * np.random.default_rng(3).normal(size=14)
+    errors = np.full((40, 14), 0.005)
+    errors[7] = 1.0
+    test, span = survey(y, radial(), errors)
+    assert not judge_sensors(test, span).doubtful.any()
 
 
 def test_a_handful_of_sensors_cannot_judge_each_other():
-    assert find_faults(measured()[:6], HZ, ring()[:6], HZ)[0] == ()
+    y = read(vibrating(), radial())
+    y[2] *= -1.0
+    test, span = survey(y, radial())
+    few = np.arange(6)
+    part = replace(
+        test,
+        shapes=test.shapes[few],
+        node=test.node[few],
+        component=test.component[few],
+        axis=test.axis[few],
+        xyz=test.xyz[few],
+    )
+    own = replace(span, rows=span.rows[few], around=span.around[few])
+    assert judge_sensors(part, own).faults == ()
+
+
+def test_corrected_readings_are_those_of_sound_sensors():
+    sound = read(vibrating(), planar())
+    y = sound.copy()
+    y[[5, 18]] = y[[18, 5]]
+    y[7] *= -1.0
+    y[9] = rotation(np.radians([0.0, 0.0, -90.0]))[:2, :2] @ y[9]
+    found = faults(y, planar())
+    back = corrected(y.reshape(80, -1), found)
+    assert not lost(found, 80).any()
+    np.testing.assert_allclose(back, sound.reshape(80, -1), atol=0.06)
+
+
+def test_what_a_lone_turned_sensor_should_read_is_not_made_up():
+    axes = radial()
+    axes[9] = axes[9] @ rotation(np.radians([0.0, 0.0, 45.0])).T
+    found = faults(read(vibrating(), axes))
+    assert np.flatnonzero(lost(found, 40)).tolist() == [9]
