@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.polynomial import chebyshev
 
 from .arrays import Floats, frozen
 from .dofs import Dofs
@@ -21,7 +21,7 @@ class Factor:
     """A Chebyshev series in one parameter, on the interval `lower`..`upper`.
 
     A modulus or a density is the linear series that equals the parameter itself; a thickness
-    takes a few terms.
+    takes a few terms. Value and derivative are summed by Clenshaw's recurrence.
     """
 
     parameter: int
@@ -31,12 +31,19 @@ class Factor:
 
     def value(self, p: Floats) -> float:
         """Return the factor at the parameter values `p`, (n_parameter,)."""
-        return float(chebyshev.chebval(self._unit(p), self.coefficients))
+        x, c = self._unit(p), self.coefficients
+        b, last = 0.0, 0.0
+        for a in c[:0:-1]:
+            b, last = a + 2.0 * x * b - last, b
+        return c[0] + x * b - last
 
     def derivative(self, p: Floats) -> float:
         """Return the derivative by the factor's own parameter at `p`."""
-        slope = chebyshev.chebder(np.asarray(self.coefficients))
-        return float(chebyshev.chebval(self._unit(p), slope)) * 2.0 / (self.upper - self.lower)
+        x, c = self._unit(p), self.coefficients
+        b, last = 0.0, 0.0
+        for n in range(len(c) - 1, 0, -1):
+            b, last = n * c[n] + 2.0 * x * b - last, b
+        return 2.0 * b / (self.upper - self.lower)
 
     def _unit(self, p: Floats) -> float:
         return float(
@@ -58,15 +65,14 @@ class Term:
 
     def coefficient(self, p: Floats) -> float:
         """Return the scalar that multiplies the matrix at `p`."""
-        return float(np.prod([f.value(p) for f in self.factors])) if self.factors else 1.0
+        return prod(f.value(p) for f in self.factors)
 
     def coefficient_derivative(self, p: Floats, parameter: int) -> float:
         """Return the derivative of the scalar by parameter number `parameter`."""
         total = 0.0
         for f in self.factors:
             if f.parameter == parameter:
-                others = [g.value(p) for g in self.factors if g is not f]
-                total += f.derivative(p) * float(np.prod(others))
+                total += f.derivative(p) * prod(g.value(p) for g in self.factors if g is not f)
         return total
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
@@ -12,17 +12,62 @@ import scipy.sparse as sp
 from ..arrays import Floats, Ints
 from ..eigen import Eigensolution
 from ..model import Model, Term
+from ..reduced_basis import projected
 
 _DEPENDENT = 1e-5
 _CHUNK = 128
 
 
 @dataclass(frozen=True, eq=False)
-class ReducedTerm:
-    """A term of K or M on the basis, (r, r), with the factors of the full one."""
+class ReducedSum:
+    """K or M on a basis: a sum of constant matrices times the factors of the full terms.
 
-    matrix: Floats
-    term: Term
+    Parameters
+    ----------
+    terms : tuple of Term
+    whole : (n_term, s, s) float
+        The matrices on the basis as it was made.
+    turn : (s, r) float
+        What the basis has become since.
+    """
+
+    terms: tuple[Term, ...]
+    whole: Floats
+    turn: Floats
+
+    @cached_property
+    def matrices(self) -> Floats:
+        """The matrices on the basis, (n_term, r, r), made when first asked for."""
+        return np.asarray(np.matmul(self.turn.T, np.matmul(self.whole, self.turn)))
+
+    def at(self, p: Floats) -> Floats:
+        """Return the sum at the parameter values `p`, (r, r)."""
+        return np.asarray(np.tensordot([t.coefficient(p) for t in self.terms], self.matrices, 1))
+
+    def slope(self, p: Floats, k: int) -> Floats:
+        """Return its derivative by parameter `k`, (r, r)."""
+        total = np.zeros((self.turn.shape[1],) * 2)
+        for i in self._moved_by.get(k, ()):
+            total += self.terms[i].coefficient_derivative(p, k) * self.matrices[i]
+        return total
+
+    @cached_property
+    def _moved_by(self) -> dict[int, list[int]]:
+        """Terms that a parameter changes."""
+        out: dict[int, list[int]] = {}
+        for i, t in enumerate(self.terms):
+            for k in {f.parameter for f in t.factors}:
+                out.setdefault(k, []).append(i)
+        return out
+
+    def turned(self, T: Floats) -> ReducedSum:
+        """Return the sum on the basis turned by T (r, s)."""
+        return replace(self, turn=self.turn @ T)
+
+
+def reduced_sum(terms: tuple[Term, ...], V: Floats) -> ReducedSum:
+    """Return the sum of `terms` on the vectors V (n_free, r)."""
+    return ReducedSum(terms, projected(terms, V), np.eye(V.shape[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +80,13 @@ class Basis:
         Mass-orthonormal for the deck as it is.
     motion : (n_dof, r) float
         The same on all analysis dofs, basic axes.
-    stiffness, mass : tuple of ReducedTerm
+    stiffness, mass : ReducedSum
     """
 
     vectors: Floats
     motion: Floats
-    stiffness: tuple[ReducedTerm, ...]
-    mass: tuple[ReducedTerm, ...]
+    stiffness: ReducedSum
+    mass: ReducedSum
 
     @property
     def size(self) -> int:
@@ -50,38 +95,29 @@ class Basis:
 
     def K(self, p: Floats) -> Floats:
         """Return the reduced stiffness at the parameter values `p`, (r, r)."""
-        return _sum(self.stiffness, [t.term.coefficient(p) for t in self.stiffness], self.size)
+        return self.stiffness.at(p)
 
     def M(self, p: Floats) -> Floats:
         """Return the reduced mass at the parameter values `p`, (r, r)."""
-        return _sum(self.mass, [t.term.coefficient(p) for t in self.mass], self.size)
+        return self.mass.at(p)
 
     def dK(self, p: Floats, k: int) -> Floats:
         """Return the derivative of the reduced stiffness by parameter `k`, (r, r)."""
-        c = [t.term.coefficient_derivative(p, k) for t in self.stiffness]
-        return _sum(self.stiffness, c, self.size)
+        return self.stiffness.slope(p, k)
 
     def dM(self, p: Floats, k: int) -> Floats:
         """Return the derivative of the reduced mass by parameter `k`, (r, r)."""
-        c = [t.term.coefficient_derivative(p, k) for t in self.mass]
-        return _sum(self.mass, c, self.size)
+        return self.mass.slope(p, k)
+
+    def bare(self) -> Basis:
+        """Return the basis without its vectors: what eigenproblems on it need."""
+        return replace(self, vectors=self.vectors[:0], motion=self.motion[:0])
 
     def turned(self, T: Floats) -> Basis:
         """Return the basis with vectors ``vectors @ T``, T (r, s)."""
         return Basis(
-            self.vectors @ T,
-            self.motion @ T,
-            tuple(ReducedTerm(T.T @ t.matrix @ T, t.term) for t in self.stiffness),
-            tuple(ReducedTerm(T.T @ t.matrix @ T, t.term) for t in self.mass),
+            self.vectors @ T, self.motion @ T, self.stiffness.turned(T), self.mass.turned(T)
         )
-
-
-def _sum(terms: Sequence[ReducedTerm], coefficients: Sequence[float], size: int) -> Floats:
-    total = np.zeros((size, size))
-    for t, c in zip(terms, coefficients, strict=True):
-        if c != 0.0:
-            total += c * t.matrix
-    return total
 
 
 def build_basis(
@@ -113,8 +149,8 @@ def build_basis(
     return Basis(
         V,
         np.asarray(model.expansion @ V),
-        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.stiffness),
-        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.mass),
+        reduced_sum(model.stiffness, V),
+        reduced_sum(model.mass, V),
     )
 
 

@@ -96,12 +96,13 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     seen = diagonal > _UNSEEN * diagonal.max(axis=-1, keepdims=True)
     scale = np.where(seen, 1.0 / np.sqrt(np.where(seen, diagonal, 1.0)), 0.0)
     W = mixing(eigenvalues, size)
-    G = W * gram * scale[..., :, None] * scale[..., None, :]
+    G = scale[..., :, None] * scale[..., None, :]
+    G *= gram
+    G *= W
     G[..., np.arange(n), np.arange(n)] = 1.0 + 1e-6
-    inverse = np.linalg.inv(np.linalg.cholesky(G))
     own = cross * scale[..., None, :]
-    c = np.matmul(own, np.swapaxes(inverse, -1, -2))
-    return np.asarray(np.minimum(np.maximum(np.matmul(c**2, W), own**2), 1.0))
+    c = np.linalg.solve(np.linalg.cholesky(G), np.swapaxes(own, -1, -2))
+    return np.asarray(np.minimum(np.maximum(np.matmul(np.swapaxes(c**2, -1, -2), W), own**2), 1.0))
 
 
 def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) -> Floats:

@@ -19,6 +19,8 @@ _SOFT = 3.0
 """How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
 """Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
+_FEW = 0.25
+"""Share of the eigenpairs below which finding these alone takes less time than finding all."""
 _FIRST = np.zeros(1, np.int64)
 
 
@@ -167,8 +169,11 @@ def solve(
     """
     K, M = _matrices(problem, log_p, suspects)
     n = min(modes or problem.modes, len(K))
-    values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
-    return values, vectors
+    if n < _FEW * len(K):
+        values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
+        return values, vectors
+    values, vectors = la.eigh(K, M, driver="gvd", check_finite=False)
+    return values[:n], vectors[:, :n]
 
 
 def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, Ints]:

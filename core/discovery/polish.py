@@ -17,7 +17,7 @@ from ..arrays import Bools, Floats
 from ..eigen import solve
 from ..factor import factorise
 from ..model import Model
-from .basis import Basis, ReducedTerm
+from .basis import Basis, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
 from .fitting import Fit, Problem, fit, softened, unseen
 from .mesh_error import lumping, with_consistent_bars
@@ -144,8 +144,8 @@ def _own_basis(
     basis = Basis(
         V,
         np.zeros((0, V.shape[1])),
-        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.stiffness),
-        tuple(ReducedTerm(V.T @ (t.matrix @ V), t) for t in model.mass),
+        reduced_sum(model.stiffness, V),
+        reduced_sum(model.mass, V),
     )
     chosen = []
     for s in state.suspects:

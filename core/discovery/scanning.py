@@ -9,7 +9,10 @@ from .evidence import matched, mode_costs
 from .fitting import Fit, Problem
 from .laws import AttachedLaw
 
-_CHUNK = 256
+_CHUNK = 64
+"""Places at once: so few that their matrices stay near the processor."""
+_SHIFT = 1e-8
+"""Smallest eigenvalue beside the largest with which the pencil is solved."""
 
 
 def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) -> Floats:
@@ -60,21 +63,25 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
 
 
 def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats]:
-    """Eigenpairs of diag(lam) + c uᵀu or of the pencil (diag(lam), I + c uᵀu), batched."""
+    """Eigenpairs of diag(lam) + c uᵀu or of the pencil (diag(lam), I + c uᵀu), batched.
+
+    The pencil is solved for the reciprocals of its eigenvalues, with a shift where there are
+    rigid-body modes, whose share in each eigenvalue is taken off again.
+    """
     n = len(lam)
     if on == "K":
         A = np.matmul(u.transpose(0, 2, 1) * c[:, None, :], u)
         A[:, np.arange(n), np.arange(n)] += lam
         return tuple(np.linalg.eigh(A))  # type: ignore[return-value]
-    e, R = np.linalg.eigh(np.matmul(u, u.transpose(0, 2, 1)))
-    e = np.maximum(e, 0.0)
-    small = e < 1e-12 * np.maximum(e[:, -1:], np.finfo(float).tiny)
-    d = np.where(small, 0.0, (1.0 / np.sqrt(1.0 + c * e) - 1.0) / np.where(small, 1.0, e))
-    W = np.matmul(R.transpose(0, 2, 1), u)
-    H = np.matmul(W.transpose(0, 2, 1) * d[:, None, :], W)
-    H[:, np.arange(n), np.arange(n)] += 1.0
-    values, Z = np.linalg.eigh(np.matmul(H * lam, H))
-    return values, np.matmul(H, Z)
+    shift = max(_SHIFT * lam[-1] - lam[0], 0.0)
+    root = 1.0 / np.sqrt(lam + shift)
+    v = u * root
+    B = np.matmul(v.transpose(0, 2, 1) * c[:, None, :], v)
+    B[:, np.arange(n), np.arange(n)] += root**2
+    e, Y = np.linalg.eigh(B)
+    values = 1.0 / e[:, ::-1]
+    Z = root[:, None] * Y[:, :, ::-1] * np.sqrt(values)[:, None, :]
+    return values - shift * np.sum(Z**2, axis=1), Z
 
 
 def _attached(lam: Floats, u: Floats, m: Floats, k: Floats) -> tuple[Floats, Floats]:

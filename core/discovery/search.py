@@ -95,7 +95,8 @@ class Searcher:
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
         T = T[: self.problem.basis.size]
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
-        small = replace(self.problem.turned(T[:, :n], rest), modes=n)
+        bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
+        small = bare.turned(T[:, :n], rest)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from ..candidates import Candidates
 from ..laws import MassLaw
 from ..structure import Structure
-from .patches import Patch, PatchCandidates, patches_of, unit_mass, where_of
+from .patches import Patch, PatchCandidates, patches_of, where_of
 from .scale import Scale
 
 _RADII = (0.062, 0.075, 0.092, 0.11, 0.14, 0.175, 0.22)
@@ -33,7 +33,6 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         extra={
             "structure": structure,
             "patches": patches,
-            "share": unit_mass,
             "areas": np.array([_area(structure, p) for p in patches]),
         },
     )

@@ -12,10 +12,13 @@ from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
 from ..basis import Basis
-from ..candidates import Candidates
+from ..candidates import Candidates, MassLaw
 from ..structure import Members, Structure, thinned
 
-_RANK = 36
+_LEFT = 1e-5
+"""Share of the trace of a patch's matrix that a row of its root is worth at least."""
+_ROUNDING = 1e-12
+"""Share of the largest eigenvalue of an element matrix below which one is zero."""
 _RADII = (0.045, 0.056, 0.07, 0.088, 0.11, 0.14, 0.175, 0.22)
 """Radii of the patches, beside the size of the structure; every third is scanned first."""
 _SPACING = 0.35
@@ -122,43 +125,59 @@ def _distinct(patches: list[Patch]) -> list[Patch]:
 
 
 class PatchRows:
-    """Leading rows of a root of each patch's matrix on a basis, made when asked for, then kept."""
+    """Rows of a root of each patch's matrix on a basis, made when asked for, then kept.
+
+    A root takes as many rows as pivoted Cholesky needs to leave next to nothing of the trace
+    (Higham, *Accuracy and Stability of Numerical Algorithms*, section 10.3); patches that are
+    asked for together get rows of zeros where they need fewer.
+    """
 
     def __init__(self, candidates: PatchCandidates, basis: Basis) -> None:
         self._candidates = candidates
-        self._basis = basis
         structure: Structure = candidates.extra["structure"]
         self._motion = np.asarray(structure.displacement @ basis.vectors)
-        self._members: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._members: dict[int, tuple[Floats, Floats]] = {}
         self._kept: dict[int, Floats] = {}
 
     def __getitem__(self, rows: Ints) -> Floats:
         """Return the rows of some patches, (n, q, r)."""
-        return np.stack([self._one(int(i)) for i in rows])
+        roots = [self._one(int(i)) for i in rows]
+        most = max((len(root) for root in roots), default=0)
+        out = np.zeros((len(roots), most, self._motion.shape[1]))
+        for own, root in zip(out, roots, strict=True):
+            own[: len(root)] = root
+        return out
 
     def _one(self, i: int) -> Floats:
         if i not in self._kept:
             patch: Patch = self._candidates.extra["patches"][i]
-            X, u, Xu = self._member(patch.member)
-            r = self._basis.size
-            A = u[patch.rows].reshape(-1, r).T @ Xu[patch.rows].reshape(-1, r)
-            q = min(_RANK, r)
-            values, vectors = la.eigh(
-                A * self._candidates.share(patch, X[patch.rows]), subset_by_index=(r - q, r - 1)
-            )
-            self._kept[i] = np.ascontiguousarray((vectors * np.sqrt(np.maximum(values, 0.0))).T)
+            W, mass = self._member(patch.member)
+            w = W[patch.rows].reshape(-1, W.shape[2])
+            scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.of_unit_mass else 1.0
+            self._kept[i] = scale * root_of(w.T @ w)
         return self._kept[i]
 
-    def _member(self, number: int) -> tuple[Floats, Floats, Floats]:
-        """Matrices of the elements of one card, their motion, and the forces of it."""
+    def _member(self, number: int) -> tuple[Floats, Floats]:
+        """Roots of the matrices of the elements of one card times their motion; their masses."""
         if number not in self._members:
             structure: Structure = self._candidates.extra["structure"]
             member = structure.members[number]
             every = np.arange(len(member.ids))
             X = self._candidates.matrices(member, every)
-            u = self._motion[member.coordinates(every)]
-            self._members[number] = (X, u, np.matmul(X, u))
+            values, vectors = np.linalg.eigh(X)
+            rank = int(np.max(np.sum(values > _ROUNDING * values[:, -1:], axis=1), initial=1))
+            R = vectors[:, :, -rank:] * np.sqrt(np.maximum(values[:, None, -rank:], 0.0))
+            W = np.matmul(R.transpose(0, 2, 1), self._motion[member.coordinates(every)])
+            self._members[number] = W, masses(X)
         return self._members[number]
+
+
+def root_of(A: Floats) -> Floats:
+    """Return rows U (q, r) with UᵀU = A (r, r), positive semidefinite, up to a tiny trace."""
+    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=_LEFT * float(np.trace(A)), lower=1)
+    root = np.zeros((rank, len(A)))
+    root[:, pivots - 1] = np.tril(L)[:, :rank].T
+    return root
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +195,7 @@ class PatchCandidates(Candidates):
         member = structure.members[patch.member]
         at = member.coordinates(patch.rows)
         X = self.matrices(member, patch.rows)
-        X = X * self.share(patch, X)
+        X = X / masses(X).sum() if self.of_unit_mass else X
         m = at.shape[1]
         n = structure.displacement.shape[0]
         A = sp.csr_matrix(
@@ -193,18 +212,16 @@ class PatchCandidates(Candidates):
         assert X is not None
         return X
 
-    def share(self, patch: Patch, X: Floats) -> float:
-        """Return the factor that gives a patch of masses unit mass; 1 for stiffness."""
-        share = self.extra.get("share")
-        return 1.0 if share is None else float(share(patch, X))
+    @property
+    def of_unit_mass(self) -> bool:
+        """Whether the matrix of a patch is scaled to unit mass."""
+        return isinstance(self.law, MassLaw)
 
 
-def unit_mass(patch: Patch, M: Floats) -> float:
-    """Scale element masses so that the patch as a whole has unit mass."""
-    n = M.shape[1]
-    x = np.zeros(n)
-    x[np.arange(0, n, 6)] = 1.0
-    return 1.0 / float(np.einsum("i,nij,j->", x, M, x))
+def masses(M: Floats) -> Floats:
+    """Masses of elements with the mass matrices M (n, m, m), six coordinates a node, (n,)."""
+    along = M[:, ::6, ::6]
+    return np.asarray(along.sum(axis=(1, 2)))
 
 
 def where_of(structure: Structure, patches: list[Patch]) -> tuple[dict[str, list[int]], ...]:

@@ -9,7 +9,7 @@ from ...arrays import Floats, Ints
 from ..candidates import Candidates
 from ..laws import MassLaw
 from ..structure import Structure
-from .patches import Patch, PatchCandidates, patches_of, unit_mass
+from .patches import Patch, PatchCandidates, patches_of
 from .scale import Scale
 
 _FEET = (0.024, 0.034, 0.048)
@@ -48,7 +48,7 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         where=tuple({"grids": _grids(structure, p)} for p in feet),
         typical=np.array([np.log(0.03 * scale.mass)]),
         spread=np.array([1.5]),
-        extra={"structure": structure, "patches": feet, "share": unit_mass},
+        extra={"structure": structure, "patches": feet},
     )
     return (at_points, on_feet)
 

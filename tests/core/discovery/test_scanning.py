@@ -22,6 +22,17 @@ def test_every_place_is_an_exact_solution_of_the_changed_eigenproblem(on):
         np.testing.assert_allclose(np.abs(Z[g].T @ M @ vectors), np.eye(12), atol=1e-6)
 
 
+def test_masses_on_a_free_structure_keep_its_rigid_body_modes():
+    lam = np.concatenate([np.zeros(3), LAM[3:]])
+    c = np.array([0.3, 1.0, 2.0, 0.1, 5.0])[:, None]
+    values, Z = _changed(lam, U, c, "M")
+    for g in range(5):
+        M = np.eye(12) + c[g, 0] * U[g].T @ U[g]
+        expected = la.eigh(np.diag(lam), M, eigvals_only=True)
+        np.testing.assert_allclose(values[g], expected, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(Z[g].T @ M @ Z[g], np.eye(12), atol=1e-6)
+
+
 def test_the_best_places_are_apart():
     xyz = np.array([[0.0, 0, 0], [0.1, 0, 0], [5.0, 0, 0], [5.1, 0, 0]])
     assert best_apart(xyz, np.array([2.0, 1.0, 4.0, 3.0]), 1.0, 5) == [1, 3]

@@ -1,0 +1,44 @@
+"""The reduced matrices of a small basis."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from numpy.polynomial import chebyshev
+
+from trueup.core.discovery.basis import reduced_sum
+from trueup.core.model import Factor, Term, proportional
+
+RNG = np.random.default_rng(4)
+V = RNG.normal(size=(30, 6))
+THICKNESS = Factor(1, (1.1, 0.7, 0.2, -0.05), 0.5, 1.6)
+
+
+def _term(*factors: Factor) -> Term:
+    half = sp.random(30, 30, 0.1, random_state=5)
+    return Term((half + half.T).tocsr(), factors)
+
+
+TERMS = (_term(), _term(proportional(0, 0.5, 2.0)), _term(proportional(0, 0.5, 2.0), THICKNESS))
+P = np.array([1.3, 0.8])
+
+
+def test_a_factor_is_its_chebyshev_series():
+    x = (2.0 * P[1] - 2.1) / 1.1
+    slope = chebyshev.chebval(x, chebyshev.chebder(np.array(THICKNESS.coefficients)))
+    assert THICKNESS.value(P) == pytest.approx(chebyshev.chebval(x, THICKNESS.coefficients))
+    assert THICKNESS.derivative(P) == pytest.approx(slope * 2.0 / 1.1)
+    assert proportional(0, 0.5, 2.0).value(P) == pytest.approx(1.3)
+
+
+@pytest.mark.parametrize("turn", [np.eye(6), RNG.normal(size=(6, 4))])
+def test_the_reduced_sum_is_the_full_sum_on_the_turned_basis(turn):
+    full = sum(t.coefficient(P) * t.matrix for t in TERMS)
+    own = reduced_sum(TERMS, V).turned(turn)
+    np.testing.assert_allclose(own.at(P), (V @ turn).T @ (full @ (V @ turn)), atol=1e-10)
+
+
+@pytest.mark.parametrize("k", [0, 1])
+def test_the_slope_is_that_of_the_sum(k):
+    own, step = reduced_sum(TERMS, V), 1e-6 * np.eye(2)[k]
+    expected = (own.at(P + step) - own.at(P - step)) / 2e-6
+    np.testing.assert_allclose(own.slope(P, k), expected, atol=1e-6)
