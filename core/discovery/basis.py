@@ -27,17 +27,19 @@ class ReducedSum:
     terms : tuple of Term
     whole : (n_term, s, s) float
         The matrices on the basis as it was made.
-    turn : (s, r) float
+    turn : (s, r) float, optional
         What the basis has become since.
     """
 
     terms: tuple[Term, ...]
     whole: Floats
-    turn: Floats
+    turn: Floats | None = None
 
     @cached_property
     def matrices(self) -> Floats:
         """The matrices on the basis, (n_term, r, r), made when first asked for."""
+        if self.turn is None:
+            return self.whole
         return np.asarray(np.matmul(self.turn.T, np.matmul(self.whole, self.turn)))
 
     def at(self, p: Floats) -> Floats:
@@ -46,7 +48,7 @@ class ReducedSum:
 
     def slope(self, p: Floats, k: int) -> Floats:
         """Return its derivative by parameter `k`, (r, r)."""
-        total = np.zeros((self.turn.shape[1],) * 2)
+        total = np.zeros(self.matrices.shape[1:])
         for i in self._moved_by.get(k, ()):
             total += self.terms[i].coefficient_derivative(p, k) * self.matrices[i]
         return total
@@ -62,12 +64,17 @@ class ReducedSum:
 
     def turned(self, T: Floats) -> ReducedSum:
         """Return the sum on the basis turned by T (r, s)."""
-        return replace(self, turn=self.turn @ T)
+        return replace(self, turn=T if self.turn is None else self.turn @ T)
+
+    def plus(self, change: Floats) -> ReducedSum:
+        """Return the sum with a constant matrix (r, r) on the basis more."""
+        none = sp.csr_matrix(self.terms[0].matrix.shape)
+        return ReducedSum((*self.terms, Term(none)), np.stack([*self.matrices, change]))
 
 
 def reduced_sum(terms: tuple[Term, ...], V: Floats) -> ReducedSum:
     """Return the sum of `terms` on the vectors V (n_free, r)."""
-    return ReducedSum(terms, projected(terms, V), np.eye(V.shape[1]))
+    return ReducedSum(terms, projected(terms, V))
 
 
 @dataclass(frozen=True, eq=False)

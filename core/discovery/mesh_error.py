@@ -16,12 +16,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from ..arrays import Bools, Floats
 from ..elements.bar import bar_mass
-from ..model import Term
-from .basis import Basis, ReducedTerm
+from .basis import Basis
 from .structure import Members, Structure
 
 _SHARES = {
@@ -80,8 +78,7 @@ def with_consistent_bars(structure: Structure, basis: Basis) -> Basis:
             change += np.tensordot(u, D @ u, ((0, 1), (0, 1)))
     if not change.any():
         return basis
-    none = sp.csr_matrix((len(basis.vectors),) * 2)
-    return replace(basis, mass=(*basis.mass, ReducedTerm(change, Term(none))))
+    return replace(basis, mass=basis.mass.plus(change))
 
 
 def _pinned(structure: Structure, m: Members) -> Bools:

@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
 from ..basis import Basis
-from ..candidates import Candidates, MassLaw
+from ..candidates import Candidates
+from ..laws import MassLaw
 from ..structure import Members, Structure, thinned
 
 _LEFT = 1e-5

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.basis import Basis, ReducedTerm
+from trueup.core.discovery.basis import Basis, ReducedSum
 from trueup.core.discovery.candidates import Candidates
 from trueup.core.discovery.evidence import Evidence, Noise
 from trueup.core.discovery.fitting import Prior, Problem
@@ -60,8 +60,8 @@ def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> 
     basis = Basis(
         vectors,
         vectors,
-        (ReducedTerm(np.diag(values), Term(sp.csr_matrix(K), (linear,))),),
-        (ReducedTerm(np.eye(N), Term(sp.csr_matrix(M))),),
+        ReducedSum((Term(sp.csr_matrix(K), (linear,)),), np.diag(values)[None]),
+        ReducedSum((Term(sp.csr_matrix(M)),), np.eye(N)[None]),
     )
     xyz = np.column_stack([X, np.zeros(N), np.zeros(N)])
     where = tuple({"grids": [i + 1], "components": [1]} for i in range(N))

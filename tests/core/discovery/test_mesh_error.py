@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.basis import Basis, ReducedTerm
+from trueup.core.discovery.basis import Basis, ReducedSum
 from trueup.core.discovery.mesh_error import lumping, with_consistent_bars
 from trueup.core.elements.bar import bar_mass, bar_stiffness
 from trueup.core.model import Term
@@ -90,8 +90,8 @@ def cantilever(n, pins=False):
         for rows, part in zip(at, parts, strict=True):
             A[np.ix_(rows, rows)] += part
     stiffness, mass = (A[6:, 6:] for A in whole)
-    lumped = ReducedTerm(mass, Term(sp.csr_matrix(mass)))
-    basis = Basis(np.eye(6 * n), np.zeros((0, 6 * n)), (), (lumped,))
+    lumped = ReducedSum((Term(sp.csr_matrix(mass)),), mass[None])
+    basis = Basis(np.eye(6 * n), np.zeros((0, 6 * n)), NOTHING, lumped)
     return structure, basis, stiffness
 
 
@@ -101,6 +101,7 @@ def frequencies(K, M):
     return mu[:6:2] ** -0.25
 
 
+NOTHING = ReducedSum((), np.zeros((0, 1, 1)))
 CLAMPED_FREE = np.array([1.875104, 4.694091, 7.854757])
 
 
@@ -121,7 +122,8 @@ def test_the_whole_mass_stays():
     structure, _, _ = cantilever(5)
     structure.model.expansion = sp.eye(36, format="csr")
     rigid = np.tile(np.r_[0.6, 0.0, 0.8, 0.0, 0.0, 0.0], 6)[:, None]
-    basis = Basis(rigid, np.zeros((0, 1)), (), (ReducedTerm(np.ones((1, 1)), Term(sp.eye(36))),))
+    unit = ReducedSum((Term(sp.eye(36)),), np.ones((1, 1, 1)))
+    basis = Basis(rigid, np.zeros((0, 1)), NOTHING, unit)
     after = with_consistent_bars(structure, basis).M(np.ones(0))
     assert after == pytest.approx(1.0, abs=1e-12)
 
