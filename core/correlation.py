@@ -43,6 +43,24 @@ def deviation_percent(analysis_hz: Numbers, test_hz: Numbers) -> Floats:
     return np.asarray(100.0 * (np.asarray(analysis_hz) - test_hz) / test_hz)
 
 
+def principal(shapes: Numbers) -> Numbers:
+    """Return each complex column turned to its principal phase; real shapes as they are.
+
+    Parameters
+    ----------
+    shapes : (n_sensor, n_mode) float or complex
+
+    Returns
+    -------
+    (n_sensor, n_mode) float or complex
+        The phase θ maximises |Re(φ e^{-iθ})|², i.e. θ = ½ arg Σ φ².
+    """
+    if not np.iscomplexobj(shapes):
+        return np.asarray(shapes, dtype=float)
+    phase = 0.5 * np.angle(np.sum(shapes**2, axis=0))
+    return np.asarray(shapes * np.exp(-1j * phase))
+
+
 def realised(shapes: Numbers) -> Floats:
     """Return real shapes: each complex column turned to its principal phase, real part kept.
 
@@ -53,9 +71,5 @@ def realised(shapes: Numbers) -> Floats:
     Returns
     -------
     (n_sensor, n_mode) float
-        The phase θ maximises |Re(φ e^{-iθ})|², i.e. θ = ½ arg Σ φ².
     """
-    if not np.iscomplexobj(shapes):
-        return np.asarray(shapes, dtype=float)
-    phase = 0.5 * np.angle(np.sum(shapes**2, axis=0))
-    return np.asarray((shapes * np.exp(-1j * phase)).real)
+    return np.asarray(principal(shapes).real)

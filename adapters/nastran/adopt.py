@@ -97,6 +97,31 @@ def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     )
 
 
+def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+    """Put dashpots to ground on the grids named, in equal parts.
+
+    A grid whose displacement system is not the basic one takes them by a bushing in basic axes.
+    """
+    grids, number = finding.where["grids"], free_id(text, "element")
+    part = float(finding.magnitude["damping"]) / len(grids)
+    components = finding.magnitude["components"]
+    rows: list[Row] = []
+    turned = [g for g in grids if int(deck.bulk.table("GRID")[g].cd or 0)]
+    if turned:
+        pid = free_id(text, "property")
+        along = [part if k in components else None for k in range(1, 7)]
+        rows.append(["PBUSH", pid, "B", *along[: max(components)]])
+        rows += [
+            ["CBUSH", number + i, pid, g, None, None, None, None, 0] for i, g in enumerate(turned)
+        ]
+    at = [(g, c) for g in grids if g not in turned for c in components]
+    rows += [["CDAMP2", number + len(turned) + i, part, g, c] for i, (g, c) in enumerate(at)]
+    note = f"{_note(finding)}\nDampers do not enter normal modes: complex ones show what it does."
+    return Adopted(
+        add_cards(text, rows, note, ("GRID", grids[0])), tuple(_shown(r) for r in rows)
+    )
+
+
 def _by_property(
     text: DeckText, deck: Deck, elements: list[int]
 ) -> dict[tuple[str, int], list[int]]:
@@ -252,6 +277,7 @@ _WRITERS: dict[str, Callable[[DeckText, Deck, Finding], Adopted]] = {
     "local_stiffness": _local_stiffness,
     "distributed_mass": _distributed_mass,
     "joint_flexibility": _joint,
+    "local_damper": _local_damper,
     "support_flexibility": _support,
     "tuned_absorber": _absorber,
 }

@@ -80,7 +80,7 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     context = Context(variation.bulk, points, settings, nonstructural)
     groups = tuple(g for family in FAMILIES.values() for g in family(context))
     wtmass = deck.param("WTMASS", 1.0)
-    blocks = tuple(_block(g, points, variation, wtmass) for g in groups)
+    blocks = tuple(element_block(g, points, variation, wtmass) for g in groups)
     notes = (*context.notes, *_unused_masses(deck), *_shared_numbers(deck, groups))
     return Structure(points, groups, blocks, notes)
 
@@ -173,7 +173,10 @@ def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
     )  # type: ignore[return-value]
 
 
-def _block(group: Group, points: Points, variation: Variation, wtmass: float) -> ElementBlock:
+def element_block(
+    group: Group, points: Points, variation: Variation, wtmass: float = 1.0
+) -> ElementBlock:
+    """Return a group for assembly: in displacement systems, masses times WTMASS."""
     sets = [
         tuple(sorted({p for key in source for p in variation.acting_on(key)}))
         for source in group.sources

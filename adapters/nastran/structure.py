@@ -12,6 +12,7 @@ from ...core.discovery.structure import Members, Structure, Supports
 from ...core.model import Model, Term
 from .build import build_model, read_structure, to_basic
 from .constraints import read_constraints
+from .damping import damping_matrix
 from .grids import Points
 from .parameters import FieldRef, ParameterSpec
 from .read import Deck
@@ -48,8 +49,21 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
     upper = np.array([q.upper for q in model.parameters])
     stiffness, _ = parametric_terms(parts.blocks, parts.points.n_dof, lower, upper)
     return Structure(
-        model, members, displacement, _supports(parts.points, stiffness, displacement, fixed, model)
+        model,
+        members,
+        displacement,
+        _supports(parts.points, stiffness, displacement, fixed, model),
+        free_damping(deck, parts.points, model),
     )
+
+
+def free_damping(deck: Deck, points: Points, model: Model) -> sp.csr_matrix | None:
+    """Return D of the deck's dashpots on the free degrees of freedom; None where it has none."""
+    D = damping_matrix(deck)
+    if D is None:
+        return None
+    motion = to_basic(points).T @ model.expansion
+    return (motion.T @ D @ motion).tocsr()
 
 
 def _supports(

@@ -37,6 +37,7 @@ from .request import Request as Request
 from .search import Found, Searcher
 from .structure import thinned
 from .telling import told
+from .telling_dampers import with_damper
 
 _MESH = (1.0, -1.0, 1.05)
 """Spread and bounds of the error of the mesh, see `mesh_error`."""
@@ -85,7 +86,10 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
         tested = last
     out = modes_out, sensors_out
-    return told(request, searcher, found, verdict, trial.zero, tested.faults, out)
+    said = told(request, searcher, found, verdict, trial.zero, tested.faults, out)
+    progress("weighing dashpots by the measured damping")
+    best = _best(searcher, found, verdict)
+    return with_damper(trial.request, searcher.problem, best, said)
 
 
 class _Trial:

@@ -63,6 +63,18 @@ class MovedParameter:
 
 
 @dataclass(frozen=True)
+class ModalDamping:
+    """Damping ratios that the structure has by itself, by test mode.
+
+    `without` as the measured ones say if there is no dashpot but the deck's own, `beside` the one
+    that was found.
+    """
+
+    without: tuple[float, ...]
+    beside: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Discovery:
     """The verdict with everything that led to it.
 
@@ -86,3 +98,4 @@ class Discovery:
     corrected_sensors: tuple[Fault, ...]
     would_decide: tuple[str, ...]
     warnings: tuple[str, ...]
+    damping: ModalDamping | None = None

@@ -81,12 +81,15 @@ class Structure:
     displacement : (n_g, n_free) sparse
         Displacements in the coordinates of the element matrices.
     supports : Supports or None
+    damping : (n_free, n_free) sparse or None
+        Dashpots of the deck, force over velocity; None where it has none.
     """
 
     model: Model
     members: tuple[Members, ...]
     displacement: sp.csr_matrix
     supports: Supports | None = None
+    damping: sp.csr_matrix | None = None
 
     def centroids(self, m: Members) -> Floats:
         """Centroids of the elements of one card, (n, 3)."""

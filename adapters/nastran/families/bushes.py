@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,9 @@ from ....core.elements.bush import bush_stiffness
 from ....core.errors import InputError
 from ..cards import Bulk, Card, fields_of, to_float
 from .common import Context, Group, Key, distinct_properties
+
+Values = Callable[[Context, Bulk, Key], list[float]]
+"""The six stiffnesses or dampings of a property."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +39,18 @@ class _Bush:
 
 def bushes(context: Context) -> list[Group]:
     """Make the groups of CBUSH and CBUSH1D, between two grids or one and the ground."""
+    return _groups(context, {"CBUSH": _stiffnesses, "CBUSH1D": _axial})
+
+
+def bush_dampers(context: Context) -> list[Group]:
+    """Make the same groups with their dampings in place of stiffnesses."""
+    return _groups(context, {"CBUSH": _dampings, "CBUSH1D": _axial_damping})
+
+
+def _groups(context: Context, values_of: dict[str, Values]) -> list[Group]:
     groups = []
-    for name, property_name, values in (
-        ("CBUSH", "PBUSH", _stiffnesses),
-        ("CBUSH1D", "PBUSH1D", _axial),
-    ):
+    for name, values in values_of.items():
+        property_name = f"P{name[1:]}"
         cards = list(context.bulk.table(name).values())
         for grounded in (False, True):
             chosen = [c for c in cards if (not c.nodes[1]) == grounded]
@@ -52,7 +63,7 @@ def _group(
     context: Context,
     name: str,
     property_name: str,
-    values: object,
+    values: Values,
     cards: list[Card],
     grounded: bool,
 ) -> Group:
@@ -66,14 +77,14 @@ def _group(
     axes = np.stack([b.axes for b in bushes])
     arm_a, arm_b = (np.stack([b.arms[k] for b in bushes]) for k in (0, -1))
     size = 6 * ends.shape[1]
-    _check_axial(context, name, ids, bushes, [values(context, bulk, keys[k]) for k in of])  # type: ignore[operator]
+    _check_axial(context, name, ids, bushes, [values(context, bulk, keys[k]) for k in of])
     half = np.array([[0.5, 0.5], [1.0, 0.0]])[int(grounded), : ends.shape[1]]
 
     def matrices(current: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         numbers, position = np.unique(of[rows], return_inverse=True)
         K = M = None
         if wanted[0]:
-            k = np.array([values(context, current, keys[n]) for n in numbers])[position]  # type: ignore[operator]
+            k = np.array([values(context, current, keys[n]) for n in numbers])[position]
             K = bush_stiffness(axes[rows], k, arm_a[rows], arm_b[rows])[:, :size, :size]
         if wanted[1]:
             mass = np.array([_mass(current, keys[n]) for n in numbers])[position]
@@ -149,16 +160,27 @@ def _check_axial(
 
 
 def _stiffnesses(context: Context, bulk: Bulk, key: Key) -> list[float]:
-    card = bulk.table(key[0])[key[1]]
-    given = list(card.Ki or [])
+    return _six(context, key, "K", bulk.table(key[0])[key[1]].Ki)
+
+
+def _dampings(context: Context, bulk: Bulk, key: Key) -> list[float]:
+    return _six(context, key, "B", bulk.table(key[0])[key[1]].Bi)
+
+
+def _six(context: Context, key: Key, letter: str, values: object) -> list[float]:
+    given = list(values or [])  # type: ignore[call-overload]
     try:
         return [float(given[k] or 0.0) if k < len(given) else 0.0 for k in range(6)]
     except (TypeError, ValueError):
-        raise InputError(f"{context.bulk.place(*key)}: every K must be a number") from None
+        raise InputError(f"{context.bulk.place(*key)}: every {letter} must be a number") from None
 
 
 def _axial(context: Context, bulk: Bulk, key: Key) -> list[float]:
     return [float(bulk.table(key[0])[key[1]].k or 0.0), 0.0, 0.0, 0.0, 0.0, 0.0]
+
+
+def _axial_damping(context: Context, bulk: Bulk, key: Key) -> list[float]:
+    return [float(bulk.table(key[0])[key[1]].c or 0.0), 0.0, 0.0, 0.0, 0.0, 0.0]
 
 
 def _mass(bulk: Bulk, key: Key) -> float:

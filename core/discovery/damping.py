@@ -1,0 +1,184 @@
+"""What a dashpot does to measured modes.
+
+A dashpot of damping c along u adds c·uuᵀ to D. In coordinates of the undamped modes (unit modal
+mass) the motion is q'' + D q' + Ω² q = 0. To first order in c the ratio of mode j grows by
+c u_j² / (2 ω_j) and its shape turns complex: −i ω_j c u_j Σ_k φ_k u_k / (ω_k² − ω_j²) is added to
+φ_j. Exactly, poles and shapes are those of the quadratic eigenproblem.
+
+References
+----------
+Adhikari (2013), Structural Dynamic Analysis with Generalized Damping Models, section 2.4;
+Tisseur, Meerbergen (2001), The quadratic eigenvalue problem, SIAM Review 43, 235-286.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ..arrays import Floats, Numbers
+from .evidence import Evidence, matched, mixing, mode_costs
+
+_ABOVE = 1.5
+"""Modes of the model count up to this many times the highest measured frequency."""
+_NEAR = 0.02
+"""Relative size of gaps between eigenvalues below which modes turn freely, see `mixing`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Oriented:
+    """A model with the measured modes as its coordinates.
+
+    Parameters
+    ----------
+    omega : (n,) float
+        rad/s; the first `count` are those of the test, in its order.
+    turn : (n_model, n) float
+        Columns are coordinates on the eigenvectors of the model, orthonormal.
+    count : int
+    """
+
+    omega: Floats
+    turn: Floats
+    count: int
+
+
+def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) -> Oriented:
+    """Turn the modes of a model onto those of the test.
+
+    Each measured shape is a combination of its partner and of the modes close to that in
+    frequency (ridge regression, prior variance `mixing`), so that close modes lie as the test
+    found them; further modes stay as they are.
+
+    Parameters
+    ----------
+    e : Evidence
+    eigenvalues : (n_model,) float
+    sensors : (n_sensor, n_model) float
+        Shapes of unit modal mass at the sensors.
+    columns : int
+        The first so many modes may match.
+    """
+    n = min(columns, len(eigenvalues))
+    S = sensors[:, :n]
+    _, match = matched(mode_costs(e, eigenvalues[:n], e.shapes.T @ S, S.T @ S))
+    near = mixing(eigenvalues, _NEAR)
+    own = np.stack(
+        [_combined(e, j, sensors, near[k], int(k)) for j, k in enumerate(match)], axis=1
+    )
+    top = (_ABOVE * 2.0 * np.pi * e.frequencies_hz.max()) ** 2
+    rest = np.setdiff1d(np.flatnonzero(eigenvalues < top), match)
+    B = np.hstack([own, np.eye(len(eigenvalues))[:, rest]])
+    U, _, Vt = np.linalg.svd(B, full_matrices=False)
+    omega = np.concatenate(
+        [2.0 * np.pi * e.frequencies_hz, np.sqrt(np.maximum(eigenvalues[rest], 0.0))]
+    )
+    return Oriented(omega, U @ Vt, len(match))
+
+
+def _combined(e: Evidence, j: int, sensors: Floats, prior: Floats, partner: int) -> Floats:
+    """Coordinates of one measured shape on the modes of the model, of unit length."""
+    a, t = sensors[:, partner], e.shapes[:, j]
+    size = float(np.linalg.norm(a))
+    target = t * size * (-1.0 if t @ a < 0.0 else 1.0)
+    noise = (e.noise.shape * size) ** 2 / min(len(t), e.noise.independent)
+    C = (sensors * prior) @ sensors.T + max(noise, np.finfo(float).tiny) * np.eye(len(t))
+    q = prior * (sensors.T @ np.linalg.solve(C, target))
+    length = float(np.linalg.norm(q))
+    return q / length if length > 0.0 else np.eye(len(prior))[partner]
+
+
+def added(u: Floats, omega: Floats) -> Floats:
+    """Return what a dashpot of unit damping adds to each ratio, first order, shaped as `u`."""
+    return np.asarray(u**2 / (2.0 * omega))
+
+
+def complex_modes(omega: Floats, D: Floats) -> tuple[Numbers, Numbers]:
+    """Return poles with Im > 0 and complex modes of s² + s D + diag(ω²), each near one mode.
+
+    Parameters
+    ----------
+    omega : (n,) float
+        rad/s.
+    D : (n, n) float
+        Damping on unit modal masses.
+
+    Returns
+    -------
+    poles : (n,) complex
+        Number k is that of the complex mode that undamped mode k takes the largest part in, one
+        to one; NaN where so many are overdamped that none is left.
+    shapes : (n, n) complex
+        Columns on the undamped modes, component k of column k equal to 1.
+    """
+    n = len(omega)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(omega**2), -D]])
+    values, vectors = np.linalg.eig(A)
+    up = np.flatnonzero(values.imag > 0.0)
+    Q = vectors[:n, up]
+    share = np.abs(Q) ** 2
+    share = share / np.maximum(share.sum(axis=0), np.finfo(float).tiny)
+    own, taken = linear_sum_assignment(-share)
+    poles, shapes = np.full(n, np.nan, complex), np.full((n, n), np.nan, complex)
+    poles[own] = values[up[taken]]
+    pivot = Q[own, taken]
+    pivot = np.where(np.abs(pivot) > 0.0, pivot, 1.0)
+    shapes[:, own] = Q[:, taken] / pivot
+    return poles, shapes
+
+
+def ratios(poles: Numbers) -> Floats:
+    """Return the damping ratios −Re λ / |λ| of poles."""
+    return np.asarray(-poles.real / np.abs(poles))
+
+
+def predicted(omega: Floats, D: Floats, level: Floats) -> Floats:
+    """Return the damping ratios of modes with a level of their own and dashpots between them.
+
+    Parameters
+    ----------
+    omega : (n,) float
+        rad/s; those of rigid-body modes may be 0, their ratio is NaN.
+    D : (n, n) float
+        Dashpots on unit modal masses.
+    level : (n,) float
+        Ratios without them.
+    """
+    elastic = np.flatnonzero(omega > 1e-3 * omega.max())
+    own = D[np.ix_(elastic, elastic)] + np.diag(2.0 * level[elastic] * omega[elastic])
+    out = np.full(len(omega), np.nan)
+    out[elastic] = ratios(complex_modes(omega[elastic], own)[0])
+    return out
+
+
+def imaginary(u: Floats, modes: Oriented, sensors: Floats) -> tuple[Floats, Floats]:
+    """Return what a dashpot of unit damping makes of the shapes, first order.
+
+    Parts of modes that turn freely with one another are left out: the test's real shapes decide
+    how those lie.
+
+    Parameters
+    ----------
+    u : (n_place, n) float
+        Motion of the places in the modes.
+    modes : Oriented
+    sensors : (n_sensor, n) float
+        Shapes of unit modal mass at the sensors, in the coordinates of `modes`.
+
+    Returns
+    -------
+    turned : (n_place, count, n) float
+        Coordinates of the imaginary parts on the modes.
+    gram : (n, n) float
+        Their inner products at the sensors.
+    """
+    lam = modes.omega**2
+    gap = lam[None, :] - lam[: modes.count, None]
+    size = _NEAR * np.maximum(lam[None, :], lam[: modes.count, None])
+    inverse = gap / (gap**2 + size**2)
+    turned = -(modes.omega[: modes.count] * u[:, : modes.count])[:, :, None] * (
+        u[:, None, :] * inverse
+    )
+    return turned, np.asarray(sensors.T @ sensors)

@@ -1,0 +1,116 @@
+"""How likely measured damping ratios are, with and without a dashpot.
+
+What a structure has of damping by itself nobody predicts: the ratios scatter, ln ζ around an
+unknown level that may rise or fall with frequency, by an unknown spread, with tails (one joint
+that rubs is no dashpot). All three are integrated out over a grid, so that hypotheses compare by
+marginal likelihood. A dashpot adds its part to the level; the part is known as well as the shapes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ..arrays import Floats, Ints
+
+_COURSES = {
+    (0.0, 1.0): 0.5,
+    (-0.5, 1.0): 0.08,
+    (0.5, 1.0): 0.08,
+    (1.0, 0.0): 0.08,
+    (1.0, 0.2): 0.06,
+    (1.0, 0.5): 0.06,
+    (1.0, 0.8): 0.06,
+    (1.0, 1.0): 0.08,
+}
+"""How the level may go with frequency, a share s of x^e and the rest of 1/x^e by (e, s), and how
+likely each is: constant, in between, and Rayleigh damping."""
+_SPREADS = (0.2, 0.35, 0.6, 1.0)
+_LEVELS = 18
+_TAILS = 5.0
+"""Degrees of freedom of the t distribution of ln ζ."""
+_MEASURED = 0.03
+"""Error of ln ζ as measured, at least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """What the ratios of a structure by itself may be, and how likely beforehand.
+
+    Parameters
+    ----------
+    levels : (n_grid, n_mode) float
+        Ratios around which the modes scatter.
+    spreads : (n_grid,) float
+        Standard deviation of ln ζ.
+    log_prior : (n_grid,) float
+        Logarithms of weights that sum to 1.
+    course : (n_grid,) int
+        Which course over frequency.
+    """
+
+    levels: Floats
+    spreads: Floats
+    log_prior: Floats
+    course: Ints
+
+    def take(self, rows: Ints) -> Levels:
+        """Return part of the grid, weights as they are."""
+        return Levels(
+            self.levels[rows], self.spreads[rows], self.log_prior[rows], self.course[rows]
+        )
+
+
+def levels_for(measured: Floats, omega: Floats) -> Levels:
+    """Return the grid of levels for measured ratios, (n_mode,), all positive."""
+    size = np.geomspace(0.5 * measured.min(), measured.max(), _LEVELS)
+    x = omega / np.exp(np.mean(np.log(omega)))
+    course = np.array([share * x**e + (1.0 - share) * x**-e for e, share in _COURSES])
+    course = course / np.exp(np.mean(np.log(course), axis=1, keepdims=True))
+    number = (len(size), len(course), len(_SPREADS))
+    levels = np.broadcast_to(
+        (size[:, None, None] * course)[:, :, None, :], (*number, len(x))
+    ).reshape(-1, len(x))
+    weight = np.broadcast_to(np.array(list(_COURSES.values()))[None, :, None], number).ravel()
+    spreads = np.broadcast_to(np.array(_SPREADS), number).ravel()
+    which = np.broadcast_to(np.arange(len(course))[None, :, None], number).ravel()
+    return Levels(levels, spreads, np.log(weight / weight.sum()), which)
+
+
+def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
+    """Return ln p of every ratio at every level.
+
+    Parameters
+    ----------
+    measured : (n_mode,) float
+    grid : Levels
+    part : (..., n_mode) float
+        What dashpots add to the ratios.
+    error : (..., n_mode) float
+        Standard deviation of `part`.
+
+    Returns
+    -------
+    (..., n_grid, n_mode) float
+    """
+    a, da = part[..., None, :], error[..., None, :]
+    mean = grid.levels + a
+    v = (grid.spreads[:, None] * grid.levels) ** 2 + da**2
+    v = v / mean**2 + _MEASURED**2
+    r2 = (np.log(measured) - np.log(mean)) ** 2
+    return np.asarray(-0.5 * (_TAILS + 1.0) * np.log1p(r2 / (_TAILS * v)) - 0.5 * np.log(v))
+
+
+def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
+    """Return ln of the likelihood of all ratios, levels integrated out, (...)."""
+    each = log_likelihood(measured, grid, part, error).sum(axis=-1)
+    return np.asarray(logsumexp(each + grid.log_prior, axis=-1))
+
+
+def expected_level(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
+    """Return the posterior mean level of each mode (of ln), (n_mode,), at one `part`."""
+    each = log_likelihood(measured, grid, part, error).sum(axis=-1) + grid.log_prior
+    weight = np.exp(each - logsumexp(each))
+    return np.asarray(np.exp(weight @ np.log(grid.levels)))

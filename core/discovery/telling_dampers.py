@@ -1,0 +1,185 @@
+"""From what the damping says to what a person is told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Floats, Ints, Numbers
+from ..correlation import principal
+from .dampers import DamperFound, DampingEvidence, find_damper
+from .damping import Oriented, added, oriented
+from .evidence import Evidence
+from .findings import Alternative, Discovery, Finding, ModalDamping
+from .fitting import Fit, Problem
+from .judge import times
+from .kinds.local_damper import PEAKS, Dashpots, dashpots, sentence
+from .places import region
+from .request import Request
+
+_SURE = 0.6
+_WORTH_TELLING = 0.02
+_TOGETHER = 0.1
+"""Places nearer than this part of the structure are one."""
+_PLACE = 0.12
+"""Error of ln c that comes of a place which is not quite the true one."""
+_CONFIDENCE = 0.93
+"""Share of clear findings that are right, as for the other kinds."""
+
+
+def with_damper(request: Request, problem: Problem, best: Fit, said: Discovery) -> Discovery:
+    """Weigh a dashpot, given the completed model, and add what comes of it.
+
+    Parameters
+    ----------
+    request : Request
+        With the sensors that are sound.
+    problem : Problem
+        On whose basis `best` stands.
+    best : Fit
+        The hypothesis that the search ended with.
+    said : Discovery
+    """
+    structure, test = request.structure, request.placed.test
+    V = best.vectors[: problem.basis.size]
+    sensors = np.asarray(request.placed.observation.matrix @ (problem.basis.motion @ V))
+    shapes = principal(test.shapes)
+    real = np.asarray(shapes.real)
+    unit = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
+    e = Evidence(test.frequencies_hz, unit, problem.evidence.noise)
+    modes = oriented(e, best.eigenvalues, sensors, problem.columns)
+    own = sensors @ modes.turn
+    places = dashpots(structure)
+    free = problem.basis.vectors @ (V @ modes.turn)
+    u = np.asarray(places.root @ free)
+    D = np.zeros((len(modes.omega),) * 2)
+    if structure.damping is not None:
+        D = np.asarray(free.T @ (structure.damping @ free))
+    evidence = DampingEvidence(
+        test.damping, _imaginary(shapes, own[:, : modes.count]), e.noise.independent
+    )
+    found = find_damper(evidence, modes, u, own, D, np.log(PEAKS))
+    if found is None:
+        return said
+    said = replace(
+        said,
+        damping=ModalDamping(
+            tuple(float(v) for v in found.level_without),
+            tuple(float(v) for v in (found.level_with if found.exists >= _SURE
+                                     else found.level_without)),
+        ),
+    )  # fmt: skip
+    ratio = times(-found.evidence)
+    if found.exists < _SURE:
+        if found.exists < _WORTH_TELLING:
+            return said
+        spot = region(structure.model.geometry, places.xyz[found.rows[0]])
+        alternative = Alternative(
+            ("local_damper",),
+            (tuple(float(v) for v in places.xyz[found.rows[0]]),),
+            ratio,
+            f"a dashpot {spot} besides: {ratio:.3g} times less likely than none",
+        )
+        return replace(said, alternatives=(*said.alternatives, alternative))
+    finding, sure = _finding(request, found, places, modes, u)
+    model = [f for f in said.findings if f.side == "model"]
+    rest = [f for f in said.findings if f.side != "model"]
+    verdict, decide = said.verdict, said.would_decide
+    if verdict not in {"effect", "undecided"}:
+        verdict = "effect" if sure >= _SURE else "undecided"
+    if verdict == "undecided":
+        decide = (*decide, *_would_decide(request, found, places, modes, u))
+    return replace(
+        said, verdict=verdict, findings=(*model, finding, *rest), would_decide=tuple(decide)
+    )
+
+
+def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
+    """Imaginary parts scaled as the real parts are to unit modal mass."""
+    if not np.iscomplexobj(shapes):
+        return None
+    real = np.asarray(shapes.real)
+    length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
+    return np.asarray(shapes.imag * (np.sum(own * real, axis=0) / length))
+
+
+def _finding(
+    request: Request, found: DamperFound, places: Dashpots, modes: Oriented, u: Floats
+) -> tuple[Finding, float]:
+    """Return the finding at the place around which most of the posterior lies, and how much."""
+    xyz = places.xyz[found.rows]
+    size = request.structure.model.geometry.size
+    near = np.linalg.norm(xyz[:, None] - xyz[None], axis=2) < _TOGETHER * size
+    along = np.array([places.where[r]["components"][0] for r in found.rows])
+    near &= along[:, None] == along[None]
+    mass = near @ found.weights
+    k = int(np.argmax(mass + 1e-6 * found.weights))
+    w = np.where(near[k], found.weights, 0.0) / mass[k]
+    mean = float(w @ found.log_size)
+    variance = float(w @ (found.log_deviation**2 + (found.log_size - mean) ** 2))
+    spread = 1.96 * float(np.hypot(np.sqrt(variance), _PLACE))
+    c, row = float(np.exp(mean)), int(found.rows[k])
+    low, high = float(np.exp(mean - spread)), float(np.exp(mean + spread))
+    components = list(places.where[row]["components"])
+    where: dict[str, Any] = {**places.where[row], "xyz": places.xyz[row].tolist()}
+    where["region"] = region(request.structure.model.geometry, places.xyz[row])
+    count = modes.count
+    gets = c * added(u[row, :count], modes.omega[:count])
+    felt = np.flatnonzero(gets > found.level_with)
+    felt = felt if len(felt) else np.array([int(np.argmax(gets))])
+    sure = found.exists * float(mass[k])
+    finding = Finding(
+        "model",
+        "local_damper",
+        where,
+        {"damping": c, "components": components},
+        (low, high),
+        tuple(
+            {**places.where[r], "xyz": places.xyz[r].tolist(), "weight": float(v)}
+            for r, v in zip(found.rows, found.weights, strict=True)
+            if v > 0.05 * found.weights[0]
+        )[:40],
+        sure * _CONFIDENCE,
+        sentence(
+            c,
+            (low, high),
+            components,
+            where["region"],
+            [int(j) + 1 for j in felt],
+            times(found.evidence),
+        ),
+        {"xyz": places.xyz[row].tolist(), "radius": 0.0},
+    )
+    return finding, sure
+
+
+def _would_decide(
+    request: Request, found: DamperFound, places: Dashpots, modes: Oriented, u: Floats
+) -> tuple[str, ...]:
+    """Say which further mode's damping tells the two best places apart."""
+    xyz = places.xyz[found.rows]
+    size = request.structure.model.geometry.size
+    other: Ints = np.flatnonzero(np.linalg.norm(xyz - xyz[0], axis=1) > _TOGETHER * size)
+    further = np.arange(modes.count, len(modes.omega))
+    further = further[modes.omega[further] > 1e-3 * modes.omega.max()]
+    if not len(other) or not len(further):
+        return ("damping ratios of further modes, which would tell where the dashpot sits",)
+    level = float(np.exp(np.mean(np.log(found.level_with))))
+    a, b = (
+        np.exp(found.log_size[i]) * added(u[found.rows[i], further], modes.omega[further])
+        for i in (0, int(other[0]))
+    )
+    apart = np.abs(np.log((level + a) / (level + b)))
+    k = int(np.argmax(apart))
+    hz = modes.omega[further[k]] / (2.0 * np.pi)
+    spots = [
+        region(request.structure.model.geometry, places.xyz[found.rows[i]])
+        for i in (0, int(other[0]))
+    ]
+    return (
+        f"the damping of the mode that the model has at {hz:.4g} Hz: about "
+        f"{100.0 * (level + a[k]):.2g} % if the dashpot is {spots[0]}, "
+        f"{100.0 * (level + b[k]):.2g} % if it is {spots[1]}",
+    )
