@@ -45,6 +45,7 @@ def result_tables(result: Result, width: int = 110) -> Iterator[RenderableType]:
         findings_table(result),
         alternatives_table(result),
         gap_table(result),
+        _rich(discovery.damping(result)),
         *(
             [
                 _rich(tables.pairs(c), state)

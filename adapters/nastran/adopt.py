@@ -117,9 +117,7 @@ def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     at = [(g, c) for g in grids if g not in turned for c in components]
     rows += [["CDAMP2", number + len(turned) + i, part, g, c] for i, (g, c) in enumerate(at)]
     note = f"{_note(finding)}\nDampers do not enter normal modes: complex ones show what it does."
-    return Adopted(
-        add_cards(text, rows, note, ("GRID", grids[0])), tuple(_shown(r) for r in rows)
-    )
+    return Adopted(add_cards(text, rows, note, ("GRID", grids[0])), tuple(_shown(r) for r in rows))
 
 
 def _by_property(

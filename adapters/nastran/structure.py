@@ -13,7 +13,7 @@ from ...core.model import Model, Term
 from .build import build_model, read_structure, to_basic
 from .constraints import read_constraints
 from .damping import damping_matrix
-from .grids import Points
+from .grids import Points, read_points
 from .parameters import FieldRef, ParameterSpec
 from .read import Deck
 from .variation import read_variation
@@ -53,16 +53,16 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
         members,
         displacement,
         _supports(parts.points, stiffness, displacement, fixed, model),
-        free_damping(deck, parts.points, model),
+        free_damping(deck, model),
     )
 
 
-def free_damping(deck: Deck, points: Points, model: Model) -> sp.csr_matrix | None:
+def free_damping(deck: Deck, model: Model) -> sp.csr_matrix | None:
     """Return D of the deck's dashpots on the free degrees of freedom; None where it has none."""
     D = damping_matrix(deck)
     if D is None:
         return None
-    motion = to_basic(points).T @ model.expansion
+    motion = to_basic(read_points(deck.bulk)).T @ model.expansion
     return (motion.T @ D @ motion).tocsr()
 
 

@@ -180,3 +180,26 @@ def _summary_cells(s: Summary) -> list[Cell]:
         Cell(fixed(s.worst_percent, 2)),
         Cell(percent(s.mean_mac, 1), bar=s.mean_mac),
     ]
+
+
+def damping(result: Result) -> Table | None:
+    """Return measured damping ratios beside those of the deck before and after."""
+    found = reading.part(result, "damping")
+    modes = reading.records(found, "modes")
+    if not modes:
+        return None
+    rows = [
+        (Cell(str(m.get("test", MISSING))), *[Cell(percent(m.get(k), 2)) for k in _DAMPING])
+        for m in modes
+    ]
+    columns = (Column("test mode"), *[Column(f"{k} %") for k in _DAMPING])
+    typical = reading.part(found, "typical_factor")
+    note = (
+        f"Off by a factor of {fixed(typical.get('before'), 2)} typically before, "
+        f"{fixed(typical.get('after'), 2)} after. Dampers do not enter normal modes: the ratios "
+        "are those of complex modes with the structure's own damping as the test shows it."
+    )
+    return Table("Damping ratios", columns, tuple(rows), note)
+
+
+_DAMPING = ("measured", "before", "after")

@@ -67,6 +67,11 @@ def gap(result: Result) -> Section | None:
     return _only_table("The gap", "gap", discovery.gap(result))
 
 
+def damping(result: Result) -> Section | None:
+    """Return damping ratios before and after."""
+    return _only_table("Damping", "damping", discovery.damping(result))
+
+
 def alternatives(result: Result) -> Section | None:
     """Return what else was considered."""
     return _only_table("Also considered", "alternatives", discovery.alternatives(result))

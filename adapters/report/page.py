@@ -111,6 +111,7 @@ def _sections(
     return [
         discovery_sections.findings(result, geometry, sensors_xyz),
         discovery_sections.gap(result),
+        discovery_sections.damping(result),
         disagreement.section(result, geometry),
         sections.pairs(result),
         sections.matrices(result),

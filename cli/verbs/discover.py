@@ -97,6 +97,11 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         after = done["after"]
         result = discover_tables(study, found, specs, model, before, after, done)
         result["seconds"] = time.perf_counter() - start
+        damped = damping_tables(
+            found, placed.test.damping, (before, solution, structure.damping), done["damped"]
+        )
+        if damped is not None:
+            result["damping"] = damped
         result["warnings"] = [
             *deck.warnings,
             *model.warnings,
@@ -144,6 +149,7 @@ def complete(
         write_deck,
     )
     from ...adapters.nastran.adopt import adopt
+    from ...adapters.nastran.structure import free_damping
     from ...core import eigen
     from ...core.comparison import compare
     from ..pipeline import criteria_of
@@ -171,7 +177,8 @@ def complete(
         cards.append(list(adopted.cards) if adopted else [])
     top = write_deck(text, work / "deck")
     (work / "changes.diff").write_text(unified_diff(original, text), encoding="utf-8", newline="")
-    again = build_model(read_deck(top))
+    deck_again = read_deck(top)
+    again = build_model(deck_again)
     solution = eigen.solve(again, n_modes=min(n_modes, again.n_free))
     modes = eigen.modes_of(again, solution)
     seen = placed
@@ -181,11 +188,57 @@ def complete(
     after = compare(again.geometry, modes, sound, criteria_of(study), solution.rigid_body_modes)
     return {
         "after": after,
+        "damped": (after, solution, free_damping(deck_again, again)),
         "cards": cards,
         "refused": refused,
         "text": text,
         "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
     }
+
+
+def damping_tables(
+    found: Any, measured: Any, before: tuple[Any, ...], after: tuple[Any, ...]
+) -> dict[str, Any] | None:
+    """Return measured damping ratios beside those foretold; None where no dashpot is about.
+
+    Parameters
+    ----------
+    found : Discovery
+    measured : (n_test,) float
+    before, after : (Comparison, Eigensolution, D or None)
+        The deck as it was and as completed.
+    """
+    from ...core.discovery.damping import of_pairs
+
+    if found.damping is None or (before[2] is None and after[2] is None):
+        return None
+    foretold = []
+    levels = (found.damping.without, found.damping.beside)
+    for (compared, solution, D), level in zip((before, after), levels, strict=True):
+        phi = solution.vectors
+        own = np.zeros((phi.shape[1],) * 2) if D is None else np.asarray(phi.T @ (D @ phi))
+        pairs = [(p.test, p.analysis) for p in compared.correlation.pairs]
+        foretold.append(of_pairs(solution.eigenvalues, own, np.array(level), pairs))
+    rows = [
+        {
+            "test": j + 1,
+            "measured": float(z),
+            "before": foretold[0].get(j),
+            "after": foretold[1].get(j),
+        }
+        for j, z in enumerate(measured)
+        if np.isfinite(z) and z > 0.0
+    ]
+    return {
+        "modes": rows,
+        "typical_factor": {key: _typical(rows, key) for key in ("before", "after")},
+    }
+
+
+def _typical(rows: list[dict[str, Any]], key: str) -> float | None:
+    """Return exp of the mean |ln foretold/measured|."""
+    off = [abs(np.log(r[key] / r["measured"])) for r in rows if r[key]]
+    return float(np.exp(np.mean(off))) if off else None
 
 
 def _on(placed: Any, model: Any, again: Any) -> Any:

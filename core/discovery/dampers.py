@@ -28,10 +28,10 @@ _SHAPE_ERROR = 0.08
 """Error of a shape anywhere, over its rms."""
 _STILL = 1e-3
 """A place where no mode gets this part of the most damping that a place can give is still."""
-_SCREENED, _EXACT = 240, 24
+_SCREENED, _EXACT, _HOPELESS = 200, 24, 12.0
 _WORTH = 0.01
-_CHUNK = 48
-_SPREAD = 0.45
+_CHUNK = 4
+_SPREAD = 0.6
 _COMPLEXITY, _OWN_SHARE, _FREEDOM = 0.03, 0.2, 3.0
 """Imaginary part of a shape without a dashpot over its rms, the part of a predicted one that is
 wrong, and how firmly both are known (degrees of freedom)."""
@@ -118,55 +118,27 @@ def find_damper(
     chosen = np.flatnonzero(e.known)
     if len(chosen) < _FEWEST or not len(u):
         return None
-    z, omega = e.measured[chosen], modes.omega[chosen]
-    own = np.diag(known)[chosen] / (2.0 * omega)
-    grid = levels_for(np.maximum(z - own, 0.2 * z), omega)
-    nothing = np.zeros(len(z))
-    null = float(marginal(z, grid, own, nothing))
-    g = added(u[:, chosen], omega)
-    peak = g.max(axis=1)
+    w = _weighing(e, modes, u, sensors, known, trials, chosen)
+    peak = w.gives.max(axis=1)
     live = np.flatnonzero(peak > _STILL * peak.max())
     if not len(live):
         return None
-    delta = _SHAPE_ERROR * np.sqrt(np.mean(u[:, chosen] ** 2, axis=0))
-    wrong = (2.0 * np.abs(u[:, chosen]) * delta + delta**2) / (2.0 * omega)
-    sizes = np.exp(trials) / np.maximum(peak, np.finfo(float).tiny)[:, None]
-    shape = _of_shapes(e, modes, u, sensors)
-
-    def tried(rows: Ints, grid: Levels) -> Floats:
-        out = np.empty((len(rows), len(trials)))
-        for start in range(0, len(rows), _CHUNK):
-            some = rows[start : start + _CHUNK]
-            c = sizes[some][:, :, None]
-            out[start : start + _CHUNK] = marginal(
-                z, grid, own + c * g[some][:, None, :], c * wrong[some][:, None, :]
-            )
-        return out - null + shape(rows, sizes[rows])
-
-    best = np.argsort(-tried(live, _coarse(z, grid, own)).max(axis=1), kind="stable")
-    rows = live[best[:_SCREENED]]
-    score = tried(rows, grid)
-    place = logsumexp(score, axis=1)
-    for i in np.argsort(-place, kind="stable")[:_EXACT]:
-        r = rows[i]
+    first = w.scores(live, _coarse(w)).max(axis=1)
+    best = np.argsort(-first, kind="stable")[:_SCREENED]
+    rows = live[best[first[best] > first.max() - _HOPELESS]]
+    score = w.scores(rows, w.grid)
+    for i in np.argsort(-logsumexp(score, axis=1), kind="stable")[:_EXACT]:
         for k in np.flatnonzero(score[i] > score[i].max() + np.log(_WORTH)):
-            c = sizes[r, k]
-            first = own + c * g[r]
-            level = expected_level(z, grid, first, c * wrong[r])
-            exact = _exact(modes, known, u[r], c, level, chosen)
-            either = [float(marginal(z, grid, a, c * wrong[r])) for a in (first, exact)]
-            score[i, k] += np.logaddexp(*either) - np.log(2.0) - either[0]
+            score[i, k] += w.correction(modes, known, u[rows[i]], int(rows[i]), int(k))
     place = logsumexp(score, axis=1) - np.log(len(trials))
     order = np.argsort(-place, kind="stable")
     rows, score, place = rows[order], score[order], place[order]
     odds = float(logsumexp(place)) - np.log(len(live)) - _RARE
     within = np.exp(score - logsumexp(score, axis=1)[:, None])
-    log_c = np.log(sizes[rows])
+    log_c = np.log(w.sizes[rows])
     mean = np.sum(within * log_c, axis=1)
     step = float(np.ptp(trials)) / max(len(trials) - 1, 1)
     deviation = np.sqrt(np.sum(within * (log_c - mean[:, None]) ** 2, axis=1) + step**2 / 12.0)
-    c = float(np.exp(mean[0]))
-    full = expected_level(z, grid, own + c * g[rows[0]], c * wrong[rows[0]])
     return DamperFound(
         1.0 / (1.0 + np.exp(-np.clip(odds, -60.0, 60.0))),
         2.0 * odds,
@@ -174,16 +146,104 @@ def find_damper(
         np.exp(place - logsumexp(place)),
         mean,
         deviation,
-        _everywhere(expected_level(z, grid, own, nothing), modes, chosen),
-        _everywhere(full, modes, chosen),
+        _everywhere(w.level(None, 0.0), modes, chosen),
+        _everywhere(w.level(int(rows[0]), float(np.exp(mean[0]))), modes, chosen),
     )
 
 
-def _coarse(z: Floats, grid: Levels, own: Floats) -> Levels:
+@dataclass(frozen=True, eq=False)
+class _Weighing:
+    """Dashpots of several sizes at every place against the measured ratios.
+
+    Parameters
+    ----------
+    measured, own : (n_mode,) float
+        Ratios as measured and what the deck's own dashpots give, of the modes `chosen`.
+    grid : Levels
+    gives, wrong : (n_place, n_mode) float
+        What unit damping gives the modes, first order, and the error of that.
+    sizes : (n_place, n_trial) float
+        c.
+    shapes : Gain
+    null : float
+        ln of the likelihood without a dashpot.
+    """
+
+    measured: Floats
+    own: Floats
+    chosen: Ints
+    grid: Levels
+    gives: Floats
+    wrong: Floats
+    sizes: Floats
+    shapes: Gain
+    null: float
+
+    def scores(self, rows: Ints, grid: Levels) -> Floats:
+        """Return ln of how much likelier each size makes the data, (n, n_trial)."""
+        out = np.empty((len(rows), self.sizes.shape[1]))
+        for start in range(0, len(rows), _CHUNK):
+            some = rows[start : start + _CHUNK]
+            c = self.sizes[some][:, :, None]
+            part = self.own + c * self.gives[some][:, None, :]
+            error = c * self.wrong[some][:, None, :]
+            out[start : start + _CHUNK] = marginal(self.measured, grid, part, error)
+        return out - self.null + self.shapes(rows, self.sizes[rows])
+
+    def level(self, row: int | None, c: float) -> Floats:
+        """Return the ratios that the modes have by themselves beside one dashpot, (n_mode,)."""
+        if row is None:
+            return expected_level(self.measured, self.grid, self.own, 0.0 * self.own)
+        part = self.own + c * self.gives[row]
+        return expected_level(self.measured, self.grid, part, c * self.wrong[row])
+
+    def correction(self, modes: Oriented, known: Floats, u: Floats, row: int, k: int) -> float:
+        """Return what the exact eigenproblem adds to a score.
+
+        Where modes overlap, ratios by first order and exact ones differ, and how an
+        identification shared the damping out among them is not known: each counts half.
+        """
+        c = float(self.sizes[row, k])
+        level = self.level(row, c)
+        base = np.full(len(modes.omega), float(np.exp(np.mean(np.log(level)))))
+        base[self.chosen] = level
+        total = predicted(modes.omega, known + c * np.outer(u, u), base)[self.chosen]
+        exact = np.where(np.isfinite(total), np.maximum(total - level, 0.0), 1.0)
+        simple, full = (
+            float(marginal(self.measured, self.grid, part, c * self.wrong[row]))
+            for part in (self.own + c * self.gives[row], exact)
+        )
+        return float(np.logaddexp(simple, full)) - float(np.log(2.0)) - simple
+
+
+def _weighing(
+    e: DampingEvidence,
+    modes: Oriented,
+    u: Floats,
+    sensors: Floats,
+    known: Floats,
+    trials: Floats,
+    chosen: Ints,
+) -> _Weighing:
+    z, omega = e.measured[chosen], modes.omega[chosen]
+    own = np.diag(known)[chosen] / (2.0 * omega)
+    grid = levels_for(np.maximum(z - own, 0.2 * z), omega)
+    v = u[:, chosen]
+    gives = added(v, omega)
+    delta = _SHAPE_ERROR * np.sqrt(np.mean(v**2, axis=0))
+    wrong = (2.0 * np.abs(v) * delta + delta**2) / (2.0 * omega)
+    peak = np.maximum(gives.max(axis=1), np.finfo(float).tiny)
+    sizes = np.exp(trials) / peak[:, None]
+    null = float(marginal(z, grid, own, np.zeros(len(z))))
+    shapes = _of_shapes(e, modes, u, sensors)
+    return _Weighing(z, own, chosen, grid, gives, wrong, sizes, shapes, null)
+
+
+def _coarse(w: _Weighing) -> Levels:
     """Few levels for a first look: of middling spread, the course that suits no dashpot best."""
-    away = np.abs(grid.spreads - _SPREAD)
-    some = grid.take(np.flatnonzero(away == away.min()))
-    alone = log_likelihood(z, some, own, np.zeros(len(z))).sum(axis=-1)
+    away = np.abs(w.grid.spreads - _SPREAD)
+    some = w.grid.take(np.flatnonzero(away == away.min()))
+    alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own).sum(axis=-1)
     best = some.course[int(np.argmax(alone + some.log_prior))]
     return some.take(np.flatnonzero(some.course == best)[::2])
 
@@ -196,16 +256,6 @@ def _everywhere(level: Floats, modes: Oriented, chosen: Ints) -> Floats:
         np.log(level)[np.argsort(modes.omega[chosen], kind="stable")],
     )
     return np.asarray(np.exp(ln))
-
-
-def _exact(
-    modes: Oriented, known: Floats, u: Floats, c: float, level: Floats, chosen: Ints
-) -> Floats:
-    """Return what all dashpots add to the ratios of the measured modes, exactly."""
-    base = np.full(len(modes.omega), float(np.exp(np.mean(np.log(level)))))
-    base[chosen] = level
-    all_of_them = predicted(modes.omega, known + c * np.outer(u, u), base)[chosen]
-    return np.where(np.isfinite(all_of_them), np.maximum(all_of_them - level, 0.0), 1.0)
 
 
 def _of_shapes(e: DampingEvidence, modes: Oriented, u: Floats, sensors: Floats) -> Gain:

@@ -13,13 +13,14 @@ Tisseur, Meerbergen (2001), The quadratic eigenvalue problem, SIAM Review 43, 23
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..arrays import Floats, Numbers
-from .evidence import Evidence, matched, mixing, mode_costs
+from .evidence import Evidence, matched, mixing, mode_costs, targets
 
 _ABOVE = 1.5
 """Modes of the model count up to this many times the highest measured frequency."""
@@ -65,10 +66,8 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
     S = sensors[:, :n]
     _, match = matched(mode_costs(e, eigenvalues[:n], e.shapes.T @ S, S.T @ S))
     near = mixing(eigenvalues, _NEAR)
-    own = np.stack(
-        [_combined(e, j, sensors, near[k], int(k)) for j, k in enumerate(match)], axis=1
-    )
-    top = (_ABOVE * 2.0 * np.pi * e.frequencies_hz.max()) ** 2
+    own = np.stack([_combined(e, j, sensors, near[k], int(k)) for j, k in enumerate(match)], axis=1)
+    top = (_ABOVE * float(targets(e).max()) ** 0.5) ** 2
     rest = np.setdiff1d(np.flatnonzero(eigenvalues < top), match)
     B = np.hstack([own, np.eye(len(eigenvalues))[:, rest]])
     U, _, Vt = np.linalg.svd(B, full_matrices=False)
@@ -83,8 +82,8 @@ def _combined(e: Evidence, j: int, sensors: Floats, prior: Floats, partner: int)
     a, t = sensors[:, partner], e.shapes[:, j]
     size = float(np.linalg.norm(a))
     target = t * size * (-1.0 if t @ a < 0.0 else 1.0)
-    noise = (e.noise.shape * size) ** 2 / min(len(t), e.noise.independent)
-    C = (sensors * prior) @ sensors.T + max(noise, np.finfo(float).tiny) * np.eye(len(t))
+    noise = (e.noise.shape * size) ** 2 / min(float(len(t)), e.noise.independent)
+    C = (sensors * prior) @ sensors.T + (noise + np.finfo(float).tiny) * np.eye(len(t))
     q = prior * (sensors.T @ np.linalg.solve(C, target))
     length = float(np.linalg.norm(q))
     return q / length if length > 0.0 else np.eye(len(prior))[partner]
@@ -151,6 +150,29 @@ def predicted(omega: Floats, D: Floats, level: Floats) -> Floats:
     out = np.full(len(omega), np.nan)
     out[elastic] = ratios(complex_modes(omega[elastic], own)[0])
     return out
+
+
+def of_pairs(
+    eigenvalues: Floats, D: Floats, level: Floats, pairs: Sequence[tuple[int, int]]
+) -> dict[int, float]:
+    """Return the damping ratios that a model foretells for the test modes that have a partner.
+
+    Parameters
+    ----------
+    eigenvalues : (n,) float
+        (rad/s)².
+    D : (n, n) float
+        Dashpots on unit modal masses.
+    level : (n_test,) float
+        Ratios of the test modes without dashpots.
+    pairs : sequence of (int, int)
+        Test mode and analysis mode.
+    """
+    own = np.full(len(eigenvalues), float(np.exp(np.mean(np.log(level)))))
+    for test, analysis in pairs:
+        own[analysis] = level[test]
+    out = predicted(np.sqrt(np.maximum(eigenvalues, 0.0)), D, own)
+    return {test: float(out[analysis]) for test, analysis in pairs if np.isfinite(out[analysis])}
 
 
 def imaginary(u: Floats, modes: Oriented, sensors: Floats) -> tuple[Floats, Floats]:
