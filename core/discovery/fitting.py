@@ -178,12 +178,21 @@ def solve(
 
 def misfit(problem: Problem, values: Floats, vectors: Floats) -> tuple[float, Ints]:
     """Return the misfit of a solution and its match."""
+    return matched(_costs(problem, values, vectors))
+
+
+def mode_misfits(problem: Problem, values: Floats, vectors: Floats) -> Floats:
+    """Return the misfit of each test mode with its match, (n_test,)."""
+    costs = _costs(problem, values, vectors)
+    return np.asarray(costs[np.arange(len(costs)), matched(costs)[1]])
+
+
+def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
     n = min(problem.columns, len(values))
     shapes = np.asarray(problem.sensors @ vectors[: problem.sensors.shape[1], :n])
     cross = np.asarray(problem.evidence.shapes.T @ shapes)
     gram = np.asarray(shapes.T @ shapes, dtype=float)
-    costs = mode_costs(problem.evidence, values[:n], cross, gram)
-    return matched(costs)
+    return mode_costs(problem.evidence, values[:n], cross, gram)
 
 
 def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> float:

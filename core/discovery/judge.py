@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Floats
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, unseen
+from .fitting import Fit, Problem, evaluate, mode_misfits, solve, unseen
 from .scanning import scan
 from .search import Found, Searcher
 
@@ -19,6 +19,9 @@ _BESIDE, _SAME_EFFECT = 0.2, 40.0
 _PER_MODE = 5.0
 _CREDIBLE = 6.0
 _MOST_NOISE = 3.0
+_CLEAR, _SHARE = 4.0, 0.1
+"""A suspect explains a mode if it lowers its misfit by this much, and by this share of what it
+lowers most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,6 +206,21 @@ def instead(
         if alone == [number] and len(others) == 1 and behind < _CREDIBLE:
             out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))
     return out
+
+
+def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple[int, ...]:
+    """Return which test modes one of the suspects explains, as rows of the whole test.
+
+    Those whose misfit rises clearly where the suspect is taken away and nothing else moves.
+    """
+    p = searcher.problem.entire()
+    others = best.suspects[:number] + best.suspects[number + 1 :]
+    left, kept = (
+        mode_misfits(p, *solve(p, best.log_p, suspects)) for suspects in (others, best.suspects)
+    )
+    gained = (left - kept) / scale
+    clear = (gained > _CLEAR) & (gained > _SHARE * gained.max())
+    return tuple(int(j) for j in np.flatnonzero(clear))
 
 
 def credible_places(

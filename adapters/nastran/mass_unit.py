@@ -1,0 +1,39 @@
+"""What a deck counts masses in, as far as its densities tell."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...core.discovery.story import MassUnit
+from ...core.units import METRES
+from .read import Deck
+
+_KILOGRAMS = {
+    "m": (1.0, 1e3),
+    "mm": (1e3, 1.0),
+    "in": (175.12683699, 0.45359237),
+    "ft": (14.59390294, 0.45359237),
+}
+"""Kilograms in the mass units that go with a length: t or kg, lbf s²/in or lb, slug or lb."""
+_SOLID = (4e2, 2.5e4)
+"""Densities of what structures are made of [kg/m³]: balsa panels and below are left out."""
+
+
+def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
+    """Return what masses are counted in, in kilograms where the densities leave no doubt.
+
+    Parameters
+    ----------
+    deck : Deck
+    length_unit : {"m", "mm", "in", "ft"} or None
+    """
+    wtmass = deck.param("WTMASS", 1.0)
+    rho = [float(getattr(c, "rho", 0.0) or 0.0) for c in deck.bulk.table("MAT1").values()]
+    rho = [r * wtmass for r in rho if r > 0.0]
+    if length_unit is None or not rho:
+        return MassUnit(1.0 / wtmass)
+    volume = METRES[length_unit] ** 3
+    likely = [
+        kg for kg in _KILOGRAMS[length_unit] if _SOLID[0] < np.median(rho) * kg / volume < _SOLID[1]
+    ]
+    return MassUnit(1.0 / wtmass, likely[0] if len(likely) == 1 else None)

@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.adapters.nastran import read_deck
+from trueup.adapters.nastran.mass_unit import mass_unit
+from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.fitting import fit
+from trueup.core.discovery.judge import explained
+from trueup.core.discovery.story import MassUnit, mode_ranges
+
+
+@pytest.mark.parametrize(
+    ("modes", "said"),
+    [
+        ([4], "mode 4"),
+        ([3, 4], "modes 3 and 4"),
+        ([12, 7, 8, 9, 10, 11], "modes 7 to 12"),
+        ([1, 3, 7, 8, 9], "modes 1, 3 and 7 to 9"),
+    ],
+)
+def test_modes_in_ranges(modes, said):
+    assert mode_ranges(modes) == said
+
+
+@pytest.mark.parametrize(
+    ("rho", "wtmass", "unit", "kilograms"),
+    [
+        ("7.85-9", 1.0, "mm", 1e3),
+        ("7.85-6", 1.0, "mm", 1.0),
+        ("2700.", 1.0, "m", 1.0),
+        (".098", 0.00259, "in", 175.12683699),
+        ("2.5-4", 1.0, "in", 175.12683699),
+        (".098", 1.0, "in", 0.45359237),
+        ("490.", 0.0310810, "ft", 14.59390294),
+        ("7.85-9", 1.0, None, None),
+        ("1.", 1.0, "mm", None),
+    ],
+)
+def test_the_densities_of_solids_tell_the_unit_of_mass(tmp_path, rho, wtmass, unit, kilograms):
+    deck = tmp_path / "a.bdf"
+    deck.write_text(
+        f"SOL 103\nCEND\nBEGIN BULK\nPARAM,WTMASS,{wtmass}\nMAT1,1,7.+10,,.3,{rho}\n"
+        "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,1,1,2\nPROD,1,1,1.\nENDDATA\n"
+    )
+    found = mass_unit(read_deck(deck), unit)
+    assert found.card == pytest.approx(1.0 / wtmass)
+    assert found.kilograms == (pytest.approx(kilograms) if kilograms else None)
+
+
+def test_a_mass_is_said_in_kilograms_where_they_are_known():
+    assert MassUnit(1.0, 1e3).said(0.62e-3) == "0.62 kg"
+    pounds = MassUnit(1.0 / 0.00259, 175.12683699)
+    assert pounds.said(10.0) == "4.54 kg"
+    assert MassUnit().said(0.62e-3) == "0.00062 (deck units)"
+
+
+def test_a_mass_explains_the_modes_that_move_where_it_sits():
+    """A bead at the middle of a string moves in every other mode: 1, 3, 5, ..."""
+    s = searcher(hidden(masses=[(15, 0.5), (16, 0.5)]), scatter=(0.0, 0.0))
+    null = s.null()
+    best = fit(s.problem, 0.0 * null.log_p, (Suspect(0, 15, (0.0,)),), (0,), 20)
+    modes = np.array(explained(s, best, 0, 1.0)) + 1
+    assert len(modes) >= 4
+    assert set(modes % 2) == {1}
