@@ -21,13 +21,21 @@ from .read import Deck
 Row = list[Any]
 
 _SHELL = ("PSHELL", "PCOMP", "PCOMPG")
+_SHELLS = ("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6")
 _PROPERTIES = {
-    **dict.fromkeys(("CQUAD4", "CTRIA3", "CQUADR", "CTRIAR", "CQUAD8", "CTRIA6"), _SHELL),
+    **dict.fromkeys(_SHELLS, _SHELL),
     "CBAR": ("PBAR", "PBARL"),
     "CBEAM": ("PBEAM", "PBEAML"),
     "CROD": ("PROD",),
 }
 """Properties by the elements that may have them."""
+_FIRST_GRID = {
+    **dict.fromkeys(("CBAR", "CBEAM", "CROD", "CTUBE", *_SHELLS), 2),
+    **dict.fromkeys(("CTETRA", "CPENTA", "CHEXA", "CPYRAM"), 2),
+    "CONROD": 1,
+}
+"""Field of the first grid of elements that a new grid can take over."""
+_LEFT = ("RBE2", "RBE3", "RBAR", "RBE1", "CELAS1", "CELAS2", "CBUSH", "CONM1", "CONM2")
 
 
 @dataclass(frozen=True)
@@ -88,10 +96,23 @@ def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
 
 
 def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+    """Put springs to ground on the grids named, in equal parts.
+
+    A grid whose displacements are not in basic axes gets a companion that follows it and is.
+    """
     grids, number = finding.where["grids"], free_id(text, "element")
     part = float(finding.magnitude["stiffness"]) / len(grids)
-    at = [(g, c) for g in grids for c in finding.magnitude["components"]]
-    rows: list[Row] = [["CELAS2", number + i, part, g, c] for i, (g, c) in enumerate(at)]
+    new, rows = free_id(text, "grid"), list[Row]()
+    for g in grids:
+        host = g
+        if deck.bulk.table("GRID")[g].cd:
+            host, new = new, new + 1
+            rows.append(["GRID", host, 0, *(float(v) for v in _grid_xyz(deck, g)), 0])
+            rows.append(["RBE2", number, g, "123456", host])
+            number += 1
+        for c in finding.magnitude["components"]:
+            rows.append(["CELAS2", number, part, host, c])
+            number += 1
     return Adopted(
         add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
     )
@@ -182,14 +203,38 @@ def _support(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     components = list(finding.magnitude["components"])
     cards: list[str] = []
     for grid in finding.where["grids"]:
-        attached = []
-        for name in ("CBAR", "CBEAM", "CROD", "CQUAD4", "CTRIA3"):
-            for number, card in deck.bulk.table(name).items():
-                if grid in [n for n in card.node_ids if n]:
-                    attached.append(int(number))
-        done = _detached(text, deck, finding, attached, components, grid)
+        _refuse_others(deck, grid)
+        done = _detached(text, deck, finding, _attached(deck, grid), components, grid)
         text, cards = done.deck, [*cards, *done.cards]
     return Adopted(text, tuple(cards))
+
+
+def _attached(deck: Deck, grid: int) -> list[int]:
+    """Elements of a grid."""
+    return [
+        int(number)
+        for name in _FIRST_GRID
+        for number, card in deck.bulk.table(name).items()
+        if grid in _grids(card)
+    ]
+
+
+def _grids(card: Any) -> list[int]:
+    """Grids that a card as read refers to."""
+    if card.type in ("RBE2", "RBE3", "RBE1"):
+        return [*card.independent_nodes, *card.dependent_nodes]
+    return [n for n in card.node_ids if n]
+
+
+def _refuse_others(deck: Deck, grid: int) -> None:
+    """Refuse a grid that carries what cannot be moved to a new one."""
+    for name in _LEFT:
+        for number, card in deck.bulk.table(name).items():
+            if grid in _grids(card):
+                raise InputError(
+                    f"grid {grid} also carries {name} {number}, which stays where it is: put the "
+                    "spring between the two by hand"
+                )
 
 
 def _detached(
@@ -212,12 +257,12 @@ def _detached(
         *(["CELAS2", number + 1 + i, k, grid, c, new, c] for i, c in enumerate(components)),
     ]
     edits = []
-    for name in ("CBAR", "CBEAM", "CROD", "CQUAD4", "CTRIA3"):
+    for name, first in _FIRST_GRID.items():
         table = deck.bulk.table(name)
         for e in elements:
             if e in table:
                 member = find_card(text, name, e)
-                places = range(2, 2 + len(table[e].node_ids))
+                places = range(first, first + len(table[e].node_ids))
                 edits.append((member, {next(i for i in places if _is(member, i, grid)): new}))
     changed = edit_cards(text, edits)
     return Adopted(
@@ -234,6 +279,7 @@ def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     """
     grids, (c,) = finding.where["grids"], finding.magnitude["components"]
     m, hz = float(finding.magnitude["mass"]), float(finding.magnitude["frequency_hz"])
+    stiffness = m * deck.param("WTMASS", 1.0) * (2.0 * np.pi * hz) ** 2
     new, number = free_id(text, "grid"), free_id(text, "element")
     xyz = [float(v) for v in np.mean([_grid_xyz(deck, g) for g in grids], axis=0)]
     host, rows = grids[0], list[Row]()
@@ -249,7 +295,7 @@ def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
         rows += [["GRID", host, 0, *xyz, 0], ["RBE2", number, grids[0], "123456", host]]
     rows += [
         ["GRID", new, 0, *xyz, 0, "".join(str(k) for k in range(1, 7) if k != c)],
-        ["CELAS2", number + 1, m * (2.0 * np.pi * hz) ** 2, host, c, new, c],
+        ["CELAS2", number + 1, stiffness, host, c, new, c],
         ["CONM2", number + 2, new, None, m],
     ]
     return Adopted(

@@ -28,6 +28,7 @@ def discover(study: Study, output: Output) -> None:
 def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     """Write the run folder of a discovery; return its result and where it is."""
     from ...adapters.nastran import parse_parameter, read_deck, weight
+    from ...adapters.nastran.mass_unit import mass_unit
     from ...adapters.nastran.structure import build_structure, known_parameters
     from ...core import eigen
     from ...core.comparison import compare, place_test
@@ -88,6 +89,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
                 solution,
                 placed,
                 weight(deck).mass,
+                mass_unit(deck, study.deck_length_unit or geometry.length_unit),
             ),
             told,
         )

@@ -8,6 +8,7 @@ from ..arrays import Floats
 from ..comparison import Placed
 from ..eigen import Eigensolution
 from .search import Effort
+from .story import MassUnit
 from .structure import Structure
 
 
@@ -26,7 +27,9 @@ class Request:
     placed : Placed
         The test on the model.
     mass : float
-        Of the structure, deck units.
+        Of the structure, in units of the mass matrix.
+    masses : MassUnit
+        What masses are said in.
     """
 
     structure: Structure
@@ -34,4 +37,5 @@ class Request:
     solution: Eigensolution
     placed: Placed
     mass: float
+    masses: MassUnit = field(default_factory=MassUnit)
     effort: Effort = field(default_factory=Effort)

@@ -12,7 +12,17 @@ from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
 from .fitting import Fit
-from .judge import Judgement, contenders, cost, credible_places, deviations, instead, summary, times
+from .judge import (
+    Judgement,
+    contenders,
+    cost,
+    credible_places,
+    deviations,
+    explained,
+    instead,
+    summary,
+    times,
+)
 from .places import region
 from .request import Request
 from .search import Found, Searcher
@@ -116,8 +126,10 @@ def _finding(
     intervals = sizes[:, None] * np.exp(1.96 * spread[:, None] * np.array([-1.0, 1.0]))
     where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
     where["region"] = region(geometry, c.xyz[s.row])
-    magnitude = magnitude_of(c, s.row, sizes, intervals)
-    interval = (float(intervals[0, 0]), float(intervals[0, 1]))
+    magnitude = magnitude_of(c, s.row, sizes, intervals, request.masses)
+    first = intervals[0] * (request.masses.card if "mass" in magnitude else 1.0)
+    interval = (float(first[0]), float(first[1]))
+    modes = [j + 1 for j in explained(searcher, best, number, verdict.scale)]
     next_best = alternatives[0] if alternatives else None
     return Finding(
         "model",
@@ -127,7 +139,7 @@ def _finding(
         interval,
         _credible(searcher, found, verdict, number),
         _confidence(verdict),
-        sentence_of(c.kind, magnitude, where["region"], interval, next_best),
+        sentence_of(c.kind, magnitude, where["region"], interval, modes, request.masses, next_best),
         {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
     )
 

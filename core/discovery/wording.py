@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ..arrays import Floats
 from .candidates import Candidates
 from .findings import Alternative
+from .story import MassUnit, mode_ranges
 
 _SAYS = {
-    "point_mass": "About {mass:.3g} of mass (deck units) is missing {region}: an attached mass",
-    "distributed_mass": "About {mass:.3g} of mass (deck units), spread out, is missing {region}: "
-    "distributed mass",
+    "point_mass": "About {mass} of mass is missing {region}: an attached mass",
+    "distributed_mass": "About {mass} of mass, spread out, is missing {region}: distributed mass",
     "local_stiffness": "The stiffness is {factor:.2g} times the deck's {region}: a local change of "
     "stiffness",
     "ground_spring": "A spring to ground of about {stiffness:.3g} (deck units) in direction "
     "{components} is missing {region}: it",
     "support_flexibility": "The support gives {region}, direction {components}, with a stiffness "
     "of about {stiffness:.3g} (deck units): it",
-    "tuned_absorber": "About {mass:.3g} of mass (deck units) on a spring tuned to "
+    "tuned_absorber": "About {mass} of mass on a spring tuned to "
     "{frequency_hz:.4g} Hz in direction {components} is missing {region}: an absorber, which adds "
     "a mode,",
     "joint_flexibility": "The joint gives {region} with a rotational stiffness of about "
@@ -33,7 +34,9 @@ _TEST = {
 }
 
 
-def magnitude_of(c: Candidates, row: int, sizes: Floats, intervals: Floats) -> dict[str, Any]:
+def magnitude_of(
+    c: Candidates, row: int, sizes: Floats, intervals: Floats, masses: MassUnit
+) -> dict[str, Any]:
     """Return the magnitudes of a finding by the words of the interface.
 
     Parameters
@@ -43,19 +46,21 @@ def magnitude_of(c: Candidates, row: int, sizes: Floats, intervals: Floats) -> d
     sizes : (t,) float
     intervals : (t, 2) float
         95 %; that of the first magnitude stands beside the magnitudes, in the finding.
+    masses : MassUnit
+        Masses are given as cards have them.
     """
     where, size = c.where[row], float(sizes[0])
     if c.kind == "point_mass":
-        return {"mass": size}
+        return {"mass": size * masses.card}
     if c.kind == "distributed_mass":
         area = c.extra.get("areas")
-        per_area = None if area is None else size / float(area[row])
-        return {"mass": size, "mass_per_area": per_area}
+        mass = size * masses.card
+        return {"mass": mass, "mass_per_area": None if area is None else mass / float(area[row])}
     if c.kind == "local_stiffness":
         return {"factor": size}
     if c.kind == "tuned_absorber":
         return {
-            "mass": size,
+            "mass": size * masses.card,
             "frequency_hz": float(sizes[1]),
             "frequency_hz_interval": intervals[1].tolist(),
             "components": where["components"],
@@ -68,14 +73,21 @@ def sentence_of(
     magnitude: dict[str, Any],
     region: str,
     interval: tuple[float, float],
+    modes: Sequence[int],
+    masses: MassUnit,
     next_best: Alternative | None,
 ) -> str:
-    """Say what is missing, where, how sure, and what comes next."""
+    """Say what is missing, where, which test modes it explains, how sure, and what comes next."""
     values = {**magnitude, "region": region}
+    low, high = (f"{v:.3g}" for v in interval)
     if "components" in values:
         values["components"] = "".join(str(k) for k in values["components"])
+    if "mass" in values:
+        values["mass"] = masses.said(float(magnitude["mass"]))
+        low, high = masses.said(interval[0]).split()[0], masses.said(interval[1])
     text = _SAYS[kind].format(**values)
-    text += f" explains the measured modes (95 %: {interval[0]:.3g} to {interval[1]:.3g})"
+    what = f"test {mode_ranges(modes)}" if modes else "the test a little better"
+    text += f" explains {what} (95 %: {low} to {high})"
     if next_best is not None:
         what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
         text += f"; next best, {what}, is {next_best.times_less_likely:.2g} times less likely"

@@ -29,9 +29,14 @@ def to_middle_nodes(share: Floats, xyz: Floats, corners: int) -> Floats:
     Returns
     -------
     (n, k) float
-        Zero at the corners.
+        Zero at the corners; nothing of elements without mass.
     """
     total = share.sum(axis=1)
+    heavy = total > 0.0
+    if not heavy.all():
+        out = np.zeros_like(share)
+        out[heavy] = to_middle_nodes(share[heavy], xyz[heavy], corners) if heavy.any() else 0.0
+        return out
     centre = np.einsum("nk,nkd->nd", share, xyz) / total[:, None]
     r = xyz - centre[:, None]
     size = np.sqrt((r**2).sum(axis=2).max(axis=1))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.core.elements import HEXA20, PENTA15, PYRAMID13, TETRA10, TRIA6_EDGES, tria6_mass
+from trueup.core.elements.lumping import to_middle_nodes
 from trueup.core.elements.solid import solid_mass
 
 CORNERS = {
@@ -56,3 +57,11 @@ def test_flat_triangle():
     m = np.diag(tria6_mass(xyz[None], np.array([2.0]), False)[0])[::6]
     assert m.sum() == pytest.approx(3.0)
     np.testing.assert_allclose(m @ xyz / 3.0, corner.mean(axis=0), atol=1e-12)
+
+
+def test_an_element_without_mass_gets_none_and_leaves_the_others_theirs():
+    square = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
+    xyz = np.concatenate([square, 0.5 * (square + np.roll(square, -1, axis=0))])
+    share = np.array([[-1.0 / 12.0] * 4 + [1.0 / 3.0] * 4])
+    both = to_middle_nodes(np.vstack([share, 0.0 * share]), np.stack([xyz, xyz]), 4)
+    np.testing.assert_allclose(both, [[0.0] * 4 + [0.25] * 4, [0.0] * 8], atol=1e-12)

@@ -1,0 +1,193 @@
+"""Every effect written into a deck, read back and solved: the frequencies of a closed form.
+
+Decks of one or two masses whose bars are so stiff that only the effect gives.
+"""
+
+import numpy as np
+import pytest
+
+from trueup.adapters.nastran import build_model, read_deck, read_deck_text, weight, write_deck
+from trueup.adapters.nastran.adopt import adopt
+from trueup.core import eigen
+from trueup.core.discovery.findings import Finding
+from trueup.core.errors import InputError
+
+WTMASS = 0.00259
+
+MASS = """CEND
+BEGIN BULK
+PARAM,WTMASS,{wtmass}
+CORD2R,7,,0.,0.,0.,0.,1.,1.
+,1.,0.,0.
+GRID,1,,10.,20.,30.,{cd},456
+CELAS2,1,4.0E4,1,1
+CELAS2,2,6.0E4,1,2
+CELAS2,3,9.0E4,1,3
+CONM2,4,1,,0.01
+ENDDATA
+"""
+
+STIFF_ARMS = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,123456
+GRID,2,,100.,0.,0.
+GRID,3,,100.,200.,0.
+CBAR,1,1,1,2,0.,0.,1.
+CBAR,2,1,2,3,0.,0.,1.
+PBAR,1,1,1.+4,1.+8,1.+8,1.+8
+MAT1,1,2.+7,,.3
+CONM2,9,3,,0.02
+ENDDATA
+"""
+
+ROD = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,123456
+GRID,2,,50.,0.,0.,,23456
+GRID,3,,100.,0.,0.,,23456
+CROD,1,1,1,2
+CROD,2,1,2,3
+PROD,1,1,2.
+MAT1,1,70000.,,.3
+CONM2,9,3,,0.02
+ENDDATA
+"""
+
+PLATE = """CEND
+BEGIN BULK
+PARAM,WTMASS,{wtmass}
+GRID,1,,0.,0.,0.
+GRID,2,,40.,0.,0.
+GRID,3,,80.,0.,0.
+GRID,4,,0.,30.,0.
+GRID,5,,40.,30.,0.
+GRID,6,,80.,30.,0.
+CQUAD4,1,1,1,2,5,4
+CQUAD4,2,1,2,3,6,5
+PSHELL,1,1,2.,1
+MAT1,1,70000.,,0.3,2.7-6
+ENDDATA
+"""
+
+
+def finding(kind, magnitude, **where):
+    place = {"xyz": [0.0, 0.0, 0.0], "region": "near grid 1", **where}
+    return Finding("model", kind, place, magnitude, (0.9, 1.1), (), 0.9, "Something is missing.")
+
+
+def completed(folder, text, what):
+    """Return the completed deck and its frequencies [Hz], of a mode with stiffness."""
+    (folder / "deck.bdf").write_text(text)
+    read = read_deck_text(folder / "deck.bdf")
+    done = adopt(read, read_deck(folder / "deck.bdf"), what)
+    deck = read_deck(write_deck(done.deck, folder / "out"))
+    model = build_model(deck)
+    found = eigen.solve(model, n_modes=min(3, model.n_free))
+    return deck, np.sqrt(np.abs(found.eigenvalues)) / (2.0 * np.pi)
+
+
+def hz(k, m):
+    return np.sqrt(k / m) / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize("wtmass", [1.0, WTMASS])
+def test_a_mass_counts_as_cards_count_masses(tmp_path, wtmass):
+    what = finding("point_mass", {"mass": 0.004}, grids=[1])
+    _, found = completed(tmp_path, MASS.format(cd="", wtmass=wtmass), what)
+    np.testing.assert_allclose(found, hz(np.array([4e4, 6e4, 9e4]), 0.014 * wtmass), rtol=1e-9)
+
+
+@pytest.mark.parametrize("cd", ["", "7"])
+@pytest.mark.parametrize("c", [1, 2, 3])
+def test_a_spring_acts_along_the_basic_axis_whatever_the_grids_own_axes(tmp_path, cd, c):
+    what = finding("ground_spring", {"stiffness": 3e4, "components": [c]}, grids=[1])
+    _, found = completed(tmp_path, MASS.format(cd=cd, wtmass=1.0), what)
+    z = np.array([0.0, 1.0, 1.0]) / np.sqrt(2.0)
+    x = np.array([1.0, 0.0, 0.0])
+    T = np.column_stack([x, np.cross(z, x), z]) if cd else np.eye(3)
+    K = T @ np.diag([4e4, 6e4, 9e4]) @ T.T
+    K[c - 1, c - 1] += 3e4
+    np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K), 0.01), rtol=1e-6)
+
+
+def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):
+    what = finding("support_flexibility", {"stiffness": 5e5, "components": [4, 5, 6]}, grids=[1])
+    _, found = completed(tmp_path, STIFF_ARMS, what)
+    r = np.array([100.0, 200.0, 0.0])
+    J = 0.02 * (r @ r * np.eye(3) - np.outer(r, r))
+    expected = hz(5e5, np.linalg.eigvalsh(J)[1:][::-1])
+    np.testing.assert_allclose(found[:2], expected, rtol=1e-3)
+
+
+def test_a_foot_that_sinks_moves_the_mass_straight(tmp_path):
+    what = finding("support_flexibility", {"stiffness": 300.0, "components": [3]}, grids=[1])
+    _, found = completed(tmp_path, STIFF_ARMS, what)
+    assert found[0] == pytest.approx(hz(300.0, 0.02), rel=1e-3)
+
+
+def test_a_soft_joint_swings_what_is_beyond_it(tmp_path):
+    what = finding(
+        "joint_flexibility",
+        {"stiffness": 5e5, "components": [4, 5, 6]},
+        grids=[2],
+        elements=[2],
+    )
+    _, found = completed(tmp_path, STIFF_ARMS, what)
+    np.testing.assert_allclose(found[:2], hz(5e5, 0.02 * 200.0**2), rtol=1e-3)
+
+
+def test_a_soft_half_of_a_rod_is_two_springs_in_series(tmp_path):
+    what = finding("local_stiffness", {"factor": 0.25}, elements=[1])
+    _, found = completed(tmp_path, ROD, what)
+    k = 70000.0 * 2.0 / 50.0
+    assert found[0] == pytest.approx(hz(1.0 / (1.0 / (0.25 * k) + 1.0 / k), 0.02), rel=1e-6)
+
+
+@pytest.mark.parametrize("wtmass", [1.0, WTMASS])
+def test_a_spread_mass_lies_on_its_elements_alone(tmp_path, wtmass):
+    what = finding("distributed_mass", {"mass": 0.012, "mass_per_area": 1e-5}, elements=[2])
+    deck, _ = completed(tmp_path, PLATE.format(wtmass=wtmass), what)
+    each = 1200.0 * 2.0 * 2.7e-6
+    w = weight(deck)
+    assert w.mass == pytest.approx(wtmass * (2.0 * each + 0.012), rel=1e-9)
+    x = (20.0 * each + 60.0 * (each + 0.012)) / (2.0 * each + 0.012)
+    assert w.centre_of_gravity[0] == pytest.approx(x, rel=1e-9)
+
+
+HELD_BY_MORE = STIFF_ARMS.replace("ENDDATA", "{card}\nENDDATA")
+
+
+@pytest.mark.parametrize(
+    "card", ["RBE2,50,1,123456,4\nGRID,4,,0.,0.,9.", "CELAS2,50,9.,1,1,3,1", "CONM2,50,1,,.1"]
+)
+def test_a_support_with_more_on_it_than_elements_is_not_taken_apart(tmp_path, card):
+    (tmp_path / "deck.bdf").write_text(HELD_BY_MORE.format(card=card))
+    what = finding("support_flexibility", {"stiffness": 300.0, "components": [3]}, grids=[1])
+    text = read_deck_text(tmp_path / "deck.bdf")
+    with pytest.raises(InputError, match=f"grid 1 .*{card.split(',')[0]} 50"):
+        adopt(text, read_deck(tmp_path / "deck.bdf"), what)
+
+
+def test_an_edge_of_eight_noded_shells_gives_as_one(tmp_path):
+    """A stiff shell on two feet that sink alike: a mass on one spring."""
+    deck = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,123456
+GRID,2,,0.,40.,0.,,123456
+GRID,3,,40.,0.,0.,,12456
+GRID,4,,40.,40.,0.,,12456
+GRID,5,,0.,20.,0.,,123456
+GRID,6,,20.,0.,0.,,12456
+GRID,7,,40.,20.,0.,,12456
+GRID,8,,20.,40.,0.,,12456
+CQUAD8,1,1,1,3,4,2,6,7
+,8,5
+PSHELL,1,1,20.,1,,1
+MAT1,1,7.+9,,0.3
+CONM2,9,3,,0.01
+CONM2,10,4,,0.01
+ENDDATA
+"""
+    what = finding("support_flexibility", {"stiffness": 600.0, "components": [3]}, grids=[1, 2, 5])
+    _, found = completed(tmp_path, deck, what)
+    assert found[0] == pytest.approx(hz(600.0, 0.02), rel=1e-3)
