@@ -264,7 +264,7 @@ def _on(placed: Any, model: Any, again: Any) -> Any:
 
 def _corrected(placed: Any, found: Any) -> Any:
     """Return the test as sound sensors would have read it, less what cannot be known."""
-    from ...core.discovery.sensors import corrected, lost
+    from ...core.discovery.faults import corrected, lost
 
     shapes = corrected(placed.test.shapes, found.corrected_sensors)
     left = ~lost(found.corrected_sensors, len(shapes))

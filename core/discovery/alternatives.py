@@ -27,10 +27,8 @@ _SHARE = {"sensor_polarity": 0.25, "sensor_gain": 0.25, "doubled": 0.1, "sensor_
 _LONELY_AXIS = 0.05
 """Share of a turned sensor where a node has one."""
 _EXCHANGED = 0.05
-_IN_PROPORTION = 0.05
-"""Share of nodes at which a model may be wrong by a factor of its own in all modes."""
 _PROPORTION = 0.04
-"""Scale of that factor less 1, times the rms of what is predicted, at least."""
+"""What a model has wrong in proportion at a node, at least, over the rms of a shape."""
 _SCATTER = 0.02
 """Of sound gains."""
 _WHOLE = 0.6
@@ -71,12 +69,14 @@ class Alternative:
 class Before:
     """What is assumed of a node before its readings are looked at.
 
-    `faulty` is the chance of any fault; `shares` those of `readings.LOCAL`; `proportion` the
-    scale of what a model has wrong in proportion, over the rms of a shape.
+    `faulty` is the chance of any fault; `shares` those of `readings.LOCAL`; `in_proportion` the
+    chance that the model is wrong by a factor of its own there in all modes, and `proportion`
+    the scale of what it then has wrong, over the rms of a shape.
     """
 
     faulty: float
     shares: Floats
+    in_proportion: float
     proportion: float
 
 
@@ -147,7 +147,7 @@ def _scaled(
         told("sensor_polarity", reverse + near(1.0), sure * _SHARE["sensor_polarity"], -1.0),
         told("doubled", log + near(2.0), sure * _SHARE["doubled"], 2.0),
         told("sensor_gain", as_fault, sure * _SHARE["sensor_gain"], factor, np.sqrt(spread)),
-        told("model", log + model, _IN_PROPORTION * share, 1.0),
+        told("model", log + model, before.in_proportion * share, 1.0),
     ]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from .sensors import Fault
+from .faults import Fault
 
 VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
 

@@ -56,6 +56,11 @@ class Survey:
         out[of[order], place] = order
         return out
 
+    def rows(self, node: int) -> Ints:
+        """Return the rows of a node by its number in `slots`."""
+        own = self.slots[node]
+        return np.asarray(own[own >= 0])
+
     def unit(self) -> Floats:
         """Return the shapes with unit rms."""
         rms = np.sqrt(np.mean(self.shapes**2, axis=0))

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Floats
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
+from .faults import Fault
 from .findings import Alternative, Discovery, Finding, MovedParameter
 from .fitting import Fit
 from .judge import (
@@ -26,7 +27,6 @@ from .judge import (
 from .places import region
 from .request import Request
 from .search import Found, Searcher
-from .sensors import Fault
 from .wording import magnitude_of, sentence_of, test_sentence
 
 _SIGNIFICANT = 3.0

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.core.discovery.rings import judged, planar, radial, read, survey, vibrating
 
-from trueup.core.discovery.sensors import corrected, judge_sensors, lost
+from trueup.core.discovery.faults import corrected, lost
+from trueup.core.discovery.sensors import judge_sensors
 from trueup.core.discovery.turning import rotation
 
 
