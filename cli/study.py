@@ -46,6 +46,8 @@ class Study:
     max_iterations: int = 10
     frequency_sigma: float = 0.01
     shape_sigma: float = 0.1
+    frequency_scatter: float | None = None
+    shape_scatter: float | None = None
     regularisation: float = 1e-2
     stages: tuple[StageRequest, ...] = ()
     out: Path | None = None
@@ -57,6 +59,12 @@ class Study:
             raise InputError(
                 f"deck_length_unit is '{self.deck_length_unit}'; give one of {', '.join(UNITS)}"
             )
+        for name in ("frequency_scatter", "shape_scatter"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value < 1.0:
+                raise InputError(
+                    f"{name} is {value:g}; give the standard deviation as a share, 0 to 1"
+                )
         if any(m < 1 for m in self.test_modes):
             raise InputError("test_modes are mode numbers in the test file and count from 1")
 

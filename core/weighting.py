@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Floats, Numbers, frozen
+from .errors import InputError
 
 _OF_SENSORS = 0.05
 """Error of a reading besides that of the fit, over the rms reading: gain, place, model."""
@@ -59,6 +60,34 @@ def mode_errors(frequencies_hz: Floats, shapes: Numbers, f_std: Floats, std: Flo
     """
     rms = np.sqrt(np.mean(np.abs(shapes) ** 2, axis=0))
     return ModeErrors(f_std / frequencies_hz, std / np.maximum(rms, np.finfo(float).tiny))
+
+
+def with_scatter(
+    errors: ModeErrors | None, n_sensor: int, n_test: int, frequency: float, shape: float
+) -> ModeErrors:
+    """Add the scatter of a test that its user states, the same for all modes and sensors.
+
+    Parameters
+    ----------
+    errors : ModeErrors or None
+        Of the identification, if any.
+    n_sensor, n_test : int
+    frequency, shape : float
+        Standard deviations: of a frequency over itself, of a reading over the rms of its shape.
+
+    Raises
+    ------
+    InputError
+        Scatter below zero.
+    """
+    if frequency < 0.0 or shape < 0.0:
+        raise InputError("the scatter of a test is zero or more; correct it in the study")
+    given = ModeErrors(np.full(n_test, frequency), np.full((n_sensor, n_test), shape))
+    if errors is None:
+        return given
+    return ModeErrors(
+        np.hypot(errors.frequency, given.frequency), np.hypot(errors.shape, given.shape)
+    )
 
 
 def told(errors: ModeErrors, labels: Sequence[str]) -> str:

@@ -35,6 +35,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.discovery.discover import Request
     from ...core.discovery.discover import discover as find
     from ...core.results import correlate_tables, disagreement_tables
+    from ...core.weighting import with_scatter
     from ..inplace import put_in_place
     from ..pipeline import criteria_of, highest_frequency, read_measurement
     from ..runfolder import refuse_existing, run_folder
@@ -72,6 +73,15 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             motion=model.expansion,
             seed=study.seed,
         )
+        if study.frequency_scatter is not None or study.shape_scatter is not None:
+            errors = with_scatter(
+                placed.errors,
+                len(placed.observation),
+                len(placed.test),
+                study.frequency_scatter or 0.0,
+                study.shape_scatter or 0.0,
+            )
+            placed = replace(placed, errors=errors)
     before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
 
     with working("mapping where model and test disagree", output):

@@ -27,8 +27,6 @@ _SHARE = {"sensor_polarity": 0.25, "sensor_gain": 0.25, "doubled": 0.1, "sensor_
 _LONELY_AXIS = 0.05
 """Share of a turned sensor where a node has one."""
 _EXCHANGED = 0.05
-_PROPORTION = 0.04
-"""What a model has wrong in proportion at a node, at least, over the rms of a shape."""
 _SCATTER = 0.02
 """Of sound gains."""
 _WHOLE = 0.6
@@ -69,15 +67,16 @@ class Alternative:
 class Before:
     """What is assumed of a node before its readings are looked at.
 
-    `faulty` is the chance of any fault; `shares` those of `readings.LOCAL`; `in_proportion` the
-    chance that the model is wrong by a factor of its own there in all modes, and `proportion`
-    the scale of what it then has wrong, over the rms of a shape.
+    `faulty` is the chance of any fault; `shares` those of `readings.LOCAL`; `proportion` the
+    scale of what sound nodes have off in proportion, over the rms of a shape; `in_proportion`
+    (n, 3) the chance that the model is wrong there by a factor of its own in all modes, by how
+    much, and its spread, both over the rms of a shape.
     """
 
     faulty: float
     shares: Floats
-    in_proportion: float
     proportion: float
+    in_proportion: Floats
 
 
 def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Alternative]:
@@ -129,8 +128,9 @@ def _scaled(
         scale = np.hypot(_SCATTER, before.proportion / size)
         return np.asarray(norm.logpdf(_LOG_GAIN - np.log(factor), scale=scale) + np.log(step))
 
-    scale = max(before.proportion, _PROPORTION) / size
-    model = student.logpdf((gains - 1.0) / scale, _TAIL) + np.log(gains / scale * step)
+    chance, centre, scale = before.in_proportion.T[..., None]
+    off = ((gains - 1.0) * size - centre) / scale
+    model = logsumexp(student.logpdf(off, _TAIL), axis=0, b=chance * gains * size / scale * step)
     wide = np.where(np.abs(_LOG_GAIN) > _LEAST, np.exp(-0.5 * (_LOG_GAIN / _SPREAD) ** 2), 1e-300)
     as_fault = log + np.log(wide / wide.sum())
     weight = np.exp(as_fault - as_fault.max())
@@ -147,7 +147,7 @@ def _scaled(
         told("sensor_polarity", reverse + near(1.0), sure * _SHARE["sensor_polarity"], -1.0),
         told("doubled", log + near(2.0), sure * _SHARE["doubled"], 2.0),
         told("sensor_gain", as_fault, sure * _SHARE["sensor_gain"], factor, np.sqrt(spread)),
-        told("model", log + model, before.in_proportion * share, 1.0),
+        told("model", log + model, share, 1.0),
     ]
 
 

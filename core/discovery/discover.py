@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 
 from ..arrays import Bools, Floats
 from ..correlation import realised
@@ -15,7 +16,7 @@ from ..errors import TrueupError
 from .basis import Flexibility, build_basis
 from .bench import Bench
 from .candidates import Candidates
-from .evidence import Evidence, Noise
+from .evidence import Evidence, noise_of
 from .findings import Discovery
 from .fitting import Fit, Prior, Problem, evaluate, fit
 from .judge import (
@@ -142,16 +143,16 @@ def _hz(eigenvalues: Floats) -> Floats:
 def _prepared(request: Request, noise: float, modes: Any, sensors: Any) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
     model, hz = request.structure.model, request.placed.test.frequencies_hz
-    shapes = realised(request.placed.test.shapes)
+    placed = request.placed
+    shapes = np.asarray(placed.weighted(realised(placed.test.shapes)))
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    sigma = Noise(shape=float(np.hypot(noise, 0.04)))
-    whole = Evidence(hz, unit, sigma)
+    whole = Evidence(hz, unit, noise_of(placed.errors, noise))
     e = whole.take(modes, sensors)
     below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
     targets = int(below.sum())
     basis = build_basis(model, request.solution, targets)
     basis = with_consistent_bars(request.structure, basis)
-    observed = np.asarray(request.placed.observation.matrix @ basis.motion)
+    observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
     prior = Prior(
         np.append(request.spread, _MESH[0]),
         np.append(np.log([q.lower for q in model.parameters]), _MESH[1]),
@@ -241,7 +242,8 @@ def _polished(
 ) -> Fit:
     """Fit a hypothesis on a basis of its own."""
     model = request.structure.model
-    observation = (request.placed.observation.matrix @ model.expansion).tocsr()
+    placed = request.placed
+    observation = sp.csr_matrix(placed.weighted(placed.observation.matrix @ model.expansion))
     top = float(request.placed.test.frequencies_hz.max()) * 1.25
     modes = int(np.count_nonzero(_hz(request.solution.eigenvalues) < top)) + 8
     return polished(request.structure, made, observation, sensors, searcher.problem, state, modes)

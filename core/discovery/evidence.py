@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..arrays import Bools, Floats, Ints
+from ..weighting import ModeErrors
 
+_PLACED = 0.04
+"""What a right model misses of a shape: positions of sensors, discretisation."""
 _UNSEEN = 1e-10
 """Squared length at the sensors, relative to the largest, of a mode that they do not see."""
 
@@ -19,9 +22,9 @@ class Noise:
 
     Parameters
     ----------
-    frequency : float
+    frequency : float or (n_test,) float
         Of ln f: test scatter and what discretisation leaves after the moduli took their part.
-    shape : float
+    shape : float or (n_test,) float
         Of one sensor's reading, relative to the rms of the shape.
     independent : float
         Number of sensors that count as independent: errors of a model are smooth over the
@@ -33,11 +36,39 @@ class Noise:
         differ by no more than this turn freely within their subspace.
     """
 
-    frequency: float = 0.004
-    shape: float = 0.05
+    frequency: float | Floats = 0.004
+    shape: float | Floats = 0.05
     independent: float = 12.0
     robust: float = 40.0
     mixing: float = 0.02
+
+    def of(self, modes: Ints | Bools) -> Noise:
+        """Return the noise of some modes."""
+        f, s = (
+            v if np.ndim(v) == 0 else np.asarray(v)[modes] for v in (self.frequency, self.shape)
+        )
+        return replace(self, frequency=f, shape=s)
+
+
+def noise_of(errors: ModeErrors | None, level: float) -> Noise:
+    """Return the noise of a test: what its errors are, and what a model always leaves.
+
+    Parameters
+    ----------
+    errors : ModeErrors or None
+        Standard errors of the modes, identified or given.
+    level : float
+        Of a sound sensor besides those, over the rms of the shape.
+    """
+    usual = Noise()
+    shape = float(np.hypot(level, _PLACED))
+    if errors is None:
+        return replace(usual, shape=shape)
+    return replace(
+        usual,
+        frequency=np.hypot(usual.frequency, errors.frequency),
+        shape=np.hypot(shape, errors.length),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +92,7 @@ class Evidence:
         """Return part of the evidence, shapes of unit length again."""
         part = self.shapes[sensors][:, modes]
         length = np.maximum(np.linalg.norm(part, axis=0), np.finfo(float).tiny)
-        return Evidence(self.frequencies_hz[modes], part / length, self.noise)
+        return Evidence(self.frequencies_hz[modes], part / length, self.noise.of(modes))
 
 
 def targets(e: Evidence) -> Floats:
@@ -124,7 +155,8 @@ def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) ->
     off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
     n = e.noise
     macs = joint_macs(np.maximum(eigenvalues, floor), cross, gram, n.mixing)
-    d = (off / n.frequency) ** 2 + n.independent * (1.0 - macs) / n.shape**2
+    f, s = np.asarray(n.frequency)[..., None], np.asarray(n.shape)[..., None]
+    d = (off / f) ** 2 + n.independent * (1.0 - macs) / s**2
     return np.asarray(n.robust * np.log1p(d / n.robust))
 
 

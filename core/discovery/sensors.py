@@ -24,7 +24,8 @@ from .weighing import Weighed, weigh
 
 _FEWEST, _FEWEST_MODES = 8, 3
 """Nodes and modes below which nodes cannot judge each other."""
-_NAMED, _DOUBTFUL = 0.5, 0.05
+_NAMED, _DOUBTFUL = 0.6, 0.05
+_ODDS = float(np.log(_NAMED / (1.0 - _NAMED)))
 _KNOWN = 0.97
 """Chance that what is wrong with a faulty sensor is in the list."""
 
@@ -71,11 +72,11 @@ def judge_sensors(survey: Survey, span: Span) -> Verdicts:
 
 
 def faults_of(weighed: Weighed) -> tuple[Fault, ...]:
-    """Return the faults that are more likely than not."""
+    """Return the faults that are likely enough."""
     out: list[Fault] = []
     used: set[int] = set()
     for s in weighed.swaps:
-        if s.odds > 0.0 and not used & set(s.nodes):
+        if s.odds > _ODDS and not used & set(s.nodes):
             used |= set(s.nodes)
             out.append(_swapped(weighed, s))
     for i in weighed.alone:
@@ -96,7 +97,7 @@ def _swapped(weighed: Weighed, s: Swap) -> Fault:
 
 
 def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
-    """Return the likeliest kind of fault of a node, if it is faulty more likely than not."""
+    """Return the likeliest kind of fault of a node, if it is likely enough."""
     share = weighed.shares(i)
     if sum(share.values()) < _NAMED:
         return []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import expit, logsumexp
 
-from ..arrays import Bools, Floats, Ints
+from ..arrays import Bools, Floats
 from .alternatives import Alternative, Before, alternatives
 from .readings import LOCAL, likelihood, local_shares, node_of
 from .survey import Prediction, Span, Survey, predict
@@ -16,10 +16,12 @@ from .swaps import Swap, swaps
 
 _FAULTY = 0.5
 """Faulty nodes that are expected of a test."""
-_IN_PROPORTION = 0.05
-"""Share of nodes at which a model may be wrong by a factor of its own in all modes,"""
-_BESIDE, _NEAR = 0.4, 0.15
-"""and of those nearer than this part of the structure to another that is off its prediction."""
+_IN_PROPORTION, _PROPORTION = 0.05, 0.04
+"""Share of nodes at which a model may be wrong by a factor of its own in all modes, and by how
+much, at least, over the rms of a shape."""
+_BESIDE, _NEAR, _UNLIKE = 0.4, 0.15, 0.5
+"""The same of nodes nearer than this part of the structure to another that is off its prediction,
+and how far their errors are from alike."""
 _SURE = 0.9
 _NO_MODEL = {"sensor_polarity", "sensor_swap"}
 """What no error of a model looks like."""
@@ -87,22 +89,18 @@ def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
     nodes = {i: node_of(said, i, int(count[i])) for i in range(len(aside))}
     sound = np.flatnonzero(~aside)
     likely = np.array([likelihood(nodes[i], nodes[i].identity[None])[0] for i in sound.tolist()])
-    before = Before(
-        _FAULTY / len(aside), local_shares(likely), _IN_PROPORTION, _proportion(said, sound)
-    )
+    off = _in_proportion(said)
+    usual = 1.4826 * float(np.median(np.abs(off[sound])))
+    anywhere = np.array([[_IN_PROPORTION, 0.0, max(usual, _PROPORTION)]])
+    before = Before(_FAULTY / len(aside), local_shares(likely), usual, anywhere)
     doubted = np.flatnonzero(aside).tolist()
     alone = {i: alternatives(nodes[i], _axes(survey, i), before) for i in doubted}
     crossed = swaps(nodes, doubted, alone, before)
-    off = _disturbed(survey, said, Weighed(survey, aside, sigma, alone, crossed))
-    beside = _beside(survey, off)
-    if beside.any():
-        local = replace(
-            before,
-            in_proportion=_BESIDE,
-            shares=(1.0 - _BESIDE) * before.shares + _BESIDE / len(LOCAL),
-        )
-        for i in np.flatnonzero(beside & aside).tolist():
-            alone[i] = alternatives(nodes[i], _axes(survey, i), local)
+    disturbed = _disturbed(survey, said, Weighed(survey, aside, sigma, alone, crossed))
+    near = _near(survey) & disturbed
+    for i in np.flatnonzero(near.any(axis=1) & aside).tolist():
+        alone[i] = alternatives(nodes[i], _axes(survey, i), _beside(before, off[near[i]]))
+    if near[aside].any():
         crossed = swaps(nodes, doubted, alone, before)
     return Weighed(survey, aside, sigma, alone, crossed)
 
@@ -117,13 +115,24 @@ def _disturbed(survey: Survey, said: Prediction, weighed: Weighed) -> Bools:
     return np.asarray(out)
 
 
-def _beside(survey: Survey, off: Bools) -> Bools:
-    """Nodes near to another that is off, (n_node,)."""
+def _near(survey: Survey) -> Bools:
+    """Which nodes are near to each other, (n_node, n_node)."""
     xyz = survey.xyz[survey.slots[:, 0]]
     size = float(np.linalg.norm(np.ptp(xyz, axis=0)))
     apart = np.linalg.norm(xyz[:, None] - xyz[None, :], axis=2)
     np.fill_diagonal(apart, np.inf)
-    return np.asarray((apart[:, off] < _NEAR * size).any(axis=1))
+    return np.asarray(apart < _NEAR * size)
+
+
+def _beside(before: Before, off: Floats) -> Before:
+    """Assume more of a node near to others that are off in proportion by `off`."""
+    spread = np.hypot(_UNLIKE * off, before.in_proportion[0, 2])
+    alike = np.column_stack([np.full(len(off), _BESIDE / len(off)), off, spread])
+    return replace(
+        before,
+        in_proportion=np.vstack([before.in_proportion, alike]),
+        shares=(1.0 - _BESIDE) * before.shares + _BESIDE / len(LOCAL),
+    )
 
 
 def _axes(survey: Survey, i: int) -> Floats | None:
@@ -133,13 +142,11 @@ def _axes(survey: Survey, i: int) -> Floats | None:
     return np.asarray(survey.axis[rows])
 
 
-def _proportion(said: Prediction, sound: Ints) -> float:
-    """Scale of what the model has wrong in proportion at sound nodes, over the rms of a shape."""
+def _in_proportion(said: Prediction) -> Floats:
+    """Error of every node in proportion to its prediction, over the rms of a shape, (n_node,)."""
     k = said.rows
-    mean, read = said.mean[sound][..., :k], said.reading[sound]
-    one = np.diagonal(said.covariance[sound][..., :k, :k], axis1=2, axis2=3) + said.noise[sound]
-    square = np.sum(mean**2 / one, axis=1)
-    gain = np.sum(mean * read / one, axis=1) / np.maximum(square, 1e-12)
-    off = (gain - 1.0) * np.sqrt(np.mean(mean**2, axis=1))
-    off = off[square > 1e-6]
-    return 1.4826 * float(np.median(np.abs(off))) if off.size else 0.0
+    mean = said.mean[..., :k]
+    one = np.diagonal(said.covariance[..., :k, :k], axis1=2, axis2=3) + said.noise
+    square = np.sum(mean**2 / one, axis=(1, 2))
+    gain = np.sum(mean * said.reading / one, axis=(1, 2)) / np.maximum(square, 1e-12)
+    return np.asarray((gain - 1.0) * np.sqrt(np.mean(mean**2, axis=(1, 2))))

@@ -13,9 +13,10 @@ from tests.core.test_updating import measured as target_of
 
 from trueup.core.comparison import compare, place_test
 from trueup.core.correlate import Pair
+from trueup.core.errors import InputError
 from trueup.core.residuals import Weights, eigenvalue_residuals, shape_residuals
 from trueup.core.updating import Stage, update
-from trueup.core.weighting import ModeErrors, mode_errors, told, weight_tables
+from trueup.core.weighting import ModeErrors, mode_errors, told, weight_tables, with_scatter
 
 __all__ = ["analysis"]
 
@@ -105,3 +106,16 @@ def test_a_sensor_that_reads_noise_spoils_no_mac_when_its_error_says_so(analysis
         mac[name] = compare(geometry, modes, placed).correlation.mac.diagonal().min()
     assert mac["as it is"] < 0.9
     assert mac["weighed"] > 0.99
+
+
+def test_scatter_that_the_user_states_adds_to_the_errors_of_identification():
+    alone = with_scatter(None, 3, 2, 0.01, 0.05)
+    np.testing.assert_allclose(alone.frequency, [0.01, 0.01])
+    np.testing.assert_allclose(alone.sensors, 1.0)
+    identified = ModeErrors(np.array([0.0, 0.03]), np.zeros((3, 2)))
+    np.testing.assert_allclose(with_scatter(identified, 3, 2, 0.04, 0.0).frequency, [0.04, 0.05])
+
+
+def test_scatter_below_zero_is_refused():
+    with pytest.raises(InputError, match="zero or more"):
+        with_scatter(None, 3, 2, -0.1, 0.0)

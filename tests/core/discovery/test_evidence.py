@@ -1,7 +1,16 @@
 import numpy as np
 import pytest
 
-from trueup.core.discovery.evidence import Evidence, Noise, joint_macs, matched, mixing, mode_costs
+from trueup.core.discovery.evidence import (
+    Evidence,
+    Noise,
+    joint_macs,
+    matched,
+    mixing,
+    mode_costs,
+    noise_of,
+)
+from trueup.core.weighting import ModeErrors
 
 RNG = np.random.default_rng(0)
 SHAPES = np.linalg.qr(RNG.normal(size=(30, 4)))[0]
@@ -45,3 +54,28 @@ def test_a_perfect_model_costs_nothing_and_matches_in_order():
 def test_parts_of_the_evidence_have_unit_shapes():
     e = Evidence(np.arange(1.0, 5.0), SHAPES, Noise()).take(np.array([0, 2]), np.arange(20))
     np.testing.assert_allclose(np.linalg.norm(e.shapes, axis=0), 1.0)
+
+
+def test_a_mode_known_badly_counts_less():
+    """Twice the standard deviation, a quarter of the misfit."""
+    errors = ModeErrors(np.array([0.0, 0.03]), np.zeros((30, 2)))
+    e = Evidence(np.array([1.0, 2.0]), SHAPES[:, :2], noise_of(errors, 0.02))
+    lam = (2.0 * np.pi * e.frequencies_hz * 1.002) ** 2
+    cross = SHAPES[:, :2].T @ SHAPES[:, :2]
+    one, two = np.diag(mode_costs(e, lam, cross, cross))
+    usual = Noise().frequency
+    assert two / one == pytest.approx(usual**2 / (usual**2 + 0.03**2), rel=0.02)
+
+
+def test_errors_of_a_shape_add_to_what_a_model_always_leaves():
+    errors = ModeErrors(np.zeros(2), np.array([[0.0, 0.3], [0.0, 0.3]]))
+    shape = noise_of(errors, 0.02).shape
+    np.testing.assert_allclose(shape, np.hypot(noise_of(None, 0.02).shape, [0.0, 0.3]))
+
+
+def test_noise_goes_with_its_modes():
+    errors = ModeErrors(np.array([0.01, 0.02, 0.03]), np.zeros((30, 3)))
+    e = Evidence(np.arange(1.0, 4.0), SHAPES[:, :3], noise_of(errors, 0.02))
+    part = e.take(np.array([True, False, True]), np.arange(20))
+    np.testing.assert_allclose(part.noise.frequency, np.asarray(e.noise.frequency)[[0, 2]])
+    assert e.noise.of(np.array([1])).robust == Noise().robust

@@ -123,6 +123,16 @@ def test_what_a_model_lacks_at_one_spot_is_no_fault_of_the_sensors_there():
     assert faults(y) == ()
 
 
+def test_neighbours_off_in_proportion_are_a_model_that_is_wrong_there():
+    """All move 1.4 times what is predicted, as beside a soft foot; one alone is a gain."""
+    y = read(vibrating(), radial())
+    y[14:17] *= 1.4
+    assert faults(y) == ()
+    y = read(vibrating(), radial())
+    y[15] *= 1.4
+    assert named(faults(y)) == {("sensor_gain", (15,))}
+
+
 def test_where_the_model_says_no_motion_a_gain_cannot_be_accused():
     motion = vibrating()
     motion[11] *= 0.1
