@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from ..arrays import Bools, Floats, Ints
@@ -12,7 +10,6 @@ from .survey import Prediction, Span, Survey, predict
 LEVELS = 0.008 * 1.4 ** np.arange(10)
 """Noise of a sound sensor over the rms of its shape that is thought possible."""
 _WIDTHS = 0.03 * 2.0 ** np.arange(5)
-_EVERY = range(len(LEVELS))
 _TRUSTED = 0.85
 """Share of the nodes, the best predicted ones, by which the noise is judged."""
 SUSPICIOUS = 4.0
@@ -37,7 +34,7 @@ def suspects(survey: Survey, span: Span) -> Bools:
         if off[worst] < SUSPICIOUS and number >= always:
             break
         masked[worst] = True
-        level, width = level_of(survey, near, masked, range(max(0, level - 1), level + 1))
+        level = _lowered(survey, near, masked, level, width)
     return masked
 
 
@@ -51,28 +48,44 @@ def distance(said: Prediction, count: Ints) -> Floats:
     return np.asarray(np.minimum(square / count[:, None], 30.0).mean(axis=1))
 
 
-def level_of(
-    survey: Survey, span: Span, masked: Bools, among: Iterable[int] = _EVERY
-) -> tuple[int, Floats]:
+def level_of(survey: Survey, span: Span, masked: Bools) -> tuple[int, Floats]:
     """Noise, by its number in `LEVELS`, and width of every mode that make the nodes likeliest.
 
-    The worst predicted nodes of every mode do not count.
+    Looked for in steps of three, then beside the best.
     """
-    there = (survey.slots >= 0)[:, None, :]
-    keep = max(1, int(_TRUSTED * np.count_nonzero(~masked)))
+    likely = {n: _likeliest(survey, span, masked, n) for n in range(1, len(LEVELS), 3)}
+    best = max(likely, key=lambda n: likely[n][0])
+    beside = (n for n in (best - 1, best + 1) if 0 <= n < len(LEVELS))
+    likely |= {n: _likeliest(survey, span, masked, n) for n in beside}
+    best = max(likely, key=lambda n: likely[n][0])
+    return best, likely[best][1]
+
+
+def _lowered(survey: Survey, span: Span, masked: Bools, level: int, width: Floats) -> int:
+    """Return the level or the next lower one, whichever makes the nodes likelier."""
+    if not level:
+        return level
+    here, lower = (
+        float(_likelihood(survey, span, masked, n, width).sum()) for n in (level, level - 1)
+    )
+    return level - (lower > here)
+
+
+def _likeliest(survey: Survey, span: Span, masked: Bools, level: int) -> tuple[float, Floats]:
+    """Log likelihood at the best width of every mode, and these widths."""
     modes = len(survey.frequencies_hz)
-    best, at, widths = -np.inf, 0, np.full(modes, _WIDTHS[-1])
-    for number in among:
-        each = np.empty((len(_WIDTHS), modes))
-        for w, width in enumerate(_WIDTHS):
-            said = predict(
-                survey, span, float(LEVELS[number]), np.full(modes, float(width)), masked
-            )
-            one = np.diagonal(said.covariance, axis1=2, axis2=3) + said.noise
-            off = said.reading - said.mean
-            log = np.where(there, off**2 / one + np.log(one), 0.0).sum(axis=2)
-            each[w] = -np.sort(log[~masked], axis=0)[:keep].sum(axis=0)
-        total = float(each.max(axis=0).sum())
-        if total > best:
-            best, at, widths = total, number, _WIDTHS[each.argmax(axis=0)]
-    return at, widths
+    each = np.array(
+        [_likelihood(survey, span, masked, level, np.full(modes, float(w))) for w in _WIDTHS]
+    )
+    return float(each.max(axis=0).sum()), _WIDTHS[each.argmax(axis=0)]
+
+
+def _likelihood(survey: Survey, span: Span, masked: Bools, level: int, width: Floats) -> Floats:
+    """Log likelihood of each mode at the nodes, the worst predicted ones left out, (n_mode,)."""
+    said = predict(survey, span, float(LEVELS[level]), width, masked)
+    keep = max(1, int(_TRUSTED * np.count_nonzero(~masked)))
+    one = np.diagonal(said.covariance, axis1=2, axis2=3) + said.noise
+    off = said.reading - said.mean
+    there = (survey.slots >= 0)[:, None, :]
+    log = np.where(there, off**2 / one + np.log(one), 0.0).sum(axis=2)
+    return np.asarray(-np.sort(log[~masked], axis=0)[:keep].sum(axis=0))

@@ -191,3 +191,27 @@ def test_what_a_lone_turned_sensor_should_read_is_not_made_up():
     axes[9] = axes[9] @ rotation(np.radians([0.0, 0.0, 45.0])).T
     found = faults(read(vibrating(), axes))
     assert np.flatnonzero(lost(found, 40)).tolist() == [9]
+
+
+@pytest.mark.slow
+def test_two_hundred_sound_tests_accuse_next_to_nobody():
+    """At the assumed noise no sensor of 8000 is accused, and hardly one is set aside."""
+    verdicts = [judged(read(vibrating(s), radial(), seed=s), radial()) for s in range(200)]
+    assert sum(len(v.faults) for v in verdicts) == 0
+    assert sum(int(v.doubtful.sum()) for v in verdicts) <= 4
+
+
+@pytest.mark.slow
+def test_chances_that_are_told_are_kept():
+    """Of faults told with a chance of p about a share p is there, of gains too that hardly show."""
+    told, true = [], []
+    for seed in range(60):
+        rng = np.random.default_rng([seed, 2])
+        y = read(vibrating(seed), radial(), seed=seed)
+        sensor, factor = int(rng.integers(40)), float(np.exp(rng.normal(0.0, 0.25)))
+        y[sensor] *= factor
+        for f in faults(y):
+            told.append(f.confidence)
+            true.append(f.sensors == (sensor,) and f.kind in {"sensor_gain", "doubled"})
+    assert len(told) > 15
+    assert np.mean(true) > np.mean(told) - 0.1
