@@ -58,7 +58,8 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
     from trueup.core.discovery.candidates import Suspect
 
     spot, _ = spot_of(effect)
-    value = next((effect[k] for k in ("mass", "factor", "stiffness", "damping") if k in effect), 1)
+    sizes = [effect[k] for k in ("mass", "factor", "stiffness", "damping") if k in effect][:1]
+    theta = tuple(math.log(x) for x in (*(sizes or [1.0]), *_tuning(effect)))
     for number, c in enumerate(searcher.problem.catalogue):
         if c.kind != effect["kind"]:
             continue
@@ -67,8 +68,12 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
         if wanted:
             own = [c.where[int(r)].get("components") for r in rows]
             rows = rows[[not o or list(o) == wanted for o in own]]
-        return [Suspect(number, int(r), (math.log(value),)) for r in rows[:count]]
+        return [Suspect(number, int(r), theta) for r in rows[:count]]
     return []
+
+
+def _tuning(effect: dict[str, Any]) -> list[float]:
+    return [effect["frequency_hz"]] if effect["kind"] == "tuned_absorber" else []
 
 
 def describe(searcher: Any, fit: Any) -> str:
@@ -78,7 +83,8 @@ def describe(searcher: Any, fit: Any) -> str:
         c = searcher.problem.catalogue[s.kind]
         x = ", ".join(f"{v:.0f}" for v in c.xyz[s.row])
         words.append(
-            f"{c.kind} ({x}) {math.exp(s.theta[0]):.4g} {c.where[s.row].get('components', '')}"
+            f"{c.kind} ({x}) {' '.join(f'{math.exp(v):.4g}' for v in s.theta)} "
+            f"{c.where[s.row].get('components', '')}"
         )
     return f"{fit.objective:8.1f}  " + "; ".join(words)
 

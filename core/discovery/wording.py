@@ -20,8 +20,9 @@ _SAYS = {
     "support_flexibility": "The support gives {region}, direction {components}, with a stiffness "
     "of about {stiffness:.3g} (deck units): it",
     "tuned_absorber": "About {mass} of mass on a spring tuned to "
-    "{frequency_hz:.4g} Hz in direction {components} is missing {region}: an absorber, which adds "
-    "a mode,",
+    "{frequency_hz:.4g} Hz ({frequency_hz_interval[0]:.4g} to {frequency_hz_interval[1]:.4g}) in "
+    "direction {components} is missing {region}: an absorber, which adds a "
+    "mode,",
     "joint_flexibility": "The joint gives {region} with a rotational stiffness of about "
     "{stiffness:.3g} (deck units): it",
 }

@@ -1,7 +1,7 @@
-"""`trueup discover` on three small cases made by `benchmarks/discovery` (CalculiX, finer mesh).
+"""`trueup discover` on four small cases made by `benchmarks/discovery` (CalculiX, finer mesh).
 
 Kept as files, so that they run where CalculiX is absent: a soft joint of a tower, a frame that
-lacks nothing, a frame with a mass and a sensor of wrong gain.
+lacks nothing, a frame with a mass and a sensor of wrong gain, an absorber on a tower.
 """
 
 from __future__ import annotations
@@ -38,6 +38,31 @@ def test_what_is_hidden_is_found(place, monkeypatch, tmp_path):
     outcome = search(copy, truth, timeout=120.0)
     assert outcome.score is not None, outcome.note
     assert outcome.score.solved, line(outcome)
+
+
+@pytest.mark.slow
+def test_the_completed_deck_has_the_mode_that_the_absorber_adds(tmp_path):
+    """Re-solved, every test mode has its partner at its frequency, the one too many as well."""
+    from trueup.cli.app import app
+
+    place, out = HERE / "cases" / "0027_tower_tuned_absorber", tmp_path / "run"
+    files = [str(place / "tower.bdf"), str(place / "tower_test.unv")]
+    app(
+        ["discover", *files, "--deck-length-unit", "mm", "--out", str(out), "--quiet"],
+        standalone_mode=False,
+    )
+    result = json.loads((out / "result.json").read_text())
+    (finding,) = result["findings"]
+    truth = json.loads((place / "truth.json").read_text())["effects"][0]
+    low, high = finding["magnitude"]["frequency_hz_interval"]
+    assert low < truth["frequency_hz"] < high
+    assert finding["interval"][0] < truth["mass"] < finding["interval"][1]
+    assert finding["magnitude"]["components"] == truth["components"]
+    assert [c.split(",")[0] for c in finding["cards"]] == ["GRID", "CELAS2", "CONM2"]
+    assert result["before"]["unpaired_test"]
+    assert not result["after"]["unpaired_test"]
+    assert all(abs(p["deviation_percent"]) < 0.5 for p in result["after"]["pairs"])
+    assert min(p["mac"] for p in result["after"]["pairs"]) > 0.98
 
 
 def test_the_score_refuses_what_is_wrong(monkeypatch):
