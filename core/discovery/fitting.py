@@ -15,7 +15,7 @@ from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 from .laws import AttachedLaw, Law, ReleaseLaw, Rows
 
 _DEGENERATE = 2e-3
-_SOFT = 3.0
+_SOFT, _TO_COME = 3.0, 5.0
 """How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
 """Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
@@ -128,9 +128,15 @@ class Fit:
 
 
 def softened(problem: Problem) -> Problem:
-    """Return the problem with more noise: wider valleys, seen from places and sizes further off."""
+    """Return the problem with more noise: wider valleys, seen from places and sizes further off.
+
+    The known parameters have yet to follow, so that modes further apart turn within their subspace.
+    """
     e = problem.evidence
-    wide = replace(e.noise, frequency=_SOFT * e.noise.frequency, shape=_SOFT * e.noise.shape)
+    n = e.noise
+    wide = replace(
+        n, frequency=_SOFT * n.frequency, shape=_SOFT * n.shape, mixing=_TO_COME * n.mixing
+    )
     return replace(problem, evidence=replace(e, noise=wide))
 
 

@@ -1,5 +1,8 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import scipy.linalg as la
 
 from trueup.core.discovery.evidence import (
     Evidence,
@@ -10,6 +13,7 @@ from trueup.core.discovery.evidence import (
     mode_costs,
     noise_of,
 )
+from trueup.core.discovery.fitting import Prior, Problem, softened
 from trueup.core.weighting import ModeErrors
 
 RNG = np.random.default_rng(0)
@@ -79,3 +83,23 @@ def test_noise_goes_with_its_modes():
     part = e.take(np.array([True, False, True]), np.arange(20))
     np.testing.assert_allclose(part.noise.frequency, np.asarray(e.noise.frequency)[[0, 2]])
     assert e.noise.of(np.array([1])).robust == Noise().robust
+
+
+def test_a_pair_that_parameters_to_come_will_turn_does_not_hide_a_place():
+    """Two modes 6 % apart in frequency, turned by 30 degrees: looked for, they count as a pair."""
+    turned = SHAPES @ la.block_diag([[0.866, -0.5], [0.5, 0.866]], np.eye(2))
+    e = Evidence(np.array([1.0, 1.06, 3.0, 4.0]), turned, Noise())
+    lam = (2.0 * np.pi * e.frequencies_hz) ** 2
+
+    def cost(evidence):
+        return matched(mode_costs(evidence, lam, turned.T @ SHAPES, SHAPES.T @ SHAPES))[0]
+
+    soft = softened(bare_problem(e)).evidence
+    narrow = replace(soft, noise=replace(soft.noise, mixing=e.noise.mixing))
+    assert cost(soft) < 0.75 * cost(narrow)
+
+
+def bare_problem(e):
+    none = np.zeros((0, 0))
+    prior = Prior(np.ones(1), -np.ones(1), np.ones(1))
+    return Problem(e, e, None, none, none, none, (), (), prior, 4, 4)
