@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -46,12 +47,13 @@ class ReducedSum:
         """Return the sum at the parameter values `p`, (r, r)."""
         return np.asarray(np.tensordot([t.coefficient(p) for t in self.terms], self.matrices, 1))
 
-    def slope(self, p: Floats, k: int) -> Floats:
-        """Return its derivative by parameter `k`, (r, r)."""
-        total = np.zeros(self.matrices.shape[1:])
-        for i in self._moved_by.get(k, ()):
-            total += self.terms[i].coefficient_derivative(p, k) * self.matrices[i]
-        return total
+    def slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:
+        """Return its derivatives by some parameters, (len(parameters), r, r)."""
+        c = np.zeros((len(parameters), len(self.terms)))
+        for row, k in zip(c, parameters, strict=True):
+            for i in self._moved_by.get(k, ()):
+                row[i] = self.terms[i].coefficient_derivative(p, k)
+        return np.asarray(np.tensordot(c, self.matrices, 1))
 
     @cached_property
     def _moved_by(self) -> dict[int, list[int]]:
@@ -107,14 +109,6 @@ class Basis:
     def M(self, p: Floats) -> Floats:
         """Return the reduced mass at the parameter values `p`, (r, r)."""
         return self.mass.at(p)
-
-    def dK(self, p: Floats, k: int) -> Floats:
-        """Return the derivative of the reduced stiffness by parameter `k`, (r, r)."""
-        return self.stiffness.slope(p, k)
-
-    def dM(self, p: Floats, k: int) -> Floats:
-        """Return the derivative of the reduced mass by parameter `k`, (r, r)."""
-        return self.mass.slope(p, k)
 
     def bare(self) -> Basis:
         """Return the basis without its vectors: what eigenproblems on it need."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from ..arrays import Bools, Floats
 from ..correlation import realised
 from ..errors import TrueupError
-from .basis import Flexibility, build_basis
+from .basis import Basis, Flexibility, build_basis
 from .bench import Bench
 from .candidates import Candidates
 from .evidence import Evidence, noise_of
@@ -43,6 +43,8 @@ from .telling_dampers import with_damper
 _MESH = (1.0, -1.0, 1.05)
 """Spread and bounds of the error of the mesh, see `mesh_error`."""
 _RITZ = 110
+_BAND, _MORE = 1.15, 4
+"""How far above the test's band a mode may lie and match, and so many modes more."""
 _CONTESTED, _RIVALS = 30.0, 2
 """Rivals less than this (twice the log of a likelihood ratio) behind, and so many of them, are
 fitted as carefully as the best."""
@@ -72,17 +74,18 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     motion = np.asarray(request.structure.model.expansion @ solution.vectors)
     first = bench.judged(motion, solution.eigenvalues)
     progress("fitting the known parameters")
-    trial = _Trial(request, first.doubtful, first.noise, modes_out, sensors_out)
+    ground = _ground(request)
+    trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
     tested = bench.judged_by(trial.problem, trial.null)
     if np.any(tested.doubtful != first.doubtful):
-        trial = _Trial(request, tested.doubtful, tested.noise, modes_out, sensors_out)
+        trial = _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
     searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
         last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
         if np.any(last.doubtful & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | last.doubtful
-            trial = _Trial(request, aside, last.noise, modes_out, sensors_out)
+            trial = _Trial(request, ground, aside, last.noise, modes_out, sensors_out)
             searcher, found, verdict = _searched(trial, progress)
             last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
         tested = last
@@ -97,13 +100,19 @@ class _Trial:
     """A search without the sensors that are set aside."""
 
     def __init__(
-        self, request: Request, aside: Bools, noise: float, modes_out: Bools, sensors_out: Bools
+        self,
+        request: Request,
+        ground: _Ground,
+        aside: Bools,
+        noise: float,
+        modes_out: Bools,
+        sensors_out: Bools,
     ) -> None:
         self.aside = aside
         self.request = replace(request, placed=request.placed.take(~aside))
         self.sensors = ~sensors_out[~aside]
         self.problem, self.null, self.zero = _prepared(
-            self.request, noise, ~modes_out, self.sensors
+            self.request, ground, noise, ~modes_out, self.sensors
         )
 
 
@@ -140,7 +149,31 @@ def _hz(eigenvalues: Floats) -> Floats:
     return np.asarray(np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi))
 
 
-def _prepared(request: Request, noise: float, modes: Any, sensors: Any) -> tuple[Problem, Fit, Fit]:
+@dataclass(frozen=True, eq=False)
+class _Ground:
+    """What does not depend on the sensors: the basis, and the error of the mesh on it."""
+
+    basis: Basis
+    mesh: Floats
+    columns: int
+
+
+def _ground(request: Request) -> _Ground:
+    top = float(request.placed.test.frequencies_hz.max())
+    targets = _below(request.solution.eigenvalues, top)
+    basis = build_basis(request.structure.model, request.solution, targets)
+    basis = with_consistent_bars(request.structure, basis)
+    return _Ground(basis, lumping(request.structure, basis.vectors), targets + _MORE)
+
+
+def _below(eigenvalues: Floats, top: float) -> int:
+    """Return the number of modes that may match one up to `top` [Hz]."""
+    return int(np.count_nonzero(_hz(eigenvalues) < _BAND * top))
+
+
+def _prepared(
+    request: Request, ground: _Ground, noise: float, modes: Any, sensors: Any
+) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
     model, hz = request.structure.model, request.placed.test.frequencies_hz
     placed = request.placed
@@ -148,34 +181,31 @@ def _prepared(request: Request, noise: float, modes: Any, sensors: Any) -> tuple
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
     whole = Evidence(hz, unit, noise_of(placed.errors, noise))
     e = whole.take(modes, sensors)
-    below = np.sqrt(np.maximum(request.solution.eigenvalues, 0.0)) < 2.0 * np.pi * 1.15 * hz.max()
-    targets = int(below.sum())
-    basis = build_basis(model, request.solution, targets)
-    basis = with_consistent_bars(request.structure, basis)
+    basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
     prior = Prior(
         np.append(request.spread, _MESH[0]),
         np.append(np.log([q.lower for q in model.parameters]), _MESH[1]),
         np.append(np.log([q.upper for q in model.parameters]), _MESH[2]),
     )
-    mesh = lumping(request.structure, basis.vectors)
     problem = Problem(
         e,
         whole,
         basis,
         observed[sensors],
         observed,
-        mesh,
+        ground.mesh,
         (),
         (),
         prior,
         min(basis.size, _RITZ),
-        targets + 4,
+        ground.columns,
     )
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
-    return problem, null, zero
+    columns = _below(null.eigenvalues, float(hz.max())) + _MORE
+    return replace(problem, columns=columns), null, zero
 
 
 def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
@@ -244,9 +274,7 @@ def _polished(
     model = request.structure.model
     placed = request.placed
     observation = sp.csr_matrix(placed.weighted(placed.observation.matrix @ model.expansion))
-    top = float(request.placed.test.frequencies_hz.max()) * 1.25
-    modes = int(np.count_nonzero(_hz(request.solution.eigenvalues) < top)) + 8
-    return polished(request.structure, made, observation, sensors, searcher.problem, state, modes)
+    return polished(request.structure, made, observation, sensors, searcher.problem, state)
 
 
 def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidates]) -> Searcher:

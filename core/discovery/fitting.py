@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg as la
 
 from ..arrays import Floats, Ints
-from .basis import Basis
+from .basis import Basis, ReducedSum
 from .candidates import Catalogue, Suspect, changed, magnitudes
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 from .laws import AttachedLaw, Law, ReleaseLaw, Rows
@@ -254,7 +254,7 @@ def fit(
         Parameters that move.
     iterations : int
     tolerance : float
-        Smallest fall of the objective that counts.
+        Smallest fall of the objective that counts, and that is looked for.
     """
     now = evaluate(problem, np.array(log_p), suspects)
     damping = 0.0
@@ -270,6 +270,8 @@ def fit(
             step = -la.solve(
                 H + damping * np.diag(np.diag(H)) + 1e-9 * np.eye(len(H)), g, assume_a="pos"
             )
+            if -float(g @ step) < tolerance:
+                break
             trial = _stepped(problem, now, active, np.clip(step, -reach, reach))
             if trial.objective < now.objective:
                 better, damping = trial, 0.3 * damping
@@ -296,19 +298,16 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     e, noise = problem.evidence, problem.evidence.noise
     V, lam, k = now.vectors, now.eigenvalues, now.match
     lk = lam[k]
-    n, here = len(k), np.arange(len(k))
-    products, shapes = _products(problem, now, active), problem.sensors @ V[: problem.basis.size]
-    dlam = np.zeros((len(products), n))
-    dshape = np.zeros((len(products), len(shapes), n))
+    here = np.arange(len(k))
+    shapes = problem.sensors @ V[: problem.basis.size]
+    a, b = _products(problem, now, active)
     gap = lk[None, :] - lam[:, None]
     close = np.abs(gap) < _DEGENERATE * np.abs(lk)[None, :]
-    safe = np.where(close, 1.0, gap)
-    for i, (a, b) in enumerate(products):
-        F = a - b * lk[None, :]
-        dlam[i] = F[k, here]
-        C = np.where(close, 0.0, F / safe)
-        C[k, here] = -0.5 * b[k, here]
-        dshape[i] = shapes @ C
+    F = a - b * lk
+    dlam = F[:, k, here]
+    C = np.where(close, 0.0, F / np.where(close, 1.0, gap))
+    C[:, k, here] = -0.5 * b[:, k, here]
+    dshape = np.matmul(shapes, C)
     aim = targets(e)
     floor = np.maximum(lk, 1e-6 * aim)
     off = 0.5 * np.log(floor / aim) / noise.frequency
@@ -328,7 +327,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     d = d - a * np.einsum("sj,psj->pj", a, d)[:, None]
     d = (d - t * np.einsum("sj,psj->pj", t, d)[:, None]) * scale
     w = np.sqrt(1.0 / (1.0 + (off**2 + np.sum(rest**2, axis=0)) / noise.robust))
-    J = np.concatenate([doff * w, (d * w).reshape(len(products), -1)], axis=1)
+    J = np.concatenate([doff * w, (d * w).reshape(len(d), -1)], axis=1)
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
@@ -339,18 +338,17 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     return H, g + (x - mean) / spread**2
 
 
-def _products(problem: Problem, now: Fit, active: Sequence[int]) -> list[tuple[Floats, Floats]]:
+def _products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
     """Vᵀ ∂K V and Vᵀ ∂M V by each unknown, on the right only the modes that match."""
     V, k = now.vectors, now.match
-    size, last, p = problem.basis.size, len(now.log_p) - 1, np.exp(now.log_p)
-    S, own, none = V[:size], size, np.zeros((V.shape[1], len(k)))
-    changes: list[tuple[Floats | None, Floats | None]] = [
-        (None, -problem.mesh)
-        if q == last
-        else (problem.basis.dK(p, q) * p[q], problem.basis.dM(p, q) * p[q])
-        for q in active
-    ]
-    of_suspects: list[tuple[Floats, Floats]] = []
+    S, own, p = V[: problem.basis.size], problem.basis.size, np.exp(now.log_p)
+    first = len(active)
+    a = np.zeros((first + sum(len(s.theta) for s in now.suspects), V.shape[1], len(k)))
+    b, i = np.zeros_like(a), first
+    a[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.stiffness, p, active), S[:, k]))
+    b[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.mass, p, active), S[:, k]))
+    if len(p) - 1 in active:
+        b[active.index(len(p) - 1)] = -S.T @ (problem.mesh @ S[:, k])
     for s in now.suspects:
         rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
         U, theta = rows[0], np.array([s.theta])
@@ -359,22 +357,21 @@ def _products(problem: Problem, now: Fit, active: Sequence[int]) -> list[tuple[F
             x = V[own : own + len(U)] / np.sqrt(law.value(theta, _FIRST)[0])[:, None]
             own += len(U)
             stretch, springs = u - x, law.springs_slope(theta, _FIRST)[0]
-            of_suspects += [
-                ((stretch.T * dk) @ stretch[:, k], (x.T * dm) @ x[:, k])
-                for dk, dm in zip(springs, slopes, strict=True)
-            ]
+            for dk, dm in zip(springs, slopes, strict=True):
+                a[i], b[i] = (stretch.T * dk) @ stretch[:, k], (x.T * dm) @ x[:, k]
+                i += 1
             continue
         for c in slopes:
-            change = (u.T * c) @ u[:, k]
-            of_suspects.append((change, none) if law.on == "K" else (none, change))
+            (a if law.on == "K" else b)[i] = (u.T * c) @ u[:, k]
+            i += 1
         if isinstance(law, ReleaseLaw):
-            for i, q in enumerate(active):
-                before = changes[i][0]
-                if before is not None:
-                    follows = (U.T * law.by_parameter(theta, _FIRST, q)[0]) @ U
-                    changes[i] = (before + follows, changes[i][1])
+            for j, q in enumerate(active):
+                if q < len(p) - 1:
+                    a[j] += (u.T * law.by_parameter(theta, _FIRST, q)[0]) @ u[:, k]
+    return a, b
 
-    def product(change: Floats | None) -> Floats:
-        return none if change is None else np.asarray(S.T @ (change @ S[:, k]))
 
-    return [*((product(dK), product(dM)) for dK, dM in changes), *of_suspects]
+def _by_log(matrices: ReducedSum, p: Floats, active: Sequence[int]) -> Floats:
+    """Differentiate by ln p of the active parameters: (n, r, r), nil for the mesh error."""
+    known = np.append(p[:-1], 0.0)
+    return np.asarray(matrices.slopes(p, active) * known[list(active), None, None])

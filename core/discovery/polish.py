@@ -19,11 +19,18 @@ from ..factor import factorise
 from ..model import Model
 from .basis import Basis, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
+from .evidence import targets
 from .fitting import Fit, Problem, fit, softened, unseen
 from .mesh_error import lumping, with_consistent_bars
 from .structure import Structure
 
-_DEPENDENT = 1e-6
+_DEPENDENT = 1e-5
+_ABOVE, _MORE = 1.6, 8
+"""Eigenvalues beside the test's highest up to which modes are computed, and so many more."""
+_REACHED = 1.2
+"""Eigenvalues beside the test's highest that a fit may still give to a test mode."""
+_RIGID = 1e-6
+"""Eigenvalue beside the largest below which a mode has no strain."""
 _CHANGED = 0.03
 _HELD = 1e-3
 """Standard deviation of a magnitude that is to stay."""
@@ -36,7 +43,6 @@ def polished(
     seen: Bools,
     problem: Problem,
     state: Fit,
-    modes: int,
     rounds: int = 1,
 ) -> Fit:
     """Return the fit with parameters and magnitudes fitted on a basis of its own.
@@ -54,13 +60,12 @@ def polished(
         Evidence and priors.
     state : Fit
         From the search.
-    modes : int
-        Modes of the completed model to compute.
     rounds : int
         At most; ends when no magnitude moves by more than a few per cent.
     """
+    top = float(targets(problem.whole).max())
     for _ in range(rounds):
-        basis, chosen = _own_basis(structure.model, catalogue, state, modes)
+        basis, chosen, modes = _own_basis(structure.model, catalogue, state, top)
         everywhere = np.asarray(observation @ basis.vectors)
         own = replace(
             problem,
@@ -109,8 +114,8 @@ def _in_deck(own: Problem, found: Fit) -> Floats:
 
 
 def _own_basis(
-    model: Model, catalogue: Sequence[Candidates], state: Fit, modes: int
-) -> tuple[Basis, list[tuple[Candidates, Floats]]]:
+    model: Model, catalogue: Sequence[Candidates], state: Fit, top: float
+) -> tuple[Basis, list[tuple[Candidates, Floats]], int]:
     p = np.exp(state.log_p)
     K, M = model.K(p), model.M(p)
     loads = []
@@ -129,15 +134,16 @@ def _own_basis(
             K = (K + change).tocsr()
         elif c.law.on == "M":
             M = (M + change).tocsr()
+    modes = int(np.count_nonzero(state.eigenvalues < _ABOVE * top)) + _MORE
     solution = solve((K, M), n_modes=modes, count=False)
     phi = solution.vectors
-    targets = min(modes, phi.shape[1])
+    asked = phi[:, _asked(solution.eigenvalues, top)]
     A = factorise((K + _shift(solution.eigenvalues) * M).tocsr(), definite=True)
-    local = [x if isinstance(x, np.ndarray) else x @ phi[:, :targets] for x in loads]
+    local = [x if isinstance(x, np.ndarray) else x @ asked for x in loads]
     V = np.asarray(phi)
     if local:
         V = np.hstack([V, _beside(A.solve(np.ascontiguousarray(np.hstack(local))), V, M, 1e-13)])
-    sides = [model.dK(k, p) @ phi[:, :targets] for k in range(len(model.parameters))]
+    sides = [model.dK(k, p) @ asked for k in range(len(model.parameters))]
     if sides:
         X = A.solve(np.ascontiguousarray(np.hstack(sides)))
         V = np.hstack([V, _beside(X, V, M, _DEPENDENT)])
@@ -162,11 +168,17 @@ def _own_basis(
             where=(c.where[s.row],),
         )
         chosen.append((one, U[None]))
-    return basis, chosen
+    return basis, chosen, phi.shape[1]
+
+
+def _asked(eigenvalues: Floats, top: float) -> Bools:
+    """Modes whose change with the parameters counts: elastic ones that the test may hold."""
+    elastic = eigenvalues > _RIGID * eigenvalues.max()
+    return np.asarray(elastic & (eigenvalues < _REACHED * top))
 
 
 def _shift(eigenvalues: Floats) -> float:
-    positive = eigenvalues[eigenvalues > 1e-6 * eigenvalues.max()]
+    positive = eigenvalues[eigenvalues > _RIGID * eigenvalues.max()]
     return 0.25 * float(positive.min())
 
 

@@ -37,6 +37,11 @@ _CLOSE = 0.35
 """A hypothesis that gained less than all but this share of what the best gained is not grown."""
 _MANY = 30
 """Sizes of a kind up to which every one is tried exactly at every place of the first scan."""
+_ROUNDS = 6
+"""Times that a suspect moves to a neighbour at most."""
+_WORSE = 1.015
+"""A neighbour with more than this times the misfit, before it is fitted, is not fitted: one in
+thirty of them would have turned out better."""
 _PROMISING = 10
 """Neighbouring places, the best at θ as it is, at which those changes are tried."""
 
@@ -52,7 +57,7 @@ class Effort:
     neighbours: int = 60
     of_each_kind: int = 2
     most: int = 4
-    search_modes: int = 48
+    beyond: int = 8
     apart: float = 0.08
     near: float = 0.06
     exact_places: int = 30
@@ -91,7 +96,7 @@ class Searcher:
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        n = min(self.effort.search_modes, self.problem.basis.size)
+        n = min(self.problem.columns + self.effort.beyond, self.problem.basis.size)
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
         T = T[: self.problem.basis.size]
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
@@ -218,14 +223,14 @@ class Searcher:
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""
-        moved = True
-        rounds = 0
-        while moved and rounds < 6:
-            moved, rounds = False, rounds + 1
-            for q in range(len(state.suspects)):
-                better = self._neighbour(state, q)
-                if better is not None:
-                    state, moved = better, True
+        n = len(state.suspects)
+        left, q = n, 0
+        for _ in range(_ROUNDS * n):
+            better = self._neighbour(state, q)
+            state, left = (state, left - 1) if better is None else (better, n)
+            if not left:
+                break
+            q = (q + 1) % n
         return state
 
     def settled(self, state: Fit) -> Fit:
@@ -255,11 +260,14 @@ class Searcher:
         trials = c.around(suspect.theta, _NEIGHBOURING)
         score = scan(small, here, suspect.kind, rows, trials)
         best = score.min(axis=1)
+        small = self.local(state)[0]
+        stays = best[rows == suspect.row].min(initial=np.inf)
         for i in np.argsort(best, kind="stable")[:3]:
-            if rows[i] == suspect.row:
+            if rows[i] == suspect.row or best[i] > _WORSE * stays:
                 continue
             moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
-            trial = self.fitted(state, (*state.suspects[:q], moved, *state.suspects[q + 1 :]), 4)
+            beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
+            trial = self.fitted(state, beside, 4, small)
             if trial.objective < state.objective - 0.3:
                 return trial
         return None
