@@ -57,7 +57,7 @@ class Effort:
     neighbours: int = 60
     of_each_kind: int = 2
     most: int = 4
-    beyond: int = 8
+    search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
     exact_places: int = 30
@@ -96,7 +96,7 @@ class Searcher:
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        n = min(self.problem.columns + self.effort.beyond, self.problem.basis.size)
+        n = min(self.effort.search_modes, self.problem.basis.size)
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
         T = T[: self.problem.basis.size]
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
