@@ -82,7 +82,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
         last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
-        if np.any(last.doubtful & ~trial.aside):
+        if np.any(last.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | last.doubtful
             trial = _Trial(request, ground, aside, last.noise, modes_out, sensors_out)
@@ -90,7 +90,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
         tested = last
     out = modes_out, sensors_out
-    said = told(request, searcher, found, verdict, trial.zero, tested.faults, out)
+    said = told(request, searcher, found, verdict, trial.zero, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
     return with_damper(trial.request, searcher.problem, best, said)

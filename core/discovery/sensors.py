@@ -47,6 +47,14 @@ class Verdicts:
     doubtful: Bools
     noise: float
 
+    @property
+    def accused(self) -> Bools:
+        """Sensors that a fault is told of, (n_sensor,)."""
+        out = np.zeros(len(self.doubtful), bool)
+        for f in self.faults:
+            out[list(f.sensors)] = True
+        return out
+
 
 def judge_sensors(survey: Survey, span: Span) -> Verdicts:
     """Find sensors that contradict all the others.

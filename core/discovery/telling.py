@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from ..arrays import Floats
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
-from .faults import Fault
 from .findings import Alternative, Discovery, Finding, MovedParameter
 from .fitting import Fit
 from .judge import (
@@ -27,7 +25,9 @@ from .judge import (
 from .places import region
 from .request import Request
 from .search import Found, Searcher
-from .wording import magnitude_of, sentence_of, test_sentence
+from .sensors import Verdicts
+from .telling_sensors import accusations, remarks
+from .wording import magnitude_of, sentence_of
 
 _SIGNIFICANT = 3.0
 _SURE = 0.6
@@ -47,7 +47,7 @@ def told(
     found: Found,
     verdict: Judgement,
     zero: Fit,
-    faults: tuple[Fault, ...],
+    tested: Verdicts,
     out: tuple[Any, Any],
 ) -> Discovery:
     """Say what the search amounts to: verdict, findings, alternatives, what would decide."""
@@ -61,19 +61,11 @@ def told(
         for k, deviation in enumerate(own)
     ]
     nodes = request.placed.observation.sensors.node
-    labels = request.placed.observation.sensors.labels
-    xyz = request.placed.observation.xyz
-    accused = [_fault(f, nodes, labels, xyz) for f in faults if f.kind != "doubled"]
+    accused = accusations(request.placed.observation, tested)
     moved = _moved(best, spread)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
     matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
-    warnings = tuple(
-        f"sensor {int(nodes[f.sensors[0]])} reads twice what all the others say, as if two "
-        "measurements of it had been added up; its values were halved for the search"
-        for f in faults
-        if f.kind == "doubled"
-    )
     word = "no_gap"
     decide: tuple[str, ...] = ()
     if findings and verdict.posterior >= _SURE:
@@ -102,9 +94,9 @@ def told(
         verdict.foretold,
         tuple(int(i) + 1 for i in np.flatnonzero(out[0])),
         tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
-        faults,
+        tested.faults,
         decide,
-        warnings,
+        remarks(request.placed.observation, tested),
     )
 
 
@@ -178,37 +170,6 @@ def _confidence(verdict: Judgement) -> float:
 
 def _radius(c: Candidates, s: Suspect) -> float:
     return float(c.extra["patches"][s.row].radius) if "patches" in c.extra else 0.0
-
-
-def _fault(f: Fault, nodes: Any, labels: Sequence[str], xyz: Floats) -> Finding:
-    sensors = list(dict.fromkeys(int(nodes[i]) for i in f.sensors))
-    rows = np.count_nonzero(np.isin(nodes, sensors))
-    where: dict[str, Any] = {
-        "sensors": sensors,
-        "xyz": xyz[f.sensors[0]].tolist(),
-        "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
-    }
-    names: list[str] = list(map(str, sensors))
-    if len(f.sensors) < rows:
-        names = where["directions"] = [labels[i] for i in f.sensors]
-    magnitude: dict[str, Any] = {}
-    if f.kind == "sensor_gain":
-        magnitude = {"factor": f.factor}
-    elif f.kind == "sensor_axis":
-        magnitude = {"angle_deg": f.factor, "axis": list(f.axis)}
-    interval = None
-    if magnitude:
-        interval = (f.factor - 1.96 * f.deviation, f.factor + 1.96 * f.deviation)
-    return Finding(
-        "test",
-        f.kind,
-        where,
-        magnitude,
-        interval,
-        (),
-        f.confidence,
-        test_sentence(f.kind, names, f.factor),
-    )
 
 
 def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
