@@ -97,7 +97,7 @@ def _swapped(weighed: Weighed, s: Swap) -> Fault:
     i, j = s.nodes
     a, b = (weighed.survey.rows(k)[list(r)] for k, r in zip(s.nodes, s.rows, strict=True))
     n = len(a)
-    exchange = np.roll(np.eye(2 * n), n, axis=0)
+    exchange = s.sign * np.roll(np.eye(2 * n), n, axis=0)
     rivals = [t.odds for t in weighed.swaps if t is not s and {i, j} & set(t.nodes)]
     share = float(np.exp(s.odds - logsumexp([0.0, s.odds, *rivals])))
     rows = (*(int(r) for r in a), *(int(r) for r in b))

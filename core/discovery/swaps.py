@@ -1,4 +1,8 @@
-"""Two sensors whose readings are exchanged, whole nodes or single directions of them."""
+"""Two sensors whose readings are exchanged, whole nodes or single directions of them.
+
+A file gives each reading as a vector; which way along its line a lone sensor looks is not kept.
+So two lone sensors that look opposite ways seem to be exchanged and wired backwards both.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,8 @@ from .alternatives import Alternative, Before
 from .readings import Node, evidence
 
 _SHARE = 0.25
+_LONE_BACK, _BACK = 0.5, 0.15
+"""Of swaps of lone sensors and of single directions of sets, those with the sign turned."""
 _WHOLE = 0.7
 """Of swaps of sets with several directions, those of the whole set."""
 
@@ -22,11 +28,13 @@ _WHOLE = 0.7
 class Swap:
     """Rows of two nodes exchanged.
 
-    `odds` is the log of how much more likely this is than all that the two nodes may be alone.
+    `odds` is the log of how much more likely this is than all that the two nodes may be alone;
+    `sign` is -1 where both read the opposite of what the other should.
     """
 
     nodes: tuple[int, int]
     rows: tuple[tuple[int, ...], tuple[int, ...]]
+    sign: float
     odds: float
 
 
@@ -58,20 +66,30 @@ def swaps(
             ways += [((a,), (b,), share) for a in range(k) for b in range(m)]
         prior = float(np.log(before.faulty * _SHARE / max(n - 1, 1)))
         for a, b, share in ways:
-            log = _crossed(nodes[i], a, nodes[j], b, before.shares)
-            log += _crossed(nodes[j], b, nodes[i], a, before.shares)
-            out.append(Swap((i, j), (a, b), log + prior + np.log(share) - total[i] - total[j]))
+            back = _LONE_BACK if k * m == 1 else _BACK if len(a) == 1 else 0.0
+            for sign, chance in ((1.0, 1.0 - back), (-1.0, back)):
+                if not chance:
+                    continue
+                log = _crossed(nodes[i], a, nodes[j], b, sign, before.shares)
+                log += _crossed(nodes[j], b, nodes[i], a, sign, before.shares)
+                log += prior + float(np.log(share * chance)) - total[i] - total[j]
+                out.append(Swap((i, j), (a, b), sign, log))
     return sorted(out, key=lambda s: -s.odds)
 
 
 def _crossed(
-    node: Node, rows: tuple[int, ...], other: Node, others: tuple[int, ...], shares: Floats
+    node: Node,
+    rows: tuple[int, ...],
+    other: Node,
+    others: tuple[int, ...],
+    sign: float,
+    shares: Floats,
 ) -> float:
     """Log likelihood of a node some of whose rows read what rows of another should."""
     k = node.reading.shape[1]
     mean, C = node.mean[:, :k].copy(), node.covariance[:, :k, :k].copy()
     own, far = np.array(rows), np.array(others)
-    mean[:, own] = other.mean[:, far]
+    mean[:, own] = sign * other.mean[:, far]
     C[:, own, :] = 0.0
     C[:, :, own] = 0.0
     C[:, own[:, None], own] = other.covariance[:, far[:, None], far]

@@ -47,7 +47,8 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
         "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
     }
     names: list[str] = list(map(str, sensors))
-    if len(f.sensors) < rows:
+    within = f.kind == "sensor_swap" and len(sensors) == 1
+    if len(f.sensors) < rows or within:
         names = where["directions"] = [labels[i] for i in f.sensors]
     magnitude: dict[str, Any] = {}
     if f.kind == "sensor_gain":

@@ -51,6 +51,16 @@ def test_two_swapped_sensors_are_named_together():
     assert named(faults(y)) == {("sensor_swap", (5, 18))}
 
 
+def test_lone_sensors_that_look_opposite_ways_may_be_swapped_too():
+    """What a file says of one along -x another along +x reads backwards."""
+    y = read(vibrating(), radial())
+    sound = y.copy()
+    y[[5, 18]] = -y[[18, 5]]
+    found = faults(y)
+    assert named(found) == {("sensor_swap", (5, 18))}
+    np.testing.assert_allclose(corrected(y.reshape(40, -1), found), sound.reshape(40, -1))
+
+
 def test_a_reading_counted_twice_is_not_called_a_gain():
     y = read(vibrating(), radial())
     y[3] *= 2.0
