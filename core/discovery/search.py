@@ -30,7 +30,8 @@ _NEAR = 0.5
 _NEARBY = np.array([-0.35, 0.0, 0.35])
 """Steps of θ tried around the best places of the first scan."""
 _FEW = 300
-"""Places of all kinds up to which more of them are fitted, the known parameters with them."""
+"""Places of all kinds but tuned ones up to which more of them are fitted, the known parameters
+with them."""
 _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
 _CLOSE = 0.35
@@ -105,29 +106,43 @@ class Searcher:
         return small, evaluate(small, state.log_p, state.suspects)
 
     def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
-        """Keep the best branches of all and the best of every kind, if they gain enough."""
-        number: Counter[str] = Counter()
+        """Keep the best branches of all and the best of every kind, if they gain enough.
+
+        A kind that is tuned can imitate the others before they are at their right place, so these
+        are held against each other alone.
+        """
+        number: Counter[str | bool] = Counter()
         kept: list[Suspect] = []
-        for place, (score, s) in enumerate(branches):
-            hopeless = base - score < _WORTH * (base - branches[0][0])
-            if kept and hopeless and not self._small:
-                break
-            kind = self.problem.catalogue[s.kind].kind
-            number[kind] += 1
+        simple = next((b for b in branches if not self._tuned(b[1])), branches[0])
+        for score, s in branches:
+            tuned, kind = self._tuned(s), self.problem.catalogue[s.kind].kind
+            best = (branches[0] if tuned else simple)[0]
+            if base - score < _WORTH * (base - best) and kept and not self._small:
+                continue
+            number.update((tuned, kind))
             each = self.effort.of_each_kind * (4 if self._small else 1)
-            if place < self.effort.branches or number[kind] <= each:
+            if number[tuned] <= self.effort.branches or number[kind] <= each:
                 kept.append(s)
         return kept
+
+    def _tuned(self, s: Suspect) -> bool:
+        return self.problem.catalogue[s.kind].tunings > 1
 
     @property
     def _small(self) -> bool:
         """Whether there are so few places that many of them can be fitted."""
-        return sum(len(rows) for rows in self.coarse) < _FEW
+        kinds = zip(self.problem.catalogue, self.coarse, strict=True)
+        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < _FEW
 
     def _leading(self, fits: Sequence[Fit], base: float) -> list[Fit]:
-        """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
+        """Keep the best fits, and the best whose last suspect is of another kind if it is near.
+
+        One whose last suspect is not tuned is always among them, see `_varied`.
+        """
         most = self.effort.beam - (len(fits[0].suspects) > 1)
         kept, kinds = list(fits[:most]), set()
+        if all(self._tuned(f.suspects[-1]) for f in kept):
+            kept += [f for f in fits[most:] if not self._tuned(f.suspects[-1])][:1]
         for f in fits:
             kind = self.problem.catalogue[f.suspects[-1].kind].kind
             near = base - f.objective > _NEAR * (base - fits[0].objective)
