@@ -46,6 +46,7 @@ def result_tables(result: Result, width: int = 110) -> Iterator[RenderableType]:
         alternatives_table(result),
         gap_table(result),
         _rich(discovery.damping(result)),
+        _rich(discovery.responses(result)),
         *(
             [
                 _rich(tables.pairs(c), state)

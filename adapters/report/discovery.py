@@ -203,3 +203,25 @@ def damping(result: Result) -> Table | None:
 
 
 _DAMPING = ("measured", "before", "after")
+
+
+def responses(result: Result) -> Table | None:
+    """Return how well measured frequency responses are met before and after."""
+    found = reading.part(result, "frf")
+    each = reading.records(found, "responses")
+    if not each:
+        return None
+    states = ("before", "after")
+    mean, log = reading.part(found, "mean_frac"), reading.part(found, "log_misfit")
+    worst = {k: min((reading.number(e.get(k)) or 0.0) for e in each) for k in states}
+    rows = (
+        (Cell("FRAC %, mean over the sensors"), *[Cell(percent(mean.get(k), 1)) for k in states]),
+        (Cell("FRAC %, worst sensor"), *[Cell(percent(worst[k], 1)) for k in states]),
+        (Cell("magnitudes, rms log ratio"), *[Cell(fixed(log.get(k), 3)) for k in states]),
+    )
+    columns = (Column("measure", numeric=False), *[Column(k) for k in states])
+    note = (
+        f"{found.get('lines')} lines at {len(each)} sensors, none of them used to fit a "
+        f"hypothesis; {general(found.get('independent_lines'), 3)} count as independent."
+    )
+    return Table("Frequency responses", columns, rows, note)

@@ -72,6 +72,11 @@ def damping(result: Result) -> Section | None:
     return _only_table("Damping", "damping", discovery.damping(result))
 
 
+def responses(result: Result) -> Section | None:
+    """Return how well frequency responses are met before and after."""
+    return _only_table("Frequency responses", "responses", discovery.responses(result))
+
+
 def alternatives(result: Result) -> Section | None:
     """Return what else was considered."""
     return _only_table("Also considered", "alternatives", discovery.alternatives(result))

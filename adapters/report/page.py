@@ -112,6 +112,7 @@ def _sections(
         discovery_sections.findings(result, geometry, sensors_xyz),
         discovery_sections.gap(result),
         discovery_sections.damping(result),
+        discovery_sections.responses(result),
         disagreement.section(result, geometry),
         sections.pairs(result),
         sections.matrices(result),

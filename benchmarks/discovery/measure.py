@@ -66,39 +66,61 @@ def channels(s: Structure, m: Mesh, nodes: Ints) -> Floats:
     return np.tile(rows, (nodes.size, 1, 1))
 
 
-def damped(t: Truth, modes: Modes, rng: np.random.Generator) -> Floats:
-    """Return damping ratios: 0.2 to 1.2 % at random and what dashpots add (first order)."""
-    z = rng.uniform(0.002, 0.012, modes.hz.size)
-    for node, c, damping in t.dampers:
-        z = z + damping * modes.shapes[node, c - 1] ** 2 / (4.0 * np.pi * modes.hz)
-    return np.asarray(z)
+def damped(t: Truth, modes: Modes, ratios: Floats) -> tuple[Floats, Floats, Any]:
+    """Return frequencies [Hz], damping ratios and the modes on the undamped ones, with dashpots.
+
+    The quadratic eigenproblem in the basis of the normal modes; a structure without dashpots
+    keeps its own, real.
+    """
+    n, omega = modes.hz.size, 2.0 * np.pi * modes.hz
+    if not t.dampers:
+        return modes.hz, ratios, np.eye(n)
+    u = np.array([np.sqrt(b) * modes.shapes[node, c - 1] for node, c, b in t.dampers])
+    D = u.T @ u + np.diag(2.0 * ratios * omega)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(omega**2), -D]])
+    poles, vectors = np.linalg.eig(A)
+    up = np.flatnonzero(poles.imag > 0.0)
+    order = up[np.argsort(np.abs(poles[up]))][:n]
+    poles, Q = poles[order], vectors[:n, order]
+    if order.size < n:
+        raise ValueError("a dashpot so large that a mode does not swing is no local damper")
+    length = np.sqrt(np.sum(Q**2, axis=0))
+    return np.abs(poles) / (2.0 * np.pi), -poles.real / np.abs(poles), Q / length
 
 
 def measure(
     s: Structure, m: Mesh, t: Truth, modes: Modes, noise: Noise, rng: np.random.Generator
 ) -> Test:
-    """Measure the truth."""
+    """Measure the truth; shapes are complex where dashpots make them so."""
     nodes = sensors(s, m, rng)
     d = channels(s, m, nodes)
-    y = np.einsum("sci,sim->scm", d, modes.shapes[nodes])
-    rms = np.sqrt(np.mean(y**2, axis=(0, 1)))
-    y = y * (1.0 + noise.gain * rng.standard_normal(y.shape[:2])[:, :, None])
-    y = y + noise.shape * rms * rng.standard_normal(y.shape)
-    y = y * rng.choice([-1.0, 1.0], size=y.shape[2])
+    n = modes.hz.size
+    gains = 1.0 + noise.gain * rng.standard_normal(d.shape[:2])
+    errors = noise.shape * rng.standard_normal((*d.shape[:2], n))
+    signs = rng.choice([-1.0, 1.0], size=n)
     start = int(rng.choice([1, 101, 1001]))
+    xyz = m.xyz[nodes] + noise.position * rng.standard_normal((nodes.size, 3))
+    scatter = 1.0 + noise.frequency * rng.standard_normal(n)
+    hz, ratios, turn = damped(t, modes, rng.uniform(0.002, 0.012, n))
+    y = np.einsum("sci,sim->scm", d, modes.shapes[nodes]) @ turn
+    rms = np.sqrt(np.mean(np.abs(y) ** 2, axis=(0, 1)))
+    if np.iscomplexobj(y):
+        errors = errors + 1j * noise.shape * rng.standard_normal(errors.shape)
+        signs = np.exp(2j * np.pi * rng.random(n))
+    y = (y * gains[:, :, None] + errors * rms) * signs
     return Test(
         start + np.arange(nodes.size),
-        m.xyz[nodes] + noise.position * rng.standard_normal((nodes.size, 3)),
+        xyz,
         nodes,
-        modes.hz * (1.0 + noise.frequency * rng.standard_normal(modes.hz.size)),
-        damped(t, modes, rng),
+        hz * scatter,
+        ratios,
         np.einsum("sci,scm->sim", d, y),
         d,
     )
 
 
 def _loud(test: Test) -> Ints:
-    level = np.sum(test.shapes**2, axis=(1, 2))
+    level = np.sum(np.abs(test.shapes) ** 2, axis=(1, 2))
     return np.flatnonzero(level > np.median(level) * 0.5)
 
 
@@ -129,8 +151,8 @@ def fault(
     elif kind == "sensor_swap":
         flat = y.reshape(y.shape[0], -1)
         unit = flat / np.linalg.norm(flat, axis=1)[:, None]
-        alike = unit @ unit[i]
-        others = [j for j in candidates if j != i and abs(alike[j]) < 0.6]
+        alike = np.abs(unit @ unit[i].conj())
+        others = [j for j in candidates if j != i and alike[j] < 0.6]
         j = int(rng.choice(others or [k for k in candidates if k != i]))
         d = test.directions[[i, j]]
         read = np.einsum("sci,sim->scm", d, y[[i, j]])
@@ -143,6 +165,13 @@ def fault(
 
 def _block(number: int, body: str) -> str:
     return f"    -1\n{number:6d}\n{body}    -1\n"
+
+
+def _parts(vector: Any) -> list[float]:
+    """Return the values of one node as a file holds them: real, or real and imaginary in turn."""
+    if np.iscomplexobj(vector):
+        return [float(v) for z in vector for v in (z.real, z.imag)]
+    return [float(v) for v in vector]
 
 
 def write_test(path: Path, s: Structure, test: Test, rotation: Floats, shift: Floats) -> None:
@@ -167,13 +196,21 @@ def write_test(path: Path, s: Structure, test: Test, rotation: Floats, shift: Fl
         ),
     )
     y = 1e-3 * np.einsum("ij,sjm->sim", rotation, test.shapes)
+    swings = np.iscomplexobj(y)
     for k, (hz, zeta) in enumerate(zip(test.hz, test.damping, strict=True)):
         head = f"{s.title}\nmode {k + 1}\nNONE\nNONE\nNONE\n"
-        head += "".join(f"{v:10d}" for v in (1, 2, 2, 12, 2, 3)) + "\n"
-        head += "".join(f"{v:10d}" for v in (2, 4, 1, k + 1)) + "\n"
-        head += "".join(f"{v:13.5e}" for v in (hz, 1.0, zeta, 0.0)) + "\n"
+        if swings:
+            omega = 2.0 * np.pi * hz
+            kind, facts = (1, 3, 2, 12, 5, 3), (2, 6, 1, k + 1)
+            values = (-zeta * omega, omega * np.sqrt(1.0 - zeta**2), 1.0, 0.0, 1.0, 0.0)
+        else:
+            kind, facts = (1, 2, 2, 12, 2, 3), (2, 4, 1, k + 1)
+            values = (hz, 1.0, zeta, 0.0)
+        head += "".join(f"{v:10d}" for v in kind) + "\n"
+        head += "".join(f"{v:10d}" for v in facts) + "\n"
+        head += "".join(f"{v:13.5e}" for v in values) + "\n"
         rows = "".join(
-            f"{label:10d}\n" + "".join(f"{v:13.5e}" for v in vector) + "\n"
+            f"{label:10d}\n" + "".join(f"{v:13.5e}" for v in _parts(vector)) + "\n"
             for label, vector in zip(test.labels, y[:, :, k], strict=True)
         )
         out += _block(55, head + rows)

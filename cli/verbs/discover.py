@@ -34,6 +34,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.comparison import compare, place_test
     from ...core.discovery.discover import Request
     from ...core.discovery.discover import discover as find
+    from ...core.discovery.hearing import place_responses
     from ...core.results import correlate_tables, disagreement_tables
     from ...core.weighting import with_scatter
     from ..inplace import put_in_place
@@ -83,6 +84,9 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             )
             placed = replace(placed, errors=errors)
     before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
+    responses, unheard = place_responses(
+        measurement.frfs, placed, geometry, model.dofs, model.expansion
+    )
 
     with working("mapping where model and test disagree", output):
         maps = disagreement_maps(before, structure, solution.vectors)
@@ -100,6 +104,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
                 placed,
                 weight(deck).mass,
                 mass_unit(deck, study.deck_length_unit or geometry.length_unit),
+                responses=responses,
             ),
             told,
         )
@@ -112,13 +117,14 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         damped = damping_tables(
             found, placed.test.damping, (before, solution, structure.damping), done["damped"]
         )
-        if damped is not None:
-            result["damping"] = damped
+        result |= {} if damped is None else {"damping": damped}
+        result |= {} if found.responses is None else {"frf": response_tables(found.responses)}
         result["warnings"] = [
             *deck.warnings,
             *model.warnings,
             *before.warnings,
             *found.warnings,
+            *unheard,
             *done["refused"],
         ]
         result["before"]["warnings"] = result["after"]["warnings"] = []
@@ -244,6 +250,21 @@ def damping_tables(
     return {
         "modes": rows,
         "typical_factor": {key: _typical(rows, key) for key in ("before", "after")},
+    }
+
+
+def response_tables(gap: Any) -> dict[str, Any]:
+    """Return how well measured frequency responses are met."""
+    return {
+        "responses": [
+            {"sensor": s, "before": b, "after": a}
+            for s, b, a in zip(gap.sensors, gap.before, gap.after, strict=True)
+        ],
+        "references": list(gap.references),
+        "mean_frac": {"before": float(np.mean(gap.before)), "after": float(np.mean(gap.after))},
+        "log_misfit": dict(zip(("before", "parameters", "after"), gap.log_misfit, strict=True)),
+        "lines": gap.lines,
+        "independent_lines": gap.independent,
     }
 
 

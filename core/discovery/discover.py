@@ -19,6 +19,7 @@ from .candidates import Candidates
 from .evidence import Evidence, noise_of
 from .findings import Discovery
 from .fitting import Fit, Prior, Problem, evaluate, fit
+from .hearing import hearing, with_responses
 from .judge import (
     Judgement,
     contenders,
@@ -93,7 +94,8 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     said = told(request, searcher, found, verdict, trial.zero, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
-    return with_damper(trial.request, searcher.problem, best, said)
+    said = with_damper(trial.request, searcher.problem, best, said)
+    return with_responses(searcher.problem, found.levels[0].log_p, best, said)
 
 
 class _Trial:
@@ -127,6 +129,8 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     progress("making the catalogue of effects")
     made = _catalogue(request, problem)
     searcher = _searcher(request, problem, null, made)
+    if request.responses is not None:
+        searcher = replace(searcher, problem=hearing(request, searcher.problem, null.log_p))
     found = searcher.run(enough(searcher), progress)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(request, searcher, made, found, sensors)

@@ -75,6 +75,26 @@ class ModalDamping:
 
 
 @dataclass(frozen=True)
+class ResponseGap:
+    """How well measured frequency responses are met.
+
+    `sensors` and `references` as ``node:direction``; `before` and `after` the frequency response
+    assurance of each sensor, mean over the references, of the deck as it is and with what was
+    found, each with frequencies of its own and measured damping; `log_misfit` the rms log ratio
+    of magnitudes before, with the known parameters moved, and after, matched modes at measured
+    frequencies; `independent` of `lines` count.
+    """
+
+    sensors: tuple[str, ...]
+    references: tuple[str, ...]
+    lines: int
+    independent: float
+    before: tuple[float, ...]
+    after: tuple[float, ...]
+    log_misfit: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class Discovery:
     """The verdict with everything that led to it.
 
@@ -99,3 +119,4 @@ class Discovery:
     would_decide: tuple[str, ...]
     warnings: tuple[str, ...]
     damping: ModalDamping | None = None
+    responses: ResponseGap | None = None

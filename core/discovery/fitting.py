@@ -13,6 +13,7 @@ from .basis import Basis, ReducedSum
 from .candidates import Catalogue, Suspect, changed, magnitudes
 from .evidence import Evidence, joint_macs, matched, mode_costs, targets
 from .laws import AttachedLaw, Law, ReleaseLaw, Rows
+from .responses import Heard
 
 _DEGENERATE = 2e-3
 _SOFT, _TO_COME = 3.0, 5.0
@@ -45,7 +46,7 @@ class Problem:
     the flexibility of each that the basis lacks, (n, q), where it matters; `modes` eigenpairs are
     computed, of which the first `columns` may match a test mode. `evidence` is the part of the
     test that hypotheses are fitted to, at the rows `sensors` of the basis; `whole` is all of it,
-    at the rows `everywhere`.
+    at the rows `everywhere`. `heard` is what frequency responses say, where there are any.
     """
 
     evidence: Evidence
@@ -63,6 +64,7 @@ class Problem:
     missing: tuple[Rows | None, ...] = ()
     turn: Floats | None = None
     rest: Floats | None = None
+    heard: Heard | None = None
 
     def turned(self, T: Floats, rest: Floats | None = None) -> Problem:
         """Return the problem on the basis ``vectors @ T``.

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Floats
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, mode_misfits, solve, unseen
+from .hearing import misfit_of_responses
 from .scanning import scan
 from .search import Found, Searcher
 
@@ -110,9 +111,12 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
 
 
 def cost(searcher: Searcher, f: Fit, scale: float) -> float:
-    """Return what a hypothesis leaves of the whole test, by the noise, and its burden."""
+    """Return what a hypothesis leaves of the whole test, by the noise, and its burden.
+
+    Frequency responses, where there are any, count by a noise of their own.
+    """
     left = f.objective + (with_unseen(searcher, f).unseen or 0.0)
-    return left / scale + burden(searcher, f)
+    return left / scale + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
 
 
 def with_unseen(searcher: Searcher, f: Fit) -> Fit:

@@ -16,14 +16,14 @@ from scipy.special import logsumexp
 from ..arrays import Floats, Ints
 
 _COURSES = {
-    (0.0, 1.0): 0.5,
-    (-0.5, 1.0): 0.08,
-    (0.5, 1.0): 0.08,
-    (1.0, 0.0): 0.08,
-    (1.0, 0.2): 0.06,
-    (1.0, 0.5): 0.06,
-    (1.0, 0.8): 0.06,
-    (1.0, 1.0): 0.08,
+    (0.0, 1.0): 0.6,
+    (-0.5, 1.0): 0.1,
+    (0.5, 1.0): 0.1,
+    (1.0, 0.0): 0.03,
+    (1.0, 0.2): 0.03,
+    (1.0, 0.5): 0.04,
+    (1.0, 0.8): 0.04,
+    (1.0, 1.0): 0.06,
 }
 """How the level may go with frequency, a share s of x^e and the rest of 1/x^e by (e, s), and how
 likely each is: constant, in between, and Rayleigh damping."""

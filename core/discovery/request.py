@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from ..arrays import Floats
 from ..comparison import Placed
 from ..eigen import Eigensolution
+from .responses import Responses
 from .search import Effort
 from .story import MassUnit
 from .structure import Structure
@@ -30,6 +31,9 @@ class Request:
         Of the structure, in units of the mass matrix.
     masses : MassUnit
         What masses are said in.
+    effort : Effort
+    responses : Responses, optional
+        Frequency responses of the test: further evidence.
     """
 
     structure: Structure
@@ -39,3 +43,4 @@ class Request:
     mass: float
     masses: MassUnit = field(default_factory=MassUnit)
     effort: Effort = field(default_factory=Effort)
+    responses: Responses | None = None

@@ -20,6 +20,9 @@ from .places import region
 from .request import Request
 
 _SURE = 0.6
+"""Posterior of a dashpot at its place from which it is an effect."""
+_LISTED = 0.5
+"""Posterior of a dashpot anywhere from which it is a finding."""
 _WORTH_TELLING = 0.02
 _TOGETHER = 0.1
 """Places nearer than this part of the structure are one."""
@@ -67,12 +70,12 @@ def with_damper(request: Request, problem: Problem, best: Fit, said: Discovery) 
         said,
         damping=ModalDamping(
             tuple(float(v) for v in found.level_without),
-            tuple(float(v) for v in (found.level_with if found.exists >= _SURE
+            tuple(float(v) for v in (found.level_with if found.exists >= _LISTED
                                      else found.level_without)),
         ),
     )  # fmt: skip
     ratio = times(-found.evidence)
-    if found.exists < _SURE:
+    if found.exists < _LISTED:
         if found.exists < _WORTH_TELLING:
             return said
         spot = region(structure.model.geometry, places.xyz[found.rows[0]])

@@ -139,3 +139,38 @@ def test_numbers_are_written_as_engineers_do() -> None:
     assert [hz(v) for v in (0.1234, 33.9, 1234.56)] == ["0.1234", "33.90", "1234.6"]
     assert listed([1, 2]) == "1 and 2"
     assert listed(list(range(9))) == "0, 1, 2, 3, 4 and 4 more"
+
+
+def test_damping_before_and_after_stands_beside_the_measured() -> None:
+    modes = [
+        {"test": 1, "measured": 0.041, "before": 0.01, "after": 0.0405},
+        {"test": 3, "measured": 0.006, "before": None, "after": 0.0061},
+    ]
+    result = {"damping": {"modes": modes, "typical_factor": {"before": 4.1, "after": 1.02}}}
+    assert texts(found.damping(result)) == [
+        ["1", "4.10", "1.00", "4.05"],
+        ["3", "0.60", "–", "0.61"],
+    ]
+    assert found.damping({}) is None
+
+
+def test_responses_are_told_by_their_mean_and_their_worst() -> None:
+    each = [
+        {"sensor": "1:Z", "before": 0.5, "after": 0.9},
+        {"sensor": "2:Z", "before": 0.3, "after": 0.95},
+    ]
+    frf = {
+        "responses": each,
+        "mean_frac": {"before": 0.4, "after": 0.925},
+        "log_misfit": {"before": 0.6, "parameters": 0.5, "after": 0.21},
+        "lines": 800,
+        "independent_lines": 41.3,
+    }
+    table = found.responses({"frf": frf})
+    assert texts(table)[1:] == [
+        ["FRAC %, worst sensor", "30.0", "90.0"],
+        ["magnitudes, rms log ratio", "0.600", "0.210"],
+    ]
+    assert table is not None
+    assert "800 lines at 2 sensors" in table.note
+    assert found.responses({}) is None

@@ -1,0 +1,166 @@
+"""Measured frequency responses laid onto a model and held against its hypotheses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Numbers
+from ..comparison import Placed
+from ..dofs import Dofs
+from ..errors import InputError
+from ..frfs import Frfs
+from ..geometry import Geometry
+from ..observation import observe
+from .findings import Discovery, ResponseGap
+from .fitting import Fit, Problem, evaluate, misfit
+from .request import Request
+from .responses import Heard, Responses, State, frac, heard, lacking, ratios_of, synthesised
+
+
+def place_responses(
+    frfs: Frfs | None, placed: Placed, geometry: Geometry, dofs: Dofs, motion: Numbers | sp.spmatrix
+) -> tuple[Responses | None, tuple[str, ...]]:
+    """Lay the responses of a test onto a model.
+
+    Parameters
+    ----------
+    frfs : Frfs or None
+        In the test's length unit and frame.
+    placed : Placed
+        The modes of the same test.
+    geometry, dofs : Geometry, Dofs
+        Of the analysis.
+    motion : (n_dof, k) array or sparse
+        See `observation.grids_of`.
+
+    Returns
+    -------
+    responses : Responses or None
+        None where there are none, or none lies on the model.
+    warnings : tuple of str
+        Why not.
+    """
+    if frfs is None:
+        return None, ()
+    own = replace(geometry, length_unit=placed.test_geometry.length_unit)
+    try:
+        at, by = (
+            observe(
+                own,
+                dofs,
+                placed.test_geometry,
+                Dofs(d.node, d.component, placed.alignment.turn(d.axis)),
+                motion=motion,
+            )
+            for d in (frfs.responses, frfs.references)
+        )
+    except InputError as error:
+        return None, (f"the frequency responses do not count as evidence: {error}",)
+    rows, columns = np.flatnonzero(at.within), np.flatnonzero(by.within)
+    if not len(rows) or not len(columns):
+        return None, (
+            "the frequency responses do not count as evidence: their "
+            f"{'references' if len(rows) else 'sensors'} do not lie on the model",
+        )
+    kept = Frfs(
+        frfs.frequencies_hz,
+        at.sensors.take(rows),
+        by.sensors.take(columns),
+        frfs.values[np.ix_(rows, columns)] * placed.alignment.scale,
+        frfs.quantity,
+        frfs.source,
+    )
+    return Responses(kept, at.matrix[rows], by.matrix[columns]), ()
+
+
+def hearing(request: Request, problem: Problem, log_p: Floats) -> Problem:
+    """Return the problem with the responses as evidence.
+
+    Parameters
+    ----------
+    request : Request
+        Its responses at sensors that its placed test still has count.
+    problem : Problem
+    log_p : (n_parameter + 1,) float
+        Of the known parameters fitted alone: what that leaves shows how lines go along.
+    """
+    if request.responses is None:
+        return problem
+    r = request.responses.at(request.placed.observation.sensors.node)
+    if not len(r.frfs.responses):
+        return problem
+    hz, measured = problem.whole.frequencies_hz, request.placed.test.damping
+    model = request.structure.model
+    rest = lacking(
+        (r.observed @ model.expansion).tocsr(),
+        (r.driven @ model.expansion).tocsr(),
+        (model.K() - request.solution.sigma * model.M()).tocsr(),
+        problem.basis.vectors,
+        request.solution.factor,
+    )
+    state = state_of(problem, evaluate(problem, log_p, ()), measured)
+    return replace(problem, heard=heard(r, hz, measured, rest, state))
+
+
+def misfit_of_responses(problem: Problem, f: Fit) -> float:
+    """Return −2 ln of how likely the responses are by a hypothesis; 0 where there are none."""
+    if problem.heard is None:
+        return 0.0
+    fit = evaluate(problem, f.log_p, f.suspects)
+    return problem.heard.misfit(state_of(problem, fit, problem.heard.ratios))
+
+
+def state_of(problem: Problem, f: Fit, measured: Floats) -> State:
+    """Return a fit, on the basis of the problem, with the damping that was measured."""
+    _, match = misfit(problem.entire(), f.eigenvalues, f.vectors)
+    omega = np.sqrt(np.maximum(f.eigenvalues, 0.0))
+    motion = problem.basis.motion @ f.vectors[: problem.basis.size]
+    return State(omega, ratios_of(measured, match, len(omega)), motion, match)
+
+
+def with_responses(problem: Problem, log_p: Floats, best: Fit, said: Discovery) -> Discovery:
+    """Add how well the responses are met before and after.
+
+    Parameters
+    ----------
+    problem : Problem
+    log_p : (n_parameter + 1,) float
+        Of the known parameters fitted alone.
+    best : Fit
+        What was accepted, on the basis of the problem.
+    said : Discovery
+    """
+    h = problem.heard
+    if h is None:
+        return said
+    fits = (
+        evaluate(problem, np.zeros_like(log_p), ()),
+        evaluate(problem, log_p, ()),
+        best,
+    )
+    states = [state_of(problem, f, h.ratios) for f in fits]
+    before, after = (_assurance(h, s) for s in (states[0], states[2]))
+    rms = tuple(h.rms(s) for s in states)
+    frfs = h.responses.frfs
+    gap = ResponseGap(
+        tuple(frfs.responses.labels),
+        tuple(frfs.references.labels),
+        len(frfs.frequencies_hz),
+        h.independent,
+        tuple(before),
+        tuple(after),
+        (rms[0], rms[1], rms[2]),
+    )
+    return replace(said, responses=gap)
+
+
+def _assurance(h: Heard, s: State) -> list[float]:
+    """Frequency response assurance of each response, mean over the references measured."""
+    measured = h.responses.frfs.values
+    each = frac(measured, synthesised(h.responses, s, h.rest))
+    seen = np.isfinite(measured).any(axis=-1)
+    total = np.sum(np.where(seen, each, 0.0), axis=1)
+    return [float(v) for v in total / np.maximum(seen.sum(axis=1), 1)]

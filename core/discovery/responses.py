@@ -1,0 +1,269 @@
+"""Measured frequency responses as evidence: what hypotheses make of them, and how well it fits.
+
+Hypotheses are fitted to modes, so every line of the responses is new to them. What the modes did
+not say already is in the sizes: modal masses, modes that nobody identified, antiresonances. So a
+hypothesis is compared with its matched modes at the measured frequencies and ratios (how far off
+its own are has been counted) by log magnitudes, and what it leaves counts as often as there are
+independent lines.
+
+References
+----------
+Heylen, Lammens (1996), FRAC: a consistent way of comparing frequency response functions,
+Proceedings of the International Conference on Identification in Engineering Systems, 48-57;
+Allemang (2003), The modal assurance criterion, Sound and Vibration 37, 14-23.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Ints, Numbers
+from ..factor import Factorisation, factorise
+from ..frfs import Frfs
+from ..identification.synthesis import derivative_order
+
+_MOST_LINES, _MOST_FUNCTIONS = 240, 60
+_FAR = float(np.log(4.0))
+"""Log ratio of magnitudes beyond which more of it counts no more."""
+_RATIO = 0.01
+_LEAST = 0.02
+"""Log magnitudes are not known better than this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """Measured responses laid onto a model.
+
+    Parameters
+    ----------
+    frfs : Frfs
+        Displacement, velocity or acceleration in the deck's length unit per force of the test.
+    observed, driven : (n_response, n_dof), (n_reference, n_dof) sparse
+        What the responses and the references read of the model's motion, basic axes.
+    """
+
+    frfs: Frfs
+    observed: sp.csr_matrix
+    driven: sp.csr_matrix
+
+    def at(self, nodes: Ints) -> Responses:
+        """Return the responses at some nodes of the test."""
+        rows = np.flatnonzero(np.isin(self.frfs.responses.node, nodes))
+        f = self.frfs
+        kept = Frfs(
+            f.frequencies_hz,
+            f.responses.take(rows),
+            f.references,
+            f.values[rows],
+            f.quantity,
+            f.source,
+        )
+        return replace(self, frfs=kept, observed=self.observed[rows])
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A hypothesis as far as responses need it.
+
+    Parameters
+    ----------
+    omega : (n_mode,) float
+        rad/s.
+    ratios : (n_mode,) float
+    motion : (n_dof, n_mode) float
+        Shapes of unit modal mass.
+    match : (n_test,) int
+        Partner of every measured mode.
+    """
+
+    omega: Floats
+    ratios: Floats
+    motion: Floats
+    match: Ints
+
+    def at_measured(self, hz: Floats) -> State:
+        """Return the state with every matched mode at its measured frequency [Hz]."""
+        omega = np.array(self.omega)
+        omega[self.match] = 2.0 * np.pi * hz
+        return replace(self, omega=omega)
+
+
+def ratios_of(measured: Floats, match: Ints, count: int) -> Floats:
+    """Return ratios of all modes: as measured where matched, else the geometric mean, (count,)."""
+    known = np.isfinite(measured) & (measured > 0.0)
+    usual = float(np.exp(np.mean(np.log(measured[known])))) if known.any() else _RATIO
+    out = np.full(count, usual)
+    out[match[known]] = measured[known]
+    return out
+
+
+def synthesised(
+    r: Responses, s: State, rest: Floats, lines: Ints | None = None, rows: Ints | None = None
+) -> Numbers:
+    """Return the responses of a hypothesis, (n_response, n_reference, n_line) complex.
+
+    Parameters
+    ----------
+    r : Responses
+    s : State
+    rest : (n_response, n_reference) float
+        Static flexibility that the modes of the state lack.
+    lines, rows : optional
+        Which lines and responses.
+    """
+    lines = np.arange(len(r.frfs.frequencies_hz)) if lines is None else lines
+    rows = np.arange(len(r.frfs.responses)) if rows is None else rows
+    jw = 2j * np.pi * r.frfs.frequencies_hz[lines]
+    a, b = np.asarray(r.observed[rows] @ s.motion), np.asarray(r.driven @ s.motion)
+    gain = 1.0 / (jw**2 + 2.0 * s.ratios[:, None] * s.omega[:, None] * jw + (s.omega**2)[:, None])
+    residues = (a[:, None, :] * b[None]).reshape(-1, len(s.omega))
+    H = (residues @ gain).reshape(len(a), len(b), len(jw)) + rest[rows][:, :, None]
+    return np.asarray(H * jw ** derivative_order(r.frfs.quantity))
+
+
+def frac(measured: Numbers, model: Numbers) -> Floats:
+    """Frequency response assurance of each function, over its lines, 0 to 1.
+
+    Parameters
+    ----------
+    measured, model : (..., n_line) complex
+        Lines that are not finite are left out.
+    """
+    good = np.isfinite(measured)
+    a, b = np.where(good, measured, 0.0), np.where(good, model, 0.0)
+    cross = np.abs(np.sum(a * b.conj(), axis=-1)) ** 2
+    scale = np.sum(np.abs(a) ** 2, axis=-1) * np.sum(np.abs(b) ** 2, axis=-1)
+    return np.asarray(np.divide(cross, scale, out=np.zeros_like(cross), where=scale > 0.0))
+
+
+def log_ratios(measured: Numbers, model: Numbers) -> Floats:
+    """Log ratios of magnitudes, one common factor taken out, far ones cut; NaN not measured.
+
+    Parameters
+    ----------
+    measured, model : (..., n_line) complex
+    """
+    good = np.isfinite(measured) & (np.abs(measured) > 0.0) & (np.abs(model) > 0.0)
+    e = np.log(np.where(good, np.abs(model), 1.0) / np.where(good, np.abs(measured), 1.0))
+    e = np.where(good, e, np.nan)
+    return np.asarray(np.clip(e - np.nanmedian(e), -_FAR, _FAR)) if good.any() else e
+
+
+def independent_lines(e: Floats) -> float:
+    """Return how many of the lines are independent, from how errors go along with one another.
+
+    The number of lines over 1 + 2 Σ ρ_k, the autocorrelation summed up to its first zero
+    (Geyer 1992, Statistical Science 7, 473-483: initial positive sequence), averaged over the
+    functions.
+
+    Parameters
+    ----------
+    e : (..., n_line) float
+    """
+    n = e.shape[-1]
+    rows = np.nan_to_num(e.reshape(-1, n))
+    rows = rows - rows.mean(axis=1, keepdims=True)
+    spectrum = np.abs(np.fft.rfft(rows, 2 * n, axis=1)) ** 2
+    rho = np.fft.irfft(spectrum.mean(axis=0), 2 * n)[:n]
+    if not rho[0] > 0.0:
+        return float(n)
+    rho = rho / rho[0]
+    negative = np.flatnonzero(rho < 0.0)
+    last = int(negative[0]) if len(negative) else n
+    return float(np.clip(n / (1.0 + 2.0 * rho[1:last].sum()), 1.0, n))
+
+
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """What the responses say of hypotheses.
+
+    Parameters
+    ----------
+    responses : Responses
+    hz, ratios : (n_test,) float
+        Of the measured modes.
+    rest : (n_response, n_reference) float
+        Static flexibility that the basis lacks.
+    lines, rows : (n,) int
+        Lines and responses that hypotheses are compared on: spread evenly.
+    independent : float
+        Number of independent lines.
+    """
+
+    responses: Responses
+    hz: Floats
+    ratios: Floats
+    rest: Floats
+    lines: Ints
+    rows: Ints
+    independent: float
+
+    def misfit(self, s: State) -> float:
+        """Return −2 ln of the likelihood up to a constant: n ln of the mean squared log ratio.
+
+        The variance is unknown and the functions of one structure repeat each other, so only
+        the independent lines count.
+        """
+        return self.independent * float(np.log(self.rms(s) ** 2 + _LEAST**2))
+
+    def rms(self, s: State) -> float:
+        """Return the rms log ratio of magnitudes, matched modes where they were measured."""
+        at = s.at_measured(self.hz)
+        model = synthesised(self.responses, at, self.rest, self.lines, self.rows)
+        measured = self.responses.frfs.values[self.rows][:, :, self.lines]
+        return float(np.sqrt(np.nanmean(log_ratios(measured, model) ** 2)))
+
+
+def heard(
+    responses: Responses, hz: Floats, ratios: Floats, rest: Floats, reference: State
+) -> Heard:
+    """Choose lines and count the independent ones by what one hypothesis leaves.
+
+    Parameters
+    ----------
+    responses : Responses
+    hz, ratios : (n_test,) float
+    rest : (n_response, n_reference) float
+    reference : State
+        A hypothesis that fits about as well as others will.
+    """
+    f = responses.frfs.frequencies_hz
+    inside = np.flatnonzero((f > 0.7 * hz.min()) & (f < 1.05 * hz.max()))
+    inside = inside if len(inside) else np.arange(len(f))
+    lines = inside[np.unique(np.linspace(0, len(inside) - 1, _MOST_LINES).astype(int))]
+    n = len(responses.frfs.responses)
+    rows = np.unique(np.linspace(0, n - 1, _MOST_FUNCTIONS).astype(int))
+    at = reference.at_measured(hz)
+    model = synthesised(responses, at, rest, inside, rows)
+    e = log_ratios(responses.frfs.values[rows][:, :, inside], model)
+    return Heard(responses, hz, ratios, rest, lines, rows, independent_lines(e))
+
+
+def lacking(
+    observed: sp.csr_matrix,
+    driven: sp.csr_matrix,
+    A: sp.csr_matrix,
+    basis: Floats,
+    factor: Factorisation | None = None,
+) -> Floats:
+    """Return the static flexibility between responses and references that a basis lacks.
+
+    Parameters
+    ----------
+    observed, driven : (n_response, n_free), (n_reference, n_free) sparse
+    A : (n_free, n_free) sparse
+        K − σM, positive definite.
+    basis : (n_free, r) float
+    factor : Factorisation, optional
+        Of A.
+    """
+    factor = factor or factorise(A, definite=True)
+    fewer = driven.shape[0] <= observed.shape[0]
+    few, many = (driven, observed) if fewer else (observed, driven)
+    exact = np.asarray(many @ np.asarray(factor.solve(np.ascontiguousarray(few.T.toarray()))))
+    inner = np.linalg.inv(basis.T @ (A @ basis))
+    seen = np.asarray(observed @ basis) @ inner @ np.asarray(driven @ basis).T
+    return np.asarray((exact if fewer else exact.T) - seen)
