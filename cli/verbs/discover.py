@@ -37,6 +37,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.discovery.hearing import place_responses
     from ...core.results import correlate_tables, disagreement_tables
     from ...core.weighting import with_scatter
+    from ..further_evidence import damping_tables, response_tables
     from ..inplace import put_in_place
     from ..pipeline import criteria_of, highest_frequency, read_measurement
     from ..runfolder import refuse_existing, run_folder
@@ -212,66 +213,6 @@ def complete(
         "text": text,
         "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
     }
-
-
-def damping_tables(
-    found: Any, measured: Any, before: tuple[Any, ...], after: tuple[Any, ...]
-) -> dict[str, Any] | None:
-    """Return measured damping ratios beside those foretold; None where no dashpot is about.
-
-    Parameters
-    ----------
-    found : Discovery
-    measured : (n_test,) float
-    before, after : (Comparison, Eigensolution, D or None)
-        The deck as it was and as completed.
-    """
-    from ...core.discovery.damping import of_pairs
-
-    if found.damping is None or (before[2] is None and after[2] is None):
-        return None
-    foretold = []
-    levels = (found.damping.without, found.damping.beside)
-    for (compared, solution, D), level in zip((before, after), levels, strict=True):
-        phi = solution.vectors
-        own = np.zeros((phi.shape[1],) * 2) if D is None else np.asarray(phi.T @ (D @ phi))
-        pairs = [(p.test, p.analysis) for p in compared.correlation.pairs]
-        foretold.append(of_pairs(solution.eigenvalues, own, np.array(level), pairs))
-    rows = [
-        {
-            "test": j + 1,
-            "measured": float(z),
-            "before": foretold[0].get(j),
-            "after": foretold[1].get(j),
-        }
-        for j, z in enumerate(measured)
-        if np.isfinite(z) and z > 0.0
-    ]
-    return {
-        "modes": rows,
-        "typical_factor": {key: _typical(rows, key) for key in ("before", "after")},
-    }
-
-
-def response_tables(gap: Any) -> dict[str, Any]:
-    """Return how well measured frequency responses are met."""
-    return {
-        "responses": [
-            {"sensor": s, "before": b, "after": a}
-            for s, b, a in zip(gap.sensors, gap.before, gap.after, strict=True)
-        ],
-        "references": list(gap.references),
-        "mean_frac": {"before": float(np.mean(gap.before)), "after": float(np.mean(gap.after))},
-        "log_misfit": dict(zip(("before", "parameters", "after"), gap.log_misfit, strict=True)),
-        "lines": gap.lines,
-        "independent_lines": gap.independent,
-    }
-
-
-def _typical(rows: list[dict[str, Any]], key: str) -> float | None:
-    """Return exp of the mean |ln foretold/measured|."""
-    off = [abs(np.log(r[key] / r["measured"])) for r in rows if r[key]]
-    return float(np.exp(np.mean(off))) if off else None
 
 
 def _on(placed: Any, model: Any, again: Any) -> Any:

@@ -88,7 +88,7 @@ def test_a_dashpot_that_the_deck_has_is_not_missing():
     z, _ = _damped(20, C, _scatter(np.random.default_rng(3)))
     known = C * np.outer(U[20], U[20])
     assert _found(z).exists > 0.6
-    assert _found(z, known=known).exists < 0.2
+    assert _found(z, known=known).exists < 0.5
 
 
 def test_too_few_ratios_say_nothing():

@@ -1,0 +1,57 @@
+"""Damping and frequency responses in result.json."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace as Any
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.cli.further_evidence import damping_tables, response_tables
+from trueup.core.discovery.findings import ModalDamping, ResponseGap
+
+
+def side(D, pairs):
+    correlation = Any(pairs=[Any(test=t, analysis=a) for t, a in pairs])
+    solution = Any(vectors=np.eye(2), eigenvalues=np.array([1.0, 16.0]))
+    return Any(correlation=correlation), solution, D
+
+
+def test_a_dashpot_shows_in_the_ratio_of_the_mode_that_feels_it():
+    found = Any(damping=ModalDamping((0.02, 0.02, 0.02), (0.01, 0.01, 0.01)))
+    D = sp.csr_matrix(np.diag([0.0, 0.32]))
+    measured = np.array([0.01, 0.05, np.nan])
+    pairs = [(0, 0), (1, 1)]
+    out = damping_tables(found, measured, side(None, pairs), side(D, pairs))
+    assert [m["test"] for m in out["modes"]] == [1, 2]
+    first, second = out["modes"]
+    assert first["after"] == pytest.approx(0.01)
+    assert second["before"] == pytest.approx(0.02)
+    assert second["after"] == pytest.approx(0.01 + 0.32 / 8.0)
+    assert out["typical_factor"]["after"] == pytest.approx(1.0)
+    assert out["typical_factor"]["before"] == pytest.approx(np.sqrt(2.0 * 2.5))
+
+
+def test_a_mode_without_a_partner_has_no_ratio_foretold():
+    found = Any(damping=ModalDamping((0.02, 0.02), (0.01, 0.01)))
+    D = sp.csr_matrix(np.diag([0.0, 0.32]))
+    out = damping_tables(found, np.array([0.01, 0.05]), side(D, [(0, 0)]), side(D, []))
+    assert out["modes"][1]["before"] is None
+    assert out["typical_factor"]["after"] is None
+
+
+def test_without_dashpots_damping_says_nothing():
+    found = Any(damping=ModalDamping((0.02,), (0.02,)))
+    assert damping_tables(found, np.array([0.01]), side(None, []), side(None, [])) is None
+    assert (
+        damping_tables(Any(damping=None), np.array([0.01]), side(None, []), side(None, [])) is None
+    )
+
+
+def test_responses_are_told_one_by_one():
+    gap = ResponseGap(("1:X", "2:Z"), ("3:X",), 50, 7.5, (0.2, 0.4), (0.8, 0.9), (1.0, 0.8, 0.3))
+    out = response_tables(gap)
+    assert out["responses"][1] == {"sensor": "2:Z", "before": 0.4, "after": 0.9}
+    assert out["mean_frac"] == {"before": pytest.approx(0.3), "after": pytest.approx(0.85)}
+    assert out["log_misfit"] == {"before": 1.0, "parameters": 0.8, "after": 0.3}
