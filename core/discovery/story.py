@@ -6,6 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 
+_RUNS = 4
+"""More stretches of modes than these are not listed."""
+
+
 @dataclass(frozen=True)
 class MassUnit:
     """What masses are counted in.
@@ -29,13 +33,18 @@ class MassUnit:
 
 
 def mode_ranges(modes: Sequence[int]) -> str:
-    """Return ``mode 7``, ``modes 3 and 7 to 12``: what follows each other is joined."""
+    """Return ``mode 7``, ``modes 3 and 7 to 12``: what follows each other is joined.
+
+    Modes all over the test are counted: ``9 modes``.
+    """
     runs: list[list[int]] = []
     for m in sorted(modes):
         if runs and m == runs[-1][-1] + 1:
             runs[-1].append(m)
         else:
             runs.append([m])
+    if len(runs) > _RUNS:
+        return f"{len(modes)} modes"
     words = []
     for run in runs:
         words += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else [str(m) for m in run]

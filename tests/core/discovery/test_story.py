@@ -17,6 +17,7 @@ from trueup.core.discovery.story import MassUnit, mode_ranges
         ([3, 4], "modes 3 and 4"),
         ([12, 7, 8, 9, 10, 11], "modes 7 to 12"),
         ([1, 3, 7, 8, 9], "modes 1, 3 and 7 to 9"),
+        ([1, 3, 5, 7, 9, 10], "6 modes"),
     ],
 )
 def test_modes_in_ranges(modes, said):
