@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-
 _RUNS = 4
 """More stretches of modes than these are not listed."""
 
