@@ -37,6 +37,7 @@ from .mesh_error import lumping, with_consistent_bars
 from .polish import polished
 from .request import Request as Request
 from .search import Found, Searcher
+from .shaping import reshaped
 from .structure import thinned
 from .telling import told
 from .telling_dampers import with_damper
@@ -132,6 +133,8 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if request.responses is not None:
         searcher = replace(searcher, problem=hearing(request, searcher.problem, null.log_p))
     found = searcher.run(enough(searcher), progress)
+    searcher, found = _reshaped(searcher, found)
+    made = list(searcher.problem.catalogue)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(request, searcher, made, found, sensors)
     best = found.levels[verdict.accepted]
@@ -222,6 +225,15 @@ def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
         (float(hz.min()), float(hz.max())),
     )
     return [c for make in KINDS.values() for c in make(request.structure, scale)]
+
+
+def _reshaped(searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
+    """Give the patches of the hypotheses that earned their place better shapes."""
+    verdict = judge(searcher, found)
+    levels = list(found.levels)
+    for k in range(1, verdict.accepted + 1):
+        searcher, levels[k] = reshaped(searcher, levels[k], verdict.scale)
+    return searcher, Found(tuple(levels), found.rivals)
 
 
 def _weighed(

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from ..candidates import Candidates
 from ..laws import MassLaw
 from ..structure import Structure
-from .patches import Patch, PatchCandidates, patches_of, where_of
+from .patches import PatchCandidates, area_of, patches_of, where_of
 from .scale import Scale
 
 _RADII = (0.062, 0.075, 0.092, 0.11, 0.14, 0.175, 0.22)
@@ -33,15 +33,7 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         extra={
             "structure": structure,
             "patches": patches,
-            "areas": np.array([_area(structure, p) for p in patches]),
+            "areas": np.array([area_of(structure, p) for p in patches]),
         },
     )
     return (made,)
-
-
-def _area(structure: Structure, patch: Patch) -> float:
-    """Area of the shell elements of a patch."""
-    x = structure.model.geometry.xyz[structure.members[patch.member].corners[patch.rows]]
-    last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
-    diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
-    return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from copy import copy
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -13,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...arrays import Bools, Floats, Ints
 from ..basis import Basis
 from ..candidates import Candidates
-from ..laws import MassLaw
+from ..laws import MassLaw, Rows
 from ..structure import Members, Structure, thinned
 
 _LEFT = 1e-5
@@ -140,6 +143,13 @@ class PatchRows:
         self._members: dict[int, tuple[Floats, Floats]] = {}
         self._kept: dict[int, Floats] = {}
 
+    def of(self, candidates: PatchCandidates) -> PatchRows:
+        """Return the rows of candidates that have these first, and others after them."""
+        other = copy(self)
+        other._candidates = candidates
+        other._kept = dict(self._kept)
+        return other
+
     def __getitem__(self, rows: Ints) -> Floats:
         """Return the rows of some patches, (n, q, r)."""
         roots = [self._one(int(i)) for i in rows]
@@ -183,7 +193,33 @@ def root_of(A: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class PatchCandidates(Candidates):
-    """Candidates whose matrix is the stiffness or the mass of a patch of elements."""
+    """Candidates whose matrix is the stiffness or the mass of a patch of elements.
+
+    `described` says where patches are.
+    """
+
+    described: Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]] = field(
+        default=lambda structure, patches: where_of(structure, patches)
+    )
+
+    def with_patches(self, patches: Sequence[Patch]) -> PatchCandidates:
+        """Return the candidates with further patches after those they have."""
+        structure: Structure = self.extra["structure"]
+        extra = {**self.extra, "patches": [*self.extra["patches"], *patches]}
+        if "areas" in extra:
+            areas = [area_of(structure, p) for p in patches]
+            extra["areas"] = np.concatenate([extra["areas"], areas])
+        return replace(
+            self,
+            xyz=np.concatenate([self.xyz, [p.xyz for p in patches]]),
+            where=(*self.where, *self.described(structure, patches)),
+            extra=extra,
+        )
+
+    def extended(self, known: Rows) -> PatchRows:
+        """Return the rows of these candidates from those of the first of them."""
+        assert isinstance(known, PatchRows)
+        return known.of(self)
 
     def factors(self, basis: Basis) -> PatchRows:
         """Return the leading rows of a root of each patch's matrix on the basis."""
@@ -225,6 +261,14 @@ def masses(M: Floats) -> Floats:
     return np.asarray(along.sum(axis=(1, 2)))
 
 
-def where_of(structure: Structure, patches: list[Patch]) -> tuple[dict[str, list[int]], ...]:
+def area_of(structure: Structure, patch: Patch) -> float:
+    """Area of the shell elements of a patch."""
+    x = structure.model.geometry.xyz[structure.members[patch.member].corners[patch.rows]]
+    last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
+    diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
+    return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
+
+
+def where_of(structure: Structure, patches: Sequence[Patch]) -> tuple[dict[str, list[int]], ...]:
     """Element numbers of each patch."""
     return tuple({"elements": structure.members[p.member].ids[p.rows].tolist()} for p in patches)

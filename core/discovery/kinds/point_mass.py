@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -45,7 +47,8 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         trials=scale.masses(),
         root=sp.csr_matrix((0, structure.model.n_free)),
         rows_each=0,
-        where=tuple({"grids": _grids(structure, p)} for p in feet),
+        where=_grids(structure, feet),
+        described=_grids,
         typical=np.array([np.log(0.03 * scale.mass)]),
         spread=np.array([1.5]),
         extra={"structure": structure, "patches": feet},
@@ -53,9 +56,10 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     return (at_points, on_feet)
 
 
-def _grids(structure: Structure, patch: Patch) -> list[int]:
-    corners = structure.members[patch.member].corners[patch.rows]
-    return [int(g) for g in structure.model.geometry.ids[np.unique(corners)]]
+def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, list[int]], ...]:
+    ids = structure.model.geometry.ids
+    corners = [structure.members[p.member].corners[p.rows] for p in feet]
+    return tuple({"grids": ids[np.unique(c)].tolist()} for c in corners)
 
 
 def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:

@@ -1,0 +1,216 @@
+"""Patches grow and shrink, a row of elements at a time, where that pays.
+
+The catalogue has round and elongated patches of a few sizes. What is really there ends where a
+bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
+second effect beside the first. So the patches of a hypothesis that earned its place take in the
+next row of elements on one side or all round, or give one up, or stop at the property they are on,
+as long as each step gains more than trying so many shapes is worth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Bools, Floats, Ints
+from .candidates import Suspect
+from .fitting import Fit, evaluate
+from .kinds.patches import Patch, PatchCandidates, area_of
+from .laws import MassLaw
+from .scanning import scan
+from .search import Searcher
+from .structure import Members, Structure
+
+_STEPS = 8
+_FITTED = 2
+_CHANGES = np.array([-0.4, -0.15, 0.0, 0.15, 0.4])
+"""Steps of θ tried with every shape: what a patch gains in area it loses in strength."""
+_HALF = 0.5
+"""Part of an element's side by which rows of elements are told apart."""
+_SPREAD = 0.055
+"""Radius beside the size of the structure from which on a mass is spread, not at a point."""
+_BESIDE = 0.05
+"""How far from a point, beside the size, patches are tried in its stead."""
+_SHARE = 0.2
+"""Part of a patch that elements of one property are at least for the patch to end with them."""
+
+
+def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with patches of better shapes, and a searcher that knows them.
+
+    Parameters
+    ----------
+    searcher : Searcher
+    state : Fit
+    scale : float
+        How many times the assumed variance the noise has: a step has to gain that much more.
+    """
+    for q in range(len(state.suspects)):
+        for _ in range(_STEPS):
+            better = _step(searcher, state, q, scale)
+            if better is None:
+                break
+            searcher, state = better
+    return searcher, state
+
+
+def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
+    """Give one suspect the best of the shapes next to its own, None where none is worth it."""
+    suspect = state.suspects[q]
+    wide, options = _options(searcher, suspect)
+    if not options:
+        return None
+    others = state.suspects[:q] + state.suspects[q + 1 :]
+    without = evaluate(wide.problem, state.log_p, others)
+    small, here = wide.local(without)
+    tried: list[tuple[float, Suspect]] = []
+    for kind in sorted({s.kind for s in options}):
+        rows = np.array([s.row for s in options if s.kind == kind])
+        c = wide.problem.catalogue[kind]
+        trials = c.around(suspect.theta, _CHANGES)
+        score = scan(small, here, kind, rows, trials) + c.surprise(trials)
+        for row, own in zip(rows, score, strict=True):
+            best = int(np.argmin(own))
+            tried.append((float(own[best]), Suspect(kind, int(row), tuple(trials[best]))))
+    worth = 2.0 * scale * np.log(1.0 + len(options))
+    for _, option in sorted(tried, key=lambda t: t[0])[:_FITTED]:
+        trial = wide.fitted(state, (*state.suspects[:q], option, *state.suspects[q + 1 :]), 5)
+        if trial.objective < state.objective - worth:
+            return wide, trial
+    return None
+
+
+def _options(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspect]]:
+    """Return the shapes next to that of a suspect, and a searcher whose catalogue has them."""
+    c = searcher.problem.catalogue[suspect.kind]
+    if isinstance(c, PatchCandidates):
+        structure: Structure = c.extra["structure"]
+        return _added(searcher, suspect, variants(structure, c.extra["patches"][suspect.row]))
+    if not isinstance(c.law, MassLaw):
+        return searcher, []
+    beside = [
+        replace(suspect, kind=kind, row=int(row))
+        for kind, d in _masses(searcher)
+        for row in np.flatnonzero(
+            np.linalg.norm(d.xyz - c.xyz[suspect.row], axis=1) < _BESIDE * searcher.size
+        )
+    ]
+    return searcher, beside
+
+
+def _masses(searcher: Searcher) -> list[tuple[int, PatchCandidates]]:
+    """Return the kinds of masses on patches, point masses first."""
+    found = [
+        (kind, c)
+        for kind, c in enumerate(searcher.problem.catalogue)
+        if isinstance(c, PatchCandidates) and isinstance(c.law, MassLaw)
+    ]
+    return sorted(found, key=lambda f: f[1].kind == "distributed_mass")
+
+
+def _added(
+    searcher: Searcher, suspect: Suspect, patches: Sequence[Patch]
+) -> tuple[Searcher, list[Suspect]]:
+    """Put patches into the catalogue, masses where their extent belongs."""
+    problem = searcher.problem
+    of_kind: dict[int, list[Patch]] = {}
+    for p in patches:
+        of_kind.setdefault(_kind_of(searcher, suspect, p), []).append(p)
+    catalogue, factors = list(problem.catalogue), list(problem.factors)
+    options: list[Suspect] = []
+    for kind, new in of_kind.items():
+        before = catalogue[kind]
+        assert isinstance(before, PatchCandidates)
+        after = before.with_patches(new)
+        catalogue[kind] = after
+        factors[kind] = after.extended(factors[kind])
+        options += [replace(suspect, kind=kind, row=len(before) + k) for k in range(len(new))]
+    problem = replace(problem, catalogue=tuple(catalogue), factors=tuple(factors))
+    return replace(searcher, problem=problem), options
+
+
+def _kind_of(searcher: Searcher, suspect: Suspect, patch: Patch) -> int:
+    c = searcher.problem.catalogue[suspect.kind]
+    if not isinstance(c.law, MassLaw):
+        return suspect.kind
+    radius = np.sqrt(area_of(c.extra["structure"], patch) / np.pi)
+    wide = bool(radius > _SPREAD * searcher.size)
+    found = [k for k, d in _masses(searcher) if (d.kind == "distributed_mass") == wide]
+    return found[0] if found else suspect.kind
+
+
+def variants(structure: Structure, patch: Patch) -> list[Patch]:
+    """Return the patches that are one row of elements larger or smaller, or end with a property.
+
+    Rows are taken along the sides of the middle element, forwards and backwards, and all round.
+    """
+    m = structure.members[patch.member]
+    if m.shape not in {"quad", "tria"}:
+        return []
+    inside = np.zeros(len(m.ids), bool)
+    inside[patch.rows] = True
+    xyz = structure.centroids(m)
+    touched = np.zeros(len(structure.model.geometry.ids), bool)
+    touched[m.corners[inside]] = True
+    ring = touched[m.corners].any(axis=1) & ~inside
+    outside = np.zeros_like(touched)
+    outside[m.corners[~inside]] = True
+    skin = outside[m.corners].any(axis=1) & inside
+    shapes = [inside | ring, inside & ~skin]
+    for first, last in _rows_of_elements(structure, m, inside, ring, xyz):
+        shapes += [inside | first, inside & ~last]
+    own = m.block.depends_of
+    for k in np.unique(own[inside]):
+        if _SHARE < np.mean(own[inside] == k) < 1.0:
+            shapes.append(inside & (own == k))
+    alone = np.unique(own[inside])
+    if len(alone) == 1:
+        shapes += [s & (own == alone[0]) for s in shapes]
+    return _patches(patch, xyz, inside, shapes)
+
+
+def _rows_of_elements(
+    structure: Structure, m: Members, inside: Bools, ring: Bools, xyz: Floats
+) -> list[tuple[Bools, Bools]]:
+    """Return the next row outside and the last row inside, towards each of the four sides."""
+    middle = xyz[inside].mean(axis=0)
+    rows = np.flatnonzero(inside)
+    nearest = rows[np.argmin(np.linalg.norm(xyz[rows] - middle, axis=1))]
+    x = structure.model.geometry.xyz[m.corners[nearest]]
+    along = x[1] - x[0]
+    side = float(np.linalg.norm(along))
+    if side == 0.0:
+        return []
+    across = x[-1] - x[0]
+    across = across - along * (across @ along) / side**2
+    depth = float(np.linalg.norm(across))
+    if depth == 0.0:
+        return []
+    frame = np.stack([along / side, across / depth])
+    place = (xyz - middle) @ frame.T / [side, depth]
+    low, high = place[inside].min(axis=0) - _HALF, place[inside].max(axis=0) + _HALF
+    out = []
+    for k in (0, 1):
+        level = (place[:, 1 - k] > low[1 - k]) & (place[:, 1 - k] < high[1 - k])
+        for ahead, last in (
+            (place[:, k] > high[k], place[:, k] > high[k] - 2.0 * _HALF),
+            (place[:, k] < low[k], place[:, k] < low[k] + 2.0 * _HALF),
+        ):
+            out.append((ring & level & ahead, inside & last))
+    return out
+
+
+def _patches(patch: Patch, xyz: Floats, inside: Bools, shapes: Sequence[Bools]) -> list[Patch]:
+    """Shapes as patches, each once, none empty nor more than half of all."""
+    seen, out = {inside.tobytes()}, []
+    for s in shapes:
+        if s.tobytes() in seen or not 0 < np.count_nonzero(s) < 0.5 * len(s):
+            continue
+        seen.add(s.tobytes())
+        rows: Ints = np.flatnonzero(s)
+        middle = xyz[rows].mean(axis=0)
+        grown = float(np.sqrt(len(rows) / len(patch.rows)))
+        out.append(Patch(patch.member, rows, middle, patch.radius * grown, False))
+    return out

@@ -1,0 +1,150 @@
+"""A patch takes the shape of what is there: a membrane that is soft over a part of it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from trueup.core.discovery.basis import Basis, ReducedSum
+from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.evidence import Evidence, Noise
+from trueup.core.discovery.fitting import Prior, Problem, fit
+from trueup.core.discovery.kinds.patches import Patch, PatchCandidates
+from trueup.core.discovery.laws import FactorLaw
+from trueup.core.discovery.search import Effort, Searcher
+from trueup.core.discovery.shaping import reshaped, variants
+from trueup.core.discovery.structure import Structure
+from trueup.core.model import Term
+
+NX, NY = 11, 8
+FACTOR = 0.4
+_ELEMENT = np.array([[4, -1, -2, -1], [-1, 4, -1, -2], [-2, -1, 4, -1], [-1, -2, -1, 4]]) / 6.0
+
+
+def grid():
+    """Corners (n, 4) and nodes of square elements, numbered along x first."""
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(NX), np.arange(NY)))
+    first = j * (NX + 1) + i
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(NX + 1.0), np.arange(NY + 1.0)))
+    corners = np.stack([first, first + 1, first + NX + 2, first + NX + 1], axis=1)
+    return corners, np.column_stack([x, y, 0.0 * x])
+
+
+def box(x, y):
+    """Elements with their lower left corners from x[0] to x[1] - 1, likewise y."""
+    i, j = np.meshgrid(np.arange(*x), np.arange(*y))
+    return np.sort((j * NX + i).ravel())
+
+
+def membrane(property_of=None):
+    """A square membrane held at its rim; each node moves in z."""
+    corners, xyz = grid()
+    n = len(corners)
+    K = np.zeros((n, 24, 24))
+    across = 6 * np.arange(4) + 2
+    K[:, across[:, None], across] = _ELEMENT
+    rim = (xyz[:, 0] % NX == 0) | (xyz[:, 1] % NY == 0)
+    free = np.flatnonzero(~rim)
+    displacement = sp.csr_matrix(
+        (np.ones(len(free)), (6 * free + 2, np.arange(len(free)))), (6 * len(xyz), len(free))
+    )
+    at = (6 * corners[:, :, None] + np.arange(6)).reshape(n, 24)
+    member = SimpleNamespace(
+        shape="quad",
+        ids=np.arange(1, n + 1),
+        corners=corners,
+        block=SimpleNamespace(
+            width=6, depends_of=np.zeros(n, int) if property_of is None else property_of
+        ),
+        matrices=lambda rows, p: (K[rows], None),
+        coordinates=lambda rows: at[rows],
+    )
+    geometry = SimpleNamespace(ids=np.arange(1, len(xyz) + 1), xyz=xyz)
+    model = SimpleNamespace(parameters=(), geometry=geometry, n_free=len(free))
+    return Structure(model, (member,), displacement)
+
+
+def stiffness(structure, soft=()):
+    """The stiffness of the membrane, less over some elements."""
+    m = structure.members[0]
+    own = m.matrices(np.arange(len(m.ids)), None)[0].copy()
+    own[list(soft)] *= FACTOR
+    D = structure.displacement.toarray()
+    u = D[m.coordinates(np.arange(len(m.ids)))]
+    return np.einsum("eir,eij,ejs->rs", u, own, u)
+
+
+def suspecting(structure, soft, start):
+    """A search on the test of a soft membrane, with one patch in its catalogue, and its fit."""
+    values, vectors = la.eigh(stiffness(structure))
+    found, shapes = la.eigh(stiffness(structure, soft))
+    n, seen, modes = len(values), np.arange(0, len(values), 2), 12
+    test = shapes[seen, :modes] / np.linalg.norm(shapes[seen, :modes], axis=0)
+    e = Evidence(np.sqrt(found[:modes]) / (2.0 * np.pi), test, Noise(0.002, 0.03, 20.0, 40.0, 1e-4))
+    basis = Basis(
+        vectors,
+        vectors,
+        ReducedSum((Term(sp.csr_matrix(stiffness(structure))),), np.diag(values)[None]),
+        ReducedSum((Term(sp.identity(n, format="csr")),), np.eye(n)[None]),
+    )
+    middle = structure.centroids(structure.members[0])[start].mean(axis=0)
+    catalogue = PatchCandidates(
+        kind="local_stiffness",
+        xyz=middle[None],
+        law=FactorLaw(),
+        trials=np.log([[0.3], [0.6]]),
+        root=sp.csr_matrix((0, n)),
+        rows_each=0,
+        where=({"elements": (start + 1).tolist()},),
+        typical=np.zeros(1),
+        spread=np.array([1.2]),
+        extra={"structure": structure, "patches": [Patch(0, start, middle, 1.0, True)]},
+    )
+    prior = Prior(np.ones(1), -np.ones(1), np.ones(1))
+    none = np.zeros((n, n))
+    problem = Problem(
+        e, e, basis, vectors[seen], vectors[seen], none, (catalogue,),
+        (catalogue.factors(basis),), prior, 40, 20,
+    )  # fmt: skip
+    s = Searcher(problem, (np.arange(1),), (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
+    return s, fit(problem, np.zeros(1), (Suspect(0, 0, (np.log(0.5),)),), (0,), 10)
+
+
+@pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])
+def test_a_patch_grows_and_shrinks_into_what_is_soft(start):
+    soft = box((3, 7), (2, 5))
+    s, state = suspecting(membrane(), soft, start)
+    wide, better = reshaped(s, state, 1.0)
+    suspect = better.suspects[0]
+    c = wide.problem.catalogue[0]
+    assert c.where[suspect.row]["elements"] == (soft + 1).tolist()
+    assert np.exp(suspect.theta[0]) == pytest.approx(FACTOR, rel=0.05)
+    assert better.objective < 0.1 * state.objective
+
+
+def test_a_patch_that_is_right_stays():
+    soft = box((3, 7), (2, 5))
+    s, state = suspecting(membrane(), soft, soft)
+    assert reshaped(s, state, 1.0) == (s, state)
+
+
+def test_rows_are_taken_on_each_side():
+    structure = membrane()
+    own = box((4, 6), (3, 5))
+    found = {tuple(p.rows) for p in variants(structure, Patch(0, own, np.zeros(3), 1.0, True))}
+    for x, y in (
+        ((3, 6), (3, 5)), ((4, 7), (3, 5)), ((4, 6), (2, 5)), ((4, 6), (3, 6)),
+        ((5, 6), (3, 5)), ((4, 6), (3, 4)), ((3, 7), (2, 6)),
+    ):  # fmt: skip
+        assert tuple(box(x, y)) in found
+
+
+def test_a_patch_may_end_with_its_property():
+    left = np.tile(np.arange(NX) >= 5, NY).astype(int)
+    own = box((3, 7), (2, 5))
+    found = variants(membrane(left), Patch(0, own, np.zeros(3), 1.0, True))
+    shapes = {tuple(p.rows) for p in found}
+    assert tuple(box((3, 5), (2, 5))) in shapes
+    assert tuple(box((5, 7), (2, 5))) in shapes
