@@ -17,8 +17,8 @@ import numpy as np
 from ..arrays import Bools, Floats, Ints
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, fit, softened, solve
+from .looking import look
 from .scanning import best_apart, scan
-from .tuning import promising
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
@@ -36,8 +36,6 @@ _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
 _CLOSE = 0.35
 """A hypothesis that gained less than all but this share of what the best gained is not grown."""
-_MANY = 30
-"""Sizes of a kind up to which every one is tried exactly at every place of the first scan."""
 _ROUNDS = 6
 """Times that a suspect moves to a neighbour at most."""
 _WORSE = 1.015
@@ -61,8 +59,6 @@ class Effort:
     search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
-    exact_places: int = 30
-    exact_sizes: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,20 +154,17 @@ class Searcher:
         out: list[tuple[float, Suspect]] = []
         for kind in range(len(small.catalogue)):
             c, rows = small.catalogue[kind], self.coarse[kind]
+            rows = rows[~self._taken(state, kind, rows)]
             if not len(rows):
                 continue
-            rows, trials = self._worth_trying(small, here, kind)
-            total = scan(small, here, kind, rows, trials) + c.surprise(trials)
-            total[self._taken(state, kind, rows)] = np.inf
-            each = np.broadcast_to(trials, (*total.shape, trials.shape[-1]))
-            chosen = each[np.arange(len(rows)), total.argmin(axis=1)]
-            tried = list(zip(total.min(axis=1), rows, chosen, strict=True))
+            seen = look(small, here, kind, rows)
+            tried = list(zip(seen.cost, seen.rows, seen.theta, strict=True))
             coarse = best_apart(
-                c.xyz[rows], total.min(axis=1), self.effort.apart * self.size, self.effort.looked_at
+                c.xyz[seen.rows], seen.cost, self.effort.apart * self.size, self.effort.looked_at
             )
-            done = set(rows.tolist())
+            done = set(seen.rows.tolist())
             for i in coarse:
-                near = self._around(kind, int(rows[i]))
+                near = self._around(kind, int(seen.rows[i]))
                 near = near[~self._taken(state, kind, near)]
                 near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
                 if not len(near):
@@ -188,20 +181,6 @@ class Searcher:
             for i in best_apart(c.xyz[every], best, self.effort.apart * self.size, count):
                 out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
-
-    def _worth_trying(self, small: Problem, here: Fit, kind: int) -> tuple[Ints, Floats]:
-        """Return the places of the first scan, and what is tried at each.
-
-        Where a kind has very many sizes, those that promise most to first order are tried, at the
-        places that do.
-        """
-        c, rows = small.catalogue[kind], self.coarse[kind]
-        if len(c.trials) <= _MANY:
-            return rows, c.trials
-        cost = promising(small, here, kind, rows, c.trials) + c.surprise(c.trials)
-        best = np.argsort(cost, axis=1, kind="stable")[:, : self.effort.exact_sizes]
-        order = np.argsort(cost.min(axis=1), kind="stable")[: self.effort.exact_places]
-        return rows[order], c.trials[best[order]]
 
     def _around(self, kind: int, row: int) -> Ints:
         """Places next to one, nearest first."""
