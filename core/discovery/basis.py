@@ -155,28 +155,65 @@ def build_basis(
     )
 
 
-class Flexibility:
-    """The flexibility of loads that a basis does not have, found when asked for, then kept.
+class Compliance:
+    """What single loads displace themselves by, found when asked for, then kept.
 
     Parameters
     ----------
     model : Model
     solution : Eigensolution
-        Its factor is used; the flexibility is that of K − σM with its shift.
-    basis : Basis
+        Its factor is used; the compliance is that of K − σM with its shift.
+    """
+
+    def __init__(self, model: Model, solution: Eigensolution) -> None:
+        self._K, self._M = model.K(), model.M()
+        self._solution = solution
+        self._known: dict[bytes, float] = {}
+
+    def of(self, loads: sp.csr_matrix) -> Floats:
+        """Return lᵀ (K − σM)⁻¹ l of each row l of `loads` (n, n_free), (n,)."""
+        ends = list(zip(loads.indptr[:-1], loads.indptr[1:], strict=True))
+        keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
+        new = {k: i for i, k in enumerate(keys) if k not in self._known}
+        rows = np.array(list(new.values()), dtype=np.int64)
+        for some in np.array_split(rows, -(-len(rows) // _CHUNK)) if len(rows) else ():
+            own = loads[some]
+            X = _solve(self._solution, self._K, self._M, own.T.toarray())
+            exact = np.asarray(own.multiply(X.T).sum(axis=1)).ravel()
+            self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
+        return np.array([self._known[k] for k in keys])
+
+    def on(self, vectors: Floats) -> Floats:
+        """Return the inverse of K − σM on a basis (n_free, r), (r, r)."""
+        A = self._K - self._solution.sigma * self._M
+        return np.asarray(np.linalg.inv(vectors.T @ (A @ vectors)))
+
+
+class Flexibility:
+    """The flexibility of loads that a basis does not have, found when asked for, then kept.
+
+    Parameters
+    ----------
+    compliance : Compliance
+    vectors : (n_free, r) float
+        The basis.
+    inverse : (r, r) float
+        See `Compliance.on`.
     root : (n · q, n_free) sparse
         Loads of n candidates, q each.
     """
 
     def __init__(
-        self, model: Model, solution: Eigensolution, basis: Basis, root: sp.csr_matrix, each: int
+        self,
+        compliance: Compliance,
+        vectors: Floats,
+        inverse: Floats,
+        root: sp.csr_matrix,
+        each: int,
     ) -> None:
-        self._K, self._M = model.K(), model.M()
-        self._solution = solution
-        self._V = basis.vectors
+        self._compliance = compliance
+        self._vectors, self._inverse = vectors, inverse
         self._root = root
-        A = basis.vectors.T @ ((self._K - solution.sigma * self._M) @ basis.vectors)
-        self._inverse = np.linalg.inv(A)
         self._kept = np.full((root.shape[0] // max(each, 1), max(each, 1)), np.nan)
 
     def __getitem__(self, rows: Ints) -> Floats:
@@ -184,14 +221,11 @@ class Flexibility:
         wanted = np.unique(rows)
         new = wanted[np.isnan(self._kept[wanted, 0])] if len(wanted) else wanted
         q = self._kept.shape[1]
-        for start in range(0, len(new), _CHUNK):
-            some = new[start : start + _CHUNK]
-            own = self._root[(some[:, None] * q + np.arange(q)).ravel()]
-            X = _solve(self._solution, self._K, self._M, np.asarray(own.T.todense()))
-            seen = np.asarray(own @ self._V)
-            exact = np.asarray(own.multiply(X.T).sum(axis=1)).ravel()
-            lost = exact - np.einsum("ij,ij->i", seen @ self._inverse, seen)
-            self._kept[some] = np.maximum(lost, 0.0).reshape(-1, q)
+        if len(new):
+            own = self._root[(new[:, None] * q + np.arange(q)).ravel()]
+            seen = np.asarray(own @ self._vectors)
+            lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
+            self._kept[new] = np.maximum(lost, 0.0).reshape(-1, q)
         return np.asarray(self._kept[rows])
 
 

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from ..arrays import Bools, Floats
 from ..correlation import realised
 from ..errors import TrueupError
-from .basis import Basis, Flexibility, build_basis
+from .basis import Basis, Compliance, Flexibility, build_basis
 from .bench import Bench
 from .candidates import Candidates
 from .evidence import Evidence, noise_of
@@ -75,8 +75,9 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     sensors_out = held_out(n, 5, 10) if n >= 30 else np.zeros(n, bool)
     motion = np.asarray(request.structure.model.expansion @ solution.vectors)
     first = bench.judged(motion, solution.eigenvalues)
+    progress("making the catalogue of effects")
+    ground = _ground(request, ~modes_out)
     progress("fitting the known parameters")
-    ground = _ground(request)
     trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
     tested = bench.judged_by(trial.problem, trial.null)
     if np.any(tested.doubtful != first.doubtful):
@@ -111,7 +112,7 @@ class _Trial:
         modes_out: Bools,
         sensors_out: Bools,
     ) -> None:
-        self.aside = aside
+        self.ground, self.aside = ground, aside
         self.request = replace(request, placed=request.placed.take(~aside))
         self.sensors = ~sensors_out[~aside]
         self.problem, self.null, self.zero = _prepared(
@@ -126,12 +127,11 @@ def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
 
 def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, Judgement]:
     """Search on sensors taken as sound, and weigh."""
-    request, problem, null, sensors = trial.request, trial.problem, trial.null, trial.sensors
-    progress("making the catalogue of effects")
-    made = _catalogue(request, problem)
-    searcher = _searcher(request, problem, null, made)
+    request, problem, sensors = trial.request, trial.problem, trial.sensors
+    made = trial.ground.catalogue
+    searcher = _searcher(trial)
     if request.responses is not None:
-        searcher = replace(searcher, problem=hearing(request, searcher.problem, null.log_p))
+        searcher = replace(searcher, problem=hearing(request, searcher.problem, trial.null.log_p))
     found = searcher.run(enough(searcher), progress)
     searcher, found = _reshaped(searcher, found)
     made = list(searcher.problem.catalogue)
@@ -158,19 +158,31 @@ def _hz(eigenvalues: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _Ground:
-    """What does not depend on the sensors: the basis, and the error of the mesh on it."""
+    """What does not depend on the sensors.
+
+    The basis, the error of the mesh on it, how many modes may match, what loads do to the deck as
+    it is, and every effect that may be missing.
+    """
 
     basis: Basis
     mesh: Floats
     columns: int
+    compliance: Compliance
+    catalogue: list[Candidates]
 
 
-def _ground(request: Request) -> _Ground:
+def _ground(request: Request, modes: Bools) -> _Ground:
     top = float(request.placed.test.frequencies_hz.max())
     targets = _below(request.solution.eigenvalues, top)
     basis = build_basis(request.structure.model, request.solution, targets)
     basis = with_consistent_bars(request.structure, basis)
-    return _Ground(basis, lumping(request.structure, basis.vectors), targets + _MORE)
+    return _Ground(
+        basis,
+        lumping(request.structure, basis.vectors),
+        targets + _MORE,
+        Compliance(request.structure.model, request.solution),
+        _catalogue(request, request.placed.test.frequencies_hz[modes]),
+    )
 
 
 def _below(eigenvalues: Floats, top: float) -> int:
@@ -215,9 +227,8 @@ def _prepared(
     return replace(problem, columns=columns), null, zero
 
 
-def _catalogue(request: Request, problem: Problem) -> list[Candidates]:
+def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     """Return every kind of effect at every place."""
-    hz = problem.evidence.frequencies_hz
     scale = Scale(
         request.mass,
         request.structure.model.geometry.size,
@@ -293,14 +304,17 @@ def _polished(
     return polished(request.structure, made, observation, sensors, searcher.problem, state)
 
 
-def _searcher(request: Request, problem: Problem, null: Fit, made: list[Candidates]) -> Searcher:
+def _searcher(trial: _Trial) -> Searcher:
     """Put the catalogue on the leading vectors of the fitted state."""
-    model = request.structure.model
-    size = model.geometry.size
+    request, problem, null = trial.request, trial.problem, trial.null
+    made, compliance = trial.ground.catalogue, trial.ground.compliance
+    size = request.structure.model.geometry.size
     small = problem.turned(null.vectors)
     small = replace(small, modes=min(80, small.basis.size))
+    vectors = small.basis.vectors
+    inverse = compliance.on(vectors)
     missing = tuple(
-        Flexibility(model, request.solution, small.basis, c.root, c.rows_each)
+        Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
         if c.needs_flexibility
         else None
         for c in made
