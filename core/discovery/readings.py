@@ -61,13 +61,29 @@ def likelihood(node: Node, maps: Floats) -> Floats:
     (n, n_local) float
         For each size in `LOCAL` of what the model has wrong there in every mode by itself.
     """
-    mean = np.einsum("gkq,mq->gmk", maps, node.mean)
-    C = np.einsum("gkq,mqr,glr->gmkl", maps, node.covariance, maps, optimize=True)
+    mean = np.swapaxes(maps @ node.mean.T, 1, 2)
+    part = maps[:, None] @ node.covariance
+    return likelihood_of(node, mean, part @ np.swapaxes(maps, 1, 2)[:, None])
+
+
+def likelihood_of(node: Node, mean: Floats, covariance: Floats) -> Floats:
+    """Log likelihood of the readings if they should be as given, as `likelihood`.
+
+    Parameters
+    ----------
+    node : Node
+    mean : (n, n_mode, k) float
+    covariance : (n, n_mode, k, k) float
+        Without the noise of the readings.
+    """
     k = node.reading.shape[1]
+    C = covariance + _GAIN**2 * mean[..., :, None] * mean[..., None, :]
     C[..., np.arange(k), np.arange(k)] += node.noise
-    C += _GAIN**2 * mean[..., :, None] * mean[..., None, :]
+    off = node.reading - mean
+    if k == 1:
+        return _mixed(off**2, np.maximum(C[..., 0], 1e-12))
     values, vectors = np.linalg.eigh(C)
-    r = np.einsum("gmkl,gmk->gml", vectors, node.reading - mean)
+    r = (np.swapaxes(vectors, -1, -2) @ off[..., None])[..., 0]
     return _mixed(r**2, np.maximum(values, 1e-12))
 
 
@@ -102,4 +118,11 @@ def local_shares(sound: Floats, rounds: int = 30) -> Floats:
 
 def evidence(node: Node, maps: Floats, shares: Floats) -> Floats:
     """Log likelihood of each map, over all sizes of what the model has wrong there, (n,)."""
-    return np.asarray(logsumexp(likelihood(node, maps) + np.log(shares), axis=1))
+    return averaged(likelihood(node, maps), shares)
+
+
+def averaged(log: Floats, shares: Floats) -> Floats:
+    """Log likelihoods (n, n_local) over all sizes of what a model has wrong, (n,)."""
+    weighted = log + np.log(shares)
+    top = weighted.max(axis=1)
+    return np.asarray(top + np.log(np.exp(weighted - top[:, None]).sum(axis=1)))

@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 
 from ..arrays import Floats
 from .alternatives import Alternative, Before
-from .readings import Node, evidence
+from .readings import Node, averaged, likelihood_of
 
 _SHARE = 0.25
 _LONE_BACK, _BACK = 0.5, 0.15
@@ -55,43 +55,47 @@ def swaps(
     """
     total = {i: float(logsumexp([a.log for a in alone[i]])) for i in among}
     n = len(nodes)
+    prior = float(np.log(before.faulty * _SHARE / max(n - 1, 1)))
     out = []
     for i, j in combinations(among, 2):
-        k, m = nodes[i].reading.shape[1], nodes[j].reading.shape[1]
-        ways: list[tuple[tuple[int, ...], tuple[int, ...], float]] = []
-        if k == m:
-            ways.append((tuple(range(k)), tuple(range(k)), 1.0 if k == 1 else _WHOLE))
-        if k * m > 1:
-            share = (1.0 - _WHOLE if k == m else 1.0) / (k * m)
-            ways += [((a,), (b,), share) for a in range(k) for b in range(m)]
-        prior = float(np.log(before.faulty * _SHARE / max(n - 1, 1)))
-        for a, b, share in ways:
-            back = _LONE_BACK if k * m == 1 else _BACK if len(a) == 1 else 0.0
-            for sign, chance in ((1.0, 1.0 - back), (-1.0, back)):
-                if not chance:
-                    continue
-                log = _crossed(nodes[i], a, nodes[j], b, sign, before.shares)
-                log += _crossed(nodes[j], b, nodes[i], a, sign, before.shares)
-                log += prior + float(np.log(share * chance)) - total[i] - total[j]
-                out.append(Swap((i, j), (a, b), sign, log))
+        ways = _ways(nodes[i].reading.shape[1], nodes[j].reading.shape[1])
+        log = _crossed(nodes[i], nodes[j], [w[:3] for w in ways], before.shares)
+        log += _crossed(nodes[j], nodes[i], [(b, a, s) for a, b, s, _ in ways], before.shares)
+        for (a, b, sign, share), value in zip(ways, log, strict=True):
+            odds = float(value) + prior + float(np.log(share)) - total[i] - total[j]
+            out.append(Swap((i, j), (a, b), sign, odds))
     return sorted(out, key=lambda s: -s.odds)
 
 
+_Rows = tuple[int, ...]
+
+
+def _ways(k: int, m: int) -> list[tuple[_Rows, _Rows, float, float]]:
+    """Rows of sets with k and m directions that may be exchanged, the sign, and the share."""
+    if k * m == 1:
+        return [((0,), (0,), 1.0, 1.0 - _LONE_BACK), ((0,), (0,), -1.0, _LONE_BACK)]
+    whole = [(tuple(range(k)), tuple(range(k)), 1.0, _WHOLE)] if k == m else []
+    share = (1.0 - _WHOLE if k == m else 1.0) / (k * m)
+    single = [
+        ((a,), (b,), sign, share * chance)
+        for a in range(k)
+        for b in range(m)
+        for sign, chance in ((1.0, 1.0 - _BACK), (-1.0, _BACK))
+    ]
+    return [*whole, *single]
+
+
 def _crossed(
-    node: Node,
-    rows: tuple[int, ...],
-    other: Node,
-    others: tuple[int, ...],
-    sign: float,
-    shares: Floats,
-) -> float:
-    """Log likelihood of a node some of whose rows read what rows of another should."""
+    node: Node, other: Node, ways: Sequence[tuple[_Rows, _Rows, float]], shares: Floats
+) -> Floats:
+    """Log likelihoods of a node some of whose rows read what rows of another should, (n,)."""
     k = node.reading.shape[1]
-    mean, C = node.mean[:, :k].copy(), node.covariance[:, :k, :k].copy()
-    own, far = np.array(rows), np.array(others)
-    mean[:, own] = sign * other.mean[:, far]
-    C[:, own, :] = 0.0
-    C[:, :, own] = 0.0
-    C[:, own[:, None], own] = other.covariance[:, far[:, None], far]
-    crossed = Node(mean, C, node.reading, node.noise)
-    return float(evidence(crossed, np.eye(k)[None], shares)[0])
+    mean = np.repeat(node.mean[None, :, :k], len(ways), axis=0)
+    C = np.repeat(node.covariance[None, :, :k, :k], len(ways), axis=0)
+    for g, (rows, others, sign) in enumerate(ways):
+        own, far = np.array(rows), np.array(others)
+        mean[g][:, own] = sign * other.mean[:, far]
+        C[g][:, own, :] = 0.0
+        C[g][:, :, own] = 0.0
+        C[g][:, own[:, None], own] = other.covariance[:, far[:, None], far]
+    return averaged(likelihood_of(node, mean, C), shares)

@@ -9,7 +9,7 @@ from scipy.special import expit, logsumexp
 
 from ..arrays import Bools, Floats
 from .alternatives import Alternative, Before, alternatives
-from .readings import LOCAL, likelihood, local_shares, node_of
+from .readings import LOCAL, Node, likelihood, local_shares, node_of
 from .survey import Prediction, Span, Survey, predict
 from .suspects import LEVELS, SUSPICIOUS, distance, level_of
 from .swaps import Swap, swaps
@@ -22,7 +22,7 @@ much, at least, over the rms of a shape."""
 _BESIDE, _NEAR, _UNLIKE = 0.4, 0.15, 0.5
 """The same of nodes nearer than this part of the structure to another that is off its prediction,
 and how far their errors are from alike."""
-_SURE = 0.9
+_SURE, _CLEARED = 0.9, 0.01
 _NO_MODEL = {"sensor_polarity", "sensor_swap"}
 """What no error of a model looks like."""
 
@@ -95,14 +95,28 @@ def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
     before = Before(_FAULTY / len(aside), local_shares(likely), usual, anywhere)
     doubted = np.flatnonzero(aside).tolist()
     alone = {i: alternatives(nodes[i], _axes(survey, i), before) for i in doubted}
-    crossed = swaps(nodes, doubted, alone, before)
+    crossed = _swaps(nodes, alone, before)
     disturbed = _disturbed(survey, said, Weighed(survey, aside, sigma, alone, crossed))
     near = _near(survey) & disturbed
     for i in np.flatnonzero(near.any(axis=1) & aside).tolist():
         alone[i] = alternatives(nodes[i], _axes(survey, i), _beside(before, off[near[i]]))
     if near[aside].any():
-        crossed = swaps(nodes, doubted, alone, before)
+        crossed = _swaps(nodes, alone, before)
     return Weighed(survey, aside, sigma, alone, crossed)
+
+
+def _swaps(
+    nodes: dict[int, Node], alone: dict[int, list[Alternative]], before: Before
+) -> list[Swap]:
+    """Return the possible swaps among nodes that are not clearly sound."""
+    among = [i for i, every in alone.items() if _unsound(every) > _CLEARED]
+    return swaps(nodes, among, alone, before)
+
+
+def _unsound(every: list[Alternative]) -> float:
+    log = np.array([a.log for a in every])
+    sound = np.array([a.kind == "sound" for a in every])
+    return float(np.exp(logsumexp(log[~sound]) - logsumexp(log)))
 
 
 def _disturbed(survey: Survey, said: Prediction, weighed: Weighed) -> Bools:
