@@ -41,6 +41,7 @@ from .shaping import reshaped
 from .structure import thinned
 from .telling import told
 from .telling_dampers import with_damper
+from .weighing_dampers import weighed
 
 _MESH = (1.0, -1.0, 1.05)
 """Spread and bounds of the error of the mesh, see `mesh_error`."""
@@ -96,7 +97,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     said = told(request, searcher, found, verdict, trial.zero, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
-    said = with_damper(trial.request, searcher.problem, best, said)
+    said = with_damper(request, weighed(trial.request, searcher.problem, best), said)
     return with_responses(searcher.problem, found.levels[0].log_p, best, said)
 
 

@@ -7,17 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Numbers
-from ..correlation import principal
-from .dampers import DamperFound, DampingEvidence, find_damper
-from .damping import Oriented, added, oriented
-from .evidence import Evidence
+from ..arrays import Floats, Ints
+from .dampers import DamperFound
+from .damping import Oriented, added
 from .findings import Alternative, Discovery, Finding, ModalDamping
-from .fitting import Fit, Problem
 from .judge import times
-from .kinds.local_damper import PEAKS, Dashpots, dashpots, sentence
+from .kinds.local_damper import Dashpots, sentence
 from .places import region
 from .request import Request
+from .weighing_dampers import Weighed, moved
 
 _SURE = 0.6
 """Posterior of a dashpot at its place from which it is an effect."""
@@ -26,54 +24,29 @@ _LISTED = 0.5
 _WORTH_TELLING = 0.02
 _TOGETHER = 0.1
 """Places nearer than this part of the structure are one."""
+_TAKEN_FOR, _BESIDE = ("ground_spring", "tuned_absorber", "point_mass"), 0.2
+"""What a heavy dashpot looks like to the search, and within which part of the structure."""
 _PLACE = 0.12
 """Error of ln c that comes of a place which is not quite the true one."""
 _CONFIDENCE = 0.93
 """Share of clear findings that are right, as for the other kinds."""
 
 
-def with_damper(request: Request, problem: Problem, best: Fit, said: Discovery) -> Discovery:
-    """Weigh a dashpot, given the completed model, and add what comes of it.
+def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discovery:
+    """Add what comes of weighing a dashpot, given the completed model.
 
     Parameters
     ----------
     request : Request
-        With the sensors that are sound.
-    problem : Problem
-        On whose basis `best` stands.
-    best : Fit
-        The hypothesis that the search ended with.
+    w : Weighed or None
     said : Discovery
     """
-    structure, test = request.structure, request.placed.test
-    V = best.vectors[: problem.basis.size]
-    sensors = np.asarray(request.placed.observation.matrix @ (problem.basis.motion @ V))
-    shapes = principal(test.shapes)
-    real = np.asarray(shapes.real)
-    unit = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
-    e = Evidence(test.frequencies_hz, unit, problem.evidence.noise)
-    modes = oriented(e, best.eigenvalues, sensors, problem.columns)
-    own = sensors @ modes.turn
-    places = dashpots(structure)
-    free = problem.basis.vectors @ (V @ modes.turn)
-    u = np.asarray(places.root @ free)
-    D = np.zeros((len(modes.omega),) * 2)
-    if structure.damping is not None:
-        D = np.asarray(free.T @ (structure.damping @ free))
-    evidence = DampingEvidence(
-        test.damping, _imaginary(shapes, own[:, : modes.count]), e.noise.independent
-    )
-    found = find_damper(evidence, modes, u, own, D, np.log(PEAKS))
-    if found is None:
+    if w is None:
         return said
-    said = replace(
-        said,
-        damping=ModalDamping(
-            tuple(float(v) for v in found.level_without),
-            tuple(float(v) for v in (found.level_with if found.exists >= _LISTED
-                                     else found.level_without)),
-        ),
-    )  # fmt: skip
+    structure, found, places, modes, u = request.structure, w.found, w.places, w.modes, w.u
+    beside = found.level_with if found.exists >= _LISTED else found.level_without
+    without = tuple(float(v) for v in found.level_without)
+    said = replace(said, damping=ModalDamping(without, tuple(float(v) for v in beside)))
     ratio = times(-found.evidence)
     if found.exists < _LISTED:
         if found.exists < _WORTH_TELLING:
@@ -94,18 +67,29 @@ def with_damper(request: Request, problem: Problem, best: Fit, said: Discovery) 
         verdict = "effect" if sure >= _SURE else "undecided"
     if verdict == "undecided":
         decide = (*decide, *_would_decide(request, found, places, modes, u))
+    beside_it = _beside(request, finding, model)
+    shaken = moved(w) if beside_it else np.zeros(0, np.int64)
+    if len(shaken):
+        verdict = "undecided"
+        which = ", ".join(str(int(j) + 1) for j in shaken)
+        decide = (
+            *decide,
+            f"the same test with the dashpot taken off: it is heavy enough to move modes {which} "
+            f"as the {beside_it} beside it would",
+        )
     return replace(
         said, verdict=verdict, findings=(*model, finding, *rest), would_decide=tuple(decide)
     )
 
 
-def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
-    """Imaginary parts scaled as the real parts are to unit modal mass."""
-    if not np.iscomplexobj(shapes):
-        return None
-    real = np.asarray(shapes.real)
-    length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
-    return np.asarray(shapes.imag * (np.sum(own * real, axis=0) / length))
+def _beside(request: Request, damper: Finding, model: list[Finding]) -> str:
+    """Name the first effect at the dashpot's place that it might be taken for, "" for none."""
+    size = request.structure.model.geometry.size
+    for f in model:
+        apart = np.linalg.norm(np.subtract(f.where["xyz"], damper.where["xyz"]))
+        if f.kind in _TAKEN_FOR and apart < _BESIDE * size:
+            return f.kind.replace("_", " ")
+    return ""
 
 
 def _finding(

@@ -1,0 +1,112 @@
+"""A dashpot weighed on the model that a search ended with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, Ints, Numbers
+from ..correlation import principal
+from .dampers import DamperFound, DampingEvidence, find_damper
+from .damping import Oriented, complex_modes, oriented
+from .evidence import Evidence
+from .fitting import Fit, Problem
+from .kinds.local_damper import PEAKS, Dashpots, dashpots
+from .request import Request
+
+_SHIFTED, _TURNED = 0.004, 0.1
+"""Relative changes of a frequency and of a shape that a search for other effects would see."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """A dashpot weighed at every place.
+
+    Parameters
+    ----------
+    found : DamperFound
+    places : Dashpots
+    modes : Oriented
+    u : (n_place, n) float
+        Motion of the places in the coordinates of `modes`.
+    motion : (n_dof, n) float
+        Of all analysis dofs.
+    known : (n, n) float
+        Dashpots of the deck on unit modal masses.
+    """
+
+    found: DamperFound
+    places: Dashpots
+    modes: Oriented
+    u: Floats
+    motion: Floats
+    known: Floats
+
+
+def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
+    """Weigh a dashpot, given a fit.
+
+    Parameters
+    ----------
+    request : Request
+        With the sensors that are sound.
+    problem : Problem
+        On whose basis the fit stands.
+    state : Fit
+    """
+    structure, test = request.structure, request.placed.test
+    V = state.vectors[: problem.basis.size]
+    sensors = np.asarray(request.placed.observation.matrix @ (problem.basis.motion @ V))
+    shapes = principal(test.shapes)
+    real = np.asarray(shapes.real)
+    unit = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
+    e = Evidence(test.frequencies_hz, unit, problem.evidence.noise)
+    modes = oriented(e, state.eigenvalues, sensors, problem.columns)
+    own = sensors @ modes.turn
+    turn = V @ modes.turn
+    places = dashpots(structure)
+    free = problem.basis.vectors @ turn
+    u = np.asarray(places.root @ free)
+    known = np.zeros((len(modes.omega),) * 2)
+    if structure.damping is not None:
+        known = np.asarray(free.T @ (structure.damping @ free))
+    evidence = DampingEvidence(
+        test.damping, _imaginary(shapes, own[:, : modes.count]), e.noise.independent
+    )
+    found = find_damper(evidence, modes, u, own, known, np.log(PEAKS))
+    if found is None:
+        return None
+    return Weighed(found, places, modes, u, problem.basis.motion @ turn, known)
+
+
+def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
+    """Imaginary parts scaled as the real parts are to unit modal mass."""
+    if not np.iscomplexobj(shapes):
+        return None
+    return np.asarray(shapes.imag * _scale(shapes, own))
+
+
+def _scale(shapes: Numbers, own: Floats) -> Floats:
+    """Return the factors that bring the real parts of measured shapes to unit modal mass."""
+    real = np.asarray(shapes.real)
+    length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
+    return np.asarray(np.sum(own * real, axis=0) / length)
+
+
+def moved(w: Weighed) -> Ints:
+    """Return the test modes whose frequency or real shape the dashpot moves, numbers from 0.
+
+    A heavy dashpot couples close modes: to a search for missing stiffness and mass that looks
+    like something else at its place.
+    """
+    n, found, omega = w.modes.count, w.found, w.modes.omega
+    u = w.u[found.rows[0]]
+    level = np.full(len(omega), float(np.exp(np.mean(np.log(found.level_with)))))
+    level[:n] = found.level_with
+    D = w.known + np.exp(found.log_size[0]) * np.outer(u, u) + np.diag(2.0 * level * omega)
+    poles, Q = complex_modes(omega, D)
+    shift = np.abs(np.abs(poles[:n]) / omega[:n] - 1.0)
+    turned = np.linalg.norm(Q.real[:, :n] - np.eye(len(omega))[:, :n], axis=0)
+    still = (shift < _SHIFTED) & (turned < _TURNED)
+    return np.flatnonzero(~still)

@@ -1,0 +1,110 @@
+"""What a person is told of a dashpot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace as Request
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core.discovery.dampers import DamperFound
+from trueup.core.discovery.damping import Oriented
+from trueup.core.discovery.findings import Discovery, Finding
+from trueup.core.discovery.kinds.local_damper import Dashpots
+from trueup.core.discovery.telling_dampers import with_damper
+from trueup.core.discovery.weighing_dampers import Weighed, moved
+from trueup.core.geometry import Geometry
+
+XYZ = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11), np.zeros(11)])
+REQUEST = Request(structure=Request(model=Request(geometry=Geometry(np.arange(1, 12), XYZ))))
+PLACES = Dashpots(
+    XYZ,
+    sp.identity(11, format="csr"),
+    tuple({"grids": [i + 1], "components": [3]} for i in range(11)),
+)
+LEVEL = np.full(3, 0.01)
+QUIET = Discovery("no_gap", (), (), (), 1.0, (), 0.0, 1.0, 0.0, (), (), (), (), ())
+
+
+def weighed(exists, weights, omega=(10.0, 10.5, 20.0, 30.0), c=0.2):
+    rows = np.argsort(-np.asarray(weights), kind="stable")
+    rows = rows[np.asarray(weights)[rows] > 0.0]
+    n = len(rows)
+    found = DamperFound(
+        exists,
+        2.0 * np.log(exists / (1.0 - exists)),
+        rows,
+        np.asarray(weights)[rows],
+        np.full(n, np.log(c)),
+        np.full(n, 0.1),
+        LEVEL,
+        LEVEL,
+    )
+    modes = Oriented(np.array(omega), np.eye(4), 3)
+    u = np.tile([1.0, 0.8, 0.3, 0.5], (11, 1))
+    return Weighed(found, PLACES, modes, u, np.zeros((66, 4)), np.zeros((4, 4)))
+
+
+def at(*pairs):
+    weights = np.zeros(11)
+    for row, weight in pairs:
+        weights[row] = weight
+    return weights
+
+
+def spring(x):
+    where = {"grids": [1], "xyz": [x, 0.0, 0.0], "region": "near grid 1"}
+    magnitude = {"stiffness": 5.0, "components": [3]}
+    return Finding("model", "ground_spring", where, magnitude, (4.0, 6.0), (), 0.9, "A spring.")
+
+
+def test_a_sure_dashpot_is_an_effect_with_its_place_and_size():
+    said = with_damper(REQUEST, weighed(0.99, at((4, 1.0))), QUIET)
+    assert said.verdict == "effect"
+    (f,) = said.findings
+    assert (f.kind, f.where["grids"], f.magnitude["components"]) == ("local_damper", [5], [3])
+    assert f.magnitude["damping"] == pytest.approx(0.2)
+    low, high = f.interval
+    assert low < 0.2 < high
+    assert "no dashpot at all is 99 times less likely" in f.sentence
+    assert said.damping is not None
+
+
+def test_one_that_may_sit_anywhere_is_undecided_and_says_what_would_decide():
+    said = with_damper(REQUEST, weighed(0.99, at((1, 0.4), (5, 0.35), (9, 0.25))), QUIET)
+    assert said.verdict == "undecided"
+    (f,) = said.findings
+    assert f.confidence < 0.5
+    assert {p["grids"][0] for p in f.credible_set} == {2, 6, 10}
+    assert said.would_decide
+
+
+def test_an_unlikely_one_stands_among_the_alternatives_only():
+    said = with_damper(REQUEST, weighed(0.1, at((4, 1.0))), QUIET)
+    assert said.verdict == "no_gap"
+    assert said.findings == ()
+    assert said.alternatives[-1].kinds == ("local_damper",)
+    assert said.alternatives[-1].times_less_likely == pytest.approx(9.0)
+
+
+def test_nothing_is_said_where_no_damping_was_measured():
+    assert with_damper(REQUEST, None, QUIET) is QUIET
+
+
+def test_a_heavy_dashpot_moves_close_modes_and_a_light_one_does_not():
+    assert set(moved(weighed(0.99, at((4, 1.0)), c=2.0)).tolist()) >= {0, 1}
+    assert not len(moved(weighed(0.99, at((4, 1.0)), c=0.05)))
+    assert not len(moved(weighed(0.99, at((4, 1.0)), (10.0, 15.0, 20.0, 30.0), c=0.2)))
+
+
+def test_a_spring_beside_a_heavy_dashpot_is_not_believed():
+    effect = replace(QUIET, verdict="effect", findings=(spring(4.5),))
+    heavy, light = weighed(0.99, at((4, 1.0)), c=2.0), weighed(0.99, at((4, 1.0)), c=0.05)
+    said = with_damper(REQUEST, heavy, effect)
+    assert said.verdict == "undecided"
+    assert "taken off" in said.would_decide[-1]
+    assert with_damper(REQUEST, light, effect).verdict == "effect"
+    far = replace(QUIET, verdict="effect", findings=(spring(9.5),))
+    assert with_damper(REQUEST, heavy, far).verdict == "effect"
