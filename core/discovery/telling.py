@@ -31,6 +31,8 @@ from .wording import magnitude_of, sentence_of
 
 _SIGNIFICANT = 3.0
 _SURE = 0.6
+_CONTRADICTED = -4.0
+"""Held-out modes and sensors that are likelier by e² without the last effect speak against it."""
 _UNEXPLAINED = 8.0
 _RIVALS = 3
 _SHAPE = {"M": (0.05,), "K": (0.12,), "A": (0.08, 0.01)}
@@ -68,7 +70,7 @@ def told(
     matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
     word = "no_gap"
     decide: tuple[str, ...] = ()
-    if findings and verdict.posterior >= _SURE:
+    if findings and verdict.posterior >= _SURE and verdict.foretold > _CONTRADICTED:
         word = "effect"
     elif findings:
         word, decide = "undecided", _would_decide(request, searcher, found, verdict)
