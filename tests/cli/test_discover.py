@@ -10,7 +10,7 @@ CASES = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "cases"
 pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="../shared/data is absent")
 
 
-def discovered(case, stem, tmp_path):
+def discovered(case, stem, tmp_path, *more):
     from trueup.cli.app import app
 
     folder, out = CASES / case, tmp_path / "run"
@@ -24,6 +24,7 @@ def discovered(case, stem, tmp_path):
             "--out",
             str(out),
             "--quiet",
+            *more,
         ],
         standalone_mode=False,
     )
@@ -58,6 +59,15 @@ def test_parameters_alone_are_enough_where_nothing_is_missing(tmp_path):
         gap["held_out"]["after"]["mean_abs_deviation_percent"]
         < gap["held_out"]["before"]["mean_abs_deviation_percent"]
     )
+
+
+@pytest.mark.slow
+def test_a_test_of_stated_scatter_is_believed_that_much_less(tmp_path):
+    """Frequencies good to 5 % and shapes to 60 % cannot show a modulus that is 5 % off."""
+    study = tmp_path / "study.toml"
+    study.write_text("frequency_scatter = 0.05\nshape_scatter = 0.6\n")
+    result, _ = discovered("tower_frame", "tower", tmp_path, "--study", str(study))
+    assert result["verdict"] == "no_gap"
 
 
 @pytest.mark.slow

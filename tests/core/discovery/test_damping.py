@@ -90,14 +90,15 @@ def test_an_overdamped_mode_has_no_ratio_and_the_others_keep_theirs():
     assert ratios(poles[[1]])[0] == pytest.approx(0.01)
 
 
-def test_a_repeated_pair_lies_as_the_test_found_it():
+@pytest.mark.parametrize("noise", [Noise(), Noise(np.full(3, 0.004), np.full(3, 0.05))])
+def test_a_repeated_pair_lies_as_the_test_found_it(noise):
     """Two modes of one frequency, turned by 30 degrees in the test."""
     rng = np.random.default_rng(1)
     S = np.linalg.qr(rng.standard_normal((20, 3)))[0]
     t = np.radians(30.0)
     R = np.array([[np.cos(t), -np.sin(t)], [np.sin(t), np.cos(t)]])
     shapes = np.column_stack([S[:, :2] @ R, S[:, 2]])
-    e = Evidence(np.array([10.0, 10.01, 15.0]), shapes, Noise())
+    e = Evidence(np.array([10.0, 10.01, 15.0]), shapes, noise)
     lam = (2 * np.pi * np.array([10.0, 10.0, 15.0])) ** 2
     modes = oriented(e, lam, S, 3)
     np.testing.assert_allclose(np.abs((S @ modes.turn).T @ shapes), np.eye(3), atol=0.01)
