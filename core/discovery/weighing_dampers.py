@@ -61,7 +61,7 @@ def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
     shapes = principal(test.shapes)
     real = np.asarray(shapes.real)
     unit = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
-    e = Evidence(test.frequencies_hz, unit, problem.evidence.noise)
+    e = Evidence(test.frequencies_hz, unit, problem.whole.noise)
     modes = oriented(e, state.eigenvalues, sensors, problem.columns)
     own = sensors @ modes.turn
     turn = V @ modes.turn
