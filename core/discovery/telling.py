@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..alignment import Alignment
 from ..arrays import Floats
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
@@ -69,11 +70,13 @@ def told(
     gained = (zero.objective - null.objective) / verdict.scale
     matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
     word = "no_gap"
-    decide: tuple[str, ...] = ()
-    if findings and verdict.posterior >= _SURE and verdict.foretold > _CONTRADICTED:
+    decide = frame_needed(request.placed.alignment) if findings else ()
+    sure = verdict.posterior >= _SURE and verdict.foretold > _CONTRADICTED
+    if findings and sure and not decide:
         word = "effect"
     elif findings:
-        word, decide = "undecided", _would_decide(request, searcher, found, verdict)
+        word = "undecided"
+        decide = (*decide, *_would_decide(request, searcher, found, verdict))
     elif verdict.scale > _UNEXPLAINED:
         word = "undecided"
         decide = (
@@ -99,6 +102,16 @@ def told(
         tested.faults,
         decide,
         remarks(request.placed.observation, tested),
+    )
+
+
+def frame_needed(alignment: Alignment) -> tuple[str, ...]:
+    """Say that a place means nothing where the test may stand on the model in several ways."""
+    if alignment.decided:
+        return ()
+    return (
+        f"how the test lies on the model: {alignment.ambiguity}; with the test in the frame of "
+        "the deck the place is known, now it is known but for such a turn or slide",
     )
 
 
