@@ -14,12 +14,12 @@ Tisseur, Meerbergen (2001), The quadratic eigenvalue problem, SIAM Review 43, 23
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..arrays import Floats, Numbers
+from ..arrays import Floats, Ints, Numbers
 from .evidence import Evidence, matched, mixing, mode_costs, targets
 
 _ABOVE = 1.5
@@ -39,11 +39,14 @@ class Oriented:
     turn : (n_model, n) float
         Columns are coordinates on the eigenvectors of the model, orthonormal.
     count : int
+    above : (n_above,) int
+        Modes of the model that lie too high to count.
     """
 
     omega: Floats
     turn: Floats
     count: int
+    above: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
 
 def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) -> Oriented:
@@ -74,7 +77,8 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
     omega = np.concatenate(
         [2.0 * np.pi * e.frequencies_hz, np.sqrt(np.maximum(eigenvalues[rest], 0.0))]
     )
-    return Oriented(omega, U @ Vt, len(match))
+    above = np.setdiff1d(np.flatnonzero(eigenvalues >= top), match)
+    return Oriented(omega, U @ Vt, len(match), above)
 
 
 def _combined(e: Evidence, j: int, sensors: Floats, prior: Floats, partner: int) -> Floats:

@@ -81,8 +81,8 @@ class ResponseGap:
     `sensors` and `references` as ``node:direction``; `before` and `after` the frequency response
     assurance of each sensor, mean over the references, of the deck as it is and with what was
     found, each with frequencies of its own and measured damping; `log_misfit` the rms log ratio
-    of magnitudes before, with the known parameters moved, and after, matched modes at measured
-    frequencies; `independent` of `lines` count.
+    of magnitudes before, with the known parameters moved, and after, modes turned onto the
+    measured ones at their frequencies; `independent` of `lines` count.
     """
 
     sensors: tuple[str, ...]

@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..frfs import Frfs
 from ..geometry import Geometry
 from ..observation import observe
+from .damping import oriented
 from .findings import Discovery, ResponseGap
 from .fitting import Fit, Problem, evaluate, misfit
 from .request import Request
@@ -101,7 +102,7 @@ def hearing(request: Request, problem: Problem, log_p: Floats) -> Problem:
         problem.basis.vectors,
         request.solution.factor,
     )
-    state = state_of(problem, evaluate(problem, log_p, ()), measured)
+    state = turned_state(problem, evaluate(problem, log_p, ()), measured)
     return replace(problem, heard=heard(r, hz, measured, rest, state))
 
 
@@ -110,7 +111,7 @@ def misfit_of_responses(problem: Problem, f: Fit) -> float:
     if problem.heard is None:
         return 0.0
     fit = evaluate(problem, f.log_p, f.suspects)
-    return problem.heard.misfit(state_of(problem, fit, problem.heard.ratios))
+    return problem.heard.misfit(turned_state(problem, fit, problem.heard.ratios))
 
 
 def state_of(problem: Problem, f: Fit, measured: Floats) -> State:
@@ -118,7 +119,18 @@ def state_of(problem: Problem, f: Fit, measured: Floats) -> State:
     _, match = misfit(problem.entire(), f.eigenvalues, f.vectors)
     omega = np.sqrt(np.maximum(f.eigenvalues, 0.0))
     motion = problem.basis.motion @ f.vectors[: problem.basis.size]
-    return State(omega, ratios_of(measured, match, len(omega)), motion, match)
+    return State(omega, ratios_of(measured, match, len(omega)), motion)
+
+
+def turned_state(problem: Problem, f: Fit, measured: Floats) -> State:
+    """Return a fit with its modes turned onto the measured ones, at their frequencies."""
+    V = f.vectors[: problem.basis.size]
+    modes = oriented(problem.whole, f.eigenvalues, problem.everywhere @ V, problem.columns)
+    above = modes.above
+    turn = np.hstack([modes.turn, np.eye(len(f.eigenvalues))[:, above]])
+    omega = np.concatenate([modes.omega, np.sqrt(np.maximum(f.eigenvalues[above], 0.0))])
+    ratios = ratios_of(measured, np.arange(modes.count), len(omega))
+    return State(omega, ratios, problem.basis.motion @ (V @ turn))
 
 
 def with_responses(problem: Problem, log_p: Floats, best: Fit, said: Discovery) -> Discovery:
@@ -143,7 +155,7 @@ def with_responses(problem: Problem, log_p: Floats, best: Fit, said: Discovery) 
     )
     states = [state_of(problem, f, h.ratios) for f in fits]
     before, after = (_assurance(h, s) for s in (states[0], states[2]))
-    rms = tuple(h.rms(s) for s in states)
+    rms = tuple(h.rms(turned_state(problem, f, h.ratios)) for f in fits)
     frfs = h.responses.frfs
     gap = ResponseGap(
         tuple(frfs.responses.labels),

@@ -2,9 +2,9 @@
 
 Hypotheses are fitted to modes, so every line of the responses is new to them. What the modes did
 not say already is in the sizes: modal masses, modes that nobody identified, antiresonances. So a
-hypothesis is compared with its matched modes at the measured frequencies and ratios (how far off
-its own are has been counted) by log magnitudes, and what it leaves counts as often as there are
-independent lines.
+hypothesis is compared with its modes turned onto the measured ones, at the measured frequencies
+and ratios (how far off its own are has been counted), by log magnitudes, and what it leaves
+counts as often as there are independent lines.
 
 References
 ----------
@@ -75,20 +75,11 @@ class State:
     ratios : (n_mode,) float
     motion : (n_dof, n_mode) float
         Shapes of unit modal mass.
-    match : (n_test,) int
-        Partner of every measured mode.
     """
 
     omega: Floats
     ratios: Floats
     motion: Floats
-    match: Ints
-
-    def at_measured(self, hz: Floats) -> State:
-        """Return the state with every matched mode at its measured frequency [Hz]."""
-        omega = np.array(self.omega)
-        omega[self.match] = 2.0 * np.pi * hz
-        return replace(self, omega=omega)
 
 
 def ratios_of(measured: Floats, match: Ints, count: int) -> Floats:
@@ -183,7 +174,7 @@ class Heard:
     Parameters
     ----------
     responses : Responses
-    hz, ratios : (n_test,) float
+    ratios : (n_test,) float
         Of the measured modes.
     rest : (n_response, n_reference) float
         Static flexibility that the basis lacks.
@@ -194,7 +185,6 @@ class Heard:
     """
 
     responses: Responses
-    hz: Floats
     ratios: Floats
     rest: Floats
     lines: Ints
@@ -210,9 +200,8 @@ class Heard:
         return self.independent * float(np.log(self.rms(s) ** 2 + _LEAST**2))
 
     def rms(self, s: State) -> float:
-        """Return the rms log ratio of magnitudes, matched modes where they were measured."""
-        at = s.at_measured(self.hz)
-        model = synthesised(self.responses, at, self.rest, self.lines, self.rows)
+        """Return the rms log ratio of magnitudes."""
+        model = synthesised(self.responses, s, self.rest, self.lines, self.rows)
         measured = self.responses.frfs.values[self.rows][:, :, self.lines]
         return float(np.sqrt(np.nanmean(log_ratios(measured, model) ** 2)))
 
@@ -236,10 +225,9 @@ def heard(
     lines = inside[np.unique(np.linspace(0, len(inside) - 1, _MOST_LINES).astype(int))]
     n = len(responses.frfs.responses)
     rows = np.unique(np.linspace(0, n - 1, _MOST_FUNCTIONS).astype(int))
-    at = reference.at_measured(hz)
-    model = synthesised(responses, at, rest, inside, rows)
+    model = synthesised(responses, reference, rest, inside, rows)
     e = log_ratios(responses.frfs.values[rows][:, :, inside], model)
-    return Heard(responses, hz, ratios, rest, lines, rows, independent_lines(e))
+    return Heard(responses, ratios, rest, lines, rows, independent_lines(e))
 
 
 def lacking(

@@ -12,7 +12,7 @@ from tests.core.discovery.strings import SEEN, K, M, N, hidden, searcher
 
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.hearing import misfit_of_responses, state_of
+from trueup.core.discovery.hearing import misfit_of_responses, turned_state
 from trueup.core.discovery.judge import judge, with_unseen
 from trueup.core.discovery.responses import (
     Responses,
@@ -64,7 +64,7 @@ def responses(truth, lines, quantity="displacement", noise=0.0):
 
 def state(truth):
     values, phi = la.eigh(*truth)
-    return State(np.sqrt(values), np.full(N, ZETA), phi, np.arange(12))
+    return State(np.sqrt(values), np.full(N, ZETA), phi)
 
 
 LINES = np.linspace(0.2, 6.2, 300)
@@ -87,7 +87,7 @@ def test_what_a_short_basis_lacks_is_put_back():
     A = sp.csr_matrix(K)
     rest = lacking(r.observed, r.driven, A, short)
     np.testing.assert_allclose(rest, lacking(r.driven, r.observed, A, short).T, atol=1e-12)
-    s = State(np.sqrt(values[:14]), np.full(14, ZETA), short, np.arange(12))
+    s = State(np.sqrt(values[:14]), np.full(14, ZETA), short)
     static = replace(r, frfs=replace(r.frfs, frequencies_hz=np.full(300, 1e-6)))
     np.testing.assert_allclose(
         synthesised(static, s, rest)[:, :, 0],
@@ -138,7 +138,7 @@ def listening(truth, noise=0.05):
     null = s.null()
     r = responses(truth, LINES, noise=noise)
     z = np.full(12, ZETA)
-    reference = state_of(s.problem, null, z)
+    reference = turned_state(s.problem, null, z)
     h = heard(r, s.problem.whole.frequencies_hz, z, np.zeros((len(SEEN), len(DRIVEN))), reference)
     return replace(s, problem=replace(s.problem, heard=h)), null
 
