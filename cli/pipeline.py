@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -54,7 +54,29 @@ def read_measurement(study: Study) -> Measurement:
     missing = [str(p) for p in study.test if not p.is_file()]
     if missing:
         raise InputError(f"{missing[0]} does not exist or is not a file")
-    return with_modes(read_test(list(study.test)))
+    return with_modes(_own_systems(study.test, read_test(list(study.test))))
+
+
+def _own_systems(files: Sequence[Path], measurement: Measurement) -> Measurement:
+    """Return a test of several files with its responses along the axes of their own file.
+
+    Of nodes that stand in several files with different displacement systems only the first are
+    kept; responses that are whole in a file of their own, geometry included, are read from there.
+    """
+    from ..adapters.universal import read_test
+
+    if len(files) < 2 or measurement.frfs is None:
+        return measurement
+    alone = []
+    for file in files:
+        with suppress(InputError):
+            alone.append(read_test([file]))
+    whole = [m.frfs for m in alone if m.frfs is not None]
+    if len(whole) != 1 or len(whole[0].responses) < len(measurement.frfs.responses):
+        return measurement
+    if np.any(measurement.geometry.index_of(whole[0].responses.node) < 0):
+        return measurement
+    return replace(measurement, frfs=whole[0])
 
 
 def read_analysis(study: Study, fmax: float) -> Analysis:

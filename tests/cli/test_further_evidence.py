@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace as Any
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from trueup.adapters.universal import read_test
 from trueup.cli.further_evidence import damping_tables, response_tables
 from trueup.core.discovery.findings import ModalDamping, ResponseGap
+
+DUCT = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "cases" / "duct"
+
+
+@pytest.mark.skipif(not DUCT.is_dir(), reason="../shared/data is absent")
+def test_responses_keep_the_axes_of_their_own_file():
+    from trueup.cli.pipeline import read_measurement
+    from trueup.cli.study import Study
+
+    alone = read_test([DUCT / "duct_frf.unv"]).frfs
+    both = read_measurement(Study(test=(DUCT / "duct_test.unv", DUCT / "duct_frf.unv")))
+    assert both.modes is not None
+    assert both.frfs is not None
+    np.testing.assert_array_equal(both.frfs.responses.axis, alone.responses.axis)
+    np.testing.assert_array_equal(both.frfs.values, alone.values)
 
 
 def side(D, pairs):
