@@ -48,6 +48,13 @@ class Factorisation(Protocol):
         """Return x of A x = b, for b of shape (n,) or (n, n_rhs); same shape, Fortran order."""
         ...
 
+    def compliances(self, b: Floats) -> Floats:
+        """Return bᵀ A⁻¹ b of each column of b (n, n_rhs), (n_rhs,).
+
+        With Cholesky's factor this takes half a solution.
+        """
+        ...
+
     def refactorise(self, a: sp.spmatrix) -> None:
         """Replace the factor, in place, by that of another matrix of the same type.
 
@@ -148,6 +155,12 @@ class _PardisoFactorisation:
         x *= d
         return x.reshape(np.shape(b), order="F")
 
+    def compliances(self, b: Floats) -> Floats:
+        if not self._definite:
+            return np.asarray(np.einsum("ij,ij->j", b, self.solve(b)))
+        x = self._pardiso.half_solve(b * self._scale[:, None])
+        return np.asarray(np.einsum("ij,ij->j", x, x))
+
     @property
     def negative(self) -> int:
         if self._definite:
@@ -203,6 +216,9 @@ class _SuperluFactorisation:
         x[self._order] = y
         x *= d
         return x.reshape(np.shape(b), order="F")
+
+    def compliances(self, b: Floats) -> Floats:
+        return np.asarray(np.einsum("ij,ij->j", b, self.solve(b)))
 
     @property
     def negative(self) -> int:

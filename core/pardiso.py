@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from .arrays import Floats, Numbers
 from .errors import CheckError, InputError
 
-_ANALYSE, _FACTORISE, _SOLVE, _RELEASE = 11, 22, 33, -1
+_ANALYSE, _FACTORISE, _SOLVE, _FORWARD, _RELEASE = 11, 22, 33, 331, -1
 
 _ERRORS = {
     -1: "input inconsistent",
@@ -134,6 +134,14 @@ class Pardiso:
         x = np.empty_like(b, order="F")
         if b.shape[1]:
             self._run(_SOLVE, b, x)
+        return x
+
+    def half_solve(self, b: Numbers) -> Floats:
+        """Return L⁻¹ b for b of shape (n, n_rhs), rows in the order of the Cholesky factor L."""
+        b = np.array(b, np.float64, order="F")
+        x = np.empty_like(b, order="F")
+        if b.shape[1]:
+            self._run(_FORWARD, b, x)
         return x
 
     def _run(self, phase: int, b: Floats | None = None, x: Floats | None = None) -> None:

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from ..arrays import Floats, Ints
 from ..eigen import Eigensolution
+from ..factor import factorise
 from ..model import Model, Term
 from ..reduced_basis import projected
 
@@ -166,8 +167,8 @@ class Compliance:
     """
 
     def __init__(self, model: Model, solution: Eigensolution) -> None:
-        self._K, self._M = model.K(), model.M()
-        self._solution = solution
+        self._A = (model.K() - solution.sigma * model.M()).tocsr()
+        self._factor = solution.factor or factorise(self._A, definite=True)
         self._known: dict[bytes, float] = {}
 
     def of(self, loads: sp.csr_matrix) -> Floats:
@@ -177,16 +178,13 @@ class Compliance:
         new = {k: i for i, k in enumerate(keys) if k not in self._known}
         rows = np.array(list(new.values()), dtype=np.int64)
         for some in np.array_split(rows, -(-len(rows) // _CHUNK)) if len(rows) else ():
-            own = loads[some]
-            X = _solve(self._solution, self._K, self._M, own.T.toarray())
-            exact = np.asarray(own.multiply(X.T).sum(axis=1)).ravel()
+            exact = self._factor.compliances(loads[some].T.toarray())
             self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
         return np.array([self._known[k] for k in keys])
 
     def on(self, vectors: Floats) -> Floats:
         """Return the inverse of K − σM on a basis (n_free, r), (r, r)."""
-        A = self._K - self._solution.sigma * self._M
-        return np.asarray(np.linalg.inv(vectors.T @ (A @ vectors)))
+        return np.asarray(np.linalg.inv(vectors.T @ (self._A @ vectors)))
 
 
 class Flexibility:
@@ -230,8 +228,6 @@ class Flexibility:
 
 
 def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -> Floats:
-    from ..factor import factorise
-
     factor = solution.factor or factorise((K - solution.sigma * M).tocsr(), definite=True)
     return np.asarray(factor.solve(np.ascontiguousarray(B)))
 

@@ -40,6 +40,16 @@ def test_solves_one_and_many_right_hand_sides(membrane, backend):
     assert f.solve(np.zeros((400, 0))).shape == (400, 0)
 
 
+@pytest.mark.parametrize("definite", [True, False])
+def test_compliances_are_those_of_whole_solutions(membrane, backend, definite):
+    K, _, _ = membrane(20)
+    b = np.random.default_rng(1).standard_normal((400, 4))
+    f = factorise(K, definite, backend)
+    expected = np.einsum("ij,ij->j", b, np.linalg.solve(K.toarray(), b))
+    np.testing.assert_allclose(f.compliances(b), expected, rtol=1e-10)
+    assert f.compliances(b[:, :0]).shape == (0,)
+
+
 def test_indefinite_solve(membrane, backend):
     K, _, exact = membrane(20)
     A = K - _in_a_gap(exact, 60) * sp.identity(400)

@@ -1,11 +1,13 @@
-"""The reduced matrices of a small basis."""
+"""The reduced matrices of a small basis, and the flexibility that it lacks."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.polynomial import chebyshev
 
-from trueup.core.discovery.basis import reduced_sum
+from trueup.core.discovery.basis import Compliance, Flexibility, reduced_sum
 from trueup.core.model import Factor, Term, proportional
 
 RNG = np.random.default_rng(4)
@@ -42,3 +44,17 @@ def test_the_slopes_are_those_of_the_sum():
     for slope, step in zip(own.slopes(P, [1, 0]), (1e-6 * np.eye(2))[::-1], strict=True):
         expected = (own.at(P + step) - own.at(P - step)) / 2e-6
         np.testing.assert_allclose(slope, expected, atol=1e-6)
+
+
+def test_what_a_basis_lacks_is_the_rest_of_the_flexibility():
+    half = RNG.normal(size=(30, 30))
+    K, M = sp.csr_matrix(half @ half.T), sp.identity(30, format="csr")
+    model = SimpleNamespace(K=lambda: K, M=lambda: M)
+    known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
+    loads = sp.random(8, 30, 0.2, random_state=6, format="csr")
+    lacking = Flexibility(known, V, known.on(V), loads, 2)
+    A = K.toarray() + 2.0 * np.eye(30)
+    lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
+    expected = np.einsum("ij,jk,ik->i", loads.toarray(), lost, loads.toarray()).reshape(4, 2)
+    for rows in ([2], [0, 2, 3, 2]):
+        np.testing.assert_allclose(lacking[np.array(rows)], expected[rows], rtol=1e-8)
