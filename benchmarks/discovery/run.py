@@ -31,6 +31,7 @@ class Outcome:
     score: Score | None
     note: str
     gap: tuple[float | None, float | None] = (None, None)
+    dofs: int = 0
 
 
 def attempt(seed: int, folder: Path, cache: Path, timeout: float) -> Outcome:
@@ -48,6 +49,12 @@ def _spent() -> float:
     """Return the seconds of one core that the children of this process have used."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
+
+
+def _dofs(place: Path) -> int:
+    """Return six for every GRID of the decks of a case."""
+    cards = (line for deck in place.glob("*.bdf") for line in deck.read_text().splitlines())
+    return 6 * sum(card.startswith("GRID ") for card in cards)
 
 
 def search(place: Path, truth: dict[str, Any], timeout: float) -> Outcome:
@@ -86,7 +93,13 @@ def search(place: Path, truth: dict[str, Any], timeout: float) -> Outcome:
         (gap.get(k) or {}).get("mean_abs_deviation_percent") for k in ("before", "after")
     )
     return Outcome(
-        place.name, truth["scenario"], seconds, score(truth, result), "", (before, after)
+        place.name,
+        truth["scenario"],
+        seconds,
+        score(truth, result),
+        "",
+        (before, after),
+        _dofs(place),
     )
 
 
@@ -179,6 +192,9 @@ def summary(outcomes: list[Outcome]) -> dict[str, Any]:
         "median_place_error": _median(n.distance for n in right if n.distance is not None),
         "median_magnitude_ratio": _median(n.ratio for n in right if n.ratio is not None),
         "interval_coverage": round(sum(inside) / len(inside), 3) if inside else None,
+        "median_seconds_per_1000_dofs": _median(
+            round(1000.0 * o.seconds / o.dofs, 2) for o in outcomes if o.dofs
+        ),
         "median_seconds": _median(round(o.seconds, 1) for o in outcomes),
         "worst_seconds": max((round(o.seconds, 1) for o in outcomes), default=None),
     }
