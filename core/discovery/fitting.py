@@ -16,6 +16,8 @@ from .laws import AttachedLaw, Law, ReleaseLaw, Rows
 from .responses import Heard
 
 _DEGENERATE = 2e-3
+_EDGE = 0.04
+"""Of ln λ: how far within the measured band a mode counts in full as one too many."""
 _SOFT, _TO_COME = 3.0, 5.0
 """How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
@@ -111,8 +113,9 @@ class Fit:
 
     `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
     the Gauss-Newton Hessian of half the objective, prior included, active parameters first;
-    `unseen` is the misfit of what was held out from the fit, `in_deck` the ln p (n_parameter,)
-    that a deck with these effects needs, where no correction of its mesh helps; both where they
+    `unseen` is the misfit of what was held out from the fit, `surplus` the number of modes in the
+    measured band that the test does not have, `in_deck` the ln p (n_parameter,)
+    that a deck with these effects needs, where no correction of its mesh helps; all where they
     were asked for.
     """
 
@@ -126,6 +129,7 @@ class Fit:
     information: Floats
     active: tuple[int, ...]
     unseen: float | None = None
+    surplus: float | None = None
     in_deck: Floats | None = None
 
 
@@ -227,12 +231,24 @@ def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fi
     )
 
 
-def unseen(problem: Problem, state: Fit) -> float:
-    """Return the misfit of the modes and sensors that were held out from a fit."""
+def on_whole_test(problem: Problem, state: Fit) -> Fit:
+    """Return a fit that knows what it leaves of the modes and sensors held out from it."""
     values, vectors = solve(problem, state.log_p, state.suspects)
-    all_of_it, _ = misfit(problem.entire(), values, vectors)
+    all_of_it, match = misfit(problem.entire(), values, vectors)
     seen, _ = misfit(problem, values, vectors)
-    return all_of_it - seen
+    return replace(
+        state, unseen=all_of_it - seen, surplus=_surplus(targets(problem.whole), values, match)
+    )
+
+
+def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
+    """Return the number of modes between the lowest and highest of a test that match none of it.
+
+    One near either end counts in part: a slightly other model would have it outside.
+    """
+    alone = np.maximum(np.delete(values, match), np.finfo(float).tiny)
+    inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / _EDGE
+    return float(np.sum(np.clip(inside, 0.0, 1.0)))
 
 
 def fit(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Floats
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, mode_misfits, solve, unseen
+from .fitting import Fit, Problem, evaluate, mode_misfits, on_whole_test, solve
 from .hearing import misfit_of_responses
 from .scanning import scan
 from .search import Found, Searcher
@@ -20,6 +20,8 @@ _BESIDE, _SAME_EFFECT = 0.2, 40.0
 _PER_MODE = 5.0
 _CREDIBLE = 6.0
 _MOST_NOISE = 3.0
+_OVERLOOKED = 4.0
+"""Twice −ln of the share of modes in its band that a test overlooks, one in seven."""
 _CLEAR, _SHARE = 4.0, 0.1
 """A suspect explains a mode if it lowers its misfit by this much, and by this share of what it
 lowers most."""
@@ -113,15 +115,17 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
 def cost(searcher: Searcher, f: Fit, scale: float) -> float:
     """Return what a hypothesis leaves of the whole test, by the noise, and its burden.
 
+    Modes that it has too many count as well: an absorber adds one, which a test would see.
     Frequency responses, where there are any, count by a noise of their own.
     """
-    left = f.objective + (with_unseen(searcher, f).unseen or 0.0)
-    return left / scale + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
+    f = with_unseen(searcher, f)
+    left = (f.objective + (f.unseen or 0.0)) / scale + _OVERLOOKED * (f.surplus or 0.0)
+    return left + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
 
 
 def with_unseen(searcher: Searcher, f: Fit) -> Fit:
     """Return a fit that knows what it leaves of the modes and sensors held out."""
-    return f if f.unseen is not None else replace(f, unseen=unseen(searcher.problem, f))
+    return f if f.unseen is not None else on_whole_test(searcher.problem, f)
 
 
 def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:

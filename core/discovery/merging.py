@@ -43,7 +43,7 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
     return (
         state
         if len(kept) == len(state.suspects)
-        else replace(state, suspects=tuple(kept), unseen=None, in_deck=None)
+        else replace(state, suspects=tuple(kept), unseen=None, surplus=None, in_deck=None)
     )
 
 

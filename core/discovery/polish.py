@@ -20,7 +20,7 @@ from ..model import Model
 from .basis import Basis, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
 from .evidence import targets
-from .fitting import Fit, Problem, fit, softened, unseen
+from .fitting import Fit, Problem, fit, on_whole_test, softened
 from .mesh_error import lumping, with_consistent_bars
 from .structure import Structure
 
@@ -84,11 +84,10 @@ def polished(
         new = fit(own, state.log_p, suspects, tuple(range(len(state.log_p))), 20)
         moved = np.abs(magnitudes(new.suspects) - magnitudes(state.suspects))
         state = replace(
-            new,
+            on_whole_test(own, new),
             suspects=tuple(
                 replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
             ),
-            unseen=unseen(own, new),
             in_deck=_in_deck(replace(own, basis=basis), new),
         )
         if np.all(moved < _CHANGED):

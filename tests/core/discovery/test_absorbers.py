@@ -9,7 +9,7 @@ from tests.core.discovery.strings import K, M, N, hidden, searcher
 
 from trueup.core.discovery.candidates import Suspect, changed, magnitudes
 from trueup.core.discovery.fitting import _normal_equations, evaluate, fit
-from trueup.core.discovery.judge import enough, judge, price
+from trueup.core.discovery.judge import cost, enough, judge, price, with_unseen
 from trueup.core.discovery.laws import TunedLaw
 from trueup.core.discovery.scanning import _attached, scan
 from trueup.core.discovery.tuning import promising
@@ -110,6 +110,28 @@ def test_tuned_far_above_the_band_it_is_told_as_the_mass_that_it_is():
     found = s.run(enough(s))
     best = found.levels[judge(s, found).accepted]
     assert [(s.problem.catalogue[q.kind].kind, q.row) for q in best.suspects] == [("point_mass", 9)]
+
+
+def test_a_mode_that_the_test_should_have_seen_speaks_against_an_absorber():
+    """Of two hypotheses that fit as well, the one with a mode too many is dearer by 2 ln 7."""
+    s = searcher(hidden(), scatter=(0.0, 0.0))
+    null = with_unseen(s, evaluate(s.problem, np.zeros(2), ()))
+    light = Suspect(2, 11, (np.log(1e-5), np.log(np.sqrt(STRING_HZ[3] * STRING_HZ[4]))))
+    more = with_unseen(s, evaluate(s.problem, np.zeros(2), (light,)))
+    assert null.surplus == 0.0
+    assert more.surplus == 1.0
+    assert more.misfit == pytest.approx(null.misfit, abs=0.1)
+    dearer = cost(s, more, 1.0) - cost(s, null, 1.0)
+    left = more.objective - null.objective
+    assert dearer - price(s, light) - left == pytest.approx(4.0, abs=0.1)
+
+
+def test_the_mode_that_an_absorber_adds_is_not_one_too_many_where_the_test_has_it():
+    s = searcher(hidden(absorbers=[(11, 0.8, 3.0)]))
+    right = with_unseen(
+        s, evaluate(s.problem, np.zeros(2), (Suspect(2, 11, tuple(np.log([0.8, 3.0]))),))
+    )
+    assert right.surplus == 0.0
 
 
 def test_a_tuned_kind_costs_more_than_a_kind_with_one_magnitude():
