@@ -272,10 +272,10 @@ def _detached(
 
 
 def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    """Put a grid on a spring that moves only in the direction of the finding.
+    """Put a scalar point on a spring in the direction of the finding.
 
-    It hangs on the grid itself where that is one grid in basic axes, else on a grid that follows
-    all the grids named.
+    A grid held in the other directions would hold a free structure to ground. It hangs on the
+    grid itself where that is one grid in basic axes, else on a grid that follows all those named.
     """
     grids, (c,) = finding.where["grids"], finding.magnitude["components"]
     m, hz = float(finding.magnitude["mass"]), float(finding.magnitude["frequency_hz"])
@@ -294,9 +294,9 @@ def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
         host, new = new, new + 1
         rows += [["GRID", host, 0, *xyz, 0], ["RBE2", number, grids[0], "123456", host]]
     rows += [
-        ["GRID", new, 0, *xyz, 0, "".join(str(k) for k in range(1, 7) if k != c)],
-        ["CELAS2", number + 1, stiffness, host, c, new, c],
-        ["CONM2", number + 2, new, None, m],
+        ["SPOINT", new],
+        ["CELAS2", number + 1, stiffness, host, c, new],
+        ["CMASS2", number + 2, m, new],
     ]
     return Adopted(
         add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)

@@ -246,7 +246,7 @@ def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
 
     One near either end counts in part: a slightly other model would have it outside.
     """
-    alone = np.maximum(np.delete(values, match), np.finfo(float).tiny)
+    alone = np.maximum(np.delete(values, match), 1e-9 * aim.min())
     inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / _EDGE
     return float(np.sum(np.clip(inside, 0.0, 1.0)))
 

@@ -34,6 +34,8 @@ _FEW = 300
 with them."""
 _WORTH = 0.35
 """A branch that gains less than this share of what the best one gains is not fitted."""
+_TUNED = 2
+"""Hypotheses with a tuned suspect that are followed beside the others, if they lead."""
 _CLOSE = 0.35
 """A hypothesis that gained less than all but this share of what the best gained is not grown."""
 _ROUNDS = 6
@@ -131,14 +133,9 @@ class Searcher:
         return sum(len(rows) for c, rows in kinds if c.tunings == 1) < _FEW
 
     def _leading(self, fits: Sequence[Fit], base: float) -> list[Fit]:
-        """Keep the best fits, and the best whose last suspect is of another kind if it is near.
-
-        One whose last suspect is not tuned is always among them, see `_varied`.
-        """
+        """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
         most = self.effort.beam - (len(fits[0].suspects) > 1)
         kept, kinds = list(fits[:most]), set()
-        if all(self._tuned(f.suspects[-1]) for f in kept):
-            kept += [f for f in fits[most:] if not self._tuned(f.suspects[-1])][:1]
         for f in fits:
             kind = self.problem.catalogue[f.suspects[-1].kind].kind
             near = base - f.objective > _NEAR * (base - fits[0].objective)
@@ -349,16 +346,16 @@ class Searcher:
                 levels.append(chosen[0])
                 rivals.append(tuple(chosen[1:12]))
                 break
-            beam = sorted(
-                (
-                    self.settled(self.refined(f))
-                    for f in self._leading(chosen, levels[-1].objective)
-                ),
-                key=lambda f: f.objective,
-            )
+            plain, tuned = self._leagues(chosen)
+            before, _ = self._leagues(beam)
+            base = min((f.objective for f in before), default=levels[-1].objective)
+            followed = self._leading(plain, base) if plain else []
+            followed += [f for f in tuned if any(f is g for g in chosen[:_TUNED])]
+            beam = sorted(map(self.settled, map(self.refined, followed)), key=_objective)
             if depth > 1:
-                beam[0] = self.reconsidered(beam[0])
-            beam = self._distinct(sorted(beam, key=lambda f: f.objective))
+                firsts = [id(league[0]) for league in self._leagues(beam) if league]
+                beam = [self.reconsidered(f) if id(f) in firsts else f for f in beam]
+            beam = self._distinct(sorted(beam, key=_objective))
             best = beam[0]
             rest = (*beam[1:], *chosen[self.effort.beam :])
             rivals.append(rest[:12])
@@ -367,9 +364,26 @@ class Searcher:
             levels.append(best)
             if enough(previous, best, 1.0):
                 break
-            near = best.objective + _CLOSE * (previous.objective - best.objective)
-            beam = [f for f in beam[: self.effort.beam - 1] if f.objective < near]
+            plain, tuned = self._leagues(beam)
+            beam = [*self._near(plain, base), *(tuned[:1] if tuned and tuned[0] is best else ())]
+            beam = sorted(beam, key=_objective)
         return Found(tuple(levels), tuple(rivals))
+
+    def _near(self, fits: Sequence[Fit], base: float) -> list[Fit]:
+        """Return the best and the next few that gained nearly as much over `base`."""
+        if not fits:
+            return []
+        near = fits[0].objective + _CLOSE * (base - fits[0].objective)
+        return [f for f in fits[: self.effort.beam - 1] if f is fits[0] or f.objective < near]
+
+    def _leagues(self, fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
+        """Return the fits without a tuned suspect, and those with one.
+
+        Before the rest is right a tuned kind imitates the others; what has none is followed as if
+        there were no tuned kinds.
+        """
+        plain = [f for f in fits if not any(map(self._tuned, f.suspects))]
+        return plain, [f for f in fits if any(map(self._tuned, f.suspects))]
 
     def _distinct(self, fits: Sequence[Fit]) -> list[Fit]:
         """Drop fits whose suspects are the same kinds at about the same places as a better one."""
@@ -396,3 +410,7 @@ class Searcher:
         xyz: Floats = self.problem.catalogue[s.kind].xyz
         apart = float(np.linalg.norm(xyz[s.row] - xyz[t.row]))
         return apart < 0.5 * self.effort.apart * self.size
+
+
+def _objective(f: Fit) -> float:
+    return f.objective
