@@ -22,7 +22,7 @@ Gain = Callable[[Ints, Floats], Floats]
 """How much likelier (ln) dashpots at some places (n,), of sizes (n, t), make the shapes, (n, t)."""
 
 _FEWEST = 5
-_RARE = 2.0
+_RARE = 3.5
 """ln of how many times rarer a dashpot is beforehand than none."""
 _SHAPE_ERROR = 0.08
 """Error of a shape anywhere, over its rms."""
