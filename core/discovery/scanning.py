@@ -21,10 +21,9 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     Parameters
     ----------
     problem : Problem
-        On the basis of the eigenvectors of `state` (see `at_state`), so that the state itself
-        is diagonal.
+        On a basis that holds the lowest modes of `state`.
     state : Fit
-        Its eigenvalues are those of the basis.
+        As it stands on that basis: on its modes it is diagonal.
     kind : int
         Number in the catalogue.
     rows : (n,) int
@@ -38,11 +37,14 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
     """
     U, law = problem.part(kind, rows, state.log_p)
+    own = state.vectors[: problem.basis.size]
+    U = U @ own
     lam = np.maximum(state.eigenvalues, 0.0)
     trials = np.broadcast_to(trials, (len(rows), *trials.shape[-2:]))
     out = np.empty(trials.shape[:2])
-    S2 = problem.sensors.T @ problem.sensors
-    cross = problem.evidence.shapes.T @ problem.sensors
+    seen = problem.sensors @ own
+    S2 = seen.T @ seen
+    cross = problem.evidence.shapes.T @ seen
     n = min(problem.columns, len(lam))
     for start in range(0, len(rows), _CHUNK):
         part = slice(start, start + _CHUNK)

@@ -22,6 +22,7 @@ from .scanning import best_apart, scan
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
+_DEPENDENT = 1e-6
 _HOPELESS = 0.3
 """A further suspect that gains less than this share of its price before it is moved to better
 neighbours is given up."""
@@ -97,10 +98,10 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         n = min(self.effort.search_modes, self.problem.basis.size)
         values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
-        T = T[: self.problem.basis.size]
+        T, own = np.split(T, [self.problem.basis.size])
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
         bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
-        small = bare.turned(T[:, :n], rest)
+        small = bare.turned(_independent(T[:, :n], own[:, :n]), rest)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
@@ -414,3 +415,21 @@ class Searcher:
 
 def _objective(f: Fit) -> float:
     return f.objective
+
+
+def _independent(T: Floats, own: Floats) -> Floats:
+    """Return vectors that span those of the structure in modes that have coordinates of their own.
+
+    Parameters
+    ----------
+    T : (r, n) float
+        The structure's part of mass-orthonormal modes.
+    own : (q, n) float
+        What else moves in them, of unit mass: a mode in which hardly anything else does has no
+        independent part of the structure's.
+    """
+    values, vectors = np.linalg.eigh(np.eye(T.shape[1]) - own.T @ own)
+    if values[0] > _DEPENDENT:
+        return T
+    keep = values > _DEPENDENT
+    return np.asarray(T @ (vectors[:, keep] / np.sqrt(values[keep])))

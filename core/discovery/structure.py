@@ -43,7 +43,7 @@ class Members:
         """Rows of `Structure.displacement` of some elements, (n, m)."""
         w = self.block.width
         places = self.block.places[rows]
-        return (w * places[:, :, None] + np.arange(w)).reshape(len(rows), -1)
+        return (w * places[:, :, None] + np.arange(w)).reshape(len(rows), w * places.shape[1])
 
 
 @dataclass(frozen=True, eq=False)
