@@ -27,6 +27,7 @@ from .judge import (
     enough,
     held_out,
     judge,
+    likelier,
     noise_scale,
     with_rival,
 )
@@ -34,6 +35,7 @@ from .kinds import KINDS
 from .kinds.scale import Scale
 from .merging import merged
 from .mesh_error import lumping, with_consistent_bars
+from .paths import searched
 from .polish import polished
 from .request import Request as Request
 from .search import Found, Searcher
@@ -133,7 +135,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     searcher = _searcher(trial)
     if request.responses is not None:
         searcher = replace(searcher, problem=hearing(request, searcher.problem, trial.null.log_p))
-    found = searcher.run(enough(searcher), progress)
+    found = searched(searcher, enough(searcher), partial(likelier, searcher), progress)
     searcher, found = _reshaped(searcher, found)
     made = list(searcher.problem.catalogue)
     progress("weighing the best hypotheses on bases of their own")

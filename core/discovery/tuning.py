@@ -32,6 +32,8 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     """
     U, law = problem.part(kind, rows, state.log_p)
     assert isinstance(law, AttachedLaw)
+    modes = state.vectors[: problem.basis.size]
+    U, seen = U @ modes, problem.sensors @ modes
     lam, aim = np.maximum(state.eigenvalues, 0.0), targets(problem.evidence)
     inertia = 1.0 / (law.value(trials, rows)[:, :1] * aim)
     own = law.own(trials)[0][:, :1] - inertia
@@ -39,7 +41,7 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     for start in range(0, len(rows), _CHUNK):
         part = np.arange(len(rows))[start : start + _CHUNK]
         flexibility = law.missing[part][:, :1, None] + own
-        out.append(_misfit(problem.evidence, problem.sensors, lam, U[part, 0], flexibility))
+        out.append(_misfit(problem.evidence, seen, lam, U[part, 0], flexibility))
     return np.concatenate(out)
 
 
