@@ -8,7 +8,7 @@ import numpy as np
 
 
 def damping_tables(
-    found: Any, measured: Any, before: tuple[Any, ...], after: tuple[Any, ...]
+    found: Any, measured: Any, elastic: Any, before: tuple[Any, ...], after: tuple[Any, ...]
 ) -> dict[str, Any] | None:
     """Return measured damping ratios beside those foretold; None where no dashpot is about.
 
@@ -16,6 +16,8 @@ def damping_tables(
     ----------
     found : Discovery
     measured : (n_test,) float
+    elastic : (n_test,) bool
+        Modes that were weighed.
     before, after : (Comparison, Eigensolution, D or None)
         The deck as it was and as completed.
     """
@@ -28,8 +30,10 @@ def damping_tables(
     for (compared, solution, D), level in zip((before, after), levels, strict=True):
         phi = solution.vectors
         own = np.zeros((phi.shape[1],) * 2) if D is None else np.asarray(phi.T @ (D @ phi))
-        pairs = [(p.test, p.analysis) for p in compared.correlation.pairs]
-        foretold.append(of_pairs(solution.eigenvalues, own, np.array(level), pairs))
+        pairs = [(p.test, p.analysis) for p in compared.correlation.pairs if elastic[p.test]]
+        of_all = np.zeros(len(measured))
+        of_all[elastic] = level
+        foretold.append(of_pairs(solution.eigenvalues, own, of_all, pairs))
     rows = [
         {
             "test": j + 1,

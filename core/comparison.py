@@ -56,6 +56,15 @@ class Placed:
             errors = replace(errors, shape=errors.shape[rows])
         return replace(self, observation=seen, test=test, errors=errors)
 
+    def of_modes(self, modes: Numbers) -> Placed:
+        """Return some of the test modes (indices or mask)."""
+        errors = self.errors
+        if errors is not None:
+            errors = replace(
+                errors, frequency=errors.frequency[modes], shape=errors.shape[:, modes]
+            )
+        return replace(self, test=self.test.take(modes), errors=errors)
+
     def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
         """Multiply rows of sensors with the square roots of their weights."""
         if self.errors is None:

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
+from ..completing import ADOPTED, completed
 from ..console import stderr, working
 from ..options import Output
 from ..study import Study
-
-_ADOPTED = ("effect", "parameters_only")
 
 
 def discover(study: Study, output: Output) -> None:
@@ -96,27 +95,33 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         if output.verbose:
             stderr().print(what, markup=False)
 
+    resting = _resting(placed, solution, model)
     with working("discovering", output):
         found = find(
             Request(
                 structure,
                 np.array([*(0.4 for _ in named), *(w for _, w in kept)]),
                 solution,
-                placed,
+                placed.of_modes(~resting),
                 weight(deck).mass,
                 mass_unit(deck, study.deck_length_unit or geometry.length_unit),
                 responses=responses,
+                modes=np.flatnonzero(~resting) + 1,
             ),
             told,
         )
     with run_folder(run, output.force) as work:
         with working("completing the deck and solving it again", output):
-            done = complete(study, deck, specs, model, found, placed, work, len(modes))
+            found, done = completed(study, deck, specs, model, found, before, work, len(modes))
         after = done["after"]
         result = discover_tables(study, found, specs, model, before, after, done)
         result["seconds"] = time.perf_counter() - start
         damped = damping_tables(
-            found, placed.test.damping, (before, solution, structure.damping), done["damped"]
+            found,
+            placed.test.damping,
+            ~resting,
+            (before, solution, structure.damping),
+            done["damped"],
         )
         result |= {} if damped is None else {"damping": damped}
         result |= {} if found.responses is None else {"frf": response_tables(found.responses)}
@@ -125,6 +130,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             *model.warnings,
             *before.warnings,
             *found.warnings,
+            *_said_resting(np.flatnonzero(resting) + 1),
             *unheard,
             *done["refused"],
         ]
@@ -138,6 +144,28 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     return result, run
 
 
+def _resting(placed: Any, solution: Any, model: Any) -> Any:
+    """Return which test modes are no vibration of the structure, (n_test,)."""
+    from ...core.discovery.resting import elastic
+
+    resting = ~elastic(placed, solution, model.expansion @ solution.vectors)
+    if resting.all():
+        raise InputError(
+            "no mode of the test is elastic: all are at 0 Hz or motions of the structure as a whole"
+        )
+    return resting
+
+
+def _said_resting(modes: Any) -> list[str]:
+    if not len(modes):
+        return []
+    which = ", ".join(str(m) for m in modes)
+    return [
+        f"test modes {which} are motions of the structure as a whole (at 0 Hz, or on its "
+        "suspension); they are no evidence of what the model lacks"
+    ]
+
+
 def disagreement_maps(before: Any, structure: Any, free_shapes: Any) -> Any:
     """Return the maps of the misfit, or None where nothing pairs or the test side was turned."""
     from ...core.disagreement import disagreement
@@ -146,101 +174,6 @@ def disagreement_maps(before: Any, structure: Any, free_shapes: Any) -> Any:
         return None
     deck = structure.model.deck_point
     return disagreement(before, structure.members, structure.displacement, free_shapes, deck)
-
-
-def complete(
-    study: Study,
-    deck: Any,
-    specs: list[Any],
-    model: Any,
-    found: Any,
-    placed: Any,
-    work: Path,
-    n_modes: int,
-) -> dict[str, Any]:
-    """Write the completed deck, read it back, solve it in full, correlate it again."""
-    from ...adapters.nastran import (
-        build_model,
-        read_deck,
-        read_deck_text,
-        set_values,
-        unified_diff,
-        write_deck,
-    )
-    from ...adapters.nastran.adopt import adopt
-    from ...adapters.nastran.structure import free_damping
-    from ...core import eigen
-    from ...core.comparison import compare
-    from ..pipeline import criteria_of
-
-    assert study.deck is not None
-    original = read_deck_text(study.deck)
-    text, cards, refused = original, [], []
-    if found.verdict in _ADOPTED:
-        moved = {
-            ref: value * m.factor
-            for m in found.parameters
-            for ref, value in zip(
-                specs[m.number].fields, model.parameters[m.number].deck_values, strict=True
-            )
-        }
-        text = set_values(text, moved)
-    for f in found.findings:
-        adopted = None
-        if f.side == "model" and found.verdict == "effect":
-            try:
-                adopted = adopt(text, deck, f)
-                text = adopted.deck
-            except InputError as error:
-                refused.append(f"the {f.kind.replace('_', ' ')} was not written: {error}")
-        cards.append(list(adopted.cards) if adopted else [])
-    top = write_deck(text, work / "deck")
-    (work / "changes.diff").write_text(unified_diff(original, text), encoding="utf-8", newline="")
-    deck_again = read_deck(top)
-    again = build_model(deck_again)
-    solution = eigen.solve(again, n_modes=min(n_modes, again.n_free))
-    modes = eigen.modes_of(again, solution)
-    seen = placed
-    if again.dofs.node.shape != model.dofs.node.shape:
-        seen = _on(placed, model, again)
-    sound = _corrected(seen, found)
-    after = compare(again.geometry, modes, sound, criteria_of(study), solution.rigid_body_modes)
-    return {
-        "after": after,
-        "damped": (after, solution, free_damping(deck_again, again)),
-        "cards": cards,
-        "refused": refused,
-        "text": text,
-        "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
-    }
-
-
-def _on(placed: Any, model: Any, again: Any) -> Any:
-    """Sensor map for a deck that has further grids."""
-    import scipy.sparse as sp
-
-    old = {
-        (int(n), int(c)): i
-        for i, (n, c) in enumerate(zip(model.dofs.node, model.dofs.component, strict=True))
-    }
-    rows, columns = [], []
-    for j, key in enumerate(zip(again.dofs.node, again.dofs.component, strict=True)):
-        i = old.get((int(key[0]), int(key[1])))
-        if i is not None:
-            rows.append(i)
-            columns.append(j)
-    P = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(model.dofs), len(again.dofs)))
-    seen = replace(placed.observation, matrix=(placed.observation.matrix @ P).tocsr())
-    return replace(placed, observation=seen)
-
-
-def _corrected(placed: Any, found: Any) -> Any:
-    """Return the test as sound sensors would have read it, less what cannot be known."""
-    from ...core.discovery.faults import corrected, lost
-
-    shapes = corrected(placed.test.shapes, found.corrected_sensors)
-    left = ~lost(found.corrected_sensors, len(shapes))
-    return replace(placed, test=replace(placed.test, shapes=shapes)).take(left)
 
 
 def discover_tables(
@@ -314,7 +247,7 @@ def discover_tables(
                 "cards": list(model.parameters[m.number].handle),
                 "initial": list(model.parameters[m.number].deck_values),
                 "updated": [
-                    v * (m.factor if found.verdict in _ADOPTED else 1.0)
+                    v * (m.factor if found.verdict in ADOPTED else 1.0)
                     for v in model.parameters[m.number].deck_values
                 ],
                 "factor": m.factor,

@@ -16,6 +16,8 @@ from ..factor import factorise
 from ..model import Model, Term
 from ..reduced_basis import projected
 
+ROUNDING = 1e-7
+"""What is left of a vector beside this part of it is rounding."""
 _DEPENDENT = 1e-5
 _CHUNK = 128
 
@@ -232,12 +234,19 @@ def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -
     return np.asarray(factor.solve(np.ascontiguousarray(B)))
 
 
+def lengths(X: Floats, M: sp.spmatrix) -> Floats:
+    """Return the lengths of the columns of X in the norm of M."""
+    return np.asarray(np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0)))
+
+
 def _independent(X: Floats, phi: Floats, M: sp.spmatrix) -> Floats:
     """M-orthonormal basis of what X adds to the span of phi."""
+    before = lengths(X, M)
     for _ in range(2):
         X = X - phi @ (phi.T @ (M @ X))
-    length = np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0))
-    X = X[:, length > 0.0] / length[length > 0.0]
+    length = lengths(X, M)
+    new = length > ROUNDING * before
+    X = X[:, new] / length[new]
     values, vectors = la.eigh(X.T @ (M @ X))
     keep = values > _DEPENDENT * values[-1] if len(values) else np.zeros(0, bool)
     return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))

@@ -31,7 +31,11 @@ class _Forecast:
 
 
 def further_sensors(
-    problem: Problem, model: Model, best: Fit, rivals: tuple[tuple[str, Fit], ...]
+    problem: Problem,
+    model: Model,
+    best: Fit,
+    rivals: tuple[tuple[str, Fit], ...],
+    modes: Ints,
 ) -> tuple[str, ...]:
     """Name the grids and directions where the explanations differ most.
 
@@ -43,6 +47,8 @@ def further_sensors(
     best : Fit
     rivals : tuple of (str, Fit)
         Others in words, most likely first.
+    modes : (n_test,) int
+        Numbers of the test modes of the evidence.
 
     Returns
     -------
@@ -70,7 +76,7 @@ def further_sensors(
         axis = "XYZ"[int(model.dofs.component[rows[d]]) - 1]
         out.append(
             f"a sensor at grid {int(model.dofs.node[rows[d]])} in direction {axis}: there mode "
-            f"{int(mode) + 1} of those searched differs by {100.0 * apart[rival, d, mode]:.0f} % "
+            f"{int(modes[mode])} differs by {100.0 * apart[rival, d, mode]:.0f} % "
             f"of its rms between the best explanation and {rivals[rival][0]}"
         )
     return tuple(out)

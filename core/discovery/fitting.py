@@ -18,6 +18,7 @@ from .responses import Heard
 _DEGENERATE = 2e-3
 _EDGE = 0.04
 """Of ln λ: how far within the measured band a mode counts in full as one too many."""
+_LEAST_DAMPING = 1e-10
 _SOFT, _TO_COME = 3.0, 5.0
 """How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
@@ -279,15 +280,11 @@ def fit(
     steps = [problem.catalogue[s.kind].steps for s in suspects]
     reach = _REACH * np.concatenate([np.ones(len(active)), *steps])
     H = np.zeros((len(reach),) * 2)
-    for _ in range(iterations):
+    for _ in range(iterations if len(reach) else 0):
         H, g = _normal_equations(problem, now, active)
-        if not len(g):
-            break
         better = None
         for _ in range(5):
-            step = -la.solve(
-                H + damping * np.diag(np.diag(H)) + 1e-9 * np.eye(len(H)), g, assume_a="pos"
-            )
+            step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             trial = _stepped(problem, now, active, np.clip(step, -reach, reach))
@@ -302,6 +299,13 @@ def fit(
         if fell < tolerance:
             break
     return replace(now, information=H, active=tuple(active))
+
+
+def _step(H: Floats, g: Floats, damping: float) -> Floats:
+    """Return Levenberg's step, each unknown in units of its own curvature."""
+    unit = 1.0 / np.sqrt(np.diag(H))
+    scaled = H * unit * unit[:, None] + (damping + _LEAST_DAMPING) * np.eye(len(H))
+    return np.asarray(-unit * np.linalg.solve(scaled, unit * g))
 
 
 def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:

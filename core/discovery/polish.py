@@ -17,7 +17,7 @@ from ..arrays import Bools, Floats
 from ..eigen import solve
 from ..factor import factorise
 from ..model import Model
-from .basis import Basis, reduced_sum
+from .basis import ROUNDING, Basis, lengths, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
 from .evidence import targets
 from .fitting import Fit, Problem, fit, on_whole_test, softened
@@ -183,10 +183,12 @@ def _shift(eigenvalues: Floats) -> float:
 
 def _beside(X: Floats, phi: Floats, M: sp.csr_matrix, least: float) -> Floats:
     """M-orthonormal basis of what X adds to the M-orthonormal vectors phi."""
+    before = lengths(X, M)
     for _ in range(2):
         X = X - phi @ (phi.T @ (M @ X))
-    length = np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0))
-    X = X[:, length > 0.0] / length[length > 0.0]
+    length = lengths(X, M)
+    new = length > ROUNDING * before
+    X = X[:, new] / length[new]
     values, vectors = np.linalg.eigh(X.T @ (M @ X))
-    keep = values > least * values[-1]
+    keep = values > least * values[-1] if len(values) else np.zeros(0, bool)
     return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))

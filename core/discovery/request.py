@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ..arrays import Floats
+import numpy as np
+
+from ..arrays import Floats, Ints
 from ..comparison import Placed
 from ..eigen import Eigensolution
 from .responses import Responses
@@ -34,6 +36,8 @@ class Request:
     effort : Effort
     responses : Responses, optional
         Frequency responses of the test: further evidence.
+    modes : (n_test,) int, optional
+        Numbers by which to speak of the modes in `placed`; otherwise 1, 2, ...
     """
 
     structure: Structure
@@ -44,3 +48,9 @@ class Request:
     masses: MassUnit = field(default_factory=MassUnit)
     effort: Effort = field(default_factory=Effort)
     responses: Responses | None = None
+    modes: Ints | None = None
+
+    @property
+    def numbers(self) -> Ints:
+        """Numbers of the test modes, (n_test,)."""
+        return np.arange(len(self.placed.test)) + 1 if self.modes is None else self.modes

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..alignment import Alignment
-from ..arrays import Floats
+from ..arrays import Bools, Floats
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
@@ -76,7 +76,7 @@ def told(
         word = "effect"
     elif findings:
         word = "undecided"
-        decide = (*decide, *_would_decide(request, searcher, found, verdict))
+        decide = (*decide, *_would_decide(request, searcher, found, verdict, out[0]))
     elif verdict.scale > _UNEXPLAINED:
         word = "undecided"
         decide = (
@@ -97,7 +97,7 @@ def told(
         verdict.evidence,
         verdict.posterior,
         verdict.foretold,
-        tuple(int(i) + 1 for i in np.flatnonzero(out[0])),
+        tuple(int(i) for i in request.numbers[out[0]]),
         tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
         tested.faults,
         decide,
@@ -136,7 +136,7 @@ def _finding(
     magnitude = magnitude_of(c, s.row, sizes, intervals, request.masses)
     first = intervals[0] * (request.masses.card if "mass" in magnitude else 1.0)
     interval = (float(first[0]), float(first[1]))
-    modes = [j + 1 for j in explained(searcher, best, number, verdict.scale)]
+    modes = [int(request.numbers[j]) for j in explained(searcher, best, number, verdict.scale)]
     next_best = alternatives[0] if alternatives else None
     return Finding(
         "model",
@@ -235,7 +235,7 @@ def _alternatives(
 
 
 def _would_decide(
-    request: Request, searcher: Searcher, found: Found, verdict: Judgement
+    request: Request, searcher: Searcher, found: Found, verdict: Judgement, held: Bools
 ) -> tuple[str, ...]:
     """Say which sensors and modes tell the best hypotheses apart."""
     best = found.levels[verdict.accepted]
@@ -247,7 +247,7 @@ def _would_decide(
     rivals = tuple((_in_words(request, searcher, f), f) for f in (*near, *simpler))
     p, model = searcher.problem, request.structure.model
     return (
-        *further_sensors(p, model, best, rivals),
+        *further_sensors(p, model, best, rivals, request.numbers[~held]),
         *further_modes(p, model, best, rivals),
     )
 

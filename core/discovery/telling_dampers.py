@@ -71,7 +71,7 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
     shaken = moved(w) if beside_it else np.zeros(0, np.int64)
     if len(shaken):
         verdict = "undecided"
-        which = ", ".join(str(int(j) + 1) for j in shaken)
+        which = ", ".join(str(int(request.numbers[j])) for j in shaken)
         decide = (
             *decide,
             f"the same test with the dashpot taken off: it is heavy enough to move modes {which} "
@@ -134,7 +134,7 @@ def _finding(
             (low, high),
             components,
             where["region"],
-            [int(j) + 1 for j in felt],
+            [int(request.numbers[j]) for j in felt],
             times(found.evidence),
         ),
         {"xyz": places.xyz[row].tolist(), "radius": 0.0},

@@ -29,6 +29,9 @@ def test_responses_keep_the_axes_of_their_own_file():
     np.testing.assert_array_equal(both.frfs.values, alone.values)
 
 
+ALL = np.ones(3, bool)
+
+
 def side(D, pairs):
     correlation = Any(pairs=[Any(test=t, analysis=a) for t, a in pairs])
     solution = Any(vectors=np.eye(2), eigenvalues=np.array([1.0, 16.0]))
@@ -40,7 +43,7 @@ def test_a_dashpot_shows_in_the_ratio_of_the_mode_that_feels_it():
     D = sp.csr_matrix(np.diag([0.0, 0.32]))
     measured = np.array([0.01, 0.05, np.nan])
     pairs = [(0, 0), (1, 1)]
-    out = damping_tables(found, measured, side(None, pairs), side(D, pairs))
+    out = damping_tables(found, measured, ALL, side(None, pairs), side(D, pairs))
     assert [m["test"] for m in out["modes"]] == [1, 2]
     first, second = out["modes"]
     assert first["after"] == pytest.approx(0.01)
@@ -53,16 +56,17 @@ def test_a_dashpot_shows_in_the_ratio_of_the_mode_that_feels_it():
 def test_a_mode_without_a_partner_has_no_ratio_foretold():
     found = Any(damping=ModalDamping((0.02, 0.02), (0.01, 0.01)))
     D = sp.csr_matrix(np.diag([0.0, 0.32]))
-    out = damping_tables(found, np.array([0.01, 0.05]), side(D, [(0, 0)]), side(D, []))
+    out = damping_tables(found, np.array([0.01, 0.05]), ALL[:2], side(D, [(0, 0)]), side(D, []))
     assert out["modes"][1]["before"] is None
     assert out["typical_factor"]["after"] is None
 
 
 def test_without_dashpots_damping_says_nothing():
     found = Any(damping=ModalDamping((0.02,), (0.02,)))
-    assert damping_tables(found, np.array([0.01]), side(None, []), side(None, [])) is None
+    assert damping_tables(found, np.array([0.01]), ALL[:1], side(None, []), side(None, [])) is None
     assert (
-        damping_tables(Any(damping=None), np.array([0.01]), side(None, []), side(None, [])) is None
+        damping_tables(Any(damping=None), np.array([0.01]), ALL[:1], side(None, []), side(None, []))
+        is None
     )
 
 

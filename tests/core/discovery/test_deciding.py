@@ -11,6 +11,7 @@ from trueup.core.geometry import Geometry
 from trueup.core.model import Dofs, Model
 
 GRIDS = np.arange(1, N + 1)
+MODES = np.arange(1, 13)
 
 
 def model():
@@ -29,7 +30,7 @@ def two(first, second):
 
 def test_a_sensor_is_proposed_where_the_two_explanations_differ_most():
     p, (best, rival) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 24, (0.7,)),))
-    said = further_sensors(p, model(), best, (("a mass near grid 25", rival),))
+    said = further_sensors(p, model(), best, (("a mass near grid 25", rival),), MODES)
     assert 1 <= len(said) <= 3
     grid = int(said[0].split("grid ")[1].split()[0])
     a, b = (p.basis.motion @ f.vectors[:N, f.match] for f in (best, rival))
@@ -42,9 +43,9 @@ def test_a_sensor_is_proposed_where_the_two_explanations_differ_most():
 
 def test_explanations_that_say_the_same_need_no_sensor_and_no_mode():
     p, (best, same) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 7, (0.7,)),))
-    assert further_sensors(p, model(), best, (("the same", same),)) == ()
+    assert further_sensors(p, model(), best, (("the same", same),), MODES) == ()
     assert further_modes(p, model(), best, (("the same", same),)) == ()
-    assert further_sensors(p, model(), best, ()) == ()
+    assert further_sensors(p, model(), best, (), MODES) == ()
 
 
 def test_a_mode_beyond_those_measured_is_proposed_with_both_frequencies():

@@ -18,7 +18,10 @@ from trueup.core.discovery.weighing_dampers import Weighed, moved
 from trueup.core.geometry import Geometry
 
 XYZ = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11), np.zeros(11)])
-REQUEST = Request(structure=Request(model=Request(geometry=Geometry(np.arange(1, 12), XYZ))))
+REQUEST = Request(
+    structure=Request(model=Request(geometry=Geometry(np.arange(1, 12), XYZ))),
+    numbers=np.arange(1, 100),
+)
 PLACES = Dashpots(
     XYZ,
     sp.identity(11, format="csr"),
