@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,10 +24,8 @@ from .judge import (
     Judgement,
     contenders,
     cost,
-    enough,
     held_out,
     judge,
-    likelier,
     noise_scale,
     with_rival,
 )
@@ -136,7 +133,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     searcher = _searcher(trial)
     if request.responses is not None:
         searcher = replace(searcher, problem=hearing(request, searcher.problem, trial.null.log_p))
-    found = searched(searcher, enough(searcher), partial(likelier, searcher), progress)
+    found = searched(searcher, progress)
     searcher, found = _reshaped(searcher, found)
     made = list(searcher.problem.catalogue)
     progress("weighing the best hypotheses on bases of their own")

@@ -123,14 +123,6 @@ def cost(searcher: Searcher, f: Fit, scale: float) -> float:
     return left + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
 
 
-def likelier(searcher: Searcher, found: Found, other: Found) -> bool:
-    """Whether the best hypothesis of one outcome of a search is likelier than another's."""
-    best = min((*found.levels, *other.levels), key=lambda f: f.objective)
-    scale = noise_scale(searcher.problem, with_unseen(searcher, best))
-    one, two = (min(cost(searcher, f, scale) for f in x.levels) for x in (found, other))
-    return one < two
-
-
 def with_unseen(searcher: Searcher, f: Fit) -> Fit:
     """Return a fit that knows what it leaves of the modes and sensors held out."""
     return f if f.unseen is not None else on_whole_test(searcher.problem, f)

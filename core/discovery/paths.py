@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from .fitting import Fit
+from .judge import cost, enough, noise_scale, with_unseen
 from .search import Found, Searcher
 
 _CLEARLY = 1.3
@@ -21,33 +22,30 @@ _CLEARLY = 1.3
 _TRIED = 3
 
 
-def searched(
-    searcher: Searcher,
-    enough: Callable[[Fit, Fit, float], bool],
-    likelier: Callable[[Found, Found], bool],
-    progress: Callable[[str], None] = lambda _: None,
-) -> Found:
+def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
     """Search with simple kinds, and with all where a tuned one does clearly better.
 
     Parameters
     ----------
     searcher : Searcher
-    enough : callable
-        See `Searcher.run`.
-    likelier : callable
-        Whether the best of the first outcome is likelier than that of the second.
     progress : callable
         Told what happens.
     """
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
-    found = _with(searcher, [not t for t in tuned]).run(enough, progress)
+    found = _with(searcher, [not t for t in tuned]).run(enough(searcher), progress)
     if not any(tuned):
         return found
     progress("looking for absorbers beside what was found")
-    beside = [_best_beside(_with(searcher, tuned), f) for f in found.levels]
-    if any(_clearly(found, k, f, enough) for k, f in enumerate(beside) if f is not None):
-        other = searcher.run(enough, progress)
-        if likelier(other, found):
+    costs = _costs(searcher, found, found)
+    best = int(np.argmin(costs))
+    alone = _with(searcher, tuned)
+    beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
+    scale = _scale(searcher, found, found)
+    top = beside[best]
+    better = top is not None and cost(searcher, top, scale) < costs[best]
+    if better or any(_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None):
+        other = searcher.run(enough(searcher), progress)
+        if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
             return _joined(other, found)
         return _joined(found, other)
     rivals = [list(level) for level in found.rivals]
@@ -55,6 +53,17 @@ def searched(
         if f is not None:
             rivals[k + 1].append(f)
     return Found(found.levels, tuple(tuple(level) for level in rivals))
+
+
+def _scale(searcher: Searcher, found: Found, other: Found) -> float:
+    best = min((*found.levels, *other.levels), key=lambda f: f.objective)
+    return noise_scale(searcher.problem, with_unseen(searcher, best))
+
+
+def _costs(searcher: Searcher, found: Found, other: Found) -> list[float]:
+    """Costs of the levels of one outcome, by the noise that the better of two leaves."""
+    scale = _scale(searcher, found, other)
+    return [cost(searcher, f, scale) for f in found.levels]
 
 
 def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
@@ -77,15 +86,10 @@ def _best_beside(searcher: Searcher, state: Fit) -> Fit | None:
     return searcher.refined(min(fits, key=lambda f: f.objective))
 
 
-def _clearly(found: Found, k: int, f: Fit, enough: Callable[[Fit, Fit, float], bool]) -> bool:
-    """Whether a tuned kind beside level k does clearly better than the simple one that came."""
-    here = found.levels[k]
-    if enough(here, f, 1.0):
-        return False
-    if k + 1 == len(found.levels):
-        return True
-    simple = here.objective - found.levels[k + 1].objective
-    return here.objective - f.objective > _CLEARLY * simple
+def _clearly(found: Found, k: int, f: Fit) -> bool:
+    """Whether a tuned kind beside a level does clearly better than the simple one that came."""
+    here = found.levels[k].objective
+    return here - f.objective > _CLEARLY * (here - found.levels[k + 1].objective)
 
 
 def _joined(best: Found, other: Found) -> Found:
