@@ -9,8 +9,9 @@ from tests.core.discovery.strings import K, M, N, hidden, searcher
 
 from trueup.core.discovery.candidates import Suspect, changed, magnitudes
 from trueup.core.discovery.fitting import _normal_equations, evaluate, fit
-from trueup.core.discovery.judge import cost, enough, judge, price, with_unseen
+from trueup.core.discovery.judge import cost, judge, price, with_unseen
 from trueup.core.discovery.laws import TunedLaw
+from trueup.core.discovery.paths import searched
 from trueup.core.discovery.scanning import _attached, scan
 from trueup.core.discovery.tuning import promising
 
@@ -86,7 +87,7 @@ def test_to_first_order_the_truth_is_missed_by_nothing():
 @pytest.mark.parametrize(("bead", "mass", "hz"), [(11, 0.8, 1.7), (5, 0.5, 3.1), (20, 1.5, 2.6)])
 def test_an_absorber_is_found_beside_a_wrong_tension(bead, mass, hz):
     s = searcher(hidden(1.1, absorbers=[(bead, mass, hz)]), modes_out=(4, 10))
-    found = s.run(enough(s))
+    found = searched(s)
     verdict = judge(s, found)
     (suspect,) = found.levels[verdict.accepted].suspects
     assert s.problem.catalogue[suspect.kind].kind == "tuned_absorber"
@@ -99,7 +100,7 @@ def test_an_absorber_is_found_beside_a_wrong_tension(bead, mass, hz):
 @pytest.mark.slow
 def test_a_mass_beside_an_absorber_is_found_too():
     s = searcher(hidden(masses=[(22, 2.0)], absorbers=[(9, 0.8, 2.4)]))
-    found = s.run(enough(s))
+    found = searched(s)
     best = found.levels[judge(s, found).accepted]
     named = {(s.problem.catalogue[q.kind].kind, q.row) for q in best.suspects}
     assert named == {("point_mass", 22), ("tuned_absorber", 9)}
@@ -107,7 +108,7 @@ def test_a_mass_beside_an_absorber_is_found_too():
 
 def test_tuned_far_above_the_band_it_is_told_as_the_mass_that_it_is():
     s = searcher(hidden(absorbers=[(9, 2.0, 30.0 * STRING_HZ[11])]))
-    found = s.run(enough(s))
+    found = searched(s)
     best = found.levels[judge(s, found).accepted]
     assert [(s.problem.catalogue[q.kind].kind, q.row) for q in best.suspects] == [("point_mass", 9)]
 

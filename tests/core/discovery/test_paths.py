@@ -1,0 +1,35 @@
+"""Simple explanations first, absorbers where these do clearly worse: on a string of beads."""
+
+import numpy as np
+import pytest
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.core.discovery.judge import judge
+from trueup.core.discovery.paths import searched
+
+
+def told(s):
+    found = searched(s)
+    verdict = judge(s, found)
+    best = found.levels[verdict.accepted]
+    return [s.problem.catalogue[q.kind].kind for q in best.suspects], best
+
+
+@pytest.mark.parametrize("bead", [5, 11])
+def test_a_mass_stays_a_mass_though_an_absorber_could_imitate_it(bead):
+    kinds, best = told(searcher(hidden(masses=[(bead, 2.0)]), modes_out=(4, 10)))
+    assert kinds == ["point_mass"]
+    assert best.suspects[0].row == bead
+
+
+def test_an_absorber_is_found_where_no_simple_kind_does_as_well():
+    s = searcher(hidden(absorbers=[(11, 0.8, 1.7)]), modes_out=(4, 10))
+    kinds, best = told(s)
+    assert kinds == ["tuned_absorber"]
+    assert np.exp(best.suspects[0].theta[0]) == pytest.approx(0.8, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_quiet_string_has_neither(seed):
+    kinds, _ = told(searcher(hidden(tension=1.1), modes_out=(4, 10), seed=seed))
+    assert kinds == []
