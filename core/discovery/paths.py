@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .candidates import Candidates, Suspect
 from .fitting import Fit
 from .judge import cost, enough, noise_scale, with_unseen
 from .search import Found, Searcher
@@ -45,6 +46,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     better = top is not None and cost(searcher, top, scale) < costs[best]
     if better or any(_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None):
         other = searcher.run(enough(searcher), progress)
+        other = simplified(searcher, other)
         if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
             return _joined(other, found)
         return _joined(found, other)
@@ -53,6 +55,49 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
         if f is not None:
             rivals[k + 1].append(f)
     return Found(found.levels, tuple(tuple(level) for level in rivals))
+
+
+def simplified(searcher: Searcher, found: Found) -> Found:
+    """Return an outcome with absorbers replaced where a mass or a spring there does as well.
+
+    Tuned far above the band an absorber is a mass, far below it a spring to ground: the kinds
+    with one magnitude cost less, and count where they explain as much.
+    """
+    levels, rivals = list(found.levels), [list(level) for level in found.rivals]
+    scale = _scale(searcher, found, found)
+    for k, f in enumerate(levels):
+        for trial in _limits(searcher, f):
+            if cost(searcher, trial, scale) < cost(searcher, levels[k], scale):
+                rivals[k].append(levels[k])
+                levels[k] = trial
+    return Found(tuple(levels), tuple(tuple(level) for level in rivals))
+
+
+def _limits(searcher: Searcher, f: Fit) -> list[Fit]:
+    """Return fits with one absorber replaced by the spring or the mass it becomes at its limits."""
+    catalogue, out = searcher.problem.catalogue, []
+    for q, s in enumerate(f.suspects):
+        own = catalogue[s.kind]
+        if own.tunings == 1:
+            continue
+        mass, hz = np.exp(s.theta)
+        sizes = {"ground_spring": mass * (2.0 * np.pi * hz) ** 2, "point_mass": mass}
+        for kind, c in enumerate(catalogue):
+            if c.kind not in sizes or not c.rows_each:
+                continue
+            row = _same_place(own, s.row, c)
+            plain = Suspect(kind, row, (float(np.log(sizes[c.kind])),))
+            suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
+            out.append(searcher.refined(searcher.fitted(f, suspects, 8)))
+    return out
+
+
+def _same_place(own: Candidates, row: int, other: Candidates) -> int:
+    """Return the row of another kind at a place, in the same direction where it has one."""
+    away = np.linalg.norm(other.xyz - own.xyz[row], axis=1)
+    along = own.where[row].get("components")
+    same = np.array([w.get("components", along) == along for w in other.where])
+    return int(np.argmin(np.where(same, away, np.inf)))
 
 
 def _scale(searcher: Searcher, found: Found, other: Found) -> float:

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.judge import judge
-from trueup.core.discovery.paths import searched
+from trueup.core.discovery.paths import searched, simplified
+from trueup.core.discovery.search import Found
 
 
 def told(s):
@@ -33,3 +36,20 @@ def test_an_absorber_is_found_where_no_simple_kind_does_as_well():
 def test_a_quiet_string_has_neither(seed):
     kinds, _ = told(searcher(hidden(tension=1.1), modes_out=(4, 10), seed=seed))
     assert kinds == []
+
+
+@pytest.mark.parametrize(
+    ("truth", "theta", "kind"),
+    [
+        ({"springs": [(9, 300.0)]}, (2.0, -0.7), "ground_spring"),
+        ({"masses": [(9, 2.0)]}, (0.7, 1.6), "point_mass"),
+    ],
+)
+def test_an_absorber_at_its_limit_is_told_as_what_it_is_there(truth, theta, kind):
+    s = searcher(hidden(**truth), modes_out=(4, 10))
+    null = s.null()
+    tuned = fit(s.problem, null.log_p, (Suspect(2, 9, theta),), (0,), 20)
+    found = simplified(s, Found((null, tuned), ((), ())))
+    (suspect,) = found.levels[1].suspects
+    assert (s.problem.catalogue[suspect.kind].kind, suspect.row) == (kind, 9)
+    assert found.rivals[1][0] is tuned
