@@ -19,6 +19,8 @@ _TELLS = 0.1
 _SHIFT = 0.01
 """Least difference of ln f of a mode that was not measured."""
 _ALIKE = 0.5
+_CLOSE = 0.02
+"""Modes whose frequencies differ less are compared as a subspace."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,9 +130,19 @@ def _forecast(problem: Problem, f: Fit, rows: Ints) -> _Forecast:
 
 
 def _differences(a: Floats, other: _Forecast) -> Floats:
-    """Differences of the matched shapes, (n_row, n_test), signs as alike as they can be."""
-    b = other.motion[:, other.match]
-    return np.asarray(np.abs(a - b * np.where(np.sum(a * b, axis=0) < 0.0, -1.0, 1.0)))
+    """Differences of the matched shapes, (n_row, n_test).
+
+    Close modes of the other explanation are turned within their subspace to be as alike as they
+    can be.
+    """
+    out = np.empty_like(a)
+    for j, k in enumerate(other.match):
+        close = np.abs(np.log(np.maximum(other.hz, 1e-9) / other.hz[k])) < _CLOSE
+        B = other.motion[:, close]
+        turned = B @ np.linalg.lstsq(B, a[:, j], rcond=None)[0]
+        length = np.sqrt(np.mean(turned**2))
+        out[:, j] = np.abs(a[:, j] - turned / max(length, np.finfo(float).tiny))
+    return out
 
 
 def _xyz(g: Geometry, node: int) -> Floats:

@@ -5,7 +5,12 @@ import scipy.sparse as sp
 from tests.core.discovery.strings import SEEN, N, X, hidden, searcher
 
 from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.deciding import further_modes, further_sensors
+from trueup.core.discovery.deciding import (
+    _differences,
+    _Forecast,
+    further_modes,
+    further_sensors,
+)
 from trueup.core.discovery.fitting import fit
 from trueup.core.geometry import Geometry
 from trueup.core.model import Dofs, Model
@@ -56,3 +61,15 @@ def test_a_mode_beyond_those_measured_is_proposed_with_both_frequencies():
     measured = p.whole.frequencies_hz
     assert low > measured.max() * 0.97
     assert len(SEEN) == p.whole.shapes.shape[0]
+
+
+def test_a_repeated_pair_turned_within_its_plane_differs_nowhere():
+    angle = 2.0 * np.pi * np.arange(12) / 12.0
+    pair = np.sqrt(2.0) * np.column_stack([np.cos(2.0 * angle), np.sin(2.0 * angle)])
+    c, s = np.cos(0.7), np.sin(0.7)
+    turned = pair @ np.array([[c, -s], [s, c]])
+    match = np.arange(2)
+    same = _differences(pair, _Forecast(np.array([50.0, 50.1]), turned, match))
+    np.testing.assert_allclose(same, 0.0, atol=1e-12)
+    apart = _differences(pair, _Forecast(np.array([50.0, 60.0]), turned, match))
+    assert apart.max() > 0.5
