@@ -104,7 +104,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
                 solution,
                 placed.of_modes(~resting),
                 weight(deck).mass,
-                mass_unit(deck, study.deck_length_unit or geometry.length_unit),
+                mass_unit(deck, placed.test_geometry.length_unit),
                 responses=responses,
                 modes=np.flatnonzero(~resting) + 1,
             ),
