@@ -16,6 +16,8 @@ from ..factor import factorise
 from ..model import Model, Term
 from ..reduced_basis import projected
 
+_OWN = 1e-6
+"""Least share of the mass of a mode that moves with the structure, for it to count."""
 ROUNDING = 1e-7
 """What is left of a vector beside this part of it is rounding."""
 _DEPENDENT = 1e-5
@@ -250,3 +252,21 @@ def _independent(X: Floats, phi: Floats, M: sp.spmatrix) -> Floats:
     values, vectors = la.eigh(X.T @ (M @ X))
     keep = values > _DEPENDENT * values[-1] if len(values) else np.zeros(0, bool)
     return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))
+
+
+def structural(T: Floats, own: Floats) -> Floats:
+    """Return vectors that span those of the structure in modes that have coordinates of their own.
+
+    Parameters
+    ----------
+    T : (r, n) float
+        The structure's part of mass-orthonormal modes.
+    own : (q, n) float
+        What else moves in them, of unit mass: a mode in which hardly anything else does has no
+        independent part of the structure's.
+    """
+    values, vectors = np.linalg.eigh(np.eye(T.shape[1]) - own.T @ own)
+    if values[0] > _OWN:
+        return T
+    keep = values > _OWN
+    return np.asarray(T @ (vectors[:, keep] / np.sqrt(values[keep])))

@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Bools, Floats, Ints
+from .alike import distinct
+from .basis import structural
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, fit, softened, solve
 from .looking import look
@@ -22,7 +24,6 @@ from .scanning import best_apart, scan
 
 _NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
-_DEPENDENT = 1e-6
 _HOPELESS = 0.3
 """A further suspect that gains less than this share of its price before it is moved to better
 neighbours is given up."""
@@ -101,7 +102,7 @@ class Searcher:
         T, own = np.split(T, [self.problem.basis.size])
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
         bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
-        small = bare.turned(_independent(T[:, :n], own[:, :n]), rest)
+        small = bare.turned(structural(T[:, :n], own[:, :n]), rest)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
@@ -370,6 +371,10 @@ class Searcher:
             beam = sorted(beam, key=_objective)
         return Found(tuple(levels), tuple(rivals))
 
+    def _distinct(self, fits: Sequence[Fit]) -> list[Fit]:
+        near = 0.5 * self.effort.apart * self.size
+        return distinct(fits, self.problem.catalogue, near)
+
     def _near(self, fits: Sequence[Fit], base: float) -> list[Fit]:
         """Return the best and the next few that gained nearly as much over `base`."""
         if not fits:
@@ -386,50 +391,6 @@ class Searcher:
         plain = [f for f in fits if not any(map(self._tuned, f.suspects))]
         return plain, [f for f in fits if any(map(self._tuned, f.suspects))]
 
-    def _distinct(self, fits: Sequence[Fit]) -> list[Fit]:
-        """Drop fits whose suspects are the same kinds at about the same places as a better one."""
-        kept: list[Fit] = []
-        for f in fits:
-            if not any(self._same(f, g) for g in kept):
-                kept.append(f)
-        return kept
-
-    def _same(self, f: Fit, g: Fit) -> bool:
-        if len(f.suspects) != len(g.suspects):
-            return False
-        left = list(g.suspects)
-        for s in f.suspects:
-            twin = next((t for t in left if self._close(s, t)), None)
-            if twin is None:
-                return False
-            left.remove(twin)
-        return True
-
-    def _close(self, s: Suspect, t: Suspect) -> bool:
-        if s.kind != t.kind:
-            return False
-        xyz: Floats = self.problem.catalogue[s.kind].xyz
-        apart = float(np.linalg.norm(xyz[s.row] - xyz[t.row]))
-        return apart < 0.5 * self.effort.apart * self.size
-
 
 def _objective(f: Fit) -> float:
     return f.objective
-
-
-def _independent(T: Floats, own: Floats) -> Floats:
-    """Return vectors that span those of the structure in modes that have coordinates of their own.
-
-    Parameters
-    ----------
-    T : (r, n) float
-        The structure's part of mass-orthonormal modes.
-    own : (q, n) float
-        What else moves in them, of unit mass: a mode in which hardly anything else does has no
-        independent part of the structure's.
-    """
-    values, vectors = np.linalg.eigh(np.eye(T.shape[1]) - own.T @ own)
-    if values[0] > _DEPENDENT:
-        return T
-    keep = values > _DEPENDENT
-    return np.asarray(T @ (vectors[:, keep] / np.sqrt(values[keep])))
