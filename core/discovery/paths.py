@@ -3,7 +3,8 @@
 A mass on a spring has one magnitude more than a mass or a spring and can imitate either until all
 that is missing stands where it should. So the search runs without tuned kinds first. Then one of
 them is put beside every level of what was found; where it gains clearly more than the next simple
-effect did, the search runs again with all kinds, and the likelier of the two outcomes counts.
+effect did, the search runs again with all kinds, and the likelier of the two outcomes counts. It
+does so too where something was found in a model small enough for a second opinion.
 """
 
 from __future__ import annotations
@@ -44,7 +45,9 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     scale = _scale(searcher, found, found)
     top = beside[best]
     better = top is not None and cost(searcher, top, scale) < costs[best]
-    if better or any(_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None):
+    small = len(searcher.problem.basis.vectors) <= searcher.effort.twice
+    clearly = (_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None)
+    if better or any(clearly) or (best and small):
         other = searcher.run(enough(searcher), progress)
         other = simplified(searcher, other)
         if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):

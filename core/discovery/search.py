@@ -51,7 +51,10 @@ _PROMISING = 10
 
 @dataclass(frozen=True)
 class Effort:
-    """How wide the search looks."""
+    """How wide the search looks.
+
+    Models of up to `twice` degrees of freedom are searched a second time, with all kinds at once.
+    """
 
     beam: int = 3
     branches: int = 4
@@ -63,6 +66,7 @@ class Effort:
     search_modes: int = 48
     apart: float = 0.08
     near: float = 0.06
+    twice: int = 8000
 
 
 @dataclass(frozen=True, eq=False)
