@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -19,20 +19,30 @@ def distinct(fits: Sequence[Fit], catalogue: Catalogue, near: float) -> list[Fit
     return kept
 
 
-def _same(f: Fit, g: Fit, catalogue: Catalogue, near: float) -> bool:
-    if len(f.suspects) != len(g.suspects):
-        return False
-    left = list(g.suspects)
-    for s in f.suspects:
-        twin = next((t for t in left if _close(s, t, catalogue, near)), None)
+def unmatched(
+    best: Fit, f: Fit, same: Callable[[Suspect, Suspect], bool]
+) -> tuple[list[int], list[Suspect]]:
+    """Return numbers of the suspects of the best that `f` does not have, and what it has instead.
+
+    Parameters
+    ----------
+    best, f : Fit
+    same : callable
+        Whether a suspect of the best and one of `f` are one.
+    """
+    left, alone = list(f.suspects), []
+    for k, s in enumerate(best.suspects):
+        twin = next((t for t in left if same(s, t)), None)
         if twin is None:
-            return False
-        left.remove(twin)
-    return True
+            alone.append(k)
+        else:
+            left.remove(twin)
+    return alone, left
 
 
-def _close(s: Suspect, t: Suspect, catalogue: Catalogue, near: float) -> bool:
-    if s.kind != t.kind:
-        return False
-    xyz = catalogue[s.kind].xyz
-    return float(np.linalg.norm(xyz[s.row] - xyz[t.row])) < near
+def _same(f: Fit, g: Fit, catalogue: Catalogue, near: float) -> bool:
+    def close(s: Suspect, t: Suspect) -> bool:
+        xyz = catalogue[s.kind].xyz
+        return s.kind == t.kind and float(np.linalg.norm(xyz[s.row] - xyz[t.row])) < near
+
+    return unmatched(f, g, close) == ([], [])

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 
 from ..arrays import Floats, Ints
@@ -18,7 +17,7 @@ from ..reduced_basis import projected
 
 _OWN = 1e-6
 """Least share of the mass of a mode that moves with the structure, for it to count."""
-ROUNDING = 1e-7
+_ROUNDING = 1e-7
 """What is left of a vector beside this part of it is rounding."""
 _DEPENDENT = 1e-5
 _CHUNK = 128
@@ -151,7 +150,7 @@ def build_basis(
     V = np.asarray(phi)
     if sides:
         X = np.asarray(_solve(solution, K, M, np.hstack(sides)))
-        V = np.hstack([phi, _independent(X, phi, M)])
+        V = np.hstack([phi, beside(X, phi, M, _DEPENDENT)])
     return Basis(
         V,
         np.asarray(model.expansion @ V),
@@ -236,21 +235,30 @@ def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -
     return np.asarray(factor.solve(np.ascontiguousarray(B)))
 
 
-def lengths(X: Floats, M: sp.spmatrix) -> Floats:
+def _lengths(X: Floats, M: sp.spmatrix) -> Floats:
     """Return the lengths of the columns of X in the norm of M."""
     return np.asarray(np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0)))
 
 
-def _independent(X: Floats, phi: Floats, M: sp.spmatrix) -> Floats:
-    """M-orthonormal basis of what X adds to the span of phi."""
-    before = lengths(X, M)
+def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
+    """Return an M-orthonormal basis of what X adds to M-orthonormal vectors.
+
+    Parameters
+    ----------
+    X : (n, k) float
+    phi : (n, m) float
+    M : (n, n) sparse
+    least : float
+        Directions with less than this share of the largest squared length are left out.
+    """
+    before = _lengths(X, M)
     for _ in range(2):
         X = X - phi @ (phi.T @ (M @ X))
-    length = lengths(X, M)
-    new = length > ROUNDING * before
+    length = _lengths(X, M)
+    new = length > _ROUNDING * before
     X = X[:, new] / length[new]
-    values, vectors = la.eigh(X.T @ (M @ X))
-    keep = values > _DEPENDENT * values[-1] if len(values) else np.zeros(0, bool)
+    values, vectors = np.linalg.eigh(X.T @ (M @ X))
+    keep = values > least * values[-1] if len(values) else np.zeros(0, bool)
     return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))
 
 

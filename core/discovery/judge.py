@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats
+from .alike import unmatched
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, mode_misfits, on_whole_test, solve
 from .hearing import misfit_of_responses
@@ -177,24 +178,13 @@ def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
 
 def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead."""
-    catalogue, near = searcher.problem.catalogue, searcher.effort.apart * searcher.size
-    left, alone = list(f.suspects), []
-    for k, s in enumerate(best.suspects):
-        twin = next(
-            (
-                t
-                for t in left
-                if catalogue[t.kind].kind == catalogue[s.kind].kind
-                and np.linalg.norm(catalogue[t.kind].xyz[t.row] - catalogue[s.kind].xyz[s.row])
-                < 1.5 * near
-            ),
-            None,
-        )
-        if twin is None:
-            alone.append(k)
-        else:
-            left.remove(twin)
-    return alone, left
+    catalogue, near = searcher.problem.catalogue, 1.5 * searcher.effort.apart * searcher.size
+
+    def same(s: Suspect, t: Suspect) -> bool:
+        a, b = catalogue[s.kind], catalogue[t.kind]
+        return a.kind == b.kind and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
+
+    return unmatched(best, f, same)
 
 
 def instead(

@@ -59,16 +59,8 @@ class Law(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class MassLaw:
-    """A mass m = e^θ adds m·A to M."""
-
-    on: str = "M"
-    needs_flexibility: bool = True
-
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the mass on the spring that the basis lacks."""
-        return self if missing is None else AttachedLaw(missing, top)
+class _Mass:
+    """A mass m = e^θ."""
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
@@ -79,8 +71,20 @@ class MassLaw:
         return np.asarray(np.exp(theta)[:, :, None])
 
 
+@dataclass(frozen=True)
+class MassLaw(_Mass):
+    """A mass m = e^θ adds m·A to M."""
+
+    on: str = "M"
+    needs_flexibility: bool = True
+
+    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
+        """Return the mass on the spring that the basis lacks."""
+        return self if missing is None else AttachedLaw(missing, top)
+
+
 @dataclass(frozen=True, eq=False)
-class AttachedLaw:
+class AttachedLaw(_Mass):
     """A mass m = e^θ on a basis that lacks the flexibility `missing` (n, q) where it sits.
 
     Each of the q directions gets a coordinate of its own: m on a spring 1/missing, which is what
@@ -96,14 +100,6 @@ class AttachedLaw:
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the mass on the spring that this basis lacks."""
         return self if missing is None else AttachedLaw(missing, top)
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return m."""
-        return np.asarray(np.exp(theta))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return dm/dθ."""
-        return np.asarray(np.exp(theta)[:, :, None])
 
     def own(self, theta: Floats) -> tuple[Floats, Floats]:
         """Return the flexibility of its spring on any basis (n, 1), and its slopes (n, t)."""

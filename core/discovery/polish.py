@@ -17,7 +17,7 @@ from ..arrays import Bools, Floats
 from ..eigen import solve
 from ..factor import factorise
 from ..model import Model
-from .basis import ROUNDING, Basis, lengths, reduced_sum
+from .basis import Basis, beside, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
 from .evidence import targets
 from .fitting import Fit, Problem, fit, on_whole_test, softened
@@ -141,11 +141,11 @@ def _own_basis(
     local = [x if isinstance(x, np.ndarray) else x @ asked for x in loads]
     V = np.asarray(phi)
     if local:
-        V = np.hstack([V, _beside(A.solve(np.ascontiguousarray(np.hstack(local))), V, M, 1e-13)])
+        V = np.hstack([V, beside(A.solve(np.ascontiguousarray(np.hstack(local))), V, M, 1e-13)])
     sides = [model.dK(k, p) @ asked for k in range(len(model.parameters))]
     if sides:
         X = A.solve(np.ascontiguousarray(np.hstack(sides)))
-        V = np.hstack([V, _beside(X, V, M, _DEPENDENT)])
+        V = np.hstack([V, beside(X, V, M, _DEPENDENT)])
     basis = Basis(
         V,
         np.zeros((0, V.shape[1])),
@@ -179,16 +179,3 @@ def _asked(eigenvalues: Floats, top: float) -> Bools:
 def _shift(eigenvalues: Floats) -> float:
     positive = eigenvalues[eigenvalues > _RIGID * eigenvalues.max()]
     return 0.25 * float(positive.min())
-
-
-def _beside(X: Floats, phi: Floats, M: sp.csr_matrix, least: float) -> Floats:
-    """M-orthonormal basis of what X adds to the M-orthonormal vectors phi."""
-    before = lengths(X, M)
-    for _ in range(2):
-        X = X - phi @ (phi.T @ (M @ X))
-    length = lengths(X, M)
-    new = length > ROUNDING * before
-    X = X[:, new] / length[new]
-    values, vectors = np.linalg.eigh(X.T @ (M @ X))
-    keep = values > least * values[-1] if len(values) else np.zeros(0, bool)
-    return np.asarray(X @ (vectors[:, keep] / np.sqrt(values[keep])))

@@ -15,17 +15,8 @@ HERE = Path(__file__).resolve().parent
 CASES = sorted(p.parent for p in HERE.glob("cases/*/truth.json"))
 
 
-KNOWN: dict[str, str] = {}
-"""Cases that are not solved, and why; solved by chance they fail, so that they are taken out."""
-
-
-def _case(place: Path) -> object:
-    marks = [pytest.mark.xfail(reason=KNOWN[place.name])] if place.name in KNOWN else []
-    return pytest.param(place, id=place.name, marks=marks)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("place", [_case(p) for p in CASES])
+@pytest.mark.parametrize("place", CASES, ids=[p.name for p in CASES])
 def test_what_is_hidden_is_found(place, monkeypatch, tmp_path):
     monkeypatch.syspath_prepend(str(HERE.parents[1]))
     from benchmarks.discovery.run import line, search
