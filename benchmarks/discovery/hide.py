@@ -45,11 +45,11 @@ class Scene:
         return np.where(np.linalg.norm(n, axis=1)[:, None] > 0.5, n, axis)
 
     def lively(self) -> Ints:
-        """Return corner nodes that move more than the median does, ascending."""
+        """Return nodes, mid-side ones too, that move more than the median does, ascending."""
         m = self.mesh
         a = np.sum(self.modes.shapes**2, axis=(1, 2))
-        corners = np.setdiff1d(m.corners, m.clamped)
-        return corners[a[corners] >= np.median(a[corners])]
+        free = np.setdiff1d(np.arange(a.size), m.clamped)
+        return free[a[free] >= np.median(a[free])]
 
 
 def quad_areas(m: Mesh) -> Floats:
@@ -140,7 +140,10 @@ def ground_spring(scene: Scene) -> tuple[Truth, Entry]:
 
 
 def support_flexibility(scene: Scene) -> tuple[Truth, Entry]:
-    """Let a clamped foot turn or sink, or a stretch of a clamped edge move out of plane."""
+    """Let a clamped foot turn or sink, or a stretch of a clamped edge move out of plane.
+
+    In half of the cases that stretch also turns freely about the edge.
+    """
     s, m, rng = scene.structure, scene.mesh, scene.rng
     if not m.quads.size:
         node = int(rng.choice(m.clamped))
@@ -172,9 +175,16 @@ def support_flexibility(scene: Scene) -> tuple[Truth, Entry]:
     first = (2.0 * np.pi * scene.modes.hz[1]) ** 2
     k = float(rng.uniform(0.03, 0.3) * scene.mass * first)
     box = {"box_lo": m.xyz[near].min(0).tolist(), "box_hi": m.xyz[near].max(0).tolist()}
-    entry = {"kind": "support_flexibility", **box, "components": [c], "stiffness": k}
+    loose = [c] if rng.random() < 0.5 else [c, axis + 4]
+    entry = {
+        "kind": "support_flexibility",
+        **box,
+        "components": [c],
+        "stiffness": k,
+        "hinged": len(loose) == 2,
+    }
     springs = tuple((int(n), c, k / near.size) for n in near)
-    return Truth(springs=springs, freed=tuple((int(n), c) for n in near)), entry
+    return Truth(springs=springs, freed=tuple((int(n), d) for n in near for d in loose)), entry
 
 
 def joint_flexibility(scene: Scene) -> tuple[Truth, Entry]:
