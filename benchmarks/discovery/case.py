@@ -24,23 +24,16 @@ SCENARIOS = (
 )
 """What a case hides, and how often."""
 
-FINEST = 0.2
-"""Part of the shell structures whose truth is meshed twice as fine (five times the time)."""
-
 
 @dataclass(frozen=True)
 class Plan:
-    """What one case is made of; `kinds` and `faults` are the hidden ones, in order.
-
-    `refine` is how many times finer the mesh of the truth is, its elements quadratic besides.
-    """
+    """What one case is made of; `kinds` and `faults` are the hidden ones, in order."""
 
     seed: int
     structure: str
     scenario: str
     kinds: tuple[str, ...]
     faults: tuple[str, ...]
-    refine: int
 
     @property
     def name(self) -> str:
@@ -68,8 +61,7 @@ def plan(seed: int) -> Plan:
         choice += ["sensor_axis"] * (s.axes != "normal")
         size = 1 if "effect" in scenario else int(rng.integers(1, 3))
         faults = tuple(str(k) for k in rng.choice(choice, size=size, replace=False))
-    finest = s.patches == () or np.random.default_rng([seed, 4]).random() < FINEST
-    return Plan(seed, name, scenario, kinds, faults, min(s.refine, 2 if finest else 1))
+    return Plan(seed, name, scenario, kinds, faults)
 
 
 def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None) -> Path:
@@ -85,7 +77,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
         return place
     s = STRUCTURES[p.structure](np.random.default_rng([p.seed, 2]))
     rng = np.random.default_rng([p.seed, 3])
-    fine = mesh(s, p.refine, True)
+    fine = mesh(s, s.refine, True)
     bare = calculix.solve(s, fine, hide.joined([], {}), cache, s.modes)
     scene = hide.Scene(s, fine, bare, rng)
     drawn = [_noticed(k, scene, cache) for k in p.kinds]
