@@ -17,6 +17,7 @@ SCENARIOS = (
     ("effect", 8),
     ("effect+scatter", 6),
     ("two effects", 3),
+    ("several masses", 2),
     ("nothing", 3),
     ("scatter", 5),
     ("fault", 4),
@@ -55,6 +56,8 @@ def plan(seed: int) -> Plan:
     kinds = tuple(
         str(k) for k in rng.choice(possible, size=n, replace=False, p=rarely / rarely.sum())
     )
+    if scenario == "several masses":
+        kinds = ("point_mass",) * int(rng.integers(2, 4))
     faults: tuple[str, ...] = ()
     if "fault" in scenario:
         choice = ["sensor_polarity", "sensor_gain", "sensor_swap"]
@@ -83,7 +86,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
     drawn = [_noticed(k, scene, cache) for k in p.kinds]
     factors: dict[int, float] = {}
     if p.scenario in ("effect+scatter", "scatter") or (
-        p.scenario in ("fault", "two effects", "effect+fault") and rng.random() < 0.5
+        p.scenario in ("fault", "two effects", "several masses", "effect+fault") and rng.random() < 0.5
     ):
         factors = hide.scatter(scene)
     truth = hide.joined([t for t, _ in drawn], factors)

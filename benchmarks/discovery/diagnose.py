@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from .run import say
+from .tables import say
 from .score import spot_of
 
 
