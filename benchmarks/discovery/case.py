@@ -86,7 +86,8 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
     drawn = [_noticed(k, scene, cache) for k in p.kinds]
     factors: dict[int, float] = {}
     if p.scenario in ("effect+scatter", "scatter") or (
-        p.scenario in ("fault", "two effects", "several masses", "effect+fault") and rng.random() < 0.5
+        p.scenario in ("fault", "two effects", "several masses", "effect+fault")
+        and rng.random() < 0.5
     ):
         factors = hide.scatter(scene)
     truth = hide.joined([t for t, _ in drawn], factors)

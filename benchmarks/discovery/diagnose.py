@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from .tables import say
 from .score import spot_of
+from .tables import say
 
 
 class _Stop(Exception):
