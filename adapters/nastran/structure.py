@@ -21,10 +21,9 @@ from .variation import read_variation
 _DOUBTED: dict[str, tuple[tuple[str, ...], float, tuple[float, float]]] = {
     "PSHELL": (("T",), 0.06, (0.7, 1.4)),
     "PBAR": (("I1", "I2"), 0.4, (0.25, 4.0)),
-    "PELAS": (("K",), 0.4, (0.25, 4.0)),
     "MAT1": (("E",), 0.1, (0.7, 1.4)),
 }
-_ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "K": "k", "E": "e"}
+_ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "E": "e"}
 
 
 def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Structure:
@@ -110,8 +109,7 @@ def _supports(
 def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float, ...]]:
     """Return what an analyst would doubt first, and how far each may be off (spread of ln p).
 
-    Moduli of materials, thicknesses of shells, bending inertias of bars (both axes together)
-    and stiffnesses of springs.
+    Moduli of materials, thicknesses of shells and bending inertias of bars (both axes together).
     """
     specs, spreads = [], []
     for name, (fields, spread, bounds) in _DOUBTED.items():
@@ -121,11 +119,11 @@ def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float
                 refs = tuple(FieldRef(name, number, f) for f in held)
                 specs.append(ParameterSpec(f"{name} {number} {'+'.join(held)}", refs, *bounds))
                 spreads.append(spread)
-    used = _used(deck, specs)
+    used = used_parameters(deck, specs)
     return tuple(specs[k] for k in used), tuple(spreads[k] for k in used)
 
 
-def _used(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
+def used_parameters(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
     """Numbers of the parameters on which at least one element depends."""
     parts = read_structure(deck, read_variation(deck, specs))
     return sorted(

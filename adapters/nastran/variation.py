@@ -134,6 +134,17 @@ def read_variation(deck: Deck, specs: Sequence[ParameterSpec]) -> Variation:
     return Variation(thermal.applied(bulk), tuple(parameters), every, thermal)
 
 
+def value_of(deck: Deck, ref: FieldRef) -> float:
+    """Return the value that a field of the deck has.
+
+    Raises
+    ------
+    InputError
+        A card or field that does not exist, is blank or zero.
+    """
+    return _locate(deck.bulk, ref, str(ref))[1]
+
+
 def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     """Index among the card's fields, and value, of the field a parameter names."""
     raw = bulk.numbered.get(ref.card, {}).get(ref.id)

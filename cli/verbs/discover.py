@@ -26,9 +26,9 @@ def discover(study: Study, output: Output) -> None:
 
 def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     """Write the run folder of a discovery; return its result and where it is."""
-    from ...adapters.nastran import parse_parameter, read_deck, weight
+    from ...adapters.nastran import read_deck, weight
     from ...adapters.nastran.mass_unit import mass_unit
-    from ...adapters.nastran.structure import build_structure, known_parameters
+    from ...adapters.nastran.structure import build_structure
     from ...core import eigen
     from ...core.comparison import compare, place_test
     from ...core.discovery.discover import Request
@@ -36,6 +36,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...core.discovery.hearing import place_responses
     from ...core.results import correlate_tables, disagreement_tables
     from ...core.weighting import with_scatter
+    from ..doubting import doubted, settled
     from ..further_evidence import damping_tables, response_tables
     from ..inplace import put_in_place
     from ..pipeline import criteria_of, highest_frequency, read_measurement
@@ -52,12 +53,8 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     top = highest_frequency(measurement, study)
     with working("reading and placing", output):
         deck = read_deck(study.deck)
-        known, spread = known_parameters(deck)
-        named = [parse_parameter(p) for p in study.parameters]
-        taken = {f for s in named for f in s.fields}
-        kept = [(s, w) for s, w in zip(known, spread, strict=True) if not taken & set(s.fields)]
-        specs = [*named, *(s for s, _ in kept)]
-        structure = build_structure(deck, specs)
+        every = doubted(study, deck)
+        structure = build_structure(deck, every.specs)
         model = structure.model
         solution = eigen.solve(model, fmax=max(1.6 * top / 1.3, top), keep_factor=True)
         if len(solution.eigenvalues) < 60 < model.n_free // 4:
@@ -84,6 +81,10 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             )
             placed = replace(placed, errors=errors)
     before = compare(geometry, modes, placed, criteria_of(study), solution.rigid_body_modes)
+    resting = _resting(placed, solution, model)
+    vibrating = placed.test.frequencies_hz[~resting]
+    structure, known = settled(deck, structure, solution, vibrating, every)
+    model, specs = structure.model, list(known.specs)
     responses, unheard = place_responses(
         measurement.frfs, placed, geometry, model.dofs, model.expansion
     )
@@ -95,12 +96,11 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         if output.verbose:
             stderr().print(what, markup=False)
 
-    resting = _resting(placed, solution, model)
     with working("discovering", output):
         found = find(
             Request(
                 structure,
-                np.array([*(0.4 for _ in named), *(w for _, w in kept)]),
+                np.array(known.spreads),
                 solution,
                 placed.of_modes(~resting),
                 weight(deck).mass,

@@ -1,0 +1,160 @@
+"""Which of many small properties could matter, and a model in which the others stay put.
+
+A concentrated mass or a spring that is wrong shows in the test only where it takes part in the
+measured modes. Of a deck with many of them those move whose error, as large as it may be, shifts
+the frequency of a mode in the measured band noticeably; values alike that are too small to be
+noticed alone move together where all of them can be noticed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats
+from ..assembly import ElementBlock
+from ..eigen import Eigensolution
+from ..model import Model, Term
+from ..parameter import Parameter
+from .structure import Structure
+
+LEAST = 0.01
+"""Relative shift of a frequency that is noticed."""
+MOST = 12
+"""So many such parameters move at most, those with the largest shifts."""
+_AROUND = 1.3
+"""Modes so far outside the measured band in frequency count as well."""
+
+Groups = Sequence[tuple[int, ...]]
+"""Numbers of old parameters that a new one moves."""
+
+
+def shifts(
+    model: Model, solution: Eigensolution, band_hz: tuple[float, float], parameters: Sequence[int]
+) -> Floats:
+    """Return ∂ln f/∂ln p of the modes in the measured band at the deck, (n, n_mode).
+
+    First order, each mode apart from all others (Fox and Kapoor 1968).
+
+    Parameters
+    ----------
+    model : Model
+    solution : Eigensolution
+        Of the deck as it is.
+    band_hz : (float, float)
+        Lowest and highest frequency measured.
+    parameters : sequence of int
+    """
+    hz = solution.frequencies_hz
+    inside = (hz > band_hz[0] / _AROUND) & (hz < band_hz[1] * _AROUND)
+    inside[: solution.rigid_body_modes] = False
+    phi, values = solution.vectors[:, inside], solution.eigenvalues[inside]
+    p = model.deck_point
+    out = np.zeros((len(parameters), phi.shape[1]))
+    for row, k in zip(out, parameters, strict=True):
+        dK, dM = (np.einsum("ij,ij->j", phi, D(k, p) @ phi) for D in (model.dK, model.dM))
+        row[:] = 0.5 * (dK / values - dM)
+    return out
+
+
+def noticeable(slopes: Floats, alike: Groups, spread: float) -> list[tuple[int, ...]]:
+    """Return groups of parameters that would be noticed if they were wrong.
+
+    Parameters
+    ----------
+    slopes : (n, n_mode) float
+        See `shifts`.
+    alike : sequence of tuple of int
+        Rows that have one value in the deck.
+    spread : float
+        Of ln p: how far each may be wrong.
+
+    Returns
+    -------
+    list of tuple of int
+        Rows that move together, at most `MOST` groups: each alone where it is noticed alone.
+    """
+    effect = spread * np.abs(slopes).max(axis=1, initial=0.0)
+    groups: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(effect >= LEAST)]
+    rest = [tuple(k for k in group if effect[k] < LEAST) for group in alike]
+    groups += [group for group in rest if len(group) > 1]
+    together = [
+        spread * float(np.abs(slopes[list(g)].sum(axis=0)).max(initial=0.0)) for g in groups
+    ]
+    order = sorted(range(len(groups)), key=lambda i: -together[i])[:MOST]
+    return [groups[i] for i in sorted(order) if together[i] >= LEAST]
+
+
+def tied(structure: Structure, groups: Groups, names: Sequence[str]) -> Structure:
+    """Return the structure with parameters that each move some of the old ones alike.
+
+    Parameters
+    ----------
+    structure : Structure
+    groups : sequence of tuple of int
+        Old parameters in none of them stay at the deck's values.
+    names : sequence of str
+        Of the new parameters.
+    """
+    model = structure.model
+    new_of = {k: g for g, group in enumerate(groups) for k in group}
+    n_old = len(model.parameters)
+
+    def before(p: Floats) -> Floats:
+        out = np.ones(n_old)
+        for k, g in new_of.items():
+            out[k] = p[g]
+        return out
+
+    parameters = tuple(
+        Parameter(
+            name,
+            tuple(h for k in group for h in model.parameters[k].handle),
+            tuple(v for k in group for v in model.parameters[k].deck_values),
+            max(model.parameters[k].lower for k in group),
+            min(model.parameters[k].upper for k in group),
+            model.parameters[group[0]].weight,
+        )
+        for name, group in zip(names, groups, strict=True)
+    )
+    stiffness, mass = (_terms(t, new_of, model.deck_point) for t in (model.stiffness, model.mass))
+    supports = structure.supports
+    if supports is not None:
+        none = sp.csr_matrix(supports.coupling.shape)
+        slopes = tuple(sum((supports.slopes[k] for k in group), none).tocsr() for group in groups)
+        supports = replace(supports, slopes=slopes)
+    return replace(
+        structure,
+        model=replace(model, parameters=parameters, stiffness=stiffness, mass=mass),
+        members=tuple(replace(m, block=_block(m.block, new_of, before)) for m in structure.members),
+        supports=supports,
+    )
+
+
+def _terms(terms: Sequence[Term], new_of: dict[int, int], deck: Floats) -> tuple[Term, ...]:
+    """Factors by the new parameters, those that stay put multiplied into the matrices."""
+    collected: dict[Any, sp.csr_matrix] = {}
+    for t in terms:
+        kept = tuple(
+            replace(f, parameter=new_of[f.parameter]) for f in t.factors if f.parameter in new_of
+        )
+        held = float(np.prod([f.value(deck) for f in t.factors if f.parameter not in new_of]))
+        matrix = held * t.matrix
+        collected[kept] = collected[kept] + matrix if kept in collected else matrix
+    return tuple(Term(matrix, factors) for factors, matrix in collected.items())
+
+
+def _block(
+    block: ElementBlock, new_of: dict[int, int], before: Callable[[Floats], Floats]
+) -> ElementBlock:
+    """Return elements that take the new parameters."""
+    depends = tuple(tuple(sorted({new_of[k] for k in old if k in new_of})) for old in block.depends)
+    return replace(
+        block,
+        evaluate=lambda rows, p, wanted: block.evaluate(rows, before(p), wanted),
+        depends=depends,
+    )

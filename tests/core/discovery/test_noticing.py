@@ -1,0 +1,96 @@
+"""Which small properties could be noticed in the test, on the smallest of structures."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core.assembly import ElementBlock
+from trueup.core.discovery.noticing import MOST, noticeable, shifts, tied
+from trueup.core.discovery.structure import Members, Structure
+from trueup.core.dofs import Dofs
+from trueup.core.eigen import Eigensolution
+from trueup.core.geometry import Geometry
+from trueup.core.model import Model, Term, proportional
+from trueup.core.parameter import Parameter
+
+BOUNDS = (0.25, 4.0)
+
+
+def one_mass():
+    """A mass 4 + p0 + p1 on a spring 3 + p2, at one coordinate: f² ∝ (3 + p2)/(4 + p0 + p1)."""
+    one = sp.csr_matrix([[1.0]])
+    names = ("small", "large", "spring")
+    p = tuple(Parameter(n, (n.upper(),), (float(k),), *BOUNDS) for k, n in enumerate(names))
+
+    def of(k, size):
+        return Term(size * one, (proportional(k, *BOUNDS),))
+
+    model = Model(
+        Geometry(np.array([1]), np.zeros((1, 3)), ()),
+        Dofs(np.array([1]), np.array([1])),
+        one,
+        (Term(3.0 * one), of(2, 1.0)),
+        (Term(4.0 * one), of(0, 0.01), of(1, 0.99)),
+        p,
+    )
+    solution = Eigensolution(
+        np.array([0.8]), np.array([[1.0 / np.sqrt(5.0)]]), 0, {}, "lapack", 0.0, -1.0
+    )
+    return model, solution
+
+
+def test_shifts_are_those_of_the_closed_form():
+    model, solution = one_mass()
+    hz = float(solution.frequencies_hz[0])
+    found = shifts(model, solution, (hz, hz), (0, 1, 2))
+    assert found == pytest.approx(np.array([[-0.5 * 0.01 / 5], [-0.5 * 0.99 / 5], [0.5 / 4.0]]))
+
+
+def test_modes_far_outside_the_measured_band_do_not_count():
+    model, solution = one_mass()
+    hz = float(solution.frequencies_hz[0])
+    assert shifts(model, solution, (2.0 * hz, 3.0 * hz), (0, 1)).shape == (2, 0)
+
+
+def test_what_no_error_could_show_stays_put():
+    slopes = np.array([[0.001, 0.002], [0.1, 0.0], [0.0, -0.2]])
+    assert noticeable(slopes, [(0,), (1,), (2,)], 0.4) == [(1,), (2,)]
+
+
+def test_values_alike_that_are_too_small_alone_move_together():
+    slopes = np.full((5, 2), 0.01)
+    assert noticeable(slopes, [(0, 1, 2), (3, 4)], 0.4) == [(0, 1, 2)]
+
+
+def test_of_many_only_those_with_the_largest_shifts_move():
+    slopes = np.linspace(0.1, 0.5, 40)[:, None]
+    every = [(k,) for k in range(40)]
+    assert noticeable(slopes, every, 0.4) == every[-MOST:]
+
+
+def test_nothing_measured_means_nothing_noticed():
+    assert noticeable(np.zeros((3, 0)), [(0, 1, 2)], 0.4) == []
+
+
+def test_tied_parameters_move_alike_and_the_others_not_at_all():
+    model, _ = one_mass()
+
+    def evaluate(rows, p, wanted):
+        return np.full((len(rows), 1, 1), p[0] + 10.0 * p[1] + 100.0 * p[2]), None
+
+    block = ElementBlock(np.array([[0]]), 1, evaluate, ((0, 2),))
+    member = Members("SPRING", "line", np.array([7]), np.array([[0]]), block)
+    whole = Structure(model, (member,), sp.csr_matrix([[1.0]]))
+    own = tied(whole, [(1, 2)], ["both"])
+    (parameter,) = own.model.parameters
+    assert parameter.handle == ("LARGE", "SPRING")
+    assert parameter.deck_values == (1.0, 2.0)
+    p = np.array([2.0])
+    assert own.model.K(p).toarray() == pytest.approx(np.array([[5.0]]))
+    assert own.model.M(p).toarray() == pytest.approx(np.array([[4.0 + 0.01 + 1.98]]))
+    assert own.model.dM(0, p).toarray() == pytest.approx(np.array([[0.99]]))
+    (tied_member,) = own.members
+    assert tied_member.block.depends == ((0,),)
+    K, _ = tied_member.matrices(np.array([0]), p)
+    assert K is not None
+    assert K[0, 0, 0] == 1.0 + 10.0 * 2.0 + 100.0 * 2.0
