@@ -67,9 +67,12 @@ class Problem:
     missing: tuple[Rows | None, ...] = ()
     turn: Floats | None = None
     rest: Floats | None = None
+    held: tuple[Suspect, ...] = ()
     heard: Heard | None = None
 
-    def turned(self, T: Floats, rest: Floats | None = None) -> Problem:
+    def turned(
+        self, T: Floats, rest: Floats | None = None, held: Sequence[Suspect] = ()
+    ) -> Problem:
         """Return the problem on the basis ``vectors @ T``.
 
         Parameters
@@ -78,6 +81,8 @@ class Problem:
         rest : (r, r - s) float, optional
             What T leaves out, each vector divided by the root of its eigenvalue, so that the
             static response that is lost can be put back into the laws.
+        held : sequence of Suspect, optional
+            Those whose model has the vectors T as modes: of what they do nothing is lost.
         """
         return replace(
             self,
@@ -87,6 +92,7 @@ class Problem:
             mesh=T.T @ self.mesh @ T,
             turn=T if self.turn is None else self.turn @ T,
             rest=rest,
+            held=tuple(held),
         )
 
     def entire(self) -> Problem:
@@ -100,8 +106,10 @@ class Problem:
         known = self.missing[kind] if self.missing else None
         if known is not None:
             missing = known[rows]
-        if self.rest is not None and c.needs_flexibility:
+        held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
+        if self.rest is not None and c.needs_flexibility and not held.all():
             lost = np.sum((U @ self.rest) ** 2, axis=-1)
+            lost[held] = 0.0
             missing = lost if missing is None else missing + lost
         top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
         law = c.law.on_basis(rows, missing, log_p, top)

@@ -106,7 +106,7 @@ class Searcher:
         T, own = np.split(T, [self.problem.basis.size])
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
         bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
-        small = bare.turned(structural(T[:, :n], own[:, :n]), rest)
+        small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
         return small, evaluate(small, state.log_p, state.suspects)
 
     def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
