@@ -20,6 +20,8 @@ USUAL = (0.5, 1.25)
 """Size of a test over size of its model that needs no further reason."""
 POSSIBLE = (0.1, 1.4)
 """A smaller test is suspect, a larger one impossible."""
+_NEAR, _OWN = 0.01, 0.1
+"""How near to the model a point on it is, beside the size of the model and that of the test."""
 
 
 @dataclass(frozen=True)
@@ -136,11 +138,11 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     low, high = POSSIBLE
     if test.size == 0 or USUAL[0] <= ratio <= high:
         return units
-    if low / 100 <= ratio <= high and _lies_on(surface, factor * test.xyz):
-        return units
     others = {unit: length_factor(measured, unit) for unit in METRES if unit != deck}
     better = _plausible(surface, test, others)
     sure = better is not None and _lies_on(surface, others[better] * test.xyz)
+    if (low if sure else low / 100) <= ratio <= high and _lies_on(surface, factor * test.xyz):
+        return units
     by = METRES[deck] / METRES[better] if better else 1 / ratio
     times = f"{_round(by)} times smaller" if by > 1 else f"{_round(1 / by)} times larger"
     said = f"the test is about {times} than the model ({_sizes(surface, test, deck, measured)})"
@@ -187,9 +189,15 @@ def _plausible(surface: Surface, test: Geometry, choices: dict[str, float]) -> s
 
 
 def _lies_on(surface: Surface, points: Floats) -> bool:
-    """Whether nine in ten points are within 1 % of the model's size, as they stand."""
-    at = place(surface, points, reach=0.02 * surface.size)
-    return bool(np.mean(at.distance <= 0.01 * surface.size) >= 0.9)
+    """Whether nine in ten points are on the model as they stand.
+
+    That is within 1 % of its size, and within a tenth of their own: points close together are
+    near whatever one of them is near.
+    """
+    own = float(np.linalg.norm(np.ptp(points, axis=0)))
+    near = min(_NEAR * surface.size, _OWN * own)
+    at = place(surface, points, reach=2.0 * near)
+    return bool(np.mean(at.distance <= near) >= 0.9)
 
 
 def _sizes(surface: Surface, test: Geometry, deck: str | None, measured: str | None) -> str:

@@ -39,7 +39,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ..doubting import doubted, settled
     from ..further_evidence import damping_tables, response_tables
     from ..inplace import put_in_place
-    from ..pipeline import criteria_of, highest_frequency, read_measurement
+    from ..pipeline import criteria_of, highest_frequency, naming, read_measurement
     from ..runfolder import refuse_existing, run_folder
     from ..writing import default_folder, fill_run_folder
 
@@ -63,14 +63,15 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
         geometry = model.geometry
         if geometry.length_unit is None and deck.length_unit:
             geometry = replace(geometry, length_unit=deck.length_unit)
-        placed = place_test(
-            geometry,
-            modes,
-            measurement,
-            study.deck_length_unit,
-            motion=model.expansion,
-            seed=study.seed,
-        )
+        with naming(study.test[0]):
+            placed = place_test(
+                geometry,
+                modes,
+                measurement,
+                study.deck_length_unit,
+                motion=model.expansion,
+                seed=study.seed,
+            )
         if study.frequency_scatter is not None or study.shape_scatter is not None:
             errors = with_scatter(
                 placed.errors,

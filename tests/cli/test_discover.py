@@ -50,6 +50,17 @@ def test_a_soft_joint_is_found_named_sized_and_put_into_the_deck(tmp_path):
     assert (out / "report.html").is_file()
 
 
+@pytest.mark.parametrize("unit", ["ft", "in", "m"])
+def test_a_deck_unit_by_which_the_sizes_cannot_agree_is_refused(unit, tmp_path, call):
+    folder, out = CASES / "tower_joint", tmp_path / "run"
+    files = (folder / "tower.bdf", folder / "tower_test.unv")
+    answer = call("discover", *files, "--deck-length-unit", unit, "--out", out, "--quiet")
+    assert answer.status == 1
+    assert "tower_test.unv" in answer.sentence
+    assert "say so with --deck-length-unit mm" in answer.sentence
+    assert not list(tmp_path.iterdir())
+
+
 def test_parameters_alone_are_enough_where_nothing_is_missing(tmp_path):
     result, _ = discovered("tower_frame", "tower", tmp_path)
     assert result["verdict"] == "parameters_only"

@@ -1,5 +1,7 @@
 """Length units: converted as declared, inferred aloud, refused when impossible."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -85,6 +87,17 @@ def test_wrong_deck_unit_is_named_with_the_right_one(truth, declared, words, shi
     assert way in message
     found = float(message.split(way)[0].split()[-1])
     assert found == pytest.approx(float(number), rel=0.1)
+
+
+@pytest.mark.parametrize("declared", ["in", "ft"])
+def test_a_test_that_shrinks_to_a_corner_of_the_model_does_not_count_as_lying_on_it(declared):
+    """A plate at the origin: by any unit all its sensors are on it; by millimetres all over it."""
+    model = plate(declared)
+    model = replace(model, xyz=model.xyz - [200.0, 200.0, 50.0])
+    test = sensors(1e-3, "m")
+    test = replace(test, xyz=test.xyz - [0.2, 0.2, 0.05])
+    with pytest.raises(InputError, match="--deck-length-unit mm"):
+        reconcile_units(model, test)
 
 
 def test_option_outranks_the_deck():
