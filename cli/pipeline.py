@@ -117,6 +117,8 @@ def highest_frequency(measurement: Measurement, study: Study) -> float:
     if measurement.modes is None or not len(measurement.modes):
         found = "" if measurement.frfs is None else " (none stands out of its responses)"
         raise InputError(f"{study.test[0]}: the test holds no modes{found}")
+    if np.max(measurement.modes.frequencies_hz) == 0.0:
+        raise InputError(f"{study.test[0]}: all modes are at 0 Hz or have no frequency in the file")
     return float(measurement.modes.frequencies_hz.max() * (1.0 + study.frequency_tolerance))
 
 

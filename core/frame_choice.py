@@ -25,6 +25,8 @@ _PEAKS = 5
 _COARSE = 0.1
 _CALM_RMS = 1.25
 _FLAT = 0.5
+_EXACT = 1e-9
+"""Distance beside the size of the model that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +98,8 @@ def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, poses: Poses) ->
     limit = max(1.5 * poses.rms[0], poses.rms[0] + 0.002 * surface.size)
     poses = poses.take(np.flatnonzero(poses.rms <= limit))
     few = points[farthest_points(points, _POINTS)]
-    judge = _Judge(cloud, points, scorer, float(poses.rms[0]), limit)
+    floor = max(float(poses.rms[0]), _EXACT * surface.size)
+    judge = _Judge(cloud, points, scorer, floor, limit)
     found: list[_Peak] = []
     for _ in range(_FAMILIES):
         family = family_of(surface, few, poses.take(np.array([0])), limit)

@@ -13,6 +13,8 @@ OUTLIER = 4.0
 """A sensor whose residual is this many times the median's is no part of the noise."""
 _FLOOR = 1e-3
 _ROUNDS = 8
+_AT_REST = 1e-6
+"""Frequency below which a mode is at rest, beside the highest of the analysis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +133,9 @@ def _basis(
 ) -> Floats:
     """Orthonormal basis (n_sensor, k) of the rigid-body motions and the nearest shapes."""
     elastic = np.arange(rigid_body_modes, len(analysis_hz))
-    away = np.abs(np.log(np.maximum(analysis_hz[elastic], 1e-3 * hz) / hz))
+    highest = float(np.max(analysis_hz, initial=0.0))
+    least = max(1e-3 * hz, _AT_REST * highest, float(np.finfo(float).tiny))
+    away = np.abs(np.log(np.maximum(analysis_hz[elastic], least) / max(hz, least)))
     nearest = elastic[np.argsort(away, kind="stable")]
     chosen: Ints = np.concatenate([np.arange(rigid_body_modes), nearest])
     picked = shapes[:, chosen[:count]]

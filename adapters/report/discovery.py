@@ -112,33 +112,25 @@ def _size(entry: object) -> int:
     return max([len(n) for n in named if isinstance(n, (list, tuple))], default=1)
 
 
-_ALTERNATIVE = ("kind", "region", "where", "sentence", "description", "what")
-
-
 def alternatives(result: Result) -> Table | None:
-    """Return what else was considered, with every figure that says how much worse it is."""
+    """Return what else was considered, and how likely it is beside what was found."""
     found = reading.records(result, "alternatives")
     if not found:
         return None
-    figures = [
-        key
-        for key in dict.fromkeys(k for a in found for k in a)
-        if key not in _ALTERNATIVE and any(reading.number(a.get(key)) is not None for a in found)
-    ]
-    rows = [
-        (
-            Cell(kind(a) or str(a.get("what", a.get("description", MISSING)))),
-            Cell(str(a.get("sentence") or a.get("region") or where(a))),
-            *[Cell(general(a.get(key))) for key in figures],
-        )
-        for a in found
-    ]
-    columns = (
-        Column("what", numeric=False),
-        Column("where", numeric=False),
-        *[Column(key.replace("_", " ")) for key in figures],
-    )
-    return Table("Also considered", columns, tuple(rows))
+    rows = [(Cell(_kinds(a)), *map(Cell, _place_and_odds(a))) for a in found]
+    headings = ("what", "where", "beside what was found")
+    return Table("Also considered", tuple(Column(h, numeric=False) for h in headings), tuple(rows))
+
+
+def _kinds(alternative: Result) -> str:
+    words = reading.texts(alternative, "kinds")
+    return " and ".join(KINDS.get(w, w.replace("_", " ")) for w in words) or "nothing missing"
+
+
+def _place_and_odds(alternative: Result) -> tuple[str, str]:
+    """Return a sentence in its two parts."""
+    said, colon, likely = str(alternative.get("sentence", MISSING)).rpartition(": ")
+    return (said, likely) if colon else (likely, MISSING)
 
 
 def gap(result: Result) -> Table | None:

@@ -161,9 +161,12 @@ def _said_resting(modes: Any) -> list[str]:
     if not len(modes):
         return []
     which = ", ".join(str(m) for m in modes)
+    subject = (
+        f"test mode {which} is a motion" if len(modes) == 1 else f"test modes {which} are motions"
+    )
     return [
-        f"test modes {which} are motions of the structure as a whole (at 0 Hz, or on its "
-        "suspension); they are no evidence of what the model lacks"
+        f"{subject} of the structure as a whole (at 0 Hz, or on its suspension), and no evidence "
+        "of what the model lacks"
     ]
 
 

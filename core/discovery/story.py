@@ -1,10 +1,13 @@
-"""Figures in the words of the one who reads them: masses in kilograms, modes in ranges."""
+"""Figures in the words of the one who reads them: kilograms, odds, ranges of modes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+_ALIKE = 1.1
+"""Likelihoods whose ratio is nearer to 1 say nothing."""
+_MOST = 1e6
 _RUNS = 4
 """More stretches of modes than these are not listed."""
 
@@ -29,6 +32,29 @@ class MassUnit:
         if self.kilograms is None:
             return f"{mass:.3g} (deck units)"
         return f"{mass / self.card * self.kilograms:.3g} kg"
+
+
+def odds(ratio: float, other: str = "") -> str:
+    """Say how many times less likely something is than what was found, or more.
+
+    Parameters
+    ----------
+    ratio : float
+        Likelihood of what was found over that of the other.
+    other : str
+        What was found, where it has to be said.
+    """
+    if _ALIKE > ratio > 1.0 / _ALIKE:
+        return "about as likely" + (other and f" as {other}")
+    less = ratio > 1.0
+    count = _count(ratio if less else 1.0 / max(ratio, 1.0 / _MOST))
+    return f"{count} times {'less' if less else 'more'} likely" + (other and f" than {other}")
+
+
+def _count(ratio: float) -> str:
+    if ratio >= _MOST:
+        return "more than a million"
+    return f"{ratio:.2g}" if ratio < 100.0 else f"{float(f'{ratio:.2g}'):,.0f}"
 
 
 def mode_ranges(modes: Sequence[int]) -> str:

@@ -27,6 +27,7 @@ from .places import region
 from .request import Request
 from .search import Found, Searcher
 from .sensors import Verdicts
+from .story import odds
 from .telling_sensors import accusations, remarks
 from .wording import magnitude_of, sentence_of
 
@@ -211,26 +212,30 @@ def _alternatives(
     def behind(f: Fit) -> float:
         return cost(searcher, f, verdict.scale) - cost(searcher, best, verdict.scale)
 
+    def named(f: Fit) -> list[Suspect]:
+        return sorted(f.suspects, key=lambda s: catalogue[s.kind].kind)
+
+    def kinds_of(f: Fit) -> tuple[str, ...]:
+        return tuple(catalogue[s.kind].kind for s in named(f))
+
     seen: dict[tuple[str, ...], Fit] = {}
-    here = tuple(sorted(catalogue[s.kind].kind for s in best.suspects))
     for f in sorted((f for level in found.rivals for f in level), key=behind):
-        seen.setdefault(tuple(sorted(catalogue[s.kind].kind for s in f.suspects)), f)
+        seen.setdefault(kinds_of(f), f)
     out = []
     for kinds, f in seen.items():
-        if kinds == here:
+        if kinds == kinds_of(best):
             continue
-        places = tuple(tuple(float(v) for v in catalogue[s.kind].xyz[s.row]) for s in f.suspects)
-        ratio = times(behind(f))
-        words = " and ".join(k.replace("_", " ") for k in kinds)
-        spot = region(request.structure.model.geometry, np.array(places[0]))
-        out.append(
-            Alternative(kinds, places, ratio, f"{words} {spot}: {ratio:.3g} times less likely")
+        xyz = [catalogue[s.kind].xyz[s.row] for s in named(f)]
+        said = " and ".join(
+            f"{kind.replace('_', ' ')} {region(request.structure.model.geometry, x)}"
+            for kind, x in zip(kinds, xyz, strict=True)
         )
+        ratio = times(behind(f))
+        places = tuple(tuple(float(v) for v in x) for x in xyz)
+        out.append(Alternative(kinds, places, ratio, f"{said}: {odds(ratio)}"))
     if verdict.accepted:
         ratio = times(behind(found.levels[0]))
-        out.append(
-            Alternative((), (), ratio, f"the known parameters alone: {ratio:.3g} times less likely")
-        )
+        out.append(Alternative((), (), ratio, f"the known parameters alone: {odds(ratio)}"))
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[:8]
 
 

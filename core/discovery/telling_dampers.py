@@ -15,6 +15,7 @@ from .judge import times
 from .kinds.local_damper import Dashpots, sentence
 from .places import region
 from .request import Request
+from .story import odds
 from .weighing_dampers import Weighed, moved
 
 _SURE = 0.6
@@ -56,7 +57,7 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
             ("local_damper",),
             (tuple(float(v) for v in places.xyz[found.rows[0]]),),
             ratio,
-            f"a dashpot {spot} besides: {ratio:.3g} times less likely than none",
+            f"a dashpot {spot} besides: {odds(ratio, 'none')}",
         )
         return replace(said, alternatives=(*said.alternatives, alternative))
     finding, sure = _finding(request, found, places, modes, u)

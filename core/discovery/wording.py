@@ -8,7 +8,7 @@ from typing import Any
 from ..arrays import Floats
 from .candidates import Candidates
 from .findings import Alternative
-from .story import MassUnit, mode_ranges
+from .story import MassUnit, mode_ranges, odds
 
 _SAYS = {
     "point_mass": "About {mass} of mass is missing {region}: an attached mass",
@@ -91,7 +91,7 @@ def sentence_of(
     text += f" explains {what} (95 %: {low} to {high})"
     if next_best is not None:
         what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
-        text += f"; next best, {what}, is {next_best.times_less_likely:.2g} times less likely"
+        text += f"; next best, {what}, is {odds(next_best.times_less_likely)}"
     return text + "."
 
 

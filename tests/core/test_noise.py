@@ -87,6 +87,15 @@ def test_prediction_of_a_sensor_does_not_use_its_own_reading():
     assert rms.min() < 1.01
 
 
+def test_a_mode_without_a_frequency_is_fitted_by_the_lowest_shapes():
+    """A blank field reads as 0 Hz; nothing divides by it, the other modes stay as they were."""
+    hz, shapes, test_hz, test = measured(0.02)
+    plain = estimate_noise(hz, shapes, test_hz, test, rigid_body_modes=2)
+    still = estimate_noise(hz, shapes, [0.0, *test_hz[1:]], test, rigid_body_modes=2)
+    np.testing.assert_allclose(still.sigma[1:], plain.sigma[1:])
+    assert still.sigma[0] == pytest.approx(plain.sigma[0], rel=0.5)
+
+
 def test_given_noise():
     test = measured(0.02)[3]
     noise = given_noise(test, 0.03)

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats
+from ..story import odds
 from ..structure import Structure
 from .point_mass import translations
 
@@ -76,5 +77,5 @@ def sentence(
         f"A dashpot to ground of about {damping:.3g} (force per velocity, deck units) in "
         f"direction {''.join(map(str, components))} is missing {region}: it explains the measured "
         f"damping of {which} (95 %: {interval[0]:.3g} to {interval[1]:.3g}); no dashpot at all is "
-        f"{times:.2g} times less likely."
+        f"{odds(times)}."
     )

@@ -151,7 +151,18 @@ def discovery() -> dict[str, Any]:
             "verdict": "effect",
             "findings": [FINDING, fault],
             "alternatives": [
-                {"kind": "local_stiffness", "region": "the near edge", "times_less_likely": 41.0}
+                {
+                    "kinds": ["local_stiffness"],
+                    "xyz": [[0.0, 1.0, 0.0]],
+                    "times_less_likely": 41.0,
+                    "sentence": "local stiffness at the near edge: 41 times less likely",
+                },
+                {
+                    "kinds": [],
+                    "xyz": [],
+                    "times_less_likely": 200.0,
+                    "sentence": "the known parameters alone: 200 times less likely",
+                },
             ],
             "gap": {
                 "before": GAP,

@@ -87,11 +87,14 @@ def test_findings_give_size_with_interval_and_count_the_places(
     assert rows[1][1:3] == ["sensor polarity", "sensor 108"]
 
 
-def test_alternatives_show_whatever_figure_the_run_gives(discovery: dict[str, Any]) -> None:
+def test_alternatives_say_what_where_and_how_likely(discovery: dict[str, Any]) -> None:
     table = found.alternatives(discovery)
     assert table is not None
-    assert [c.heading for c in table.columns] == ["what", "where", "times less likely"]
-    assert texts(table) == [["local stiffness", "the near edge", "41"]]
+    assert [c.heading for c in table.columns] == ["what", "where", "beside what was found"]
+    assert texts(table) == [
+        ["local stiffness", "local stiffness at the near edge", "41 times less likely"],
+        ["nothing missing", "the known parameters alone", "200 times less likely"],
+    ]
 
 
 def test_gap_on_searched_and_held_out_data(discovery: dict[str, Any]) -> None:

@@ -7,7 +7,7 @@ from trueup.adapters.nastran.mass_unit import mass_unit
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.judge import explained
-from trueup.core.discovery.story import MassUnit, mode_ranges
+from trueup.core.discovery.story import MassUnit, mode_ranges, odds
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,28 @@ from trueup.core.discovery.story import MassUnit, mode_ranges
 )
 def test_modes_in_ranges(modes, said):
     assert mode_ranges(modes) == said
+
+
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [
+        (41.3, "41 times less likely"),
+        (1.3, "1.3 times less likely"),
+        (1.02, "about as likely"),
+        (0.95, "about as likely"),
+        (0.4, "2.5 times more likely"),
+        (123456.0, "120,000 times less likely"),
+        (1e26, "more than a million times less likely"),
+        (0.0, "more than a million times more likely"),
+    ],
+)
+def test_a_likelihood_ratio_is_said_the_way_it_points(ratio, said):
+    assert odds(ratio) == said
+
+
+def test_odds_beside_something_named():
+    assert odds(9.8, "none") == "9.8 times less likely than none"
+    assert odds(1.0, "none") == "about as likely as none"
 
 
 @pytest.mark.parametrize(
