@@ -127,11 +127,21 @@ def complete(
     return {
         "after": after,
         "damped": (after, solution, free_damping(deck_again, again)),
-        "cards": cards,
+        "cards": _standing(cards, text),
         "refused": refused,
         "text": text,
         "deck": str(Path("deck") / top.relative_to((work / "deck").absolute())),
     }
+
+
+def _standing(cards: list[list[str]], text: Any) -> list[list[str]]:
+    """Return the cards that no later effect changed again."""
+    there = {
+        line.decode(f.encoding, "replace").rstrip()
+        for f in text.files
+        for line in f.data.splitlines()
+    }
+    return [[c for c in own if there.issuperset(c.split("\n"))] for own in cards]
 
 
 def _on(placed: Any, model: Any, again: Any) -> Any:

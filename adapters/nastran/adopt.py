@@ -15,6 +15,7 @@ from .editing.decktext import DeckText
 from .editing.edit import edit_cards, read_value, set_values
 from .editing.find import Card, find_card, free_id
 from .editing.split import split_property
+from .editing.written import written_cards
 from .parameters import FieldRef
 from .read import Deck
 
@@ -40,7 +41,7 @@ _LEFT = ("RBE2", "RBE3", "RBAR", "RBE1", "CELAS1", "CELAS2", "CBUSH", "CONM1", "
 
 @dataclass(frozen=True)
 class Adopted:
-    """The deck with an effect in it, and the cards that carry it."""
+    """The deck with an effect in it, and every card that is new or changed as it stands there."""
 
     deck: DeckText
     cards: tuple[str, ...]
@@ -64,7 +65,8 @@ def adopt(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     """
     if finding.kind not in _WRITERS:
         raise InputError(f"there is no way yet to write a {finding.kind} into a deck")
-    return _WRITERS[finding.kind](text, deck, finding)
+    done = _WRITERS[finding.kind](text, deck, finding)
+    return Adopted(done, written_cards(text, done))
 
 
 def _note(finding: Finding) -> str:
@@ -82,7 +84,7 @@ def _grid_xyz(deck: Deck, grid: int) -> np.ndarray[Any, Any]:
     return np.asarray(points.xyz[row])
 
 
-def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put the mass on the grids named, in equal parts.
 
     An offset CONM2 would hang on the drilling stiffness of a shell, which is next to nothing.
@@ -90,12 +92,10 @@ def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     grids, number = finding.where["grids"], free_id(text, "element")
     part = float(finding.magnitude["mass"]) / len(grids)
     rows: list[Row] = [["CONM2", number + i, g, None, part] for i, g in enumerate(grids)]
-    return Adopted(
-        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
-    )
+    return add_cards(text, rows, _note(finding), ("GRID", grids[0]))
 
 
-def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put springs to ground on the grids named, in equal parts.
 
     A grid whose displacements are not in basic axes gets a companion that follows it and is.
@@ -113,12 +113,10 @@ def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
         for c in finding.magnitude["components"]:
             rows.append(["CELAS2", number, part, host, c])
             number += 1
-    return Adopted(
-        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
-    )
+    return add_cards(text, rows, _note(finding), ("GRID", grids[0]))
 
 
-def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put dashpots to ground on the grids named, in equal parts.
 
     A grid whose displacement system is not the basic one takes them by a bushing in basic axes.
@@ -138,7 +136,7 @@ def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     at = [(g, c) for g in grids if g not in turned for c in components]
     rows += [["CDAMP2", number + len(turned) + i, part, g, c] for i, (g, c) in enumerate(at)]
     note = f"{_note(finding)}\nDampers do not enter normal modes: complex ones show what it does."
-    return Adopted(add_cards(text, rows, note, ("GRID", grids[0])), tuple(_shown(r) for r in rows))
+    return add_cards(text, rows, note, ("GRID", grids[0]))
 
 
 def _by_property(
@@ -163,8 +161,7 @@ def _has(text: DeckText, card: str, number: int) -> bool:
     return any(n == number for s in text.segments for _, n in text.rows_in(s, card))
 
 
-def _local_stiffness(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    cards = []
+def _local_stiffness(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     for (card, pid), elements in _by_property(text, deck, finding.where["elements"]).items():
         split = split_property(text, card, pid, elements, _note(finding))
         values = {}
@@ -174,39 +171,33 @@ def _local_stiffness(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
                 old = read_value(split.deck, ref)
                 if old:
                     values[ref] = old * float(finding.magnitude["factor"])
-                    cards.append(f"MAT1 {new} {name} = {values[ref]:.6g}")
         text = set_values(split.deck, values)
-        cards.append(f"{card} {split.property} on {len(elements)} elements")
-    return Adopted(text, tuple(cards))
+    return text
 
 
-def _distributed_mass(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
-    cards = []
+def _distributed_mass(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     per_area = float(finding.magnitude["mass_per_area"])
     for (card, pid), elements in _by_property(text, deck, finding.where["elements"]).items():
         split = split_property(text, card, pid, elements, _note(finding), copy_materials=False)
         ref = FieldRef(card, split.property, "NSM")
         old = read_value(split.deck, ref) or 0.0
         text = set_values(split.deck, {ref: old + per_area})
-        cards.append(f"{card} {split.property} NSM = {old + per_area:.6g}")
-    return Adopted(text, tuple(cards))
+    return text
 
 
-def _joint(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _joint(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put a coincident grid at a beam's end: rigid in translation, sprung in rotation."""
     elements = [int(e) for e in finding.where["elements"]]
     return _detached(text, deck, finding, elements, [4, 5, 6], finding.where["grids"][0])
 
 
-def _support(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _support(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put a coincident grid between every support and everything attached to it."""
     components = list(finding.magnitude["components"])
-    cards: list[str] = []
     for grid in finding.where["grids"]:
         _refuse_others(deck, grid)
-        done = _detached(text, deck, finding, _attached(deck, grid), components, grid)
-        text, cards = done.deck, [*cards, *done.cards]
-    return Adopted(text, tuple(cards))
+        text = _detached(text, deck, finding, _attached(deck, grid), components, grid)
+    return text
 
 
 def _attached(deck: Deck, grid: int) -> list[int]:
@@ -244,7 +235,7 @@ def _detached(
     elements: list[int],
     components: list[int],
     grid: int,
-) -> Adopted:
+) -> DeckText:
     """Attach some elements of a grid to a new one, sprung in some components and else rigid."""
     new, number = free_id(text, "grid"), free_id(text, "element")
     xyz = _grid_xyz(deck, grid)
@@ -265,13 +256,10 @@ def _detached(
                 places = range(first, first + len(table[e].node_ids))
                 edits.append((member, {next(i for i in places if _is(member, i, grid)): new}))
     changed = edit_cards(text, edits)
-    return Adopted(
-        add_cards(changed, rows, _note(finding), ("GRID", grid)),
-        (*(_shown(r) for r in rows), f"elements {elements} moved to grid {new}"),
-    )
+    return add_cards(changed, rows, _note(finding), ("GRID", grid))
 
 
-def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
+def _absorber(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """Put a scalar point on a spring in the direction of the finding.
 
     A grid held in the other directions would hold a free structure to ground. It hangs on the
@@ -298,9 +286,7 @@ def _absorber(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
         ["CELAS2", number + 1, stiffness, host, c, new],
         ["CMASS2", number + 2, m, new],
     ]
-    return Adopted(
-        add_cards(text, rows, _note(finding), ("GRID", grids[0])), tuple(_shown(r) for r in rows)
-    )
+    return add_cards(text, rows, _note(finding), ("GRID", grids[0]))
 
 
 def _is(card: Card, field: int, number: int) -> bool:
@@ -309,13 +295,7 @@ def _is(card: Card, field: int, number: int) -> bool:
     return text.isdigit() and int(text) == number
 
 
-def _shown(row: Row) -> str:
-    return ",".join(
-        "" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row
-    )
-
-
-_WRITERS: dict[str, Callable[[DeckText, Deck, Finding], Adopted]] = {
+_WRITERS: dict[str, Callable[[DeckText, Deck, Finding], DeckText]] = {
     "point_mass": _point_mass,
     "ground_spring": _ground_spring,
     "local_stiffness": _local_stiffness,

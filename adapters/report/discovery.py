@@ -133,6 +133,10 @@ def _place_and_odds(alternative: Result) -> tuple[str, str]:
     return (said, likely) if colon else (likely, MISSING)
 
 
+_SEARCHED = 2
+"""Rows of the modes that were searched."""
+
+
 def gap(result: Result) -> Table | None:
     """Return the gap before and after, on the searched and on the held-out data."""
     found = reading.part(result, "gap")
@@ -143,8 +147,6 @@ def gap(result: Result) -> Table | None:
         ("held out", "before", reading.part(held, "before")),
         ("held out", "after", reading.part(held, "after")),
     ]
-    if held and not (states[2][2] or states[3][2]):
-        states[2:] = [("held out", "after", held)]
     rows = [
         (Cell(data), Cell(state), *_summary_cells(reading.summary(entry)))
         for data, state, entry in states
@@ -160,7 +162,11 @@ def gap(result: Result) -> Table | None:
         Column("worst |dev.| %"),
         Column("mean MAC %"),
     )
-    note = "Held out: modes and sensors that the search never saw." if held else ""
+    note = ""
+    if len(rows) > _SEARCHED:
+        note = "Held out: modes and sensors that the search never saw."
+    elif held:
+        note = "No modes were held out from the search: the test has fewer than ten that count."
     return Table("The gap", columns, tuple(rows), note)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...core.arrays import Floats
 from ...core.geometry import Geometry
 from . import discovery, heatmap, placing, reading
@@ -11,6 +13,9 @@ from .reading import Result
 from .scene import scene
 from .section import Section
 from .tables import Table
+
+_SHOWN = 12
+"""So many of the cards that carry an effect are shown."""
 
 
 def findings(
@@ -25,12 +30,12 @@ def findings(
     for k, f in enumerate(found, 1):
         cards = reading.texts(f, "cards")
         text = str(f.get("sentence") or f"{discovery.kind(f)}, {discovery.where(f)}")
-        written = "".join(tag("code", esc(c)) + "<br>" for c in cards)
+        written = _written(cards)
         said += tag(
             "div",
             tag("span", str(k), class_=f"no {f.get('side', '')}"),
             tag("p", esc(text)),
-            tag("p", written, class_="note") if written else "",
+            tag("pre", written, class_="diff") if written else "",
             class_="finding",
         )
     picture = ""
@@ -60,6 +65,13 @@ def findings(
     table = discovery.findings(result)
     body = said + picture + (html_table(table) if table else "")
     return Section("What was found", "findings", body)
+
+
+def _written(cards: Sequence[str]) -> str:
+    """Return the cards in the deck as they stand there, the first of many."""
+    left = len(cards) - _SHOWN
+    more = f"\n... and {left} more, see changes.diff" if left > 0 else ""
+    return esc("\n".join(cards[:_SHOWN]) + more)
 
 
 def gap(result: Result) -> Section | None:

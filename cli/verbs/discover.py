@@ -201,7 +201,9 @@ def discover_tables(
             )
         )
 
-    def held(c: Any) -> dict[str, Any]:
+    def held(c: Any) -> dict[str, Any] | None:
+        if not out:
+            return None
         return gap(
             replace(c.correlation, pairs=tuple(p for p in c.correlation.pairs if p.test + 1 in out))
         )

@@ -47,6 +47,9 @@ def test_a_soft_joint_is_found_named_sized_and_put_into_the_deck(tmp_path):
     changes = (out / "changes.diff").read_text()
     assert "+CELAS2" in changes
     assert "+RBE2" in changes
+    written = {line for file in (out / "deck").iterdir() for line in file.read_text().splitlines()}
+    assert [c.split()[0].rstrip("*") for c in finding["cards"]].count("CELAS2") == 3
+    assert written >= {line for card in finding["cards"] for line in card.split("\n")}
     assert (out / "report.html").is_file()
 
 

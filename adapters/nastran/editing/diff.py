@@ -42,7 +42,7 @@ def unified_diff(before: DeckText, after: DeckText, context: int = 3) -> str:
 
 
 def _hunks(old: TextFile, new: TextFile, context: int) -> Iterator[str]:
-    for group in _grouped(list(_changes_of_files(old, new)), context):
+    for group in _grouped(list(changes(old, new)), context):
         i1, j1 = max(group[0][0] - context, 0), max(group[0][2] - context, 0)
         i2 = min(group[-1][1] + context, len(old.lines))
         j2 = min(group[-1][3] + context, len(new.lines))
@@ -82,7 +82,7 @@ def _grouped(changes: list[Change], context: int) -> Iterator[list[Change]]:
         yield group
 
 
-def _changes_of_files(old: TextFile, new: TextFile) -> Iterator[Change]:
+def changes(old: TextFile, new: TextFile) -> Iterator[Change]:
     """Yield the changed stretches of lines; what is equal at both ends is cut off by the bytes."""
     a, b = np.frombuffer(old.data, np.uint8), np.frombuffer(new.data, np.uint8)
     front = _common(a, b)

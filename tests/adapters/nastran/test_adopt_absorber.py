@@ -100,5 +100,5 @@ def test_the_cards_are_those_of_an_engineer_with_a_comment(tmp_path):
     )
     text = done.deck.files[0].data.decode()
     assert "$ trueup discover: tuned absorber" in text
-    kinds = [c.split(",")[0] for c in done.cards]
-    assert kinds == ["SPOINT", "CELAS2", "CMASS2"]
+    assert [c.split()[0].rstrip("*") for c in done.cards] == ["SPOINT", "CELAS2", "CMASS2"]
+    assert all(card in text for card in done.cards)

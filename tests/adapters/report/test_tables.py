@@ -106,6 +106,18 @@ def test_gap_on_searched_and_held_out_data(discovery: dict[str, Any]) -> None:
     ]
 
 
+def test_without_held_out_modes_there_is_no_row_of_them_but_a_reason(
+    discovery: dict[str, Any],
+) -> None:
+    part = discovery["gap"] | {
+        "held_out": {"test_modes": [], "sensors": [7], "before": None, "after": None}
+    }
+    table = found.gap(discovery | {"gap": part})
+    assert table is not None
+    assert [r[:2] for r in texts(table)] == [["searched", "before"], ["searched", "after"]]
+    assert "fewer than ten" in table.note
+
+
 @pytest.mark.parametrize(
     "make",
     [tables.pairs, tables.unpaired, tables.parameters, tables.history, found.findings,
