@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
+from ...core.arrays import Floats, Ints
 from ...core.assembly_parameters import parametric_terms
 from ...core.discovery.structure import Members, Structure, Supports
 from ...core.model import Model, Term
@@ -100,10 +101,19 @@ def _supports(
         points.ids[own // 6],
         own % 6 + 1,
         points.xyz[own // 6],
+        _axes(points, own),
         root[live],
         coupling[live][:, live],
         slopes,
     )
+
+
+def _axes(points: Points, dofs: Ints) -> Floats:
+    """Directions of degrees of freedom in basic axes, (n, 3)."""
+    turned = to_basic(points).tocsc()[:, dofs].tocoo()
+    out = np.zeros((len(dofs), 3))
+    out[turned.col, turned.row % 3] = turned.data
+    return out
 
 
 def known_parameters(deck: Deck) -> tuple[tuple[ParameterSpec, ...], tuple[float, ...]]:

@@ -60,16 +60,14 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
     spot, _ = spot_of(effect)
     sizes = [effect[k] for k in ("mass", "factor", "stiffness", "damping") if k in effect][:1]
     theta = tuple(math.log(x) for x in (*(sizes or [1.0]), *_tuning(effect)))
+    wanted, out = effect.get("components"), []
     for number, c in enumerate(searcher.problem.catalogue):
-        if c.kind != effect["kind"]:
-            continue
-        rows = np.argsort(np.linalg.norm(c.xyz - np.array(spot), axis=1), kind="stable")
-        wanted = effect.get("components")
-        if wanted:
-            own = [c.where[int(r)].get("components") for r in rows]
-            rows = rows[[not o or list(o) == wanted for o in own]]
-        return [Suspect(number, int(r), theta) for r in rows[:count]]
-    return []
+        away = np.linalg.norm(c.xyz - np.array(spot), axis=1)
+        for row in np.argsort(away, kind="stable") if c.kind == effect["kind"] else ():
+            own = c.where[row].get("components")
+            if not own or not wanted or list(own) == wanted:
+                out.append((float(away[row]), Suspect(number, int(row), theta)))
+    return [s for _, s in sorted(out, key=lambda o: o[0])[:count]]
 
 
 def _tuning(effect: dict[str, Any]) -> list[float]:
@@ -100,7 +98,7 @@ def explain(place: Path) -> None:
         mark = "chosen" if k == verdict.accepted else "level "
         say(f"  {mark} {k}  {describe(searcher, level)}")
     effects = truth["effects"]
-    places = [nearest(searcher, e, 12 if len(effects) == 1 else 4) for e in effects]
+    places = [nearest(searcher, e, 24 if len(effects) == 1 else 4) for e in effects]
     for e, p in zip(effects, places, strict=True):
         if not p:
             say(f"  the catalogue has no {e['kind']} {e.get('components', '')}")

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints
+from ..arrays import Floats
 from ..eigen import Eigensolution
 from ..factor import factorise
 from ..model import Model, Term
@@ -20,7 +20,6 @@ _OWN = 1e-6
 _ROUNDING = 1e-7
 """What is left of a vector beside this part of it is rounding."""
 _DEPENDENT = 1e-5
-_CHUNK = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,77 +156,6 @@ def build_basis(
         reduced_sum(model.stiffness, V),
         reduced_sum(model.mass, V),
     )
-
-
-class Compliance:
-    """What single loads displace themselves by, found when asked for, then kept.
-
-    Parameters
-    ----------
-    model : Model
-    solution : Eigensolution
-        Its factor is used; the compliance is that of K − σM with its shift.
-    """
-
-    def __init__(self, model: Model, solution: Eigensolution) -> None:
-        self._A = (model.K() - solution.sigma * model.M()).tocsr()
-        self._factor = solution.factor or factorise(self._A, definite=True)
-        self._known: dict[bytes, float] = {}
-
-    def of(self, loads: sp.csr_matrix) -> Floats:
-        """Return lᵀ (K − σM)⁻¹ l of each row l of `loads` (n, n_free), (n,)."""
-        ends = list(zip(loads.indptr[:-1], loads.indptr[1:], strict=True))
-        keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
-        new = {k: i for i, k in enumerate(keys) if k not in self._known}
-        rows = np.array(list(new.values()), dtype=np.int64)
-        for some in np.array_split(rows, -(-len(rows) // _CHUNK)) if len(rows) else ():
-            exact = self._factor.compliances(loads[some].T.toarray())
-            self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
-        return np.array([self._known[k] for k in keys])
-
-    def on(self, vectors: Floats) -> Floats:
-        """Return the inverse of K − σM on a basis (n_free, r), (r, r)."""
-        return np.asarray(np.linalg.inv(vectors.T @ (self._A @ vectors)))
-
-
-class Flexibility:
-    """The flexibility of loads that a basis does not have, found when asked for, then kept.
-
-    Parameters
-    ----------
-    compliance : Compliance
-    vectors : (n_free, r) float
-        The basis.
-    inverse : (r, r) float
-        See `Compliance.on`.
-    root : (n · q, n_free) sparse
-        Loads of n candidates, q each.
-    """
-
-    def __init__(
-        self,
-        compliance: Compliance,
-        vectors: Floats,
-        inverse: Floats,
-        root: sp.csr_matrix,
-        each: int,
-    ) -> None:
-        self._compliance = compliance
-        self._vectors, self._inverse = vectors, inverse
-        self._root = root
-        self._kept = np.full((root.shape[0] // max(each, 1), max(each, 1)), np.nan)
-
-    def __getitem__(self, rows: Ints) -> Floats:
-        """Return what the basis lacks, (len(rows), q)."""
-        wanted = np.unique(rows)
-        new = wanted[np.isnan(self._kept[wanted, 0])] if len(wanted) else wanted
-        q = self._kept.shape[1]
-        if len(new):
-            own = self._root[(new[:, None] * q + np.arange(q)).ravel()]
-            seen = np.asarray(own @ self._vectors)
-            lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
-            self._kept[new] = np.maximum(lost, 0.0).reshape(-1, q)
-        return np.asarray(self._kept[rows])
 
 
 def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -> Floats:

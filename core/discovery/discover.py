@@ -13,9 +13,10 @@ import scipy.sparse as sp
 from ..arrays import Bools, Floats
 from ..correlation import realised
 from ..errors import TrueupError
-from .basis import Basis, Compliance, Flexibility, build_basis
+from .basis import Basis, build_basis
 from .bench import Bench
 from .candidates import Candidates
+from .compliance import Compliance, Flexibility, SharedFlexibility
 from .evidence import Evidence, noise_of
 from .findings import Discovery
 from .fitting import Fit, Prior, Problem, evaluate, fit
@@ -31,6 +32,7 @@ from .judge import (
 )
 from .kinds import KINDS
 from .kinds.scale import Scale
+from .laws import ReleaseLaw
 from .merging import merged
 from .mesh_error import lumping, with_consistent_bars
 from .paths import searched
@@ -314,17 +316,23 @@ def _searcher(trial: _Trial) -> Searcher:
     small = replace(small, modes=min(80, small.basis.size))
     vectors = small.basis.vectors
     inverse = compliance.on(vectors)
-    missing = tuple(
-        Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
-        if c.needs_flexibility
-        else None
-        for c in made
-    )
+    missing = tuple(_missing(c, compliance, vectors, inverse) for c in made)
     factors = tuple(c.factors(small.basis) for c in made)
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
     coarse = tuple(_coarse(c, f, small, size) for c, f in zip(made, factors, strict=True))
     active = tuple(range(len(problem.prior.spread)))
     return Searcher(small, coarse, active, null.log_p, size, request.effort)
+
+
+def _missing(c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats) -> Any:
+    """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
+    if not c.needs_flexibility:
+        return None
+    if isinstance(c.law, ReleaseLaw):
+        loads = c.extra.get("loads", c.root)
+        turns = c.extra.get("turns", sp.identity(c.root.shape[0], format="csr"))
+        return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)
+    return Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
 
 
 def _coarse(c: Candidates, factors: Any, problem: Problem, size: float) -> Any:

@@ -102,18 +102,27 @@ class Problem:
     def part(self, kind: int, rows: Ints, log_p: Floats) -> tuple[Floats, Law]:
         """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
         c, U = self.catalogue[kind], self.factors[kind][rows]
-        missing = None
         known = self.missing[kind] if self.missing else None
-        if known is not None:
-            missing = known[rows]
+        missing = None if known is None else known[rows]
         held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
         if self.rest is not None and c.needs_flexibility and not held.all():
-            lost = np.sum((U @ self.rest) ** 2, axis=-1)
+            lost = _flexibility(U @ self.rest, isinstance(c.law, ReleaseLaw))
             lost[held] = 0.0
             missing = lost if missing is None else missing + lost
+        if isinstance(c.law, ReleaseLaw) and missing is not None:
+            law, W = c.law.coupled(rows, missing, log_p)
+            U = np.matmul(W, U)
+            return U if self.turn is None else U @ self.turn, law
         top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        law = c.law.on_basis(rows, missing, log_p, top)
-        return U if self.turn is None else U @ self.turn, law
+        plain = c.law.on_basis(rows, missing, log_p, top)
+        return U if self.turn is None else U @ self.turn, plain
+
+
+def _flexibility(F: Floats, shared: bool) -> Floats:
+    """Return F Fᵀ of rows F (n, q, r), (n, q, q) if it is shared, else its diagonal (n, q)."""
+    if shared:
+        return np.asarray(np.matmul(F, F.transpose(0, 2, 1)))
+    return np.asarray(np.sum(F**2, axis=-1))
 
 
 @dataclass(frozen=True, eq=False)

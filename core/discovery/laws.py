@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -11,6 +11,8 @@ from ..arrays import Floats, Ints
 
 _RIGID = 1e-4
 """ω² m times the flexibility that an attached mass has at least."""
+_LEAST_LEFT = 1e-7
+"""Stiffness that freed coordinates keep at least, beside the stiffest of their own."""
 
 
 class Rows(Protocol):
@@ -198,34 +200,102 @@ class ReleaseLaw:
     unit displacement puts on the rest and d its own stiffness, both for the deck as it is, and f
     the factor by which the known parameters change them: a release all but cancels d, so that it
     has to follow. `own` (n, q) holds d, `elasticity` (n, q, n_parameter) ∂ln d/∂ln p, `log_p`
-    (n_parameter,) where the parameters stand.
+    (n_parameter,) where the parameters stand. The first `free` coordinates get no stiffness.
     """
 
     own: Floats
     elasticity: Floats
     log_p: Floats
+    free: int = 0
     on: str = "K"
     needs_flexibility: bool = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the release of what is left of its own stiffness, parameters where they stand."""
-        own = self.own[rows]
-        left = own if missing is None else np.maximum(own - missing, 1e-6 * own)
-        return ReleaseLaw(left, self.elasticity[rows], log_p[: len(self.log_p)])
+        """Return the release as it is, parameters where they stand."""
+        return replace(
+            self,
+            own=self.own[rows],
+            elasticity=self.elasticity[rows],
+            log_p=log_p[: len(self.log_p)],
+        )
+
+    def coupled(self, rows: Ints, lost: Floats, log_p: Floats) -> tuple[ReleaseLaw, Floats]:
+        """Return the release on a basis that lacks flexibility which its coordinates share.
+
+        Parameters
+        ----------
+        rows : (n,) int
+        lost : (n, q, q) float
+            Flexibility among the coordinates of each that the basis does not have.
+        log_p : (> n_parameter,) float
+
+        Returns
+        -------
+        law : ReleaseLaw
+        W : (n, q, q) float
+            Its coordinates are W times those before.
+        """
+        own, q = self.own[rows], self.own.shape[1]
+        left = -lost
+        left[:, np.arange(q), np.arange(q)] += own
+        least = _LEAST_LEFT * own.max(axis=1, keepdims=True)
+        d, W = directions(left, self.free)
+        weight = W**2 * own[:, None, :]
+        elasticity = weight @ self.elasticity[rows] / weight.sum(axis=2, keepdims=True)
+        law = ReleaseLaw(np.maximum(d, least), elasticity, log_p[: len(self.log_p)], self.free)
+        return law, W
 
     def factor(self, rows: Ints) -> Floats:
         """Return f, (n, q)."""
         return np.asarray(np.exp(self.elasticity[rows] @ self.log_p))
 
+    def _stiffness(self, theta: Floats) -> Floats:
+        """Return e^θ of each coordinate, nil of the free ones, (n, q)."""
+        return np.asarray(np.exp(theta) * (np.arange(self.own.shape[1]) >= self.free))
+
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return −f/(e^θ + d)."""
-        return np.asarray(-self.factor(rows) / (np.exp(theta) + self.own[rows]))
+        return np.asarray(-self.factor(rows) / (self._stiffness(theta) + self.own[rows]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return the derivative by θ."""
-        k = np.exp(theta)
+        k = self._stiffness(theta)
         return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)[:, None, :]
 
     def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
         """Return the derivative by ln p of a known parameter."""
         return np.asarray(self.elasticity[rows, :, parameter] * self.value(theta, rows))
+
+
+def directions(A: Floats, free: int) -> tuple[Floats, Floats]:
+    """Take stiffness matrices apart into coordinates that are freed one by one.
+
+    The first `free` coordinates are condensed out, then each part is turned to its principal
+    directions: the inverse of A + k S, with S nil on the first `free` coordinates and the
+    identity on the others, is Wᵀ diag(1 / (d + k s)) W for every k.
+
+    Parameters
+    ----------
+    A : (n, q, q) float
+        Symmetric.
+    free : int
+
+    Returns
+    -------
+    d : (n, q) float
+    W : (n, q, q) float
+    """
+    n, q, _ = A.shape
+    d, W = np.empty((n, q)), np.zeros((n, q, q))
+    rest = A[:, free:, free:]
+    d[:, :free], R = np.linalg.eigh(A[:, :free, :free])
+    W[:, :free, :free] = R.transpose(0, 2, 1)
+    if free:
+        side = A[:, free:, :free]
+        carried = np.matmul(np.matmul(side, R) / d[:, None, :free], R.transpose(0, 2, 1))
+        rest = rest - np.matmul(carried, side.transpose(0, 2, 1))
+    d[:, free:], R = np.linalg.eigh(rest)
+    W[:, free:, free:] = R.transpose(0, 2, 1)
+    if free:
+        W[:, free:, :free] = -np.matmul(W[:, free:, free:], carried)
+    return d, W

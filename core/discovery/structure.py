@@ -54,6 +54,8 @@ class Supports:
     ----------
     grid, component : (n,) int
     xyz : (n, 3) float
+    axis : (n, 3) float
+        Direction of each, basic axes.
     root : (n, n_free) sparse
         Forces on the free degrees of freedom of a unit displacement of each.
     coupling : (n, n) sparse
@@ -65,6 +67,7 @@ class Supports:
     grid: Ints
     component: Ints
     xyz: Floats
+    axis: Floats
     root: sp.csr_matrix
     coupling: sp.csr_matrix
     slopes: tuple[sp.csr_matrix, ...]

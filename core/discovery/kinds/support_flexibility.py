@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
 from ..candidates import Candidates
-from ..laws import ReleaseLaw
+from ..laws import ReleaseLaw, directions
 from ..structure import Structure, Supports, thinned
 from .scale import Scale
 
@@ -72,33 +72,36 @@ def _released(s: Supports, places: list[Ints]) -> Candidates | None:
     elastic = np.zeros((n, most, len(s.slopes)))
     turns, where, xyz = [], [], []
     for i, rows in enumerate(places):
-        grids = np.unique(s.grid[rows])
-        d, R = np.linalg.eigh(s.coupling[rows][:, rows].toarray())
+        grids, q = np.unique(s.grid[rows]), len(rows)
+        C = s.coupling[rows][:, rows].toarray()
+        (d,), (W,) = directions(C[None], 0)
         d = np.maximum(d, _STRAIGHT * d[-1])
-        own[i, : len(rows)] = d * len(grids)
+        own[i, :q] = d * len(grids)
         for k, slope in enumerate(s.slopes):
             change = slope[rows][:, rows].toarray()
-            elastic[i, : len(rows), k] = np.einsum("ia,ij,ja->a", R, change, R) / d
-        turns.append(_block(R * np.sqrt(len(grids)), rows, i * most, (n * most, len(s.grid))))
+            elastic[i, :q, k] = np.einsum("ai,ij,aj->a", W, change, W) / d
+        turns.append(_block(W * np.sqrt(len(grids)), rows, i * most, (n * most, len(s.grid))))
         xyz.append(s.xyz[rows].mean(axis=0))
         components = sorted({int(c) for c in s.component[rows]})
         where.append({"grids": [int(g) for g in grids], "components": components})
     typical = float(np.median(np.log(own[:, 0])))
+    together = sum(turns[1:], turns[0])
     return Candidates(
         kind="support_flexibility",
         xyz=np.array(xyz),
         law=ReleaseLaw(own, elastic, np.zeros(len(s.slopes))),
         trials=(typical + np.log([0.001, 0.006, 0.04, 0.25, 2.0]))[:, None],
-        root=(sum(turns[1:], turns[0]) @ s.root).tocsr(),
+        root=(together @ s.root).tocsr(),
         rows_each=most,
         where=tuple(where),
         typical=np.array([typical - 2.5]),
         spread=np.array([2.5]),
+        extra={"loads": s.root, "turns": together},
     )
 
 
-def _block(R: Floats, rows: Ints, start: int, shape: tuple[int, int]) -> sp.csr_matrix:
-    """Put the columns of R as rows from `start` on, over the columns `rows`."""
+def _block(W: Floats, rows: Ints, start: int, shape: tuple[int, int]) -> sp.csr_matrix:
+    """Put W as rows from `start` on, over the columns `rows`."""
     k = len(rows)
     at = (np.repeat(start + np.arange(k), k), np.tile(rows, k))
-    return sp.csr_matrix((R.T.ravel(), at), shape)
+    return sp.csr_matrix((W.ravel(), at), shape)

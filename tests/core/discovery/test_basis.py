@@ -7,7 +7,8 @@ import pytest
 import scipy.sparse as sp
 from numpy.polynomial import chebyshev
 
-from trueup.core.discovery.basis import Compliance, Flexibility, reduced_sum
+from trueup.core.discovery.basis import reduced_sum
+from trueup.core.discovery.compliance import Compliance, Flexibility, SharedFlexibility
 from trueup.core.model import Factor, Term, proportional
 
 RNG = np.random.default_rng(4)
@@ -58,3 +59,19 @@ def test_what_a_basis_lacks_is_the_rest_of_the_flexibility():
     expected = np.einsum("ij,jk,ik->i", loads.toarray(), lost, loads.toarray()).reshape(4, 2)
     for rows in ([2], [0, 2, 3, 2]):
         np.testing.assert_allclose(lacking[np.array(rows)], expected[rows], rtol=1e-8)
+
+
+def test_what_a_basis_lacks_among_the_loads_of_a_candidate_is_the_rest_of_the_flexibility():
+    half = RNG.normal(size=(30, 30))
+    K, M = sp.csr_matrix(half @ half.T), sp.identity(30, format="csr")
+    model = SimpleNamespace(K=lambda: K, M=lambda: M)
+    known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
+    loads = sp.random(5, 30, 0.3, random_state=6, format="csr")
+    turns = sp.random(8, 5, 0.5, random_state=7, format="csr")
+    lacking = SharedFlexibility(known, V, known.on(V), loads, turns, 2)
+    A = K.toarray() + 2.0 * np.eye(30)
+    lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
+    own = (turns @ loads).toarray().reshape(4, 2, 30)
+    expected = np.einsum("nij,jk,nlk->nil", own, lost, own)
+    for rows in ([2], [0, 2, 3, 2]):
+        np.testing.assert_allclose(lacking[np.array(rows)], expected[rows], rtol=1e-7, atol=1e-12)

@@ -1,0 +1,151 @@
+"""What loads displace themselves and each other by, and how much of it a basis does not have."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Ints
+from ..eigen import Eigensolution
+from ..factor import factorise
+from ..model import Model
+
+_CHUNK = 128
+_AT_ONCE = 600
+"""Loads of which the flexibilities among each other are found together."""
+
+
+class Compliance:
+    """What single loads displace themselves by, found when asked for, then kept.
+
+    Parameters
+    ----------
+    model : Model
+    solution : Eigensolution
+        Its factor is used; the compliance is that of K − σM with its shift.
+    """
+
+    def __init__(self, model: Model, solution: Eigensolution) -> None:
+        self._A = (model.K() - solution.sigma * model.M()).tocsr()
+        self._factor = solution.factor or factorise(self._A, definite=True)
+        self._known: dict[bytes, float] = {}
+
+    def of(self, loads: sp.csr_matrix) -> Floats:
+        """Return lᵀ (K − σM)⁻¹ l of each row l of `loads` (n, n_free), (n,)."""
+        ends = list(zip(loads.indptr[:-1], loads.indptr[1:], strict=True))
+        keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
+        new = {k: i for i, k in enumerate(keys) if k not in self._known}
+        rows = np.array(list(new.values()), dtype=np.int64)
+        for some in np.array_split(rows, -(-len(rows) // _CHUNK)) if len(rows) else ():
+            exact = self._factor.compliances(loads[some].T.toarray())
+            self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
+        return np.array([self._known[k] for k in keys])
+
+    def among(self, loads: sp.csr_matrix) -> Floats:
+        """Return L (K − σM)⁻¹ Lᵀ of the rows of `loads` L (n, n_free), (n, n)."""
+        n = loads.shape[0]
+        out = np.empty((n, n))
+        for some in np.array_split(np.arange(n), -(-n // _CHUNK)) if n else ():
+            out[:, some] = loads @ self._factor.solve(loads[some].T.toarray())
+        return 0.5 * (out + out.T)
+
+    def on(self, vectors: Floats) -> Floats:
+        """Return the inverse of K − σM on a basis (n_free, r), (r, r)."""
+        return np.asarray(np.linalg.inv(vectors.T @ (self._A @ vectors)))
+
+
+class Flexibility:
+    """The flexibility of loads that a basis does not have, found when asked for, then kept.
+
+    Parameters
+    ----------
+    compliance : Compliance
+    vectors : (n_free, r) float
+        The basis.
+    inverse : (r, r) float
+        See `Compliance.on`.
+    root : (n · q, n_free) sparse
+        Loads of n candidates, q each.
+    """
+
+    def __init__(
+        self,
+        compliance: Compliance,
+        vectors: Floats,
+        inverse: Floats,
+        root: sp.csr_matrix,
+        each: int,
+    ) -> None:
+        self._compliance = compliance
+        self._vectors, self._inverse = vectors, inverse
+        self._root = root
+        self._kept = np.full((root.shape[0] // max(each, 1), max(each, 1)), np.nan)
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return what the basis lacks, (len(rows), q)."""
+        wanted = np.unique(rows)
+        new = wanted[np.isnan(self._kept[wanted, 0])] if len(wanted) else wanted
+        q = self._kept.shape[1]
+        if len(new):
+            own = self._root[(new[:, None] * q + np.arange(q)).ravel()]
+            seen = np.asarray(own @ self._vectors)
+            lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
+            self._kept[new] = np.maximum(lost, 0.0).reshape(-1, q)
+        return np.asarray(self._kept[rows])
+
+
+class SharedFlexibility:
+    """The flexibility among loads of one candidate that a basis does not have.
+
+    Parameters
+    ----------
+    compliance, vectors, inverse
+        See `Flexibility`.
+    loads : (m, n_free) sparse
+        What candidates have in common.
+    turns : (n · q, m) sparse
+        Loads of n candidates, q each, as sums of those.
+    each : int
+        q.
+    """
+
+    def __init__(
+        self,
+        compliance: Compliance,
+        vectors: Floats,
+        inverse: Floats,
+        loads: sp.csr_matrix,
+        turns: sp.csr_matrix,
+        each: int,
+    ) -> None:
+        self._compliance = compliance
+        self._vectors, self._inverse = vectors, inverse
+        self._loads, self._turns, self._each = loads, turns, each
+        self._kept: dict[int, Floats] = {}
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return what the basis lacks, (len(rows), q, q)."""
+        new = [i for i in np.unique(rows).tolist() if i not in self._kept]
+        while new:
+            new = new[self._learn(new) :]
+        return np.array([self._kept[i] for i in rows.tolist()])
+
+    def _learn(self, rows: list[int]) -> int:
+        """Find what the basis lacks for the first of some rows, and say for how many."""
+        q = self._each
+        parts = [self._turns[i * q : (i + 1) * q] for i in rows]
+        known = np.zeros(self._loads.shape[0], bool)
+        number = 0
+        for part in parts:
+            wider = known.copy()
+            wider[part.indices] = True
+            if number and np.count_nonzero(wider) > _AT_ONCE:
+                break
+            known, number = wider, number + 1
+        own = self._loads[known]
+        seen = np.asarray(own @ self._vectors)
+        lost = self._compliance.among(own) - seen @ self._inverse @ seen.T
+        for i, part in zip(rows[:number], parts[:number], strict=True):
+            T = part[:, known].toarray()
+            self._kept[i] = T @ lost @ T.T
+        return number
