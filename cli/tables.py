@@ -43,6 +43,7 @@ def result_tables(result: Result, width: int = 110) -> Iterator[RenderableType]:
     compared = reading.initial(result) if width < _BOTH else {}
     shown = (
         findings_table(result),
+        _rich(discovery.would_decide(result)),
         alternatives_table(result),
         gap_table(result),
         _rich(discovery.damping(result)),

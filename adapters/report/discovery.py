@@ -25,6 +25,14 @@ KINDS = {
 }
 
 
+def would_decide(result: Result) -> Table | None:
+    """Return what to measure next where the data do not decide."""
+    said = reading.texts(result, "would_decide")
+    if not said:
+        return None
+    return Table("What would decide", (Column("", numeric=False),), tuple((Cell(s),) for s in said))
+
+
 def kind(finding: Result) -> str:
     """Return the kind of a finding in words; an unknown kind as it stands."""
     word = str(finding.get("kind", ""))
@@ -99,7 +107,7 @@ def _count(value: object) -> str:
     """Count places in a list of places, or of groups of them."""
     if isinstance(value, Mapping):
         value = [value]
-    if not isinstance(value, (list, tuple)):
+    if not isinstance(value, (list, tuple)) or not value:
         return MISSING
     return str(sum(_size(entry) for entry in value))
 
@@ -133,6 +141,7 @@ def _place_and_odds(alternative: Result) -> tuple[str, str]:
     return (said, likely) if colon else (likely, MISSING)
 
 
+_LEFT = "The deck was left as it was; what differs comes of sensors corrected for the comparison."
 _SEARCHED = 2
 """Rows of the modes that were searched."""
 
@@ -167,6 +176,8 @@ def gap(result: Result) -> Table | None:
         note = "Held out: modes and sensors that the search never saw."
     elif held:
         note = "No modes were held out from the search: the test has fewer than ten that count."
+    if not reading.adopted(result):
+        note = f"{note} {_LEFT}".strip()
     return Table("The gap", columns, tuple(rows), note)
 
 

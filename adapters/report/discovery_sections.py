@@ -89,6 +89,14 @@ def responses(result: Result) -> Section | None:
     return _only_table("Frequency responses", "responses", discovery.responses(result))
 
 
+def would_decide(result: Result) -> Section | None:
+    """Return what to measure next where the data do not decide."""
+    said = reading.texts(result, "would_decide")
+    if not said:
+        return None
+    return Section("What would decide", "decide", tag("ul", *[tag("li", esc(s)) for s in said]))
+
+
 def alternatives(result: Result) -> Section | None:
     """Return what else was considered."""
     return _only_table("Also considered", "alternatives", discovery.alternatives(result))

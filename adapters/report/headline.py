@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from . import reading
 from .formats import counted, fixed, general, listed
 from .reading import Result, Summary
@@ -13,6 +15,9 @@ VERDICTS = {
     "no_gap": "nothing is missing",
     "undecided": "undecided",
 }
+
+_MOVED = 3
+"""So many parameters are named where they explain the gap."""
 
 
 def headline(result: Result) -> str:
@@ -86,6 +91,10 @@ def _discover(result: Result) -> list[str]:
     findings = reading.records(result, "findings")
     said = [str(f["sentence"]).strip() for f in findings if f.get("sentence")]
     told = [_sentence(said[0] if said else _verdict_sentence(verdict))]
+    if said and verdict == "undecided":
+        told = [_verdict_sentence(verdict), f"The best explanation so far: {told[0]}"]
+    elif verdict == "parameters_only":
+        told += _moved(result)
     if said and len(findings) > 1:
         told.append(f"{counted(len(findings) - 1, 'further finding')} below.")
     gap = reading.part(result, "gap")
@@ -98,6 +107,19 @@ def _discover(result: Result) -> list[str]:
             told.append(_sentence("with that adopted, " + _change(old, new, "completed model")))
     told = [t for t in told if t]
     return told or _correlate(result)
+
+
+def _moved(result: Result) -> list[str]:
+    """Name the parameters that moved by more than their scatter, the farthest first."""
+    clear = {
+        str(p.get("name", "?")): reading.number(p.get("factor"))
+        for p in reading.records(result, "parameters")
+        if p.get("significant")
+    }
+    known = {name: factor for name, factor in clear.items() if factor}
+    first = sorted(known, key=lambda name: -abs(math.log(known[name])))[:_MOVED]
+    said = [f"{name} is {general(known[name], 3)} times the deck's value" for name in first]
+    return [_sentence("; ".join(said))] if said else []
 
 
 def _sentence(text: str) -> str:

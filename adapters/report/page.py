@@ -110,6 +110,7 @@ def _sections(
 ) -> list[Section | None]:
     return [
         discovery_sections.findings(result, geometry, sensors_xyz),
+        discovery_sections.would_decide(result),
         discovery_sections.gap(result),
         discovery_sections.damping(result),
         discovery_sections.responses(result),

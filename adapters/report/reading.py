@@ -55,6 +55,11 @@ def texts(result: object, key: str) -> list[str]:
     return [str(v) for v in value if v is not None] if _is_sequence(value) else []
 
 
+def adopted(result: Result) -> bool:
+    """Whether the verdict of a discovery changed the deck; True where there is none."""
+    return result.get("verdict") in {None, "effect", "parameters_only"}
+
+
 def verb(result: object) -> str:
     """Return the verb of ``trueup/VERB/1``; empty when the schema is not ours."""
     schema = result.get("schema") if isinstance(result, Mapping) else None

@@ -152,6 +152,9 @@ def _closest(
     return others[k], float(row[k])
 
 
+_LEFT = "The deck was left as it was; the factors are those of the best explanation. "
+
+
 def parameters(result: Result) -> Table | None:
     """Return what was moved: cards, values before and after, factor, standard error, bounds."""
     found = reading.records(result, "parameters")
@@ -184,11 +187,12 @@ def parameters(result: Result) -> Table | None:
         Column("", numeric=False),
     )
     used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
+    left = "" if reading.adopted(result) else _LEFT
     return Table(
         "Parameters",
         tuple(columns[k] for k in used),
         tuple(tuple(r[k] for k in used) for r in rows),
-        "The standard error is that of the factor." + _UNSURE * unsure,
+        left + "The standard error is that of the factor." + _UNSURE * unsure,
     )
 
 

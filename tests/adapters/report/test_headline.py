@@ -34,6 +34,26 @@ def test_discovery_leads_with_its_own_sentence(discovery: dict[str, Any]) -> Non
     assert rest[1].startswith("With that adopted, 3 test modes pair with the completed model (2")
 
 
+def test_an_undecided_run_says_so_before_its_best_explanation(discovery: dict[str, Any]) -> None:
+    first, second, *_ = story(discovery | {"verdict": "undecided"})
+    assert first == "The data do not decide what is missing."
+    assert second == "The best explanation so far: About 0.62 kg is missing near grid 8."
+
+
+def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(
+    discovery: dict[str, Any],
+) -> None:
+    moved = [
+        {"name": "PSHELL 1 T", "factor": 1.1, "significant": True},
+        {"name": "MAT1 1 E", "factor": 3.0, "significant": False},
+        {"name": "CONM2 7 M", "factor": 0.5, "significant": True},
+    ]
+    told = story(discovery | {"verdict": "parameters_only", "findings": [], "parameters": moved})
+    assert told[1] == (
+        "CONM2 7 M is 0.5 times the deck's value; PSHELL 1 T is 1.1 times the deck's value."
+    )
+
+
 @pytest.mark.parametrize(
     ("verdict", "said"),
     [

@@ -97,6 +97,22 @@ def test_alternatives_say_what_where_and_how_likely(discovery: dict[str, Any]) -
     ]
 
 
+def test_what_would_decide_is_listed(discovery: dict[str, Any]) -> None:
+    assert found.would_decide(discovery) is None
+    table = found.would_decide(discovery | {"would_decide": ["a sensor at grid 7", "mode 9"]})
+    assert table is not None
+    assert texts(table) == [["a sensor at grid 7"], ["mode 9"]]
+
+
+def test_an_undecided_run_says_that_the_deck_was_left(discovery: dict[str, Any]) -> None:
+    moved = {"parameters": [{"name": "PSHELL 1 T", "factor": 0.9, "standard_error": 0.05}]}
+    for verdict, left in (("undecided", True), ("effect", False)):
+        result = discovery | moved | {"verdict": verdict}
+        for table in (found.gap(result), tables.parameters(result)):
+            assert table is not None
+            assert ("deck was left as it was" in table.note) is left
+
+
 def test_gap_on_searched_and_held_out_data(discovery: dict[str, Any]) -> None:
     assert [r[:3] for r in texts(found.gap(discovery))] == [
         ["searched", "before", "2"],
