@@ -205,7 +205,10 @@ def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
 def _alternatives(
     request: Request, searcher: Searcher, found: Found, verdict: Judgement
 ) -> tuple[Alternative, ...]:
-    """Best rival of every combination of kinds, and the known parameters alone."""
+    """Best rival of every combination of kinds, and the known parameters alone.
+
+    One of the kinds that were found counts where it says something else: another place.
+    """
     catalogue = searcher.problem.catalogue
     best = found.levels[verdict.accepted]
 
@@ -218,13 +221,13 @@ def _alternatives(
     def kinds_of(f: Fit) -> tuple[str, ...]:
         return tuple(catalogue[s.kind].kind for s in named(f))
 
+    other = contenders(searcher, found, verdict.accepted)
     seen: dict[tuple[str, ...], Fit] = {}
     for f in sorted((f for level in found.rivals for f in level), key=behind):
-        seen.setdefault(kinds_of(f), f)
+        if kinds_of(f) != kinds_of(best) or any(f is g for g in other):
+            seen.setdefault(kinds_of(f), f)
     out = []
     for kinds, f in seen.items():
-        if kinds == kinds_of(best):
-            continue
         xyz = [catalogue[s.kind].xyz[s.row] for s in named(f)]
         said = " and ".join(
             f"{kind.replace('_', ' ')} {region(request.structure.model.geometry, x)}"

@@ -91,6 +91,8 @@ def sentence_of(
     text += f" explains {what} (95 %: {low} to {high})"
     if next_best is not None:
         what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
+        if next_best.kinds == (kind,):
+            what = next_best.sentence.partition(":")[0]
         text += f"; next best, {what}, is {odds(next_best.times_less_likely)}"
     return text + "."
 

@@ -5,9 +5,11 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.mass_unit import mass_unit
 from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.findings import Alternative
 from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.judge import explained
 from trueup.core.discovery.story import MassUnit, mode_ranges, odds
+from trueup.core.discovery.wording import sentence_of
 
 
 @pytest.mark.parametrize(
@@ -76,6 +78,20 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
     pounds = MassUnit(1.0 / 0.00259, 175.12683699)
     assert pounds.said(10.0) == "4.54 kg"
     assert MassUnit().said(0.62e-3) == "0.00062 (deck units)"
+
+
+@pytest.mark.parametrize(
+    ("kinds", "said"),
+    [
+        (("point_mass",), "next best, point mass near grid 7, is 3 times less likely"),
+        (("ground_spring",), "next best, ground spring, is 3 times less likely"),
+        ((), "next best, the known parameters, is 3 times less likely"),
+    ],
+)
+def test_the_next_best_is_named_by_its_place_where_it_is_of_the_same_kind(kinds, said):
+    other = Alternative(kinds, (), 3.0, "point mass near grid 7: 3 times less likely")
+    text = sentence_of("point_mass", {"mass": 1.0}, "here", (0.9, 1.1), [1], MassUnit(), other)
+    assert said in text
 
 
 def test_a_mass_explains_the_modes_that_move_where_it_sits():
