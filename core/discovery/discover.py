@@ -14,6 +14,7 @@ from ..arrays import Bools, Floats
 from ..correlation import realised
 from ..errors import TrueupError
 from .basis import Basis, build_basis
+from .beam import Found
 from .bench import Bench
 from .candidates import Candidates
 from .compliance import Compliance, Flexibility, SharedFlexibility
@@ -38,7 +39,7 @@ from .mesh_error import lumping, with_consistent_bars
 from .paths import searched
 from .polish import polished
 from .request import Request as Request
-from .search import Found, Searcher
+from .search import Searcher
 from .shaping import reshaped
 from .structure import thinned
 from .telling import told

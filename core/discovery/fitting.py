@@ -318,6 +318,15 @@ def fit(
     return replace(now, information=H, active=tuple(active))
 
 
+def promised(
+    problem: Problem, log_p: Floats, suspects: Sequence[Suspect], active: Sequence[int]
+) -> float:
+    """Return the objective that one Gauss-Newton step would leave if all were linear."""
+    now = evaluate(problem, log_p, suspects)
+    H, g = _normal_equations(problem, now, active)
+    return now.objective - float(g @ np.linalg.solve(H, g)) if len(g) else now.objective
+
+
 def _step(H: Floats, g: Floats, damping: float) -> Floats:
     """Return Levenberg's step, each unknown in units of its own curvature."""
     unit = 1.0 / np.sqrt(np.diag(H))

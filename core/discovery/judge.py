@@ -9,11 +9,12 @@ import numpy as np
 
 from ..arrays import Floats
 from .alike import unmatched
+from .beam import Found
 from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, mode_misfits, on_whole_test, solve
 from .hearing import misfit_of_responses
 from .scanning import scan
-from .search import Found, Searcher
+from .search import Searcher
 
 _MARGIN = 10.0
 _BESIDE, _SAME_EFFECT = 0.2, 40.0

@@ -14,14 +14,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from .beam import Found, grown
 from .candidates import Candidates, Suspect
 from .fitting import Fit
 from .judge import cost, enough, noise_scale, with_unseen
-from .search import Found, Searcher
+from .search import Searcher
 
 _CLEARLY = 1.3
 """How many times what a simple effect gains a tuned one has to."""
 _TRIED = 3
+_UNEXPLAINED = 4.0
+"""How many times the assumed variance a best hypothesis leaves where nothing explains the test."""
 
 
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
@@ -34,7 +37,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
         Told what happens.
     """
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
-    found = _with(searcher, [not t for t in tuned]).run(enough(searcher), progress)
+    found = grown(_with(searcher, [not t for t in tuned]), enough(searcher), progress)
     if not any(tuned):
         return found
     progress("looking for absorbers beside what was found")
@@ -47,8 +50,8 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     better = top is not None and cost(searcher, top, scale) < costs[best]
     small = len(searcher.problem.basis.vectors) <= searcher.effort.twice
     clearly = (_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None)
-    if better or any(clearly) or (best and small):
-        other = searcher.run(enough(searcher), progress)
+    if better or any(clearly) or (small and (best or scale > _UNEXPLAINED)):
+        other = grown(searcher, enough(searcher), progress)
         other = simplified(searcher, other)
         if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
             return _joined(other, found)

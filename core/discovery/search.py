@@ -1,52 +1,35 @@
-"""Search over combinations of suspects, able to take back an earlier choice.
+"""Steps of a search over combinations of suspects, able to take back an earlier choice.
 
-A beam of hypotheses grows by one suspect at a time. From each, every place and several sizes of
-every kind are evaluated exactly on the basis of its own eigenvectors; the best places that lie
-apart are fitted together with everything chosen before, moved to better neighbours, and each
-earlier suspect is taken out and looked for anew.
+Every place and several sizes of every kind are evaluated exactly beside a hypothesis, on the basis
+of its own eigenvectors; suspects are fitted together, moved to better neighbours, and each earlier
+one is taken out and looked for anew.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Bools, Floats, Ints
-from .alike import distinct
 from .basis import structural
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, fit, softened, solve
+from .fitting import Fit, Problem, evaluate, fit, promised, softened, solve
 from .looking import look
 from .scanning import best_apart, scan
 
-_NEIGHBOURING = np.array([-0.5, -0.2, 0.0, 0.2, 0.5])
+_NEIGHBOURING = np.array([-0.45, 0.0, 0.45])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
-_HOPELESS = 0.3
-"""A further suspect that gains less than this share of its price before it is moved to better
-neighbours is given up."""
-_NEAR = 0.5
-"""A kind whose best place gains this share of what the best of all gains is followed too."""
 _NEARBY = np.array([-0.35, 0.0, 0.35])
 """Steps of θ tried around the best places of the first scan."""
 _FEW = 300
 """Places of all kinds but tuned ones up to which more of them are fitted, the known parameters
 with them."""
-_WORTH = 0.35
-"""A branch that gains less than this share of what the best one gains is not fitted."""
-_TUNED = 2
-"""Hypotheses with a tuned suspect that are followed beside the others, if they lead."""
-_CLOSE = 0.35
-"""A hypothesis that gained less than all but this share of what the best gained is not grown."""
 _ROUNDS = 6
 """Times that a suspect moves to a neighbour at most."""
-_WORSE = 1.015
-"""A neighbour with more than this times the misfit, before it is fitted, is not fitted: one in
-thirty of them would have turned out better."""
 _PROMISING = 10
-"""Neighbouring places, the best at θ as it is, at which those changes are tried."""
+"""Neighbouring places of which it is asked what a step of all unknowns would leave there."""
 
 
 @dataclass(frozen=True)
@@ -67,18 +50,6 @@ class Effort:
     apart: float = 0.08
     near: float = 0.06
     twice: int = 8000
-
-
-@dataclass(frozen=True, eq=False)
-class Found:
-    """The best hypothesis for each number of suspects, and rivals.
-
-    `levels` [k] is the best fit with k suspects; `rivals` are other fits with as many suspects as
-    the best one, best first, places or kinds apart.
-    """
-
-    levels: tuple[Fit, ...]
-    rivals: tuple[tuple[Fit, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,46 +80,15 @@ class Searcher:
         small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
         return small, evaluate(small, state.log_p, state.suspects)
 
-    def _varied(self, branches: Sequence[tuple[float, Suspect]], base: float) -> list[Suspect]:
-        """Keep the best branches of all and the best of every kind, if they gain enough.
-
-        A kind that is tuned can imitate the others before they are at their right place, so these
-        are held against each other alone.
-        """
-        number: Counter[str | bool] = Counter()
-        kept: list[Suspect] = []
-        simple = next((b for b in branches if not self._tuned(b[1])), branches[0])
-        for score, s in branches:
-            tuned, kind = self._tuned(s), self.problem.catalogue[s.kind].kind
-            best = (branches[0] if tuned else simple)[0]
-            if base - score < _WORTH * (base - best) and kept and not self._small:
-                continue
-            number.update((tuned, kind))
-            each = self.effort.of_each_kind * (4 if self._small else 1)
-            if number[tuned] <= self.effort.branches or number[kind] <= each:
-                kept.append(s)
-        return kept
-
-    def _tuned(self, s: Suspect) -> bool:
+    def tuned(self, s: Suspect) -> bool:
+        """Whether a suspect is of a kind with a magnitude that tunes it."""
         return self.problem.catalogue[s.kind].tunings > 1
 
     @property
-    def _small(self) -> bool:
+    def small(self) -> bool:
         """Whether there are so few places that many of them can be fitted."""
         kinds = zip(self.problem.catalogue, self.coarse, strict=True)
         return sum(len(rows) for c, rows in kinds if c.tunings == 1) < _FEW
-
-    def _leading(self, fits: Sequence[Fit], base: float) -> list[Fit]:
-        """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
-        most = self.effort.beam - (len(fits[0].suspects) > 1)
-        kept, kinds = list(fits[:most]), set()
-        for f in fits:
-            kind = self.problem.catalogue[f.suspects[-1].kind].kind
-            near = base - f.objective > _NEAR * (base - fits[0].objective)
-            if kind not in kinds and near and not any(f is g for g in kept):
-                kept.append(f)
-            kinds.add(kind)
-        return kept
 
     def branches(self, state: Fit, count: int) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind by exact evaluation."""
@@ -252,18 +192,21 @@ class Searcher:
         if not len(rows):
             return None
         small, here = self.local(without)
-        first = scan(small, here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
-        rows = rows[np.argsort(first, kind="stable")[:_PROMISING]]
         trials = c.around(suspect.theta, _NEIGHBOURING)
-        score = scan(small, here, suspect.kind, rows, trials)
-        best = score.min(axis=1)
+        score = scan(softened(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]
-        stays = best[rows == suspect.row].min(initial=np.inf)
-        for i in np.argsort(best, kind="stable")[:3]:
-            if rows[i] == suspect.row or best[i] > _WORSE * stays:
+        soft = softened(small)
+        options: list[tuple[float, tuple[Suspect, ...]]] = []
+        for i in np.argsort(score.min(axis=1), kind="stable")[:_PROMISING]:
+            if rows[i] == suspect.row:
                 continue
             moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
             beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
+            options.append((promised(soft, state.log_p, beside, self.active), beside))
+        stays = promised(soft, state.log_p, state.suspects, self.active)
+        for hope, beside in sorted(options, key=lambda option: option[0])[:3]:
+            if hope > stays:
+                break
             trial = self.fitted(state, beside, 4, small)
             if trial.objective < state.objective - 0.3:
                 return trial
@@ -290,18 +233,6 @@ class Searcher:
                         break
         return state
 
-    def _fair(self, poorer: Fit, best: Fit) -> Fit:
-        """Return the poorer hypothesis, or the better one with a suspect less if that fits better.
-
-        A richer hypothesis must not win because its parameters came into a better valley.
-        """
-        for q in range(len(best.suspects)):
-            others = best.suspects[:q] + best.suspects[q + 1 :]
-            trial = fit(self.problem, best.log_p, others, self.active, 12)
-            if trial.objective < poorer.objective:
-                poorer = trial
-        return poorer
-
     def _doubtful(self, state: Fit, rounds: int) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
         older = list(range(len(state.suspects) - (rounds == 1)))
@@ -314,87 +245,3 @@ class Searcher:
             for q in older
         ]
         return [older[int(np.argmin(left))]]
-
-    def run(
-        self,
-        enough: Callable[[Fit, Fit, float], bool],
-        progress: Callable[[str], None] = lambda _: None,
-    ) -> Found:
-        """Grow the beam until one more suspect no longer earns its place.
-
-        Parameters
-        ----------
-        enough : callable
-            ``enough(previous, next, share)``: whether the richer fit is not worth that share of
-            what its suspects cost.
-        progress : callable
-            Told what happens.
-        """
-        levels = [self.settled(self.null())]
-        rivals: list[tuple[Fit, ...]] = [()]
-        beam = [levels[0]]
-        for depth in range(1, self.effort.most + 1):
-            progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
-            grown: list[Fit] = []
-            for state in beam:
-                count = self.effort.branches * (3 if self._small else 1)
-                small, here = self.local(state)
-                soft = evaluate(softened(small), here.log_p, here.suspects).objective
-                for branch in self._varied(self.branches(state, count), soft):
-                    grown.append(self.fitted(state, (*state.suspects, branch), 5, small, True))
-                best = min(grown, key=lambda f: f.objective)
-                if depth > 1 and enough(levels[-1], best, _HOPELESS):
-                    break
-            chosen = self._distinct(sorted(grown, key=lambda f: f.objective))
-            if not chosen:
-                break
-            if depth > 1 and enough(levels[-1], chosen[0], _HOPELESS):
-                levels.append(chosen[0])
-                rivals.append(tuple(chosen[1:12]))
-                break
-            plain, tuned = self._leagues(chosen)
-            before, _ = self._leagues(beam)
-            base = min((f.objective for f in before), default=levels[-1].objective)
-            followed = self._leading(plain, base) if plain else []
-            followed += [f for f in tuned if any(f is g for g in chosen[:_TUNED])]
-            beam = sorted(map(self.settled, map(self.refined, followed)), key=_objective)
-            if depth > 1:
-                firsts = [id(league[0]) for league in self._leagues(beam) if league]
-                beam = [self.reconsidered(f) if id(f) in firsts else f for f in beam]
-            beam = self._distinct(sorted(beam, key=_objective))
-            best = beam[0]
-            rest = (*beam[1:], *chosen[self.effort.beam :])
-            rivals.append(rest[:12])
-            levels[-1] = self._fair(levels[-1], best)
-            previous = levels[-1]
-            levels.append(best)
-            if enough(previous, best, 1.0):
-                break
-            plain, tuned = self._leagues(beam)
-            beam = [*self._near(plain, base), *(tuned[:1] if tuned and tuned[0] is best else ())]
-            beam = sorted(beam, key=_objective)
-        return Found(tuple(levels), tuple(rivals))
-
-    def _distinct(self, fits: Sequence[Fit]) -> list[Fit]:
-        near = 0.5 * self.effort.apart * self.size
-        return distinct(fits, self.problem.catalogue, near)
-
-    def _near(self, fits: Sequence[Fit], base: float) -> list[Fit]:
-        """Return the best and the next few that gained nearly as much over `base`."""
-        if not fits:
-            return []
-        near = fits[0].objective + _CLOSE * (base - fits[0].objective)
-        return [f for f in fits[: self.effort.beam - 1] if f is fits[0] or f.objective < near]
-
-    def _leagues(self, fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
-        """Return the fits without a tuned suspect, and those with one.
-
-        Before the rest is right a tuned kind imitates the others; what has none is followed as if
-        there were no tuned kinds.
-        """
-        plain = [f for f in fits if not any(map(self._tuned, f.suspects))]
-        return plain, [f for f in fits if any(map(self._tuned, f.suspects))]
-
-
-def _objective(f: Fit) -> float:
-    return f.objective

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..alignment import Alignment
 from ..arrays import Bools, Floats
+from .beam import Found
 from .candidates import Candidates, Suspect
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
@@ -25,7 +26,7 @@ from .judge import (
 )
 from .places import region
 from .request import Request
-from .search import Found, Searcher
+from .search import Searcher
 from .sensors import Verdicts
 from .story import odds
 from .telling_sensors import accusations, remarks

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.beam import Found, grown
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.judge import cost, credible_places, enough, instead, judge, with_unseen
-from trueup.core.discovery.search import Found
 
 
 def found_in(s):
-    found = s.run(enough(s))
+    found = grown(s, enough(s))
     return found, judge(s, found)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.beam import Found
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.judge import judge
 from trueup.core.discovery.paths import searched, simplified
-from trueup.core.discovery.search import Found
 
 
 def told(s):

@@ -10,6 +10,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from tests.core.discovery.strings import SEEN, K, M, N, hidden, searcher
 
+from trueup.core.discovery.beam import Found
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.hearing import misfit_of_responses, turned_state
@@ -25,7 +26,6 @@ from trueup.core.discovery.responses import (
     ratios_of,
     synthesised,
 )
-from trueup.core.discovery.search import Found
 from trueup.core.dofs import Dofs
 from trueup.core.frfs import Frfs
 

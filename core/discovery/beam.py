@@ -1,0 +1,179 @@
+"""A beam of hypotheses that grows by one suspect at a time.
+
+From each, the most promising places of every kind are fitted together with everything chosen
+before; the best of these are moved to better neighbours and reconsidered, and the best of those
+are grown again, until one more suspect no longer earns its place.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from .alike import distinct
+from .candidates import Suspect
+from .fitting import Fit, evaluate, fit, softened
+from .search import Searcher
+
+_HOPELESS = 0.3
+"""A further suspect that gains less than this share of its price before it is moved to better
+neighbours is given up."""
+_NEAR = 0.5
+"""A kind whose best place gains this share of what the best of all gains is followed too."""
+_WORTH = 0.35
+"""A branch that gains less than this share of what the best one gains is not fitted."""
+_TUNED = 2
+"""Hypotheses with a tuned suspect that are followed beside the others, if they lead."""
+_CLOSE = 0.35
+"""A hypothesis that gained less than all but this share of what the best gained is not grown."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The best hypothesis for each number of suspects, and rivals.
+
+    `levels` [k] is the best fit with k suspects; `rivals` are other fits with as many suspects as
+    the best one, best first, places or kinds apart.
+    """
+
+    levels: tuple[Fit, ...]
+    rivals: tuple[tuple[Fit, ...], ...]
+
+
+def grown(
+    searcher: Searcher,
+    enough: Callable[[Fit, Fit, float], bool],
+    progress: Callable[[str], None] = lambda _: None,
+) -> Found:
+    """Grow the beam until one more suspect no longer earns its place.
+
+    Parameters
+    ----------
+    searcher : Searcher
+    enough : callable
+        ``enough(previous, next, share)``: whether the richer fit is not worth that share of
+        what its suspects cost.
+    progress : callable
+        Told what happens.
+    """
+    levels = [searcher.settled(searcher.null())]
+    rivals: list[tuple[Fit, ...]] = [()]
+    beam = [levels[0]]
+    for depth in range(1, searcher.effort.most + 1):
+        progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
+        found: list[Fit] = []
+        for state in beam:
+            count = searcher.effort.branches * (3 if searcher.small else 1)
+            small, here = searcher.local(state)
+            soft = evaluate(softened(small), here.log_p, here.suspects).objective
+            for branch in _varied(searcher, searcher.branches(state, count), soft):
+                found.append(searcher.fitted(state, (*state.suspects, branch), 5, small, True))
+            best = min(found, key=_objective)
+            if depth > 1 and enough(levels[-1], best, _HOPELESS):
+                break
+        chosen = _distinct(searcher, sorted(found, key=_objective))
+        if not chosen:
+            break
+        if depth > 1 and enough(levels[-1], chosen[0], _HOPELESS):
+            levels.append(chosen[0])
+            rivals.append(tuple(chosen[1:12]))
+            break
+        plain, tuned = _leagues(searcher, chosen)
+        before, _ = _leagues(searcher, beam)
+        base = min((f.objective for f in before), default=levels[-1].objective)
+        followed = _leading(searcher, plain, base) if plain else []
+        followed += [f for f in tuned if any(f is g for g in chosen[:_TUNED])]
+        beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
+        if depth > 1:
+            firsts = [id(league[0]) for league in _leagues(searcher, beam) if league]
+            beam = [searcher.reconsidered(f) if id(f) in firsts else f for f in beam]
+        beam = _distinct(searcher, sorted(beam, key=_objective))
+        best = beam[0]
+        rest = (*beam[1:], *chosen[searcher.effort.beam :])
+        rivals.append(rest[:12])
+        levels[-1] = _fair(searcher, levels[-1], best)
+        previous = levels[-1]
+        levels.append(best)
+        if enough(previous, best, 1.0):
+            break
+        plain, tuned = _leagues(searcher, beam)
+        beam = [*_near(searcher, plain, base), *(tuned[:1] if tuned and tuned[0] is best else ())]
+        beam = sorted(beam, key=_objective)
+    return Found(tuple(levels), tuple(rivals))
+
+
+def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
+    near = 0.5 * searcher.effort.apart * searcher.size
+    return distinct(fits, searcher.problem.catalogue, near)
+
+
+def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
+    """Return the best and the next few that gained nearly as much over `base`."""
+    if not fits:
+        return []
+    near = fits[0].objective + _CLOSE * (base - fits[0].objective)
+    return [f for f in fits[: searcher.effort.beam - 1] if f is fits[0] or f.objective < near]
+
+
+def _leagues(searcher: Searcher, fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
+    """Return the fits without a tuned suspect, and those with one.
+
+    Before the rest is right a tuned kind imitates the others; what has none is followed as if
+    there were no tuned kinds.
+    """
+    plain = [f for f in fits if not any(map(searcher.tuned, f.suspects))]
+    return plain, [f for f in fits if any(map(searcher.tuned, f.suspects))]
+
+
+def _objective(f: Fit) -> float:
+    return f.objective
+
+
+def _varied(
+    searcher: Searcher, branches: Sequence[tuple[float, Suspect]], base: float
+) -> list[Suspect]:
+    """Keep the best branches of all and the best of every kind, if they gain enough.
+
+    A kind that is tuned can imitate the others before they are at their right place, so these
+    are held against each other alone.
+    """
+    number: Counter[str | bool] = Counter()
+    kept: list[Suspect] = []
+    simple = next((b for b in branches if not searcher.tuned(b[1])), branches[0])
+    for score, s in branches:
+        tuned, kind = searcher.tuned(s), searcher.problem.catalogue[s.kind].kind
+        best = (branches[0] if tuned else simple)[0]
+        if base - score < _WORTH * (base - best) and kept and not searcher.small:
+            continue
+        number.update((tuned, kind))
+        each = searcher.effort.of_each_kind * (4 if searcher.small else 1)
+        if number[tuned] <= searcher.effort.branches or number[kind] <= each:
+            kept.append(s)
+    return kept
+
+
+def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
+    """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
+    most = searcher.effort.beam - (len(fits[0].suspects) > 1)
+    kept, kinds = list(fits[:most]), set()
+    for f in fits:
+        kind = searcher.problem.catalogue[f.suspects[-1].kind].kind
+        near = base - f.objective > _NEAR * (base - fits[0].objective)
+        if kind not in kinds and near and not any(f is g for g in kept):
+            kept.append(f)
+        kinds.add(kind)
+    return kept
+
+
+def _fair(searcher: Searcher, poorer: Fit, best: Fit) -> Fit:
+    """Return the poorer hypothesis, or the better one with a suspect less if that fits better.
+
+    A richer hypothesis must not win because its parameters came into a better valley.
+    """
+    for q in range(len(best.suspects)):
+        others = best.suspects[:q] + best.suspects[q + 1 :]
+        trial = fit(searcher.problem, best.log_p, others, searcher.active, 12)
+        if trial.objective < poorer.objective:
+            poorer = trial
+    return poorer
