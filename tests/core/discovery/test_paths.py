@@ -53,3 +53,10 @@ def test_an_absorber_at_its_limit_is_told_as_what_it_is_there(truth, theta, kind
     (suspect,) = found.levels[1].suspects
     assert (s.problem.catalogue[suspect.kind].kind, suspect.row) == (kind, 9)
     assert found.rivals[1][0] is tuned
+
+
+def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
+    s = searcher(hidden(absorbers=[(9, 0.6, 2.3)], masses=[(22, 3.0)]), modes_out=(4, 10))
+    kinds, best = told(s)
+    assert sorted(kinds) == ["point_mass", "tuned_absorber"]
+    assert {q.row for q in best.suspects} == {9, 22}

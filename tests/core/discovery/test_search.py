@@ -7,7 +7,7 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import evaluate
+from trueup.core.discovery.fitting import evaluate, fit, promised
 from trueup.core.discovery.search import Effort
 
 MASS, SPRING, ABSORBER = range(3)
@@ -31,3 +31,33 @@ def test_on_its_own_lowest_modes_a_hypothesis_is_what_it_was(held):
     n = s.problem.columns
     np.testing.assert_allclose(here.eigenvalues[:n], state.eigenvalues[:n], rtol=1e-8)
     assert here.objective == pytest.approx(state.objective, rel=1e-6)
+
+
+def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
+    s = searcher(hidden(tension=1.1, masses=[(9, 2.0)]))
+    near = (Suspect(MASS, 9, (np.log(1.98),)),)
+    best = fit(s.problem, np.zeros(2), near, s.active, 25, 1e-6)
+    start = np.array([best.log_p[0] + 0.001, 0.0])
+    here = evaluate(s.problem, start, near).objective
+    assert fit(s.problem, start, near, s.active, 25, 1e-6).objective == pytest.approx(
+        best.objective, rel=1e-6
+    )
+    hope = promised(s.problem, start, near, s.active)
+    assert here > 1.05 * best.objective
+    assert hope == pytest.approx(best.objective, rel=0.02)
+    stays = promised(s.problem, best.log_p, best.suspects, s.active)
+    assert stays == pytest.approx(best.objective, abs=1e-3)
+
+
+@pytest.mark.parametrize("off", [-2, -1, 1, 2])
+def test_a_suspect_moves_to_where_it_is_once_all_else_follows(off):
+    s = searcher(hidden(tension=1.15, masses=[(9, 2.0)], springs=[(22, 250.0)]))
+    beside = (
+        Suspect(MASS, 9 + off, (0.0,)),
+        Suspect(SPRING, 22 - off, (np.log(100.0),)),
+    )
+    state = fit(s.problem, np.zeros(2), beside, s.active, 20)
+    moved = s.refined(state)
+    assert [q.row for q in moved.suspects] == [9, 22]
+    assert np.exp(moved.suspects[0].theta[0]) == pytest.approx(2.0, rel=0.05)
+    assert np.exp(moved.suspects[1].theta[0]) == pytest.approx(250.0, rel=0.1)
