@@ -24,6 +24,8 @@ _DOUBTED: dict[str, tuple[tuple[str, ...], float, tuple[float, float]]] = {
     "PBAR": (("I1", "I2"), 0.4, (0.25, 4.0)),
     "MAT1": (("E",), 0.1, (0.7, 1.4)),
 }
+_SPRINGS = ("CBUSH", "CBUSH1D")
+"""Elements drawn as lines that are no bars: their properties move, no part of them is lost."""
 _ATTRIBUTE = {"T": "t", "I1": "i1", "I2": "i2", "E": "e"}
 
 
@@ -40,7 +42,7 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
     parts = read_structure(deck, variation)
     displacement = (to_basic(parts.points).T @ model.expansion).tocsr()
     members = tuple(
-        Members(g.card, g.shape, g.ids, g.corners, b)
+        Members(g.card, "point" if g.card in _SPRINGS else g.shape, g.ids, g.corners, b)
         for g, b in zip(parts.groups, parts.blocks, strict=True)
         if g.shape
     )

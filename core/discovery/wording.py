@@ -93,6 +93,7 @@ def sentence_of(
         what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
         if next_best.kinds == (kind,):
             what = next_best.sentence.partition(":")[0]
+            what = f"{kind.replace('_', ' ')} there alone" if what.endswith(region) else what
         text += f"; next best, {what}, is {odds(next_best.times_less_likely)}"
     return text + "."
 

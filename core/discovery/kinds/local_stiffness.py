@@ -8,15 +8,16 @@ import scipy.sparse as sp
 from ..candidates import Candidates
 from ..laws import FactorLaw
 from ..structure import Structure
-from .patches import Patch, PatchCandidates, bars_of, patches_of, where_of
+from .bars import bars_of
+from .patches import Patch, PatchCandidates, patches_of, where_of
 from .scale import Scale
 
 _FACTORS = (0.2, 0.5, 1.6, 3.0)
 
 
 def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
-    """Factors on the stiffness of every patch of shells and of every bar between two joints."""
-    found = (patches_of(structure, scale.size), bars_of(structure))
+    """Factors on the stiffness of patches of shells, of bars between joints and of runs in them."""
+    found = (patches_of(structure, scale.size), bars_of(structure, scale.size))
     return tuple(_of(structure, patches) for patches in found if patches)
 
 

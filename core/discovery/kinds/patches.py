@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...arrays import Bools, Floats, Ints
+from ...arrays import Floats, Ints
 from ..basis import Basis
 from ..candidates import Candidates
 from ..laws import MassLaw, Rows
@@ -29,7 +28,6 @@ _SPACING = 0.35
 _MOST = 400
 _LONG, _SHORT = 1.25, 0.63
 """Half sides of an elongated patch beside the radius of the round one of the same area."""
-_STRAIGHT = 0.98
 _REACH = 1.6
 
 
@@ -69,48 +67,6 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...] = _RA
                         middle = xyz[rows].mean(axis=0)
                         out.append(Patch(number, rows, middle, r * size, first))
     return _distinct(out)
-
-
-def bars_of(structure: Structure) -> list[Patch]:
-    """Every bar of a frame: the line elements from one joint to the next, off the shells."""
-    n = len(structure.model.geometry.ids)
-    count, shelled = np.zeros(n, np.int64), np.zeros(n, bool)
-    for m in structure.members:
-        if m.shape == "line":
-            np.add.at(count, m.corners[:, :2].ravel(), 1)
-        else:
-            shelled[m.corners.ravel()] = True
-    through = (count == 2) & ~shelled
-    out = []
-    for number, m in enumerate(structure.members):
-        if m.shape != "line" or m.block.width != 6:
-            continue
-        free = np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1))
-        xyz = structure.centroids(m)
-        for rows in _chains(m.corners[free, :2], through, structure.model.geometry.xyz):
-            own = free[rows]
-            length = float(np.ptp(xyz[own], axis=0).max())
-            out.append(Patch(number, own, xyz[own].mean(axis=0), length, True))
-    return out
-
-
-def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
-    """Rows of line elements that continue each other straight at nodes with nothing else."""
-    n = len(ends)
-    rows, columns = [], []
-    order = np.argsort(ends.ravel(), kind="stable")
-    nodes = ends.ravel()[order]
-    pairs = np.flatnonzero((nodes[1:] == nodes[:-1]) & through[nodes[1:]])
-    along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
-    along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
-    for k in pairs:
-        a, b = int(order[k] // 2), int(order[k + 1] // 2)
-        if abs(float(along[a] @ along[b])) > _STRAIGHT:
-            rows.append(a)
-            columns.append(b)
-    graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
-    number, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == k) for k in range(number)]
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:

@@ -94,6 +94,14 @@ def test_the_next_best_is_named_by_its_place_where_it_is_of_the_same_kind(kinds,
     assert said in text
 
 
+def test_the_same_effect_at_the_same_place_without_the_others_is_called_alone():
+    other = Alternative(("point_mass",), (), 3.0, "point mass near grid 7: 3 times less likely")
+    text = sentence_of(
+        "point_mass", {"mass": 1.0}, "near grid 7", (0.9, 1.1), [1], MassUnit(), other
+    )
+    assert "next best, point mass there alone, is 3 times less likely" in text
+
+
 def test_a_mass_explains_the_modes_that_move_where_it_sits():
     """A bead at the middle of a string moves in every other mode: 1, 3, 5, ..."""
     s = searcher(hidden(masses=[(15, 0.5), (16, 0.5)]), scatter=(0.0, 0.0))

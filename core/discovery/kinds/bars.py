@@ -1,0 +1,117 @@
+"""Bars of a frame, from one joint to the next, and stretches of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components, depth_first_order
+
+from ...arrays import Bools, Floats, Ints
+from ..structure import Members, Structure
+from .patches import Patch
+
+_STRAIGHT = 0.98
+_MOST = 400
+"""Stretches of all bars at most."""
+_SLENDER = 0.5
+"""Length, beside the size of the structure, of a bar whose stretches are scanned first."""
+_FIRST = (0.08, 0.25)
+"""Length of those that are, beside the size of the structure."""
+
+
+def bars_of(structure: Structure, size: float) -> list[Patch]:
+    """Every bar of a frame, and stretches of it one element long and more.
+
+    Bars are the line elements from one joint to the next, off the shells. The first scan looks at
+    whole bars, and at stretches of a bar that is itself most of the structure.
+
+    Parameters
+    ----------
+    structure : Structure
+    size : float
+        Of the structure.
+    """
+    own = _bars(structure)
+    least = 1
+    while sum(len(_stretches(len(rows), least)) for _, rows in own) > _MOST:
+        least += 1
+    out = []
+    for number, rows in own:
+        m = structure.members[number]
+        xyz = structure.centroids(m)
+        length = _lengths(structure, m, rows)
+        whole = float(length.sum())
+        out.append(Patch(number, np.sort(rows), xyz[rows].mean(axis=0), whole, True))
+        for a, b in _stretches(len(rows), least):
+            part, extent = rows[a:b], float(length[a:b].sum())
+            first = whole > _SLENDER * size and _FIRST[0] * size <= extent <= _FIRST[1] * size
+            out.append(Patch(number, np.sort(part), xyz[part].mean(axis=0), extent, first))
+    return out
+
+
+def _bars(structure: Structure) -> list[tuple[int, Ints]]:
+    """Return number of the member and rows, in order, of the elements of each bar."""
+    n = len(structure.model.geometry.ids)
+    count, shelled = np.zeros(n, np.int64), np.zeros(n, bool)
+    for m in structure.members:
+        if m.shape == "line":
+            np.add.at(count, m.corners[:, :2].ravel(), 1)
+        elif m.shape != "point":
+            shelled[m.corners.ravel()] = True
+    through = (count == 2) & ~shelled
+    out = []
+    for number, m in enumerate(structure.members):
+        if m.shape != "line" or m.block.width != 6:
+            continue
+        free = np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1))
+        for rows in _chains(m.corners[free, :2], through, structure.model.geometry.xyz):
+            out.append((number, free[rows]))
+    return out
+
+
+def _lengths(structure: Structure, m: Members, rows: Ints) -> Floats:
+    ends = structure.model.geometry.xyz[m.corners[rows, :2]]
+    return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+
+
+def _stretches(n: int, least: int) -> list[tuple[int, int]]:
+    """Return begin and end of stretches of a bar of n elements, `least` elements long and more.
+
+    Their lengths are those of Fibonacci, and they overlap by two thirds.
+    """
+    out = []
+    length, longer = 1, 2
+    while length < n:
+        if length >= least:
+            step = max(1, length // 3)
+            out += [(start, start + length) for start in range(0, n - length + 1, step)]
+        length, longer = longer, length + longer
+    return out
+
+
+def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
+    """Rows of line elements that continue each other straight, in their order.
+
+    They do so at nodes with nothing else.
+    """
+    n = len(ends)
+    rows, columns = [], []
+    order = np.argsort(ends.ravel(), kind="stable")
+    nodes = ends.ravel()[order]
+    pairs = np.flatnonzero((nodes[1:] == nodes[:-1]) & through[nodes[1:]])
+    along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
+    along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
+    for k in pairs:
+        a, b = int(order[k] // 2), int(order[k + 1] // 2)
+        if abs(float(along[a] @ along[b])) > _STRAIGHT:
+            rows.append(a)
+            columns.append(b)
+    graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
+    number, label = connected_components(graph, directed=False)
+    neighbours = np.bincount([*rows, *columns], minlength=n)
+    out = []
+    for k in range(number):
+        own = np.flatnonzero(label == k)
+        start = int(own[np.argmin(neighbours[own])])
+        out.append(depth_first_order(graph, start, directed=False, return_predecessors=False))
+    return out
