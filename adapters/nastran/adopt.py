@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -192,11 +192,15 @@ def _joint(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
 
 
 def _support(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
-    """Put a coincident grid between every support and everything attached to it."""
+    """Put a coincident grid between every support and everything attached to it.
+
+    Components that are free get no spring.
+    """
     components = list(finding.magnitude["components"])
+    free = list(finding.magnitude.get("free_components", []))
     for grid in finding.where["grids"]:
         _refuse_others(deck, grid)
-        text = _detached(text, deck, finding, _attached(deck, grid), components, grid)
+        text = _detached(text, deck, finding, _attached(deck, grid), components, grid, free)
     return text
 
 
@@ -235,12 +239,13 @@ def _detached(
     elements: list[int],
     components: list[int],
     grid: int,
+    free: Sequence[int] = (),
 ) -> DeckText:
-    """Attach some elements of a grid to a new one, sprung in some components and else rigid."""
+    """Attach some elements of a grid to a new one, sprung or free in some components only."""
     new, number = free_id(text, "grid"), free_id(text, "element")
     xyz = _grid_xyz(deck, grid)
     cd = int(deck.bulk.table("GRID")[grid].cd or 0)
-    stiff = "".join(str(c) for c in range(1, 7) if c not in components)
+    stiff = "".join(str(c) for c in range(1, 7) if c not in (*components, *free))
     k = float(finding.magnitude["stiffness"]) / len(finding.where["grids"])
     rows: list[Row] = [
         ["GRID", new, 0, *(float(v) for v in xyz), cd],

@@ -136,17 +136,19 @@ def _varied(
     """Keep the best branches of all and the best of every kind, if they gain enough.
 
     A kind that is tuned can imitate the others before they are at their right place, so these
-    are held against each other alone.
+    are held against each other alone. Stretches of an edge are a kind by each way they give.
     """
-    number: Counter[str | bool] = Counter()
+    number: Counter[bool | tuple[str, int]] = Counter()
     kept: list[Suspect] = []
     simple = next((b for b in branches if not searcher.tuned(b[1])), branches[0])
     for score, s in branches:
-        tuned, kind = searcher.tuned(s), searcher.problem.catalogue[s.kind].kind
+        c = searcher.problem.catalogue[s.kind]
+        tuned, kind = searcher.tuned(s), (c.kind, s.kind if "ends" in c.extra else -1)
         best = (branches[0] if tuned else simple)[0]
         if base - score < _WORTH * (base - best) and kept and not searcher.small:
             continue
-        number.update((tuned, kind))
+        number[tuned] += 1
+        number[kind] += 1
         each = searcher.effort.of_each_kind * (4 if searcher.small else 1)
         if number[tuned] <= searcher.effort.branches or number[kind] <= each:
             kept.append(s)

@@ -18,6 +18,7 @@ from .candidates import Suspect
 from .fitting import Fit, Problem, evaluate, fit, promised, softened, solve
 from .looking import look
 from .scanning import best_apart, scan
+from .stretching import beside as stretches_beside
 
 _NEIGHBOURING = np.array([-0.45, 0.0, 0.45])
 """Steps of θ tried when a suspect moves to a neighbouring place."""
@@ -28,6 +29,8 @@ _FEW = 300
 with them."""
 _ROUNDS = 6
 """Times that a suspect moves to a neighbour at most."""
+_FOLLOWED = 4
+"""Steps in which the known parameters follow a stretch of an edge that changes."""
 _PROMISING = 10
 """Neighbouring places of which it is asked what a step of all unknowns would leave there."""
 
@@ -183,6 +186,8 @@ class Searcher:
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
         suspect = state.suspects[q]
         others = state.suspects[:q] + state.suspects[q + 1 :]
+        if stretches := stretches_beside(self.problem.catalogue, suspect):
+            return self._best_of(state, q, stretches)
         c = self.problem.catalogue[suspect.kind]
         distance = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
@@ -208,6 +213,19 @@ class Searcher:
             if hope > stays:
                 break
             trial = self.fitted(state, beside, 4, small)
+            if trial.objective < state.objective - 0.3:
+                return trial
+        return None
+
+    def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
+        """Return the best fit with another suspect in place of one, None where none is better."""
+        before, after = state.suspects[:q], state.suspects[q + 1 :]
+        small = self.local(evaluate(self.problem, state.log_p, (*before, *after)))[0]
+        tried = [
+            fit(small, state.log_p, (*before, s, *after), self.active, _FOLLOWED) for s in options
+        ]
+        for near in sorted(tried, key=lambda f: f.objective)[:2]:
+            trial = fit(self.problem, near.log_p, near.suspects, self.active, _FOLLOWED)
             if trial.objective < state.objective - 0.3:
                 return trial
         return None

@@ -33,6 +33,8 @@ _TEST = {
     "sensor_swap": "Sensors {0} and {2} are swapped: each reads what the other should",
     "sensor_axis": "Sensor {0} is turned by {1:.0f}° from the axes that the test says",
 }
+_HARDLY = 20.0
+"""Quotient of the ends of an interval from which on a magnitude is hardly known."""
 
 
 def magnitude_of(
@@ -66,7 +68,8 @@ def magnitude_of(
             "frequency_hz_interval": intervals[1].tolist(),
             "components": where["components"],
         }
-    return {"stiffness": size, "components": where.get("components", [])}
+    free = {"free_components": where["free_components"]} if "free_components" in where else {}
+    return {"stiffness": size, "components": where.get("components", []), **free}
 
 
 def sentence_of(
@@ -86,9 +89,13 @@ def sentence_of(
     if "mass" in values:
         values["mass"] = masses.said(float(magnitude["mass"]))
         low, high = masses.said(interval[0]).split()[0], masses.said(interval[1])
+    if "free_components" in values:
+        turning = "".join(str(k) for k in values["free_components"])
+        values["components"] += f" and freely in direction {turning}"
     text = _SAYS[kind].format(**values)
     what = f"test {mode_ranges(modes)}" if modes else "the test a little better"
-    text += f" explains {what} (95 %: {low} to {high})"
+    text += f" explains {what} (95 %: {low} to {high}"
+    text += ", the test hardly tells)" if interval[1] > _HARDLY * interval[0] else ")"
     if next_best is not None:
         what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
         if next_best.kinds == (kind,):

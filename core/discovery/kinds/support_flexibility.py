@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,43 +12,77 @@ from scipy.spatial import cKDTree
 from ...arrays import Floats, Ints
 from ..candidates import Candidates
 from ..laws import ReleaseLaw, directions
+from ..stretching import Ends
 from ..structure import Structure, Supports, thinned
+from .edges import Edge, edges_of
 from .scale import Scale
 
 _STRETCHES = (0.06, 0.12, 0.2)
-"""Half lengths of stretches of an edge, beside the size of the structure."""
+"""Half lengths of groups of supports off the edges of shells, beside the size."""
 _TOGETHER = ((4, 5, 6), (1, 2, 3))
 _STRAIGHT = 1e-9
+_AT_ONCE = 100
+_SOFTER = 2.5
+"""Of ln k: how much softer a support that turns is than what it holds."""
+_ALONG = 0.95
+"""Cosine between a direction of a support and that of an edge, for them to count as one."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Rows of supports that give together with one stiffness, and rows that are free besides.
+
+    `ends` says which stretch of which edge they are, see `stretching`.
+    """
+
+    sprung: Ints
+    free: Ints
+    ends: Ends | None = None
+
+    @property
+    def rows(self) -> Ints:
+        """All of them, the free ones first."""
+        return np.concatenate([self.free, self.sprung])
 
 
 def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give supports a finite stiffness.
 
-    Every fixed direction of a support alone, all rotations or translations alike, and one
-    direction over stretches of supports that are neighbours. The stiffness counts over all grids
-    of a place, for each of its directions.
+    Every fixed direction of a support alone, all its rotations or translations alike, and one
+    direction over groups of supports that are neighbours. Along an edge of shells the groups are
+    its stretches: they move along any axis, turn about the edge, or do both, where a stretch on
+    springs turns freely. The stiffness counts over all grids of a place, for each of its
+    directions.
     """
     s = structure.supports
     if s is None or not len(s.grid):
         return ()
-    made = [_released(s, list(_joined(s, components))) for components in _TOGETHER]
+    edges = edges_of(structure, s)
+    on_edge = np.isin(s.grid, np.concatenate([np.zeros(0, np.int64), *(e.grids for e in edges)]))
+    carrying = scale.mass * (2.0 * np.pi * scale.band_hz[0]) ** 2
+    made = [_released(s, list(_joined(s, components)), carrying) for components in _TOGETHER]
     for c in np.unique(s.component):
         own = np.flatnonzero(s.component == c)
-        made.append(_released(s, [np.array([i]) for i in own]))
-        made.append(_released(s, list(_stretches(s, own, scale.size))))
+        made.append(_released(s, [_Place(np.array([i]), own[:0]) for i in own], carrying))
+        made.append(_released(s, list(_groups(s, own[~on_edge[own]], scale.size)), carrying))
+    for component in range(1, 7):
+        made.append(_released(s, list(_stretches(s, edges, component, scale.size)), carrying))
+    made.append(_released(s, list(_hinges(s, edges, scale.size)), carrying))
     return tuple(c for c in made if c is not None)
 
 
-def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[Ints]:
-    """Rows of several directions of one support."""
+def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[_Place]:
+    """All of several directions of one support."""
     for grid in np.unique(s.grid):
         rows = np.flatnonzero((s.grid == grid) & np.isin(s.component, components))
         if len(rows) > 1:
-            yield rows
+            yield _Place(rows, rows[:0])
 
 
-def _stretches(s: Supports, own: Ints, size: float) -> Iterator[Ints]:
-    """Rows over neighbouring supports among the rows `own`, several lengths."""
+def _groups(s: Supports, own: Ints, size: float) -> Iterator[_Place]:
+    """Neighbouring supports among the rows `own`, several sizes of groups."""
+    if not len(own):
+        return
     tree = cKDTree(s.xyz[own])
     seen = set()
     for half in _STRETCHES:
@@ -55,53 +90,119 @@ def _stretches(s: Supports, own: Ints, size: float) -> Iterator[Ints]:
             rows = own[sorted(tree.query_ball_point(s.xyz[own[i]], half * size))]
             if len(rows) > 1 and rows.tobytes() not in seen:
                 seen.add(rows.tobytes())
-                yield rows
+                yield _Place(rows, rows[:0])
 
 
-def _released(s: Supports, places: list[Ints]) -> Candidates | None:
+def _stretches(s: Supports, edges: Sequence[Edge], component: int, size: float) -> Iterator[_Place]:
+    """Stretches of edges that move along an axis, or turn about the edge."""
+    for number, e in enumerate(edges):
+        rows = _rows(s, e, component)
+        if component > 3:
+            rows = np.where(_near(s, rows, e.along), rows, -1)
+        for first, last, part in e.stretches(size):
+            if np.all(rows[part] >= 0):
+                yield _Place(rows[part], rows[:0], (number, first, last))
+
+
+def _hinges(s: Supports, edges: Sequence[Edge], size: float) -> Iterator[_Place]:
+    """Stretches of edges that move out of the plane of their shells and turn freely."""
+    for number, e in enumerate(edges):
+        out, about = (
+            max(
+                (np.where(_near(s, r, d), r, -1) for r in (_rows(s, e, c) for c in components)),
+                key=lambda rows: np.count_nonzero(rows >= 0),
+            )
+            for d, components in ((e.normal, (1, 2, 3)), (e.along, (4, 5, 6)))
+        )
+        for first, last, part in e.stretches(size):
+            if np.all(out[part] >= 0) and np.all(about[part] >= 0):
+                yield _Place(out[part], about[part], (number, first, last))
+
+
+def _rows(s: Supports, e: Edge, component: int) -> Ints:
+    """Rows of one direction at the grids of an edge, -1 where it is not fixed."""
+    own = np.flatnonzero(s.component == component)
+    row = dict(zip(s.grid[own].tolist(), own.tolist(), strict=True))
+    return np.array([row.get(g, -1) for g in e.grids.tolist()])
+
+
+def _near(s: Supports, rows: Ints, direction: Floats) -> Ints:
+    """Whether the axes of rows lie along a direction at each of them, (n,) bool."""
+    return np.asarray(abs(np.sum(s.axis[rows] * direction, axis=1)) > _ALONG)
+
+
+def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates | None:
     """Make candidates of groups of fixed directions.
 
-    A group is released along the principal directions of its own stiffness, each of which then
-    is a release by itself. The stiffness of n grids is n times that of one.
+    A group is released along principal directions of its own stiffness, each of which then is a
+    release by itself; the free ones go first. The stiffness of n grids is n times that of one.
+    Beforehand a support that moves is about as stiff as what would carry the whole structure at
+    its lowest frequency (`carrying`), one that turns softer than what it holds.
     """
     if not places:
         return None
-    most = max(len(rows) for rows in places)
+    free = max(len(p.free) for p in places)
+    most = free + max(len(p.sprung) for p in places)
     n = len(places)
     own = np.ones((n, most))
     elastic = np.zeros((n, most, len(s.slopes)))
     turns, where, xyz = [], [], []
-    for i, rows in enumerate(places):
-        grids, q = np.unique(s.grid[rows]), len(rows)
-        C = s.coupling[rows][:, rows].toarray()
-        (d,), (W,) = directions(C[None], 0)
+    for i, (p, C, slopes) in enumerate(_with_stiffness(s, places)):
+        rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
+        grids = np.unique(s.grid[rows])
+        (d,), (W,) = directions(C[None], len(p.free))
         d = np.maximum(d, _STRAIGHT * d[-1])
-        own[i, :q] = d * len(grids)
-        for k, slope in enumerate(s.slopes):
-            change = slope[rows][:, rows].toarray()
-            elastic[i, :q, k] = np.einsum("ai,ij,aj->a", W, change, W) / d
-        turns.append(_block(W * np.sqrt(len(grids)), rows, i * most, (n * most, len(s.grid))))
+        own[i, at] = d * len(grids)
+        elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
+        turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))
         xyz.append(s.xyz[rows].mean(axis=0))
-        components = sorted({int(c) for c in s.component[rows]})
-        where.append({"grids": [int(g) for g in grids], "components": components})
-    typical = float(np.median(np.log(own[:, 0])))
+        where.append(
+            {
+                "grids": [int(g) for g in grids],
+                "components": _components(s, p.sprung),
+                **({"free_components": _components(s, p.free)} if free else {}),
+            }
+        )
+    typical = float(np.median(np.log(own[:, free])))
+    moves = s.component[places[0].sprung[0]] < 4
     together = sum(turns[1:], turns[0])
     return Candidates(
         kind="support_flexibility",
         xyz=np.array(xyz),
-        law=ReleaseLaw(own, elastic, np.zeros(len(s.slopes))),
+        law=ReleaseLaw(own, elastic, np.zeros(len(s.slopes)), free),
         trials=(typical + np.log([0.001, 0.006, 0.04, 0.25, 2.0]))[:, None],
         root=(together @ s.root).tocsr(),
         rows_each=most,
         where=tuple(where),
-        typical=np.array([typical - 2.5]),
+        typical=np.array([np.log(carrying) if moves else typical - _SOFTER]),
         spread=np.array([2.5]),
-        extra={"loads": s.root, "turns": together},
+        extra={
+            "loads": s.root,
+            "turns": together,
+            **({} if places[0].ends is None else {"ends": [p.ends for p in places]}),
+        },
     )
 
 
-def _block(W: Floats, rows: Ints, start: int, shape: tuple[int, int]) -> sp.csr_matrix:
-    """Put W as rows from `start` on, over the columns `rows`."""
-    k = len(rows)
-    at = (np.repeat(start + np.arange(k), k), np.tile(rows, k))
-    return sp.csr_matrix((W.ravel(), at), shape)
+def _with_stiffness(
+    s: Supports, places: Sequence[_Place]
+) -> Iterator[tuple[_Place, Floats, Floats]]:
+    """Return places with the stiffness among their rows and its slopes, (q, q) and (p, q, q)."""
+    for start in range(0, len(places), _AT_ONCE):
+        some = places[start : start + _AT_ONCE]
+        own = np.unique(np.concatenate([p.rows for p in some]))
+        both = np.array([A[own][:, own].toarray() for A in (s.coupling, *s.slopes)])
+        for p in some:
+            at = np.searchsorted(own, p.rows)
+            part = both[:, at[:, None], at]
+            yield p, part[0], part[1:]
+
+
+def _components(s: Supports, rows: Ints) -> list[int]:
+    return sorted({int(c) for c in s.component[rows]})
+
+
+def _block(W: Floats, at: Ints, rows: Ints, shape: tuple[int, int]) -> sp.csr_matrix:
+    """Put W at the rows `at` and the columns `rows`."""
+    where = (np.repeat(at, len(rows)), np.tile(rows, len(at)))
+    return sp.csr_matrix((W.ravel(), where), shape)

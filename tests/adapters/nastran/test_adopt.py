@@ -191,3 +191,35 @@ ENDDATA
     what = finding("support_flexibility", {"stiffness": 600.0, "components": [3]}, grids=[1, 2, 5])
     _, found = completed(tmp_path, deck, what)
     assert found[0] == pytest.approx(hz(600.0, 0.02), rel=1e-3)
+
+
+def test_an_edge_that_sinks_and_turns_freely_lets_a_stiff_shell_swing(tmp_path):
+    """A rigid plate, its other edge on springs: it bounces and rocks on two springs in line."""
+    deck = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,123456
+GRID,2,,0.,40.,0.,,123456
+GRID,3,,40.,0.,0.,,1246
+GRID,4,,40.,40.,0.,,1246
+GRID,5,,20.,0.,0.,,1246
+GRID,6,,20.,40.,0.,,1246
+CQUAD4,1,1,1,5,6,2
+CQUAD4,2,1,5,3,4,6
+CELAS2,3,200.,3,3
+CELAS2,4,200.,4,3
+PSHELL,1,1,20.,1,,1
+MAT1,1,7.+9,,0.3
+CONM2,9,5,,0.01
+CONM2,10,6,,0.01
+CONM2,11,3,,0.004
+CONM2,12,4,,0.004
+ENDDATA
+"""
+    magnitude = {"stiffness": 600.0, "components": [3], "free_components": [5]}
+    what = finding("support_flexibility", magnitude, grids=[1, 2])
+    _, found = completed(tmp_path, deck, what)
+    x, m = np.array([0.0, 20.0, 40.0]), np.array([0.0, 0.02, 0.008])
+    M = np.array([[m.sum(), m @ x], [m @ x, m @ x**2]])
+    K = np.array([[1000.0, 400.0 * 40.0], [400.0 * 40.0, 400.0 * 40.0**2]])
+    expected = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)) / (2.0 * np.pi)
+    np.testing.assert_allclose(found[:2], expected, rtol=1e-3)

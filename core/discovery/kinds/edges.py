@@ -1,0 +1,130 @@
+"""Edges along which shells are held, and the stretches of them that may give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from ...arrays import Bools, Floats, Ints
+from ..structure import Structure, Supports
+
+_ALIKE = 0.98
+"""Cosine of the angle by which an edge, or the shells on it, may turn from side to side."""
+_ENDS = 18
+"""Places along an edge where a stretch may begin or end, at most about so many."""
+_SHORTEST = 0.03
+"""Length of a stretch at least, beside the size of the structure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """Held grids in their order along an edge.
+
+    Parameters
+    ----------
+    grids : (n,) int
+        Grid numbers.
+    xyz, along, normal : (n, 3) float
+        Where they are, the direction of the edge there, the normal of its shells.
+    """
+
+    grids: Ints
+    xyz: Floats
+    along: Floats
+    normal: Floats
+
+    def stretches(self, size: float) -> Iterator[tuple[int, int, slice]]:
+        """Return stretches of several grids that begin and end at one of a few places.
+
+        The numbers of these places come first.
+        """
+        n = len(self.grids)
+        ends = np.unique(np.linspace(0, n - 1, min(n, _ENDS)).round().astype(int))
+        length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.xyz, axis=0), axis=1))]
+        for a, first in enumerate(ends):
+            for b, last in enumerate(ends):
+                if length[last] - length[first] > _SHORTEST * size:
+                    yield a, b, slice(first, last + 1)
+
+
+def edges_of(structure: Structure, s: Supports) -> list[Edge]:
+    """Return the held edges of shells, each as far as it goes on without a bend.
+
+    An edge is made of sides of shells both grids of which are held, of shells that are not held
+    as a whole.
+    """
+    g = structure.model.geometry
+    held = np.zeros(len(g.ids), bool)
+    held[g.index_of(np.unique(s.grid))] = True
+    ends, along, normal = _sides(structure, held)
+    out = []
+    for rows in _continued(ends, along, normal):
+        grids, at = _walk(ends[rows])
+        t, n = along[rows][at], normal[rows][at]
+        out.append(Edge(g.ids[grids], g.xyz[grids], t, n))
+    return out
+
+
+def _sides(structure: Structure, held: Bools) -> tuple[Ints, Floats, Floats]:
+    """Grids (n, 2) of the sides that are held, their directions and normals, (n, 3) each."""
+    xyz = structure.model.geometry.xyz
+    ends, normals = [np.zeros((0, 2), np.int64)], [np.zeros((0, 3))]
+    for m in structure.members:
+        if m.shape not in {"quad", "tria"}:
+            continue
+        corners = m.corners[~held[m.corners].all(axis=1)]
+        x = xyz[corners]
+        n = np.cross(x[:, 1] - x[:, 0], x[:, -1] - x[:, 0])
+        for a in range(corners.shape[1]):
+            side = np.sort(corners[:, [a - 1, a]], axis=1)
+            on = held[side].all(axis=1)
+            ends.append(side[on])
+            normals.append(n[on])
+    own, first = np.unique(np.vstack(ends), axis=0, return_index=True)
+    along = xyz[own[:, 1]] - xyz[own[:, 0]]
+    return own, _unit(along), _unit(np.vstack(normals)[first])
+
+
+def _unit(v: Floats) -> Floats:
+    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=1), np.finfo(float).tiny)[:, None])
+
+
+def _continued(ends: Ints, along: Floats, normal: Floats) -> list[Ints]:
+    """Rows of sides that continue each other."""
+    n = len(ends)
+    order = np.argsort(ends.ravel(), kind="stable")
+    grids = ends.ravel()[order]
+    first, last = [], []
+    for group in np.split(order // 2, np.flatnonzero(np.diff(grids)) + 1):
+        for k, a in enumerate(group):
+            for b in group[k + 1 :]:
+                straight = abs(float(along[a] @ along[b])) > _ALIKE
+                if straight and abs(float(normal[a] @ normal[b])) > _ALIKE:
+                    first.append(a)
+                    last.append(b)
+    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
+    number, label = connected_components(graph, directed=False)
+    return [np.flatnonzero(label == k) for k in range(number)]
+
+
+def _walk(ends: Ints) -> tuple[Ints, Ints]:
+    """Grids of sides in their order, a closed line opened anywhere, and a side of each."""
+    at: dict[int, list[int]] = {}
+    for k, pair in enumerate(ends.tolist()):
+        for grid in pair:
+            at.setdefault(grid, []).append(k)
+    grid = min(at, key=lambda g: (len(at[g]), g))
+    grids, sides, left = [grid], [at[grid][0]], set(range(len(ends)))
+    while onward := [k for k in at[grid] if k in left]:
+        k = onward[0]
+        left.discard(k)
+        grid = int(ends[k].sum() - grid)
+        grids.append(grid)
+        sides.append(k)
+    if grids[0] == grids[-1]:
+        grids, sides = grids[:-1], sides[:-1]
+    return np.array(grids), np.array(sides)
