@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from .alike import distinct
 from .candidates import Suspect
@@ -109,11 +110,24 @@ def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Return the best and the next few that gained nearly as much over `base`."""
+    """Return the best and the next few that gained nearly as much over `base`.
+
+    One that changes the other matrix, where none of these does, comes along: while several
+    effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
+    """
     if not fits:
         return []
     near = fits[0].objective + _CLOSE * (base - fits[0].objective)
-    return [f for f in fits[: searcher.effort.beam - 1] if f is fits[0] or f.objective < near]
+    close = [f for f in fits if f is fits[0] or f.objective < near]
+    kept = close[: searcher.effort.beam - 1]
+    changed = {m for f in kept for m in _changed(searcher, f)}
+    others = (f for f in close[len(kept) :] if not _changed(searcher, f) <= changed)
+    return [*kept, *islice(others, 1)]
+
+
+def _changed(searcher: Searcher, f: Fit) -> set[str]:
+    """Return which matrices a hypothesis changes."""
+    return {searcher.problem.catalogue[s.kind].law.on for s in f.suspects}
 
 
 def _leagues(searcher: Searcher, fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
