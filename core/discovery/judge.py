@@ -11,16 +11,15 @@ from ..arrays import Floats
 from .alike import unmatched
 from .beam import Found
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, mode_misfits, on_whole_test, solve
+from .fitting import Fit, Problem, mode_misfits, on_whole_test, solve
 from .hearing import misfit_of_responses
-from .scanning import scan
 from .search import Searcher
 
 _MARGIN = 10.0
 _BESIDE, _SAME_EFFECT = 0.2, 40.0
 """Suspects of one nature nearer than this part of the structure cost this much more."""
 _PER_MODE = 5.0
-_CREDIBLE = 6.0
+CREDIBLE = 6.0
 _MOST_NOISE = 3.0
 _OVERLOOKED = 4.0
 """Twice −ln of the share of modes in its band that a test overlooks, one in seven."""
@@ -202,7 +201,7 @@ def instead(
     for f in contenders(searcher, found, verdict.accepted):
         alone, others = _unmatched(searcher, best, f)
         behind = cost(searcher, f, verdict.scale) - here
-        if alone == [number] and len(others) == 1 and behind < _CREDIBLE:
+        if alone == [number] and len(others) == 1 and behind < CREDIBLE:
             out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))
     return out
 
@@ -220,33 +219,6 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
     gained = (left - kept) / scale
     clear = (gained > _CLEAR) & (gained > _SHARE * gained.max())
     return tuple(int(j) for j in np.flatnonzero(clear))
-
-
-def credible_places(
-    searcher: Searcher, best: Fit, number: int, scale: float
-) -> list[tuple[int, float]]:
-    """Return the places of one suspect that explain the data about as well, with weights.
-
-    Every place of its kind is evaluated with all else as fitted; those within a likelihood
-    ratio of exp(3) of the best are kept.
-    """
-    suspect = best.suspects[number]
-    others = best.suspects[:number] + best.suspects[number + 1 :]
-    c = searcher.problem.catalogue[suspect.kind]
-    near = np.flatnonzero(
-        np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1) < 0.12 * searcher.size
-    )[:400]
-    rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
-    without = evaluate(searcher.problem, best.log_p, others)
-    small, here = searcher.local(without)
-    trials = c.around(suspect.theta, np.array([-0.3, 0.0, 0.3]))
-    score = scan(small, here, suspect.kind, rows, trials).min(axis=1) / scale
-    off = score - score.min()
-    kept = np.flatnonzero(off < _CREDIBLE)
-    kept = kept[np.argsort(off[kept], kind="stable")][:40]
-    weight = np.exp(-0.5 * off[kept])
-    weight = weight / weight.sum()
-    return [(int(rows[i]), float(w)) for i, w in zip(kept, weight, strict=True)]
 
 
 def deviations(best: Fit, scale: float) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..alignment import Alignment
 from ..arrays import Bools, Floats
 from .beam import Found
 from .candidates import Candidates, Suspect
+from .credible import Place, between, credible_places
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
 from .fitting import Fit
@@ -17,7 +19,6 @@ from .judge import (
     Judgement,
     contenders,
     cost,
-    credible_places,
     deviations,
     explained,
     instead,
@@ -131,7 +132,8 @@ def _finding(
     c = searcher.problem.catalogue[s.kind]
     geometry = request.structure.model.geometry
     sizes = np.exp(s.theta)
-    spread = np.hypot(deviation, _SHAPE[c.law.on])
+    places = credible_places(searcher, best, number, verdict.scale)
+    spread = np.hypot(np.hypot(deviation, _SHAPE[c.law.on]), between(places))
     intervals = sizes[:, None] * np.exp(1.96 * spread[:, None] * np.array([-1.0, 1.0]))
     where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
     where["region"] = region(geometry, c.xyz[s.row])
@@ -146,7 +148,7 @@ def _finding(
         where,
         magnitude,
         interval,
-        _credible(searcher, found, verdict, number),
+        _credible(searcher, found, verdict, number, places),
         _confidence(verdict),
         sentence_of(c.kind, magnitude, where["region"], interval, modes, request.masses, next_best),
         {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
@@ -154,17 +156,13 @@ def _finding(
 
 
 def _credible(
-    searcher: Searcher, found: Found, verdict: Judgement, number: int
+    searcher: Searcher, found: Found, verdict: Judgement, number: int, places: Sequence[Place]
 ) -> tuple[dict[str, Any], ...]:
     """Places, and effects of other kinds, that explain the data about as well as one finding."""
     catalogue = searcher.problem.catalogue
-    best = found.levels[verdict.accepted]
-    own = best.suspects[number].kind
-    places = [
-        (own, row, weight) for row, weight in credible_places(searcher, best, number, verdict.scale)
-    ]
+    own = [(p.suspect.kind, p.suspect.row, p.weight) for p in places]
     others = [(s.kind, s.row, w) for s, w in instead(searcher, found, verdict, number)]
-    total = sum(w for _, _, w in (*places, *others))
+    total = sum(w for _, _, w in (*own, *others))
     return tuple(
         {
             **catalogue[kind].where[row],
@@ -172,7 +170,7 @@ def _credible(
             "weight": w / total,
             "kind": catalogue[kind].kind,
         }
-        for kind, row, w in (*places, *others)
+        for kind, row, w in (*own, *others)
     )
 
 

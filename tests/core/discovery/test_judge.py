@@ -8,8 +8,9 @@ from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.beam import Found, grown
 from trueup.core.discovery.candidates import Suspect
+from trueup.core.discovery.credible import Place, between, credible_places
 from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.judge import cost, credible_places, enough, instead, judge, with_unseen
+from trueup.core.discovery.judge import cost, enough, instead, judge, with_unseen
 
 
 def found_in(s):
@@ -72,8 +73,31 @@ def test_the_credible_set_holds_the_truth_and_its_weights_are_shares():
     found, verdict = found_in(s)
     best = found.levels[verdict.accepted]
     places = credible_places(s, best, 0, verdict.scale)
-    assert 7 in [row for row, _ in places]
-    assert sum(w for _, w in places) == pytest.approx(1.0)
+    assert 7 in [p.suspect.row for p in places]
+    assert sum(p.weight for p in places) == pytest.approx(1.0)
+
+
+def test_a_place_is_as_credible_as_it_is_once_all_else_followed():
+    s = searcher(hidden(tension=1.1, masses=[(7, 1.0)]), scatter=(0.002, 0.02))
+    found, verdict = found_in(s)
+    best = found.levels[verdict.accepted]
+    (one,) = best.suspects
+    by_hand = np.array(
+        [
+            fit(s.problem, best.log_p, (replace(one, row=row),), s.active, 20).objective
+            for row in range(len(s.problem.catalogue[one.kind]))
+        ]
+    )
+    behind = (by_hand - by_hand.min()) / verdict.scale
+    places = {p.suspect.row: p.weight for p in credible_places(s, best, 0, verdict.scale)}
+    assert set(places) == set(np.flatnonzero(behind < 6.0).tolist())
+    expected = np.exp(-0.5 * behind[list(places)])
+    np.testing.assert_allclose(list(places.values()), expected / expected.sum(), atol=0.03)
+
+
+def test_sizes_that_differ_between_places_widen_the_interval():
+    places = [Place(Suspect(0, 1, (1.0, 5.0)), 0.75), Place(Suspect(0, 2, (2.0, 5.0)), 0.25)]
+    np.testing.assert_allclose(between(places), [np.sqrt(0.75 * 0.25), 0.0])
 
 
 def test_a_rival_of_another_kind_that_fits_as_well_is_told():
