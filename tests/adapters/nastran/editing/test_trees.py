@@ -1,17 +1,16 @@
 """Decks of several files, INCLUDE in all its forms: changed on disk, and only what must change.
 
-Each deck is generated: its cards in any format (see test_edit.py), spread over nested files with
-their own line ends and encodings, text before CEND, after ENDDATA and between the cards.
+Each deck is generated: its cards in any format (see written_decks.py), spread over nested files
+with their own line ends and encodings, text before CEND, after ENDDATA and between the cards.
 """
 
-import importlib.util
 import os
-import sys
 import tempfile
 from pathlib import Path
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.adapters.nastran.editing import written_decks
 
 from trueup.adapters.nastran import read_deck_text, split_property, write_deck, write_in_place
 from trueup.adapters.nastran.cards import cut, fields_of
@@ -24,13 +23,8 @@ from trueup.adapters.nastran.editing.write import names_in_tree
 from trueup.adapters.nastran.lines import read_sections
 from trueup.adapters.nastran.parameters import FieldRef
 
-spec = importlib.util.spec_from_file_location("test_edit", Path(__file__).parent / "test_edit.py")
-test_edit = importlib.util.module_from_spec(spec)
-sys.modules["test_edit"] = test_edit
-spec.loader.exec_module(test_edit)
-
 CARDS = [
-    *test_edit.CARDS,
+    *written_decks.CARDS,
     ["CQUAD4", "31", "3", "1", "2", "3", "4", "", "", "", "", "2.5"],
     ["CTRIA3", "32", "3", "1", "2", "3"],
     ["CBAR", "33", "11", "1", "2", "0.", "0.", "1."],
@@ -71,8 +65,8 @@ def trees(draw):
         for card, home in zip(cards, homes, strict=True):
             if home == name:
                 where[card[0], int(card[1])] = name
-                pieces.append(draw(test_edit.card_lines(card)))
-                pieces.append([draw(st.sampled_from(test_edit.BETWEEN))])
+                pieces.append(draw(written_decks.card_lines(card)))
+                pieces.append([draw(st.sampled_from(written_decks.BETWEEN))])
         for child in children[name]:
             form = draw(st.sampled_from(FORMS))
             lines = statement(form, child, os.path.dirname(name))
@@ -154,9 +148,9 @@ def test_nothing_asked_nothing_changed(tree):
 @given(trees(), st.data())
 def test_one_value_changed_in_place_touches_its_card_alone(tree, data):
     files, where = tree
-    card = data.draw(st.sampled_from(test_edit.CARDS))
-    ref, _ = data.draw(st.sampled_from(test_edit.references(card)))
-    value = data.draw(test_edit.VALUES)
+    card = data.draw(st.sampled_from(written_decks.CARDS))
+    ref, _ = data.draw(st.sampled_from(written_decks.references(card)))
+    value = data.draw(written_decks.VALUES)
     with Tree(files) as t:
         deck = read_deck_text(t.top)
         place = find_card(deck, ref.card, ref.id)
