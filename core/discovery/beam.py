@@ -46,6 +46,7 @@ def grown(
     searcher: Searcher,
     enough: Callable[[Fit, Fit, float], bool],
     progress: Callable[[str], None] = lambda _: None,
+    first: Sequence[Fit] = (),
 ) -> Found:
     """Grow the beam until one more suspect no longer earns its place.
 
@@ -57,11 +58,13 @@ def grown(
         what its suspects cost.
     progress : callable
         Told what happens.
+    first : sequence of Fit
+        Hypotheses of no suspect, one and more, the last of which is grown.
     """
-    levels = [searcher.settled(searcher.null())]
-    rivals: list[tuple[Fit, ...]] = [()]
-    beam = [levels[0]]
-    for depth in range(1, searcher.effort.most + 1):
+    levels = [*first] or [searcher.settled(searcher.null())]
+    rivals: list[tuple[Fit, ...]] = [() for _ in levels]
+    beam = levels[-1:]
+    for depth in range(len(levels), searcher.effort.most + 1):
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
         for state in beam:

@@ -17,14 +17,16 @@ import numpy as np
 from .beam import Found, grown
 from .candidates import Candidates, Suspect
 from .fitting import Fit
+from .guiding import guided
 from .judge import cost, enough, noise_scale, with_unseen
 from .search import Searcher
 
 _CLEARLY = 1.3
 """How many times what a simple effect gains a tuned one has to."""
 _TRIED = 3
-_UNEXPLAINED = 4.0
-"""How many times the assumed variance a best hypothesis leaves where nothing explains the test."""
+_MUCH, _UNEXPLAINED = 2.5, 4.0
+"""How many times the assumed variance a best hypothesis leaves that asks for a second opinion,
+and where nothing explains the test."""
 
 
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
@@ -37,7 +39,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
         Told what happens.
     """
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
-    found = grown(_with(searcher, [not t for t in tuned]), enough(searcher), progress)
+    found = _simple(_with(searcher, [not t for t in tuned]), progress)
     if not any(tuned):
         return found
     progress("looking for absorbers beside what was found")
@@ -48,19 +50,37 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     scale = _scale(searcher, found, found)
     top = beside[best]
     better = top is not None and cost(searcher, top, scale) < costs[best]
-    small = len(searcher.problem.basis.vectors) <= searcher.effort.twice
+    small = _small(searcher)
     clearly = (_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None)
     if better or any(clearly) or (small and (best or scale > _UNEXPLAINED)):
         other = grown(searcher, enough(searcher), progress)
-        other = simplified(searcher, other)
-        if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
-            return _joined(other, found)
-        return _joined(found, other)
+        return _better(searcher, found, simplified(searcher, other))
     rivals = [list(level) for level in found.rivals]
     for k, f in enumerate(beside[:-1]):
         if f is not None:
             rivals[k + 1].append(f)
     return Found(found.levels, tuple(tuple(level) for level in rivals))
+
+
+def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
+    """Search with simple kinds; where much is left, by a wider noise first as well."""
+    found = grown(searcher, enough(searcher), progress)
+    scale, best = _scale(searcher, found, found), int(np.argmin(_costs(searcher, found, found)))
+    if scale < _MUCH or (best and not _small(searcher)):
+        return found
+    progress("looking by a wider noise")
+    return _better(searcher, found, guided(searcher, progress))
+
+
+def _small(searcher: Searcher) -> bool:
+    return len(searcher.problem.basis.vectors) <= searcher.effort.twice
+
+
+def _better(searcher: Searcher, found: Found, other: Found) -> Found:
+    """Return the likelier of two outcomes with the levels of the other among its rivals."""
+    if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
+        return _joined(other, found)
+    return _joined(found, other)
 
 
 def simplified(searcher: Searcher, found: Found) -> Found:
