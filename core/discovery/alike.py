@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .candidates import Catalogue, Suspect
-from .fitting import Fit
+from .problem import Fit
 
 
 def distinct(fits: Sequence[Fit], catalogue: Catalogue, near: float) -> list[Fit]:

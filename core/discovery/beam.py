@@ -14,7 +14,8 @@ from itertools import islice
 
 from .alike import distinct
 from .candidates import Suspect
-from .fitting import Fit, evaluate, fit, softened
+from .fitting import evaluate, fit
+from .problem import Fit, softened
 from .search import Searcher
 
 _HOPELESS = 0.3

@@ -11,7 +11,7 @@ from ..correlation import realised
 from ..dofs import Dofs
 from ..model import Model
 from ..observation import observe
-from .fitting import Fit, Problem
+from .problem import Fit, Problem
 from .sensors import Verdicts, judge_sensors
 from .survey import Span, Survey
 

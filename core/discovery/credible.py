@@ -9,8 +9,9 @@ import numpy as np
 
 from ..arrays import Floats
 from .candidates import Suspect
-from .fitting import Fit, evaluate, fit
+from .fitting import evaluate, fit
 from .judge import CREDIBLE
+from .problem import Fit
 from .scanning import scan
 from .search import Searcher
 

@@ -9,7 +9,8 @@ import numpy as np
 from ..arrays import Floats, Ints
 from ..geometry import Geometry
 from ..model import Model
-from .fitting import Fit, Problem, misfit, solve
+from .fitting import misfit, solve
+from .problem import Fit, Problem
 
 _SENSORS = 3
 _APART = 0.1

@@ -20,7 +20,7 @@ from .candidates import Candidates
 from .compliance import Compliance, Flexibility, SharedFlexibility
 from .evidence import Evidence, noise_of
 from .findings import Discovery
-from .fitting import Fit, Prior, Problem, evaluate, fit
+from .fitting import evaluate, fit
 from .hearing import hearing, with_responses
 from .judge import (
     Judgement,
@@ -38,6 +38,7 @@ from .merging import merged
 from .mesh_error import lumping, with_consistent_bars
 from .paths import searched
 from .polish import polished
+from .problem import Fit, Prior, Problem
 from .request import Request as Request
 from .search import Searcher
 from .shaping import reshaped

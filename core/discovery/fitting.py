@@ -3,165 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
 
 from ..arrays import Floats, Ints
-from .basis import Basis, ReducedSum
-from .candidates import Catalogue, Suspect, changed, magnitudes
-from .evidence import Evidence, joint_macs, matched, mode_costs, targets
-from .laws import AttachedLaw, Law, ReleaseLaw, Rows
-from .responses import Heard
+from .basis import ReducedSum
+from .candidates import Suspect, changed, magnitudes
+from .evidence import joint_macs, matched, mode_costs, targets
+from .laws import AttachedLaw, ReleaseLaw
+from .problem import Fit, Problem
 
 _DEGENERATE = 2e-3
 _EDGE = 0.04
 """Of ln λ: how far within the measured band a mode counts in full as one too many."""
 _LEAST_DAMPING = 1e-10
-_SOFT, _TO_COME = 3.0, 5.0
-"""How many times the noise counts where wide valleys are wanted."""
 _REACH = 0.8
 """Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
 _FEW = 0.25
 """Share of the eigenpairs below which finding these alone takes less time than finding all."""
 _FIRST = np.zeros(1, np.int64)
-
-
-@dataclass(frozen=True, eq=False)
-class Prior:
-    """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter + 1,).
-
-    The last entry is that of the mesh error (θ of `mesh_error`), not a parameter of the model
-    and not a logarithm.
-    """
-
-    spread: Floats
-    lower: Floats
-    upper: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """What stays the same while hypotheses compete.
-
-    `factors` holds, for every kind of the catalogue, its rows on the basis, (n, q, r), `missing`
-    the flexibility of each that the basis lacks, (n, q), where it matters; `modes` eigenpairs are
-    computed, of which the first `columns` may match a test mode. `evidence` is the part of the
-    test that hypotheses are fitted to, at the rows `sensors` of the basis; `whole` is all of it,
-    at the rows `everywhere`. `heard` is what frequency responses say, where there are any.
-    """
-
-    evidence: Evidence
-    whole: Evidence
-    basis: Basis
-    sensors: Floats
-    everywhere: Floats
-    mesh: Floats
-    catalogue: Catalogue
-    factors: tuple[Rows, ...]
-    prior: Prior
-    modes: int
-    columns: int
-
-    missing: tuple[Rows | None, ...] = ()
-    turn: Floats | None = None
-    rest: Floats | None = None
-    held: tuple[Suspect, ...] = ()
-    heard: Heard | None = None
-
-    def turned(
-        self, T: Floats, rest: Floats | None = None, held: Sequence[Suspect] = ()
-    ) -> Problem:
-        """Return the problem on the basis ``vectors @ T``.
-
-        Parameters
-        ----------
-        T : (r, s) float
-        rest : (r, r - s) float, optional
-            What T leaves out, each vector divided by the root of its eigenvalue, so that the
-            static response that is lost can be put back into the laws.
-        held : sequence of Suspect, optional
-            Those whose model has the vectors T as modes: of what they do nothing is lost.
-        """
-        return replace(
-            self,
-            basis=self.basis.turned(T),
-            sensors=self.sensors @ T,
-            everywhere=self.everywhere @ T,
-            mesh=T.T @ self.mesh @ T,
-            turn=T if self.turn is None else self.turn @ T,
-            rest=rest,
-            held=tuple(held),
-        )
-
-    def entire(self) -> Problem:
-        """Return the problem with all of the test as evidence."""
-        return replace(self, evidence=self.whole, sensors=self.everywhere)
-
-    def part(self, kind: int, rows: Ints, log_p: Floats) -> tuple[Floats, Law]:
-        """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
-        c, U = self.catalogue[kind], self.factors[kind][rows]
-        known = self.missing[kind] if self.missing else None
-        missing = None if known is None else known[rows]
-        held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
-        if self.rest is not None and c.needs_flexibility and not held.all():
-            lost = _flexibility(U @ self.rest, isinstance(c.law, ReleaseLaw))
-            lost[held] = 0.0
-            missing = lost if missing is None else missing + lost
-        if isinstance(c.law, ReleaseLaw) and missing is not None:
-            law, W = c.law.coupled(rows, missing, log_p)
-            U = np.matmul(W, U)
-            return U if self.turn is None else U @ self.turn, law
-        top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        plain = c.law.on_basis(rows, missing, log_p, top)
-        return U if self.turn is None else U @ self.turn, plain
-
-
-def _flexibility(F: Floats, shared: bool) -> Floats:
-    """Return F Fᵀ of rows F (n, q, r), (n, q, q) if it is shared, else its diagonal (n, q)."""
-    if shared:
-        return np.asarray(np.matmul(F, F.transpose(0, 2, 1)))
-    return np.asarray(np.sum(F**2, axis=-1))
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """A hypothesis with its best parameters and magnitudes.
-
-    `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
-    the Gauss-Newton Hessian of half the objective, prior included, active parameters first;
-    `unseen` is the misfit of what was held out from the fit, `surplus` the number of modes in the
-    measured band that the test does not have, `in_deck` the ln p (n_parameter,)
-    that a deck with these effects needs, where no correction of its mesh helps; all where they
-    were asked for.
-    """
-
-    objective: float
-    misfit: float
-    log_p: Floats
-    suspects: tuple[Suspect, ...]
-    match: Ints
-    eigenvalues: Floats
-    vectors: Floats
-    information: Floats
-    active: tuple[int, ...]
-    unseen: float | None = None
-    surplus: float | None = None
-    in_deck: Floats | None = None
-
-
-def softened(problem: Problem) -> Problem:
-    """Return the problem with more noise: wider valleys, seen from places and sizes further off.
-
-    The known parameters have yet to follow, so that modes further apart turn within their subspace.
-    """
-    e = problem.evidence
-    n = e.noise
-    wide = replace(
-        n, frequency=_SOFT * n.frequency, shape=_SOFT * n.shape, mixing=_TO_COME * n.mixing
-    )
-    return replace(problem, evidence=replace(e, noise=wide))
 
 
 def _matrices(

@@ -13,8 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from .beam import Found, grown
-from .fitting import Fit, fit, softened
+from .fitting import fit
 from .judge import enough
+from .problem import Fit, softened
 from .search import Searcher
 
 _ITERATIONS = 15

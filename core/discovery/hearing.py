@@ -16,7 +16,8 @@ from ..geometry import Geometry
 from ..observation import observe
 from .damping import oriented
 from .findings import Discovery, ResponseGap
-from .fitting import Fit, Problem, evaluate, misfit
+from .fitting import evaluate, misfit
+from .problem import Fit, Problem
 from .request import Request
 from .responses import Heard, Responses, State, frac, heard, lacking, ratios_of, synthesised
 

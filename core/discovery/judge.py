@@ -11,8 +11,9 @@ from ..arrays import Floats
 from .alike import unmatched
 from .beam import Found
 from .candidates import Suspect
-from .fitting import Fit, Problem, mode_misfits, on_whole_test, solve
+from .fitting import mode_misfits, on_whole_test, solve
 from .hearing import misfit_of_responses
+from .problem import Fit, Problem
 from .search import Searcher
 
 _MARGIN = 10.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Ints
 from .candidates import Candidates
-from .fitting import Fit, Problem
+from .problem import Fit, Problem
 from .scanning import scan
 from .tuning import promising
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from .candidates import Candidates, Suspect
-from .fitting import Fit
+from .problem import Fit
 from .search import Searcher
 
 _NEAR = 0.09

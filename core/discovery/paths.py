@@ -16,9 +16,9 @@ import numpy as np
 
 from .beam import Found, grown
 from .candidates import Candidates, Suspect
-from .fitting import Fit
 from .guiding import guided
 from .judge import cost, enough, noise_scale, with_unseen
+from .problem import Fit
 from .search import Searcher
 
 _CLEARLY = 1.3

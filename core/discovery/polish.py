@@ -20,8 +20,9 @@ from ..model import Model
 from .basis import Basis, beside, reduced_sum
 from .candidates import Candidates, Suspect, magnitudes
 from .evidence import targets
-from .fitting import Fit, Problem, fit, on_whole_test, softened
+from .fitting import fit, on_whole_test
 from .mesh_error import lumping, with_consistent_bars
+from .problem import Fit, Problem, softened
 from .structure import Structure
 
 _DEPENDENT = 1e-5

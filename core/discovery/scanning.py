@@ -6,8 +6,8 @@ import numpy as np
 
 from ..arrays import Floats, Ints
 from .evidence import matched, mode_costs
-from .fitting import Fit, Problem
 from .laws import AttachedLaw
+from .problem import Fit, Problem
 
 _CHUNK = 64
 """Places at once: so few that their matrices stay near the processor."""

@@ -15,8 +15,9 @@ import numpy as np
 from ..arrays import Bools, Floats, Ints
 from .basis import structural
 from .candidates import Suspect
-from .fitting import Fit, Problem, evaluate, fit, promised, softened, solve
+from .fitting import evaluate, fit, promised, solve
 from .looking import look
+from .problem import Fit, Problem, softened
 from .scanning import best_apart, scan
 from .stretching import beside as stretches_beside
 

@@ -16,9 +16,10 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Ints
 from .candidates import Suspect
-from .fitting import Fit, evaluate
+from .fitting import evaluate
 from .kinds.patches import Patch, PatchCandidates, area_of
 from .laws import MassLaw
+from .problem import Fit
 from .scanning import scan
 from .search import Searcher
 from .structure import Members, Structure

@@ -58,9 +58,9 @@ def _count(ratio: float) -> str:
 
 
 def mode_ranges(modes: Sequence[int]) -> str:
-    """Return ``mode 7``, ``modes 3 and 7 to 12``: what follows each other is joined.
+    """Return ``test mode 7``, ``test modes 3 and 7 to 12``: what follows each other is joined.
 
-    Modes all over the test are counted: ``9 modes``.
+    Modes all over the test are counted: ``9 test modes``.
     """
     runs: list[list[int]] = []
     for m in sorted(modes):
@@ -69,9 +69,9 @@ def mode_ranges(modes: Sequence[int]) -> str:
         else:
             runs.append([m])
     if len(runs) > _RUNS:
-        return f"{len(modes)} modes"
+        return f"{len(modes)} test modes"
     words = []
     for run in runs:
         words += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else [str(m) for m in run]
     said = words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-    return f"mode{'s' if len(modes) > 1 else ''} {said}"
+    return f"test mode{'s' if len(modes) > 1 else ''} {said}"

@@ -14,7 +14,6 @@ from .candidates import Candidates, Suspect
 from .credible import Place, between, credible_places
 from .deciding import further_modes, further_sensors
 from .findings import Alternative, Discovery, Finding, MovedParameter
-from .fitting import Fit
 from .judge import (
     Judgement,
     contenders,
@@ -26,6 +25,7 @@ from .judge import (
     times,
 )
 from .places import region
+from .problem import Fit
 from .request import Request
 from .search import Searcher
 from .sensors import Verdicts

@@ -17,8 +17,8 @@ import numpy as np
 
 from ..arrays import Floats, Ints
 from .evidence import Evidence, targets
-from .fitting import Fit, Problem
 from .laws import AttachedLaw
+from .problem import Fit, Problem
 
 _NEAREST = 3
 """Modes i that are tried for each test mode, the best of them counts."""

@@ -11,8 +11,8 @@ from ..correlation import principal
 from .dampers import DamperFound, DampingEvidence, find_damper
 from .damping import Oriented, complex_modes, oriented
 from .evidence import Evidence
-from .fitting import Fit, Problem
 from .kinds.local_damper import PEAKS, Dashpots, dashpots
+from .problem import Fit, Problem
 from .request import Request
 
 _SHIFTED, _TURNED = 0.004, 0.1

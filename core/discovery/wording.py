@@ -93,7 +93,7 @@ def sentence_of(
         turning = "".join(str(k) for k in values["free_components"])
         values["components"] += f" and freely in direction {turning}"
     text = _SAYS[kind].format(**values)
-    what = f"test {mode_ranges(modes)}" if modes else "the test a little better"
+    what = mode_ranges(modes) if modes else "the test a little better"
     text += f" explains {what} (95 %: {low} to {high}"
     text += ", the test hardly tells)" if interval[1] > _HARDLY * interval[0] else ")"
     if next_best is not None:

@@ -9,8 +9,8 @@ import scipy.sparse as sp
 from trueup.core.discovery.basis import Basis, ReducedSum
 from trueup.core.discovery.candidates import Candidates
 from trueup.core.discovery.evidence import Evidence, Noise
-from trueup.core.discovery.fitting import Prior, Problem
 from trueup.core.discovery.laws import MassLaw, SpringLaw, TunedLaw
+from trueup.core.discovery.problem import Prior, Problem
 from trueup.core.discovery.search import Effort, Searcher
 from trueup.core.model import Factor, Term
 

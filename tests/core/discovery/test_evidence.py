@@ -13,7 +13,7 @@ from trueup.core.discovery.evidence import (
     mode_costs,
     noise_of,
 )
-from trueup.core.discovery.fitting import Prior, Problem, softened
+from trueup.core.discovery.problem import Prior, Problem, softened
 from trueup.core.weighting import ModeErrors
 
 RNG = np.random.default_rng(0)

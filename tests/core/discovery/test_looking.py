@@ -7,9 +7,10 @@ import pytest
 from tests.core.discovery.strings import N, hidden, searcher
 
 from trueup.core.discovery import looking
-from trueup.core.discovery.fitting import evaluate, softened
+from trueup.core.discovery.fitting import evaluate
 from trueup.core.discovery.laws import FactorLaw, MassLaw
 from trueup.core.discovery.looking import every_other, look
+from trueup.core.discovery.problem import softened
 from trueup.core.discovery.scanning import scan
 
 

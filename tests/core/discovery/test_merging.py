@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import Fit
 from trueup.core.discovery.merging import merged
+from trueup.core.discovery.problem import Fit
 
 XYZ = np.array([[0.0, 0, 0], [50.0, 0, 0], [500.0, 0, 0]])
 

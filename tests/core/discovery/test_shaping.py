@@ -10,9 +10,10 @@ import scipy.sparse as sp
 from trueup.core.discovery.basis import Basis, ReducedSum
 from trueup.core.discovery.candidates import Suspect
 from trueup.core.discovery.evidence import Evidence, Noise
-from trueup.core.discovery.fitting import Prior, Problem, fit
+from trueup.core.discovery.fitting import fit
 from trueup.core.discovery.kinds.patches import Patch, PatchCandidates
 from trueup.core.discovery.laws import FactorLaw
+from trueup.core.discovery.problem import Prior, Problem
 from trueup.core.discovery.search import Effort, Searcher
 from trueup.core.discovery.shaping import reshaped, variants
 from trueup.core.discovery.structure import Structure

@@ -15,11 +15,11 @@ from trueup.core.discovery.wording import sentence_of
 @pytest.mark.parametrize(
     ("modes", "said"),
     [
-        ([4], "mode 4"),
-        ([3, 4], "modes 3 and 4"),
-        ([12, 7, 8, 9, 10, 11], "modes 7 to 12"),
-        ([1, 3, 7, 8, 9], "modes 1, 3 and 7 to 9"),
-        ([1, 3, 5, 7, 9, 10], "6 modes"),
+        ([4], "test mode 4"),
+        ([3, 4], "test modes 3 and 4"),
+        ([12, 7, 8, 9, 10, 11], "test modes 7 to 12"),
+        ([1, 3, 7, 8, 9], "test modes 1, 3 and 7 to 9"),
+        ([1, 3, 5, 7, 9, 10], "6 test modes"),
     ],
 )
 def test_modes_in_ranges(modes, said):
