@@ -1,8 +1,8 @@
-"""``python -m benchmarks.discovery.calibrate FOLDER...``: what share of findings is right.
+"""``python -m benchmarks.discovery.calibrate FOLDER``: what share of findings is right.
 
 Fits the two figures of `trueup.core.discovery.telling` that turn a posterior into a confidence,
 by maximum likelihood over findings whose truth is known (Platt 1999 with the posterior and the
-noise that is left as features), from folders of cases with ``truth.json`` and ``result.json``.
+noise that is left as features), from a folder of cases with ``truth.json`` and ``result.json``.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +22,10 @@ from .score import score
 _FAULT = "sensor_"
 
 
-def findings(folder: Path) -> list[tuple[float, float, bool]]:
+def findings(places: Iterable[Path]) -> list[tuple[float, float, bool]]:
     """Return posterior, noise scale and whether it is right of every finding of the model side."""
     out = []
-    for place in sorted(p.parent for p in folder.rglob("truth.json")):
-        if not (place / "result.json").exists():
-            continue
+    for place in places:
         result: dict[str, Any] = json.loads((place / "result.json").read_text())
         if result is None or "judgement" not in result:
             continue
@@ -56,8 +55,12 @@ def main() -> int:
     a = argparse.ArgumentParser(
         prog="python -m benchmarks.discovery.calibrate", description=__doc__
     )
-    a.add_argument("folders", type=Path, nargs="+")
-    known = [f for folder in a.parse_args().folders for f in findings(folder)]
+    a.add_argument("folder", type=Path)
+    a.add_argument("--every", type=int, default=1, help="only every so many, of the sorted names")
+    a.add_argument("--start", type=int, default=0, help="from which one on")
+    o = a.parse_args()
+    places = sorted(p.parent for p in o.folder.rglob("result.json"))
+    known = findings(p for p in places[o.start :: o.every] if (p / "truth.json").exists())
     if not known:
         sys.stderr.write("no folder holds a truth.json beside a result.json with a judgement\n")
         return 1

@@ -84,35 +84,37 @@ def _better(searcher: Searcher, found: Found, other: Found) -> Found:
 
 
 def simplified(searcher: Searcher, found: Found) -> Found:
-    """Return an outcome with absorbers replaced where a mass or a spring there does as well.
+    """Return an outcome with absorbers replaced where a mass or a spring there does nearly as well.
 
-    Tuned far above the band an absorber is a mass, far below it a spring to ground: the kinds
-    with one magnitude cost less, and count where they explain as much.
+    Tuned far above the band an absorber is a mass, far below it a spring to ground. Tuned within
+    the band it does what neither can; where it hardly gains more it makes up for what is wrong with
+    the structure under it.
     """
     levels, rivals = list(found.levels), [list(level) for level in found.rivals]
     scale = _scale(searcher, found, found)
-    for k, f in enumerate(levels):
-        for trial in _limits(searcher, f):
-            if cost(searcher, trial, scale) < cost(searcher, levels[k], scale):
+    for k, f in enumerate(found.levels):
+        for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
+            others = f.suspects[:q] + f.suspects[q + 1 :]
+            fits = (searcher.fitted(f, others, 8), levels[k], *_limits(searcher, levels[k], q))
+            without, own, *simple = (cost(searcher, t, scale) for t in fits)
+            best = int(np.argmin(simple))
+            if simple[best] < own:
                 rivals[k].append(levels[k])
-                levels[k] = trial
+            if simple[best] < own or without - own < _CLEARLY * (without - simple[best]):
+                levels[k] = fits[2 + best]
     return Found(tuple(levels), tuple(tuple(level) for level in rivals))
 
 
-def _limits(searcher: Searcher, f: Fit) -> list[Fit]:
-    """Return fits with one absorber replaced by the spring or the mass it becomes at its limits."""
+def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
+    """Return fits with an absorber replaced by the spring or the mass it becomes at its limits."""
     catalogue, out = searcher.problem.catalogue, []
-    for q, s in enumerate(f.suspects):
-        own = catalogue[s.kind]
-        if own.tunings == 1:
-            continue
-        mass, hz = np.exp(s.theta)
-        sizes = {"ground_spring": mass * (2.0 * np.pi * hz) ** 2, "point_mass": mass}
-        for kind, c in enumerate(catalogue):
-            if c.kind not in sizes or not c.rows_each:
-                continue
-            row = _same_place(own, s.row, c)
-            plain = Suspect(kind, row, (float(np.log(sizes[c.kind])),))
+    s = f.suspects[q]
+    own = catalogue[s.kind]
+    mass, hz = np.exp(s.theta)
+    sizes = {"ground_spring": mass * (2.0 * np.pi * hz) ** 2, "point_mass": mass}
+    for kind, c in enumerate(catalogue):
+        if c.kind in sizes and c.rows_each:
+            plain = Suspect(kind, _same_place(own, s.row, c), (float(np.log(sizes[c.kind])),))
             suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
             out.append(searcher.refined(searcher.fitted(f, suspects, 8)))
     return out
