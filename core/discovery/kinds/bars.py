@@ -49,24 +49,38 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
     return out
 
 
+def bare_bars(structure: Structure) -> list[tuple[int, Ints]]:
+    """Return number of the member and rows of line elements that bend, off the shells."""
+    shelled = _shelled(structure)
+    return [
+        (number, np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1)))
+        for number, m in enumerate(structure.members)
+        if m.shape == "line" and m.block.width == 6
+    ]
+
+
+def _shelled(structure: Structure) -> Bools:
+    """Whether each grid is one of a shell or solid."""
+    out = np.zeros(len(structure.model.geometry.ids), bool)
+    for m in structure.members:
+        if m.shape not in {"line", "point"}:
+            out[m.corners.ravel()] = True
+    return out
+
+
 def _bars(structure: Structure) -> list[tuple[int, Ints]]:
     """Return number of the member and rows, in order, of the elements of each bar."""
-    n = len(structure.model.geometry.ids)
-    count, shelled = np.zeros(n, np.int64), np.zeros(n, bool)
+    g = structure.model.geometry
+    count = np.zeros(len(g.ids), np.int64)
     for m in structure.members:
         if m.shape == "line":
             np.add.at(count, m.corners[:, :2].ravel(), 1)
-        elif m.shape != "point":
-            shelled[m.corners.ravel()] = True
-    through = (count == 2) & ~shelled
-    out = []
-    for number, m in enumerate(structure.members):
-        if m.shape != "line" or m.block.width != 6:
-            continue
-        free = np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1))
-        for rows in _chains(m.corners[free, :2], through, structure.model.geometry.xyz):
-            out.append((number, free[rows]))
-    return out
+    through = (count == 2) & ~_shelled(structure)
+    return [
+        (number, free[rows])
+        for number, free in bare_bars(structure)
+        for rows in _chains(structure.members[number].corners[free, :2], through, g.xyz)
+    ]
 
 
 def _lengths(structure: Structure, m: Members, rows: Ints) -> Floats:

@@ -11,6 +11,7 @@ from ...arrays import Floats, Ints
 from ..candidates import Candidates
 from ..laws import MassLaw
 from ..structure import Structure
+from .bars import bare_bars
 from .patches import Patch, PatchCandidates, patches_of
 from .scale import Scale
 
@@ -22,8 +23,8 @@ _SHELLS = ("quad", "tria")
 def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Masses at points, and masses on small patches of shells.
 
-    Points are grids and the middles of shells and their edges. Equipment has a footprint, and a
-    thin shell gives under a point far more than under a foot, so small patches count as well.
+    Points are grids and the middles of shells, their edges and bars. Equipment has a footprint,
+    and a thin shell gives under a point far more than under a foot, so small patches count as well.
     """
     points, xyz, grids = points_of(structure)
     at_points = Candidates(
@@ -63,7 +64,10 @@ def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, list[
 
 
 def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:
-    """Weights (n_point, n_grid), positions and grids of grids, shell middles and shell edges."""
+    """Weights (n_point, n_grid), positions and grids of the points of a structure.
+
+    Grids, the middles of shells and of their edges, and those of bars off the shells.
+    """
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
     carries = np.zeros(len(g.ids), bool)
@@ -83,6 +87,8 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[in
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)
             weights.append(_means(edges, len(g.ids)))
+    for number, rows in bare_bars(structure):
+        weights.append(_means(structure.members[number].corners[rows, :2], len(g.ids)))
     P = sp.vstack(weights).tocsr()
     grids = [g.ids[c].tolist() for c in np.split(P.indices, P.indptr[1:-1])]
     return P, np.asarray(P @ g.xyz), grids

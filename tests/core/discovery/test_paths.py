@@ -55,6 +55,21 @@ def test_an_absorber_at_its_limit_is_told_as_what_it_is_there(truth, theta, kind
     assert found.rivals[1][0] is tuned
 
 
+def test_an_absorber_that_gains_little_more_than_a_mass_is_told_as_one():
+    """A mass on a spring that is stiff, its own frequency just above the measured band."""
+    s = searcher(hidden(absorbers=[(9, 2.0, 6.6)]), modes_out=(4, 10))
+    null = s.null()
+    tuned, mass = (
+        fit(s.problem, null.log_p, (Suspect(kind, 9, theta),), (0,), 20)
+        for kind, theta in ((2, (0.7, 1.9)), (0, (0.7,)))
+    )
+    assert tuned.objective < mass.objective - 20.0
+    found = simplified(s, Found((null, tuned), ((), ())))
+    (suspect,) = found.levels[1].suspects
+    assert (s.problem.catalogue[suspect.kind].kind, suspect.row) == ("point_mass", 9)
+    assert found.rivals[1] == ()
+
+
 def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
     s = searcher(hidden(absorbers=[(9, 0.6, 2.3)], masses=[(22, 3.0)]), modes_out=(4, 10))
     kinds, best = told(s)
