@@ -18,6 +18,11 @@ _MOVED = 2e-3
 """Parameters that move less than this stay as the deck has them."""
 
 
+def written(verdict: str, factor: float) -> float:
+    """Return the factor by which the completed deck has a known property."""
+    return factor if verdict in ADOPTED and abs(factor - 1.0) > _MOVED else 1.0
+
+
 def completed(
     study: Study,
     deck: Any,
@@ -98,7 +103,7 @@ def complete(
         moved = {
             ref: value * m.factor
             for m in found.parameters
-            if abs(m.factor - 1.0) > _MOVED
+            if written(found.verdict, m.factor) != 1.0
             for ref, value in zip(
                 specs[m.number].fields, model.parameters[m.number].deck_values, strict=True
             )

@@ -229,7 +229,7 @@ def _slopes(lin: Linearisation, motion: Floats, mass: bool) -> Floats:
     slope = np.empty((len(motion), *lin.residual.shape))
     slope[:, :, 0] = np.einsum("prj,prj->pj", own, own) * factor * lin.by_eigenvalue
     slope[:, :, 1:] = np.moveaxis(change @ lin.by_mode, 0, 1)
-    return slope.reshape(len(motion), -1)
+    return slope.reshape(len(motion), lin.residual.size)
 
 
 def _common(lin: Linearisation) -> Floats:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ..completing import ADOPTED, completed
+from ..completing import completed, written
 from ..console import stderr, working
 from ..options import Output
 from ..study import Study
@@ -253,7 +253,7 @@ def discover_tables(
                 "cards": list(model.parameters[m.number].handle),
                 "initial": list(model.parameters[m.number].deck_values),
                 "updated": [
-                    v * (m.factor if found.verdict in ADOPTED else 1.0)
+                    v * written(found.verdict, m.factor)
                     for v in model.parameters[m.number].deck_values
                 ],
                 "factor": m.factor,

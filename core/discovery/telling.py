@@ -34,7 +34,7 @@ from .telling_sensors import accusations, remarks
 from .wording import magnitude_of, sentence_of
 
 _SIGNIFICANT = 3.0
-_SURE = 0.6
+_SURE = 0.8
 _CONTRADICTED = -4.0
 """Held-out modes and sensors that are likelier by e² without the last effect speak against it."""
 _UNEXPLAINED = 8.0
@@ -195,7 +195,7 @@ def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
             k,
             float(np.exp(value)),
             float(np.exp(value)) * float(spread[best.active.index(k)]),
-            abs(float(best.log_p[k])) > _SIGNIFICANT * float(spread[best.active.index(k)]),
+            abs(float(value)) > _SIGNIFICANT * float(spread[best.active.index(k)]),
         )
         for k, value in enumerate(values)
     )

@@ -65,9 +65,18 @@ def test_a_deck_unit_by_which_the_sizes_cannot_agree_is_refused(unit, tmp_path, 
 
 
 def test_parameters_alone_are_enough_where_nothing_is_missing(tmp_path):
-    result, _ = discovered("tower_frame", "tower", tmp_path)
+    from trueup.adapters.nastran import parse_parameter, read_deck
+    from trueup.adapters.nastran.variation import value_of
+
+    result, out = discovered("tower_frame", "tower", tmp_path)
     assert result["verdict"] == "parameters_only"
     assert result["findings"] == []
+    completed = read_deck(out / result["deck"])
+    for p in result["parameters"]:
+        card, number, fields = p["name"].split()
+        specs = [parse_parameter(f"{card} {number} {f}") for f in fields.split("+")]
+        stands = [value_of(completed, f) for spec in specs for f in spec.fields]
+        assert stands == pytest.approx(p["updated"], rel=1e-5)
     gap = result["gap"]
     assert (
         gap["held_out"]["after"]["mean_abs_deviation_percent"]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.linalg
+import scipy.sparse as sp
 
 from trueup.core.correlate import Criteria, correlate
 from trueup.core.errors import InputError
@@ -124,3 +125,11 @@ def test_many_places_in_chunks_are_the_same_as_few():
 def test_rotated_test_side_is_refused():
     with pytest.raises(InputError, match="analysis side rotated"):
         prepared(rotate="test")
+
+
+@pytest.mark.parametrize("evidence", [mass_evidence, stiffness_evidence])
+def test_patches_of_no_places_explain_nothing(evidence):
+    """As around rods, which have no bending."""
+    lin, _ = prepared()
+    found = evidence(lin, np.zeros((0, 2, MODES)), sp.csr_matrix((3, 0)))
+    assert found.explained.tolist() == [0.0, 0.0, 0.0]

@@ -32,6 +32,8 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         D = np.take_along_axis(Q, turning[:, :, None], axis=1)
         d, R = np.linalg.eigh(D)
         stiff = d[:, 0] > 1e-9 * d[:, -1]
+        if not stiff.any():
+            continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
         turning = turning[stiff]
         elastic.append(_elasticity(m, chosen[:, 0], turning, R, d, p))
