@@ -162,7 +162,10 @@ def _warnings(warnings: Sequence[str]) -> str:
 
 def style() -> str:
     """Return the style sheet of the pages, light and dark."""
-    ramp = "".join(f".c{k}{{fill:var(--c{k})}}" for k in range(colour.STEPS))
+    ramp = "".join(
+        f".c{k}{{fill:var(--c{k})}}.mesh .bar.k{k}{{stroke:var(--c{k})}}"
+        for k in range(colour.STEPS)
+    )
     ramp += "".join(f".f{k}{{fill:var(--f{k})}}" for k in range(6))
     dark = colour.variables(dark=True)
     return (

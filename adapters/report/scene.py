@@ -23,6 +23,8 @@ from .surface import (
 
 _SHADES = 6
 _SLICES = 48
+_PALEST = 3
+"""Step of the ramp below which a line on the page would not be seen."""
 _LIGHT = np.array([0.35, -0.55, 0.76])
 
 
@@ -193,7 +195,7 @@ def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
     projected = view.project(mesh.xyz)
     pixels = np.rint(page.at(projected) * 2.0).astype(np.int64)
     shapes = [pixels[_corners(face)] for face in mesh.faces] + [pixels[line] for line in mesh.lines]
-    classes = [*_face_classes(mesh, values), *["~bar"] * len(mesh.lines)]
+    classes = [*_face_classes(mesh, values), *_line_classes(mesh, values)]
     depth = np.concatenate([projected[e, 2].mean(axis=1) for e in (mesh.faces, mesh.lines)])
     depth[len(mesh.faces) :] -= 0.004 * mesh.size
     order = np.argsort(-depth)
@@ -201,7 +203,7 @@ def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
     painted: dict[tuple[float, str], str] = {}
     for k in order:
         key = (slices[k], classes[k])
-        end = "" if classes[k] == "~bar" else "z"
+        end = "" if classes[k].startswith("~bar") else "z"
         painted[key] = painted.get(key, "") + _outline(shapes[k]) + end
     paths = "".join(
         f'<path class="{name.lstrip("~")}" d="{d}"/>' for (_, name), d in sorted(painted.items())
@@ -231,11 +233,24 @@ def _face_classes(mesh: Surface, values: Floats | None) -> list[str]:
     shade = np.minimum((lit * _SHADES).astype(int), _SHADES - 1)
     if values is None:
         return [f"f{s}" for s in shade]
-    coloured = _node_means(mesh, values)[mesh.faces]
-    known = np.isfinite(coloured).any(axis=1)
-    mean = np.nan_to_num(coloured).sum(axis=1) / np.maximum(np.isfinite(coloured).sum(axis=1), 1)
+    step = _steps(mesh, values, mesh.faces)
+    return [f"c{c}" if c >= 0 else f"f{s}" for c, s in zip(step, shade, strict=True)]
+
+
+def _line_classes(mesh: Surface, values: Floats | None) -> list[str]:
+    if values is None:
+        return ["~bar"] * len(mesh.lines)
+    steps = _steps(mesh, values, mesh.lines)
+    return [f"~bar k{max(c, _PALEST)}" if c >= 0 else "~bar" for c in steps]
+
+
+def _steps(mesh: Surface, values: Floats, cells: Ints) -> Ints:
+    """Return the step of the ramp of faces or lines, the mean of their nodes; −1 unknown."""
+    coloured = _node_means(mesh, values)[cells]
+    known = np.isfinite(coloured)
+    mean = np.nan_to_num(coloured).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
     step = np.clip((mean * STEPS).astype(int), 0, STEPS - 1)
-    return [f"c{c}" if k else f"f{s}" for c, k, s in zip(step, known, shade, strict=True)]
+    return np.asarray(np.where(known.any(axis=1), step, -1))
 
 
 def _node_means(mesh: Surface, values: Floats) -> Floats:

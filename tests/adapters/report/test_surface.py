@@ -161,6 +161,13 @@ def test_faces_take_the_colour_of_their_nodes() -> None:
     assert 'class="c19"' not in scene(block(1), "Block")
 
 
+def test_lines_take_the_colour_of_their_ends_and_are_never_too_pale_to_see() -> None:
+    x = [[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]
+    frame = Geometry(np.arange(4), x, None, {"line": [[0, 1], [1, 2], [2, 3]]})
+    svg = scene(frame, "Frame", values=np.array([0.0, 0.0, 1.0, 1.0]))
+    assert [svg.count(f'class="bar k{k}"') for k in (3, 10, 19)] == [1, 1, 1]
+
+
 def test_marks_far_off_do_not_shrink_the_structure() -> None:
     away = Mark(np.array([1e9, 0.0, 0.0]), "effect", text="1")
     assert (
