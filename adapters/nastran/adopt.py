@@ -241,16 +241,21 @@ def _detached(
     grid: int,
     free: Sequence[int] = (),
 ) -> DeckText:
-    """Attach some elements of a grid to a new one, sprung or free in some components only."""
-    new, number = free_id(text, "grid"), free_id(text, "element")
+    """Attach some elements of a grid to a new one, sprung or free in some components only.
+
+    The bushing between the two lies in the displacement system of the grid.
+    """
+    new, number, pid = (free_id(text, what) for what in ("grid", "element", "property"))
     xyz = _grid_xyz(deck, grid)
     cd = int(deck.bulk.table("GRID")[grid].cd or 0)
     stiff = "".join(str(c) for c in range(1, 7) if c not in (*components, *free))
     k = float(finding.magnitude["stiffness"]) / len(finding.where["grids"])
+    along = [k if c in components else None for c in range(1, max(components) + 1)]
     rows: list[Row] = [
         ["GRID", new, 0, *(float(v) for v in xyz), cd],
-        ["RBE2", number, grid, stiff, new],
-        *(["CELAS2", number + 1 + i, k, grid, c, new, c] for i, c in enumerate(components)),
+        *([["RBE2", number, grid, stiff, new]] if stiff else []),
+        ["PBUSH", pid, "K", *along],
+        ["CBUSH", number + 1, pid, grid, new, None, None, None, cd],
     ]
     edits = []
     for name, first in _FIRST_GRID.items():

@@ -140,8 +140,9 @@ def _verdict_sentence(verdict: str) -> str:
 
 
 def _of(now: Summary) -> str:
-    of = f" of {now.test_modes} test modes" if now.test_modes else " test modes"
-    return f"{now.pairs}{of} {'pairs' if now.pairs == 1 else 'pair'}"
+    of = f"{now.pairs} of {now.test_modes} test modes"
+    modes = of if now.test_modes else counted(now.pairs or 0, "test mode")
+    return f"{modes} {'pairs' if now.pairs == 1 else 'pair'}"
 
 
 def _change(old: Summary, new: Summary, what: str) -> str:

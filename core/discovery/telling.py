@@ -38,7 +38,9 @@ _SURE = 0.8
 _CONTRADICTED = -4.0
 """Held-out modes and sensors that are likelier by e² without the last effect speak against it."""
 _UNEXPLAINED = 8.0
-_RIVALS = 3
+_RIVALS, _RIVAL = 3, 14.0
+"""Hypotheses that further data should tell from the best, those less than a thousand times less
+likely (twice the log)."""
 _SHAPE = {"M": (0.15,), "K": (0.25,), "A": (0.08, 0.02)}
 """Error of ln magnitudes, for masses, stiffnesses and absorbers, that comes of a place or patch
 which is not quite the true one and of the mesh: as measured on generated cases
@@ -246,16 +248,18 @@ def _would_decide(
 ) -> tuple[str, ...]:
     """Say which sensors and modes tell the best hypotheses apart."""
     best = found.levels[verdict.accepted]
-    near = sorted(
-        contenders(searcher, found, verdict.accepted),
-        key=lambda f: cost(searcher, f, verdict.scale),
-    )[:_RIVALS]
     simpler = found.levels[: verdict.accepted][-1:]
-    rivals = tuple((_in_words(request, searcher, f), f) for f in (*near, *simpler))
+    rivals = sorted(
+        (*contenders(searcher, found, verdict.accepted), *simpler),
+        key=lambda f: cost(searcher, f, verdict.scale),
+    )
+    here = cost(searcher, best, verdict.scale)
+    near = [f for f in rivals if cost(searcher, f, verdict.scale) - here < _RIVAL] or rivals[:1]
+    told_apart = tuple((_in_words(request, searcher, f), f) for f in near[:_RIVALS])
     p, model = searcher.problem, request.structure.model
     return (
-        *further_sensors(p, model, best, rivals, request.numbers[~held]),
-        *further_modes(p, model, best, rivals),
+        *further_sensors(p, model, best, told_apart, request.numbers[~held]),
+        *further_modes(p, model, best, told_apart),
     )
 
 
