@@ -90,7 +90,7 @@ def complete(
         unified_diff,
         write_deck,
     )
-    from ..adapters.nastran.adopt import adopt
+    from ..adapters.nastran.adopt import adopt, plain
     from ..adapters.nastran.structure import free_damping
     from ..core import eigen
     from ..core.comparison import compare
@@ -101,7 +101,7 @@ def complete(
     text, cards, refused = original, [], []
     if found.verdict in ADOPTED:
         moved = {
-            ref: value * m.factor
+            ref: plain(value * m.factor)
             for m in found.parameters
             if written(found.verdict, m.factor) != 1.0
             for ref, value in zip(

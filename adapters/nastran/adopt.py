@@ -69,6 +69,11 @@ def adopt(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     return Adopted(done, written_cards(text, done))
 
 
+def plain(value: float) -> float:
+    """Return a value with as many figures as a field of eight columns shows."""
+    return float(f"{value:.6g}")
+
+
 def _note(finding: Finding) -> str:
     return (
         f"trueup discover: {finding.kind.replace('_', ' ')}, "
@@ -90,7 +95,7 @@ def _point_mass(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     An offset CONM2 would hang on the drilling stiffness of a shell, which is next to nothing.
     """
     grids, number = finding.where["grids"], free_id(text, "element")
-    part = float(finding.magnitude["mass"]) / len(grids)
+    part = plain(float(finding.magnitude["mass"]) / len(grids))
     rows: list[Row] = [["CONM2", number + i, g, None, part] for i, g in enumerate(grids)]
     return add_cards(text, rows, _note(finding), ("GRID", grids[0]))
 
@@ -101,7 +106,7 @@ def _ground_spring(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     A grid whose displacements are not in basic axes gets a companion that follows it and is.
     """
     grids, number = finding.where["grids"], free_id(text, "element")
-    part = float(finding.magnitude["stiffness"]) / len(grids)
+    part = plain(float(finding.magnitude["stiffness"]) / len(grids))
     new, rows = free_id(text, "grid"), list[Row]()
     for g in grids:
         host = g
@@ -122,7 +127,7 @@ def _local_damper(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     A grid whose displacement system is not the basic one takes them by a bushing in basic axes.
     """
     grids, number = finding.where["grids"], free_id(text, "element")
-    part = float(finding.magnitude["damping"]) / len(grids)
+    part = plain(float(finding.magnitude["damping"]) / len(grids))
     components = finding.magnitude["components"]
     rows: list[Row] = []
     turned = [g for g in grids if int(deck.bulk.table("GRID")[g].cd or 0)]
@@ -249,7 +254,7 @@ def _detached(
     xyz = _grid_xyz(deck, grid)
     cd = int(deck.bulk.table("GRID")[grid].cd or 0)
     stiff = "".join(str(c) for c in range(1, 7) if c not in (*components, *free))
-    k = float(finding.magnitude["stiffness"]) / len(finding.where["grids"])
+    k = plain(float(finding.magnitude["stiffness"]) / len(finding.where["grids"]))
     along = [k if c in components else None for c in range(1, max(components) + 1)]
     rows: list[Row] = [
         ["GRID", new, 0, *(float(v) for v in xyz), cd],
@@ -277,7 +282,8 @@ def _absorber(text: DeckText, deck: Deck, finding: Finding) -> DeckText:
     """
     grids, (c,) = finding.where["grids"], finding.magnitude["components"]
     m, hz = float(finding.magnitude["mass"]), float(finding.magnitude["frequency_hz"])
-    stiffness = m * deck.param("WTMASS", 1.0) * (2.0 * np.pi * hz) ** 2
+    m = plain(m)
+    stiffness = plain(m * deck.param("WTMASS", 1.0) * (2.0 * np.pi * hz) ** 2)
     new, number = free_id(text, "grid"), free_id(text, "element")
     xyz = [float(v) for v in np.mean([_grid_xyz(deck, g) for g in grids], axis=0)]
     host, rows = grids[0], list[Row]()
