@@ -24,6 +24,7 @@ SCENARIOS = (
     ("effect+fault", 2),
 )
 """What a case hides, and how often."""
+_USUAL = measure.Noise()
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def plan(seed: int) -> Plan:
     return Plan(seed, name, scenario, kinds, faults)
 
 
-def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None) -> Path:
+def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise = _USUAL) -> Path:
     """Write deck, test and truth of a plan into folder/NAME and return that folder.
 
     Raises
@@ -92,7 +93,7 @@ def make(p: Plan, folder: Path, cache: Path, noise: measure.Noise | None = None)
         factors = hide.scatter(scene)
     truth = hide.joined([t for t, _ in drawn], factors)
     modes = calculix.solve(s, fine, truth, cache, s.modes)
-    test = measure.measure(s, fine, truth, modes, noise or measure.Noise(), rng)
+    test = measure.measure(s, fine, truth, modes, noise, rng)
     hurt: set[int] = set()
     faults = []
     for kind in p.faults:

@@ -24,6 +24,12 @@ class Noise:
     frequency: float = 0.001
     position: float = 1.0
 
+    def times(self, factor: float) -> Noise:
+        """Return so many times the scatter of what is measured; positions stay as good."""
+        return Noise(
+            factor * self.shape, factor * self.gain, factor * self.frequency, self.position
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Test:

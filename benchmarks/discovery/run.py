@@ -14,15 +14,16 @@ from pathlib import Path
 
 from .calculix import CalculixError
 from .case import make, plan
+from .measure import Noise
 from .outcome import Outcome, keep, read
 from .tables import line, report, say
 
 
-def attempt(seed: int, folder: Path, cache: Path, timeout: float) -> Outcome:
+def attempt(seed: int, folder: Path, cache: Path, timeout: float, noise: Noise) -> Outcome:
     """Generate one case, search it and score the answer; what is there already is kept."""
     p = plan(seed)
     try:
-        place = make(p, folder, cache)
+        place = make(p, folder, cache, noise)
     except (CalculixError, subprocess.TimeoutExpired) as problem:
         note = f"CalculiX: {problem}"[-300:]
         return Outcome(p.name, p.structure, p.scenario, 0.0, None, note)
@@ -76,15 +77,18 @@ def main() -> int:
     a.add_argument("--seeds", type=int, nargs="*", help="just these seeds")
     a.add_argument("--processes", type=int, default=2)
     a.add_argument("--timeout", type=float, default=300.0)
+    a.add_argument("--noise", type=float, default=1.0, help="times the usual scatter of the test")
     a.add_argument("--cache", type=Path, help="where cases and answers stay (default: temporary)")
     o = a.parse_args()
     seeds = o.seeds or range(o.first, o.first + (20 if o.quick else o.cases))
     outcomes: list[Outcome] = []
+    noise = Noise().times(o.noise)
     with tempfile.TemporaryDirectory() as temporary:
         root = o.cache or Path(temporary)
         with ProcessPoolExecutor(o.processes) as pool:
             jobs = [
-                pool.submit(attempt, s, root / "cases", root / "modes", o.timeout) for s in seeds
+                pool.submit(attempt, s, root / "cases", root / "modes", o.timeout, noise)
+                for s in seeds
             ]
             for job in as_completed(jobs):
                 outcomes.append(job.result())
