@@ -50,6 +50,17 @@ def completed(
     return found, done
 
 
+def borne_out(found: Any, agrees: bool) -> Any:
+    """Return what was found; nothing where the deck as it is agrees with every mode of the test.
+
+    Dampers and faults of sensors show elsewhere and stay.
+    """
+    told = any(f.side == "test" or f.kind == "local_damper" for f in found.findings)
+    if not agrees or told:
+        return found
+    return replace(found, verdict="no_gap", findings=(), would_decide=())
+
+
 def _no_nearer(before: Any, after: Any) -> bool:
     """Whether fewer modes pair, or as many with frequencies that are farther off."""
     from ..core.results import gap

@@ -32,6 +32,8 @@ _REACH = 0.06
 _FEW_SENSORS = 6
 _SHAPE_NOISE = 0.03
 _TRANSLATIONS = (1, 2, 3)
+_WITHIN, _ENOUGH = 2.0, 6
+"""Standard deviations within which every mode of a test agrees, and modes it takes to say so."""
 
 
 class ElementGroup(Protocol):
@@ -74,6 +76,13 @@ class Disagreement:
     stiffness: Floats
     ground: Floats
     total: float
+
+
+def agrees(compared: Comparison, found: Disagreement) -> bool:
+    """Whether every mode of a test pairs and agrees in frequency and shape within its scatter."""
+    within = [np.abs(d).max(initial=0.0) for d in (found.misfit.by_mode, found.misfit.frequency)]
+    whole = len(compared.correlation.pairs) >= _ENOUGH and not compared.correlation.unpaired_test
+    return bool(whole and max(within) <= _WITHIN)
 
 
 def disagreement(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ..completing import completed, written
+from ..completing import borne_out, completed, written
 from ..console import stderr, working
 from ..options import Output
 from ..study import Study
@@ -31,6 +31,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
     from ...adapters.nastran.structure import build_structure
     from ...core import eigen
     from ...core.comparison import compare, place_test
+    from ...core.disagreement import agrees
     from ...core.discovery.discover import Request
     from ...core.discovery.discover import discover as find
     from ...core.discovery.hearing import place_responses
@@ -111,6 +112,7 @@ def run_discover(study: Study, output: Output) -> tuple[dict[str, Any], Path]:
             ),
             told,
         )
+    found = borne_out(found, maps is not None and agrees(before, maps))
     with run_folder(run, output.force) as work:
         with working("completing the deck and solving it again", output):
             found, done = completed(study, deck, specs, model, found, before, work, len(modes))

@@ -11,7 +11,7 @@ from trueup.adapters.nastran import build_model, read_deck
 from trueup.adapters.nastran.structure import build_structure
 from trueup.core.comparison import compare, place_test
 from trueup.core.correlate import Criteria
-from trueup.core.disagreement import disagreement
+from trueup.core.disagreement import agrees, disagreement
 from trueup.core.dofs import Dofs
 from trueup.core.eigen import modes_of, solve
 from trueup.core.errors import InputError
@@ -42,6 +42,11 @@ def deck(folder: Path, name: str, soft=(), extra="") -> Path:
 
 
 def mapped(tmp_path: Path, rotate: str = "analysis", **changed):
+    compared, found = surveyed(tmp_path, rotate, **changed)
+    return compared.geometry.xyz[found.places], found
+
+
+def surveyed(tmp_path: Path, rotate: str = "analysis", **changed):
     structure = build_structure(read_deck(deck(tmp_path, "model.bdf")), [])
     model = structure.model
     solution = solve(model, 30)
@@ -64,7 +69,18 @@ def mapped(tmp_path: Path, rotate: str = "analysis", **changed):
     found = disagreement(
         compared, structure.members, structure.displacement, solution.vectors, np.ones(0)
     )
-    return model.geometry.xyz[found.places], found
+    return compared, found
+
+
+def test_a_test_agrees_where_nothing_was_changed(tmp_path):
+    assert agrees(*surveyed(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "changed", [{"extra": "CONM2,900,30,,0.1"}, {"extra": "CELAS2,901,2.+3,82,3"}]
+)
+def test_a_test_of_a_changed_structure_does_not_agree(tmp_path, changed):
+    assert not agrees(*surveyed(tmp_path, **changed))
 
 
 def test_a_mass_is_where_the_map_of_masses_peaks(tmp_path):
