@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints
+from ..arrays import Bools, Floats, Ints
 from ..assembly import ElementBlock
 from ..model import Model
 
@@ -97,6 +97,15 @@ class Structure:
     def centroids(self, m: Members) -> Floats:
         """Centroids of the elements of one card, (n, 3)."""
         return np.asarray(self.model.geometry.xyz[m.corners].mean(axis=1))
+
+
+def shelled(structure: Structure) -> Bools:
+    """Whether each grid is one of a shell or solid, (n_grid,)."""
+    out = np.zeros(len(structure.model.geometry.ids), bool)
+    for m in structure.members:
+        if m.shape not in {"line", "point"}:
+            out[m.corners.ravel()] = True
+    return out
 
 
 def thinned(xyz: Floats, distance: float) -> Ints:

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
 from ...arrays import Bools, Floats, Ints
-from ..structure import Members, Structure
+from ..structure import Members, Structure, shelled
 from .patches import Patch
 
 _STRAIGHT = 0.98
@@ -51,21 +51,12 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
 
 def bare_bars(structure: Structure) -> list[tuple[int, Ints]]:
     """Return number of the member and rows of line elements that bend, off the shells."""
-    shelled = _shelled(structure)
+    on_shell = shelled(structure)
     return [
-        (number, np.flatnonzero(~shelled[m.corners[:, :2]].all(axis=1)))
+        (number, np.flatnonzero(~on_shell[m.corners[:, :2]].all(axis=1)))
         for number, m in enumerate(structure.members)
         if m.shape == "line" and m.block.width == 6
     ]
-
-
-def _shelled(structure: Structure) -> Bools:
-    """Whether each grid is one of a shell or solid."""
-    out = np.zeros(len(structure.model.geometry.ids), bool)
-    for m in structure.members:
-        if m.shape not in {"line", "point"}:
-            out[m.corners.ravel()] = True
-    return out
 
 
 def _bars(structure: Structure) -> list[tuple[int, Ints]]:
@@ -75,7 +66,7 @@ def _bars(structure: Structure) -> list[tuple[int, Ints]]:
     for m in structure.members:
         if m.shape == "line":
             np.add.at(count, m.corners[:, :2].ravel(), 1)
-    through = (count == 2) & ~_shelled(structure)
+    through = (count == 2) & ~shelled(structure)
     return [
         (number, free[rows])
         for number, free in bare_bars(structure)

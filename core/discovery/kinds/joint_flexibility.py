@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from ...arrays import Floats, Ints
 from ..candidates import Candidates
 from ..laws import ReleaseLaw
-from ..structure import Members, Structure
+from ..structure import Members, Structure, shelled
 from .scale import Scale
 
 _KINK = 0.98
@@ -88,12 +88,9 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
     n = len(structure.model.geometry.ids)
     count = np.zeros(n, np.int64)
     along: list[list[Floats]] = [[] for _ in range(n)]
-    shelled = np.zeros(n, bool)
     for m in structure.members:
         if m.shape == "line":
             np.add.at(count, m.corners.ravel(), 1)
-        else:
-            shelled[m.corners.ravel()] = True
     for m in beams:
         x = structure.model.geometry.xyz[m.corners]
         t = x[:, 1] - x[:, 0]
@@ -107,7 +104,7 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
             for c, d in zip(count, along, strict=True)
         ]
     )
-    joint = ((count >= 3) | kinked) & ~shelled
+    joint = ((count >= 3) | kinked) & ~shelled(structure)
     return [np.argwhere(joint[m.corners]) for m in beams]
 
 

@@ -33,3 +33,8 @@ def test_rods_have_no_joint_that_turns(tmp_path):
 def test_bars_have_joints_where_rods_meet_them_too(tmp_path):
     assert sorted(joints(tmp_path, BARS)) == [[11], [12]]
     assert sorted(joints(tmp_path, BARS + RODS)) == [[11], [11], [12], [12]]
+
+
+def test_a_mass_on_a_joint_leaves_it_one(tmp_path):
+    mass = "CONM2,21,2,,1.-5\n"
+    assert sorted(joints(tmp_path, BARS + mass)) == sorted(joints(tmp_path, BARS))
