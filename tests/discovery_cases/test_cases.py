@@ -1,7 +1,9 @@
-"""`trueup discover` on four small cases made by `benchmarks/discovery` (CalculiX, finer mesh).
+"""`trueup discover` on small cases made by `benchmarks/discovery` (CalculiX, finer mesh).
 
-Kept as files, so that they run where CalculiX is absent: a soft joint of a tower, a frame that
-lacks nothing, a frame with a mass and a sensor of wrong gain, an absorber on a tower.
+Kept as files, so that they run where CalculiX is absent: a soft joint, a soft foot, a mass beside
+a soft member, a spring to ground beside a soft foot, an absorber and a damper on a tower; a frame
+that lacks nothing, one with a wrong property, one with two faults of sensors, one with a mass and
+a sensor of wrong gain.
 """
 
 from __future__ import annotations
