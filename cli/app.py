@@ -100,6 +100,12 @@ def run() -> int:
 
 
 _TRACEBACK = "TRUEUP_TRACEBACK"
+_WORDS = {
+    "give force=True": "give --force",
+    "give lossy=True": "give --lossy",
+    "another run folder": "another --out",
+}
+"""What the library's sentences ask for, as the command line is asked for it."""
 
 
 def _say(sentence: str, status: int) -> int:
@@ -107,5 +113,7 @@ def _say(sentence: str, status: int) -> int:
         import traceback
 
         traceback.print_exc()
+    for library, here in _WORDS.items():
+        sentence = sentence.replace(library, here)
     sys.stderr.write(f"trueup: {sentence}\n")
     return status

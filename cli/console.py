@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -34,23 +34,40 @@ def speaks(output: Output) -> bool:
 
 
 @contextmanager
-def working(what: str, output: Output) -> Iterator[None]:
-    """Show a spinner with elapsed time on standard error while the block runs."""
+def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
+    """Show what is done and the elapsed time on standard error while the block runs.
+
+    What the block is given takes further words; ``--verbose`` prints them, one a line.
+    """
+
+    def told(what: str) -> None:
+        if output.verbose:
+            stderr().print(what, markup=False)
+
     if output.quiet or not sys.stderr.isatty():
-        yield
+        yield told
         return
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     with Progress(
-        SpinnerColumn(), TextColumn(what), TimeElapsedColumn(), console=stderr(), transient=True
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+        console=stderr(),
+        transient=True,
     ) as progress:
-        progress.add_task(what, total=None)
-        yield
+        task = progress.add_task(what, total=None)
+
+        def say(what: str) -> None:
+            progress.update(task, description=what)
+            told(what)
+
+        yield say
 
 
-def emit_json(result: dict[str, Any], output: Output) -> None:
+def emit_json(result: Mapping[str, object], output: Output) -> None:
     """Write the result where ``--json`` asks for it."""
-    from .runfolder import json_text, write_json
+    from ..adapters.run_folder.write_run import json_text, write_json
 
     if output.json == "-":
         sys.stdout.write(json_text(result))

@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ..core.results.inspection import FileRow, SkippedRow
+from ..core.results.plain import Json, Table
 
 _MOST, _SHOWN = 14, 8
 
 
-def condensed(entry: Mapping[str, Any]) -> dict[str, Any]:
+def condensed(file: FileRow) -> FileRow:
     """Shorten long lists, and list what was skipped for one reason on one line."""
-    short: dict[str, Any] = {
-        "contents": _short(entry.get("contents")),
-        "skipped": _grouped(entry.get("skipped") or ()),
-        "warnings": list(entry.get("warnings") or ())[:_MOST],
-    }
-    left = len(entry.get("warnings") or ()) - _MOST
-    if left > 0:
-        short["warnings"].append(f"and {left} more warnings")
-    return short
+    warnings = file.warnings or ()
+    left = len(warnings) - _MOST
+    more = (f"and {left} more warnings",) if left > 0 else ()
+    return replace(
+        file,
+        path="",
+        format="",
+        contents=_short(file.contents),
+        skipped=_grouped(file.skipped),
+        warnings=(*warnings[:_MOST], *more),
+    )
 
 
-def _short(value: Any) -> Any:
+def _short(value: Json) -> Json:
     if isinstance(value, Mapping):
         return {k: _short(v) for k, v in value.items() if v is not None}
-    if not isinstance(value, list | tuple):
+    if not isinstance(value, list):
         return value
     if len(value) <= _MOST:
         return [_short(v) for v in value]
@@ -36,19 +41,13 @@ def _short(value: Any) -> Any:
     return [*(_short(v) for v in value[:_MOST]), {"what": f"and {len(value) - _MOST} more"}]
 
 
-def _grouped(skipped: Any) -> list[dict[str, Any]]:
-    reasons: dict[str, list[Mapping[str, Any]]] = {}
+def _grouped(skipped: Sequence[SkippedRow]) -> Table[SkippedRow]:
+    reasons: dict[str, list[SkippedRow]] = {}
     for item in skipped:
-        reasons.setdefault(str(item.get("why", "")), []).append(item)
-    result = []
+        reasons.setdefault(item.why, []).append(item)
+    rows = []
     for why, items in reasons.items():
-        told = [_place(i) for i in items]
+        told = [i.what + (f" (line {i.line})" if i.line is not None else "") for i in items]
         more = f" and {len(told) - _MOST} more" if len(told) > _MOST else ""
-        what = ", ".join(told[:_MOST]) + more
-        result.append({"what": what, "line": None, "why": why})
-    return result
-
-
-def _place(item: Mapping[str, Any]) -> str:
-    line = item.get("line")
-    return f"{item.get('what', '')}" + (f" (line {line})" if line is not None else "")
+        rows.append(SkippedRow(", ".join(told[:_MOST]) + more, None, why))
+    return Table(rows, SkippedRow)

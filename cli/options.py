@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import InputError
-from .study import Study, merge, read_study
+from ..verbs.study import Study, merge, read_study
 
 JsonOption = Annotated[
     str | None,
@@ -91,8 +91,8 @@ UPDATE: dict[str, Any] = {
         str | None,
         typer.Option(
             "--residuals",
-            metavar="frequencies|shapes|both",
-            help="What the update minimises. [default: both]",
+            metavar="both|frequencies|shapes|...",
+            help="What the update minimises; several with commas. [default: both]",
         ),
     ],
     "test_modes": Annotated[
@@ -130,10 +130,8 @@ def comparing(
             given.pop("in_place", False),
         )
         filed = read_study(study_file) if study_file else Study()
-        _refuse_nonsense(filed)
         try:
-            study = merge(filed, given)
-            _refuse_nonsense(study)
+            study = merge(filed, given, given, "options")
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
         if study.deck is None or not study.test:
@@ -165,17 +163,3 @@ def comparing(
     command.__signature__ = inspect.Signature(signature)  # type: ignore[attr-defined]
     command.__annotations__ = {p.name: p.annotation for p in signature}
     return command
-
-
-def _refuse_nonsense(study: Study) -> None:
-    """Raise `InputError` for values that no run accepts, before any file is read."""
-    from ..core.residuals import KINDS, Weights
-    from .pipeline import criteria_of
-
-    criteria_of(study)
-    Weights(study.frequency_sigma, study.shape_sigma, study.regularisation)
-    for kind in (study.residuals, *(s.residuals for s in study.stages)):
-        if kind not in KINDS:
-            raise InputError(f"residuals is '{kind}'; give one of {', '.join(KINDS)}")
-    if min(study.max_iterations, *(s.max_iterations for s in study.stages), 1) < 1:
-        raise InputError("max_iterations must be at least 1")

@@ -1,13 +1,9 @@
-"""Results as tables for the terminal: the same content as the report's.
-
-Every function takes the content of a ``result.json`` and is pure; it returns None where the
-result has nothing for it. `result_tables` gives all of a result in reading order.
-"""
+"""Results as tables for the terminal: the same content as the report's."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -15,11 +11,15 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from ..adapters.report import discovery, reading, tables
-from ..adapters.report.colour import STEPS, ramp
-from ..adapters.report.formats import MISSING, fixed, general, hz, percent
+from ..adapters.report.pictures.colour import STEPS, ramp
+from ..adapters.report.tables.number_formats import MISSING, fixed, general, hz, percent
 
-Result = Mapping[str, Any]
+if TYPE_CHECKING:
+    from ..adapters.report.tables import table as report_table
+    from ..core.results.correlation import Compared, RunTables
+    from ..core.results.identification import IdentifiedRow
+    from ..core.results.inspection import FileRow
+    from ..core.results.solution import SolveTables
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
@@ -30,87 +30,66 @@ _BRIEF = {
 }
 
 
-def result_tables(result: Result, width: int = 110) -> Iterator[RenderableType]:
-    """Yield what a correlation, an update or a discovery has to show, in reading order.
+def result_tables(answer: RunTables, width: int = 110) -> Iterator[RenderableType]:
+    """Yield what a correlation, an update or a discovery has to show, section by section.
 
     Parameters
     ----------
-    result : mapping
-        Content of result.json.
+    answer : RunTables
+        What the verb answered.
     width : int
         Columns of the terminal; a MAC matrix that does not fit is left out.
     """
-    compared = reading.initial(result) if width < _BOTH else {}
+    from ..adapters.report.sections.known_sections import SECTIONS
+    from ..adapters.report.sections.mac_matrices import MAC_MATRICES
+    from ..adapters.report.sections.pairs import PAIRS
+
+    for section in SECTIONS:
+        shown: Sequence[RenderableType | None]
+        if section is PAIRS:
+            shown = pairs_tables(answer, width)
+        elif section is MAC_MATRICES:
+            shown = [mac_table(answer.final, width)]
+        else:
+            shown = [_rich(table) for table in section.tables_of(answer)]
+        yield from (Padding(t, (1, 0, 0, 0), expand=False) for t in shown if t is not None)
+
+
+def brief_tables(answer: RunTables) -> Iterator[Table]:
+    """Yield what was found, what was moved, and the final pairs."""
+    from ..adapters.report.sections.findings import FINDINGS
+    from ..adapters.report.sections.pairs import pairs_table
+    from ..adapters.report.sections.parameters import PARAMETERS
+
     shown = (
-        findings_table(result),
-        _rich(discovery.would_decide(result)),
-        alternatives_table(result),
-        gap_table(result),
-        _rich(discovery.damping(result)),
-        _rich(discovery.responses(result)),
-        *(
-            [
-                _rich(tables.pairs(c), state)
-                for c, state in ((compared, "before"), (reading.final(result), "after"))
-            ]
-            if compared
-            else [pairs_table(result)]
-        ),
-        unpaired_table(result),
-        mac_table(result, width),
-        parameters_table(result),
-        history_table(result),
+        *FINDINGS.tables_of(answer),
+        *PARAMETERS.tables_of(answer)[:1],
+        pairs_table([("", answer.final)]),
     )
-    yield from (Padding(t, (1, 0, 0, 0), expand=False) for t in shown if t is not None)
+    yield from (_rich(table) for table in shown if table is not None)
 
 
-def pairs_table(result: Result) -> Table | None:
-    """Return the test modes with their partners, before and after where the result has both."""
-    return _rich(tables.pairs(result))
+def pairs_tables(answer: RunTables, width: int = 110) -> list[Table]:
+    """Return the test modes with their partners, before and after one below the other if narrow."""
+    from ..adapters.report.sections.pairs import PAIRS, pairs_table
+
+    if answer.initial is None or width >= _BOTH:
+        return [_rich(table) for table in PAIRS.tables_of(answer)]
+    states = ((answer.initial, "before"), (answer.final, "after"))
+    made = [(pairs_table([("", c)]), state) for c, state in states]
+    return [_rich(table, state) for table, state in made if table is not None]
 
 
-def unpaired_table(result: Result) -> Table | None:
-    """Return the modes of both sides without a partner."""
-    return _rich(tables.unpaired(result))
-
-
-def parameters_table(result: Result) -> Table | None:
-    """Return what was moved, from where to where, and how surely."""
-    return _rich(tables.parameters(result))
-
-
-def history_table(result: Result) -> Table | None:
-    """Return the iterations of an update."""
-    return _rich(tables.history(result))
-
-
-def findings_table(result: Result) -> Table | None:
-    """Return what a discovery found."""
-    return _rich(discovery.findings(result))
-
-
-def alternatives_table(result: Result) -> Table | None:
-    """Return what a discovery considered besides."""
-    return _rich(discovery.alternatives(result))
-
-
-def gap_table(result: Result) -> Table | None:
-    """Return the gap before and after."""
-    return _rich(discovery.gap(result))
-
-
-def mac_table(result: Result, width: int = 110) -> RenderableType | None:
-    """Return the final MAC matrix, shaded, in percent.
+def mac_table(found: Compared, width: int = 110) -> RenderableType | None:
+    """Return the rotated MAC matrix, shaded, in percent.
 
     Where it is wider than `width`, analysis modes that resemble no test mode are left out first;
     None where that does not help.
     """
-    found = reading.final(result)
-    matrix = reading.mac_matrix(found, "mac_rotated") or reading.mac_matrix(found, "mac")
-    if matrix is None:
+    matrix = found.mac_rotated
+    if not matrix.values.size:
         return None
-    frequency = reading.mode_hz(found, "test")
-    left = 4 + (9 if frequency else 0)
+    left = 13
     best = np.nan_to_num(matrix.values).max(axis=0)
     cell = 4 if max(matrix.analysis) > 99 else 3
     room = (width - left) // cell
@@ -129,8 +108,7 @@ def mac_table(result: Result, width: int = 110) -> RenderableType | None:
     lines.append(header)
     for n, row in zip(matrix.test, values, strict=True):
         line = Text(f"{n:>3} ")
-        if frequency:
-            line.append(f"{hz(frequency.get(n)):>8} ", style="dim")
+        line.append(f"{hz(found.test_hz[n - 1]):>8} ", style="dim")
         for value in row:
             line.append(*_shaded(float(value), cell, shades))
         lines.append(line)
@@ -148,73 +126,61 @@ def _shaded(value: float, cell: int, shades: list[str]) -> tuple[str, str]:
     return text, f"{'#ffffff' if value >= 0.5 else '#000000'} on {shades[step]}"
 
 
-def solve_table(result: Result) -> RenderableType:
+def solve_table(answer: SolveTables) -> RenderableType:
     """Return the modes of ``trueup solve`` with mass and centre of gravity."""
-    modes = reading.records(result, "modes")
-    rigid = int(reading.number(result.get("rigid_body_modes")) or 0)
     table = _titled("Normal modes")
     for heading in ("mode", "Hz", "generalised mass", ""):
         table.add_column(heading, justify="left" if not heading else "right")
-    for k, mode in enumerate(modes):
-        what = Text("rigid body", style="dim") if k < rigid else ""
-        mass = general(mode.get("generalized_mass"), 5)
-        table.add_row(str(k + 1), _solved_hz(mode.get("frequency_hz"), k < rigid), mass, what)
-    facts = [f"mass {general(result.get('mass'), 6)}"]
-    centre = reading.numbers(result.get("centre_of_gravity"))
-    if centre:
-        facts.append(f"centre of gravity {', '.join(general(c, 6) for c in centre)}")
+    for k, mode in enumerate(answer.modes):
+        rigid = k < answer.rigid_body_modes
+        what = Text("rigid body", style="dim") if rigid else ""
+        mass = general(mode.generalized_mass, 5)
+        table.add_row(str(k + 1), _solved_hz(mode.frequency_hz, rigid), mass, what)
+    facts = [f"mass {general(answer.mass, 6)}"]
+    if answer.centre_of_gravity is not None:
+        centre = ", ".join(general(c, 6) for c in answer.centre_of_gravity)
+        facts.append(f"centre of gravity {centre}")
     return Group(table, Text(f"{'; '.join(facts)} (deck units)\n"))
 
 
-def _solved_hz(value: object, rigid: bool) -> str:
-    f = reading.number(value)
-    if f is None:
-        return MISSING
+def _solved_hz(f: float, rigid: bool) -> str:
     return f"{f:.1e}" if rigid and f else f"{f:.4f}" if abs(f) < 1e5 else general(f, 9)
 
 
-def identify_table(result: Result) -> Table:
+def identify_table(modes: Sequence[IdentifiedRow]) -> Table:
     """Return the modes of ``trueup identify`` with their uncertainty and quality."""
     table = _titled("Identified modes")
     for heading in ("mode", "Hz", "±", "damping %", "±", "MPC %", "MPD °", "quality", ""):
         table.add_column(heading, justify="left" if not heading else "right")
-    for k, mode in enumerate(reading.records(result, "modes")):
-        damping, spread = (reading.number(mode.get(f"damping_{x}")) for x in ("ratio", "std"))
-        quality = mode.get("quality")
+    for k, mode in enumerate(modes):
+        notes = [mode.remark] if mode.remark else []
+        notes += ["moves as a rigid body (suspension)"] if mode.suspension else []
+        notes += ["a close pair may hide here"] if mode.close_pair_possible else []
         table.add_row(
             str(k + 1),
-            hz(mode.get("frequency_hz")),
-            general(mode.get("frequency_std"), 2),
-            MISSING if damping is None else fixed(100.0 * damping, 3),
-            MISSING if spread is None else general(100.0 * spread, 2),
-            percent(mode.get("mpc"), 1),
-            fixed(mode.get("mpd"), 1),
-            general(quality, 3),
-            _identified(mode),
+            hz(mode.frequency_hz),
+            general(mode.frequency_std, 2),
+            percent(mode.damping_ratio, 3),
+            general(100.0 * mode.damping_std, 2),
+            percent(mode.mpc, 1),
+            fixed(mode.mpd, 1),
+            general(mode.quality, 3),
+            "; ".join(notes),
         )
     return table
 
 
-def _identified(mode: Mapping[str, Any]) -> str:
-    notes = [str(mode["remark"])] if mode.get("remark") else []
-    notes += ["moves as a rigid body (suspension)"] if mode.get("suspension") else []
-    notes += ["a close pair may hide here"] if mode.get("close_pair_possible") else []
-    return "; ".join(notes)
-
-
-def inspect_table(entry: Result) -> Table:
+def inspect_table(file: FileRow) -> Table:
     """Return what ``trueup inspect`` found in one file."""
-    named = [str(entry[k]) for k in ("path", "format") if entry.get(k)]
-    table = _titled(" · ".join(named))
+    table = _titled(" · ".join(t for t in (file.path, file.format) if t))
     table.add_column("what")
     table.add_column("holds", overflow="fold")
-    for what, said in _contents(entry.get("contents")):
+    for what, said in _contents(file.contents):
         table.add_row(Text(what), Text(said))
-    for skipped in reading.records(entry, "skipped"):
-        line = f" (line {skipped['line']})" if skipped.get("line") is not None else ""
-        what = f"{skipped.get('what', 'something')}{line}"
-        table.add_row(Text("skipped", style="yellow"), Text(f"{what}: {skipped.get('why', '')}"))
-    for warning in reading.texts(entry, "warnings"):
+    for s in file.skipped:
+        line = f" (line {s.line})" if s.line is not None else ""
+        table.add_row(Text("skipped", style="yellow"), Text(f"{s.what}{line}: {s.why}"))
+    for warning in file.warnings or ():
         table.add_row(Text("warning", style="yellow"), Text(warning))
     return table
 
@@ -253,9 +219,7 @@ def _titled(title: str) -> Table:
                  header_style="dim", padding=(0, 2, 0, 0))  # fmt: skip
 
 
-def _rich(table: tables.Table | None, state: str = "") -> Table | None:
-    if table is None:
-        return None
+def _rich(table: report_table.Table, state: str = "") -> Table:
     shown = _titled(f"{table.title}, {state}" if state else table.title)
     grouped = any(c.group for c in table.columns)
     if grouped:

@@ -14,6 +14,9 @@ Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 Numbers = npt.NDArray[Any]
 
+Matrices = tuple[Floats | None, Floats | None]
+"""Stiffness and mass of some elements, each (n, m, m) or None where there is none."""
+
 
 def frozen(values: npt.ArrayLike, dtype: npt.DTypeLike = None) -> Numbers:
     """Return a read-only copy of `values`, or `values` itself if it is read-only and its own."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..core.arrays import Bools
+from ..core.data.modes import Modes
 from ..core.errors import InputError
-from ..core.modes import Modes
 from .exchange import Cargo
 
 
@@ -81,6 +81,7 @@ _PARTS = {
     "frfs": "the frequency responses",
     "matrices": "the matrices",
     "functions": "the functions",
+    "extensions": "the registered datasets",
 }
 
 
@@ -110,6 +111,7 @@ def _universal(path: Path, cargo: Cargo, binary: bool = False) -> None:
         modes=modes,
         frfs=frfs,
         functions=functions,
+        extensions=[noun for nouns in cargo.extensions.values() for noun in nouns],
         binary=binary,
     )
     if modes is not None:
@@ -132,6 +134,7 @@ def _store(path: Path, cargo: Cargo) -> None:
         frfs=cargo.frfs,
         dofs=dofs,
         matrices={name: m.matrix.tocsr() for name, m in cargo.matrices.items()},
+        matrix_names={name: m.name for name, m in cargo.matrices.items() if m.name != name},
         functions={name: _record(f) for name, f in cargo.functions.items()},
         **extras,
     )
@@ -158,8 +161,9 @@ def _punch(path: Path, cargo: Cargo) -> None:
 
 _SHAPES = frozenset({"geometry", "modes", "frfs", "functions"})
 _MATRICES = frozenset({"matrices"})
-_UNIVERSAL = Target("universal file", _SHAPES, _universal)
-_BINARY = Target("universal file", _SHAPES, lambda p, c: _universal(p, c, binary=True))
+_UFF = _SHAPES | {"extensions"}
+_UNIVERSAL = Target("universal file", _UFF, _universal)
+_BINARY = Target("universal file", _UFF, lambda p, c: _universal(p, c, binary=True))
 _STORE = Target("store of trueup", _SHAPES | _MATRICES | {"extras"}, _store)
 _PUNCH = Target("DMIG punch", _MATRICES, _punch)
 

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..core.errors import InputError
-from ..core.frfs import Frfs
-from ..core.geometry import Geometry
-from ..core.modes import Modes
-from .formats import DECK, OP4, PUNCH, RESULTS, RUNS, STORE, UNIVERSAL, kind_of_file
+from ..core.data.frfs import Frfs
+from ..core.data.geometry import Geometry
+from ..core.data.measurement import Measurement
+from ..core.data.modes import Modes
+from ..core.errors import InputError, Place
+from .read import DECK, FILE_KINDS, OP4, PUNCH, RESULTS, RUNS, STORE, UNIVERSAL, kind_of_file
 
-_REPEATED = re.compile(r"_\d+$")
-KINDS = (DECK, UNIVERSAL, STORE, RESULTS, OP4, PUNCH, RUNS)
+if TYPE_CHECKING:
+    from ..adapters.store import StoreContent
+
+KINDS = {kind.name: kind for kind in FILE_KINDS}
 
 
 @dataclass
@@ -35,6 +37,8 @@ class Cargo:
         What was assumed or rounded.
     extras : dict
         Parts of a store that only a store can hold.
+    extensions : dict
+        What registered datasets of universal files hold, by the name of its type.
     """
 
     geometry: Geometry | None = None
@@ -46,6 +50,7 @@ class Cargo:
     rest: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     extras: dict[str, Any] = field(default_factory=dict)
+    extensions: dict[str, list[Any]] = field(default_factory=dict)
 
     def add(self, part: str, name: str, noun: object) -> None:
         """Add a noun under a name that is still free."""
@@ -66,10 +71,10 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
     InputError
         A source that cannot be read; two decks; two geometries.
     """
-    kinds = [(path, kind or kind_of_file(path)) for path in sources]
+    kinds = [(path, KINDS[kind] if kind else kind_of_file(path)) for path in sources]
     decks = [path for path, k in kinds if k == DECK]
     if len(decks) > 1:
-        raise InputError(f"{decks[1]}: give one deck only; it names its own INCLUDE files")
+        raise Place(decks[1]).error("give one deck only; it names its own INCLUDE files")
     cargo = Cargo()
     deck = _deck(decks[0], len(kinds) == 1, cargo) if decks else None
     universal = [path for path, k in kinds if k == UNIVERSAL]
@@ -87,11 +92,56 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
     return cargo
 
 
+def cargo_of(source: object) -> Cargo:
+    """Return the content of nouns: a test, modes, functions, a geometry, what a store holds.
+
+    Raises
+    ------
+    InputError
+        Something else, or two geometries.
+    """
+    from ..adapters.store import StoreContent
+
+    cargo = Cargo()
+    for noun in source if isinstance(source, list | tuple) else [source]:
+        held = getattr(noun, "content", noun)
+        if isinstance(noun, Measurement):
+            _put(cargo, "test", noun.geometry, noun.modes, noun.frfs)
+        elif isinstance(noun, Modes):
+            _put(cargo, "analysis", modes=noun)
+        elif isinstance(noun, Frfs):
+            _put(cargo, "test", frfs=noun)
+        elif isinstance(noun, Geometry):
+            _put(cargo, "", noun)
+        elif isinstance(held, StoreContent):
+            _stored(held, Path("the store"), cargo)
+        else:
+            raise InputError(
+                f"{type(noun).__name__} cannot be converted; give files, a test, modes, frequency "
+                "responses, a geometry or what a verb gave"
+            )
+    return cargo
+
+
+def _put(
+    cargo: Cargo,
+    name: str,
+    geometry: Geometry | None = None,
+    modes: Modes | None = None,
+    frfs: Frfs | None = None,
+) -> None:
+    _set_geometry(cargo, geometry, Path(name or "the sources"))
+    if modes is not None:
+        cargo.add("modes", name, modes)
+    if frfs is not None:
+        cargo.add("frfs", name, frfs)
+
+
 def _set_geometry(cargo: Cargo, geometry: Geometry | None, path: Path) -> None:
     if geometry is None:
         return
     if cargo.geometry is not None:
-        raise InputError(f"{path} holds a second geometry: convert the sources one by one")
+        raise Place(path).fault("holds a second geometry: convert the sources one by one")
     cargo.geometry = geometry
 
 
@@ -123,6 +173,8 @@ def _universal(paths: list[Path], cargo: Cargo) -> None:
         cargo.add("frfs", "test", content.frfs)
     for k, f in enumerate(content.functions, 1):
         cargo.functions[f"{f.kind.replace(' ', '_').replace('/', '_')}/{k:05d}"] = f
+    for noun in content.extensions:
+        cargo.extensions.setdefault(type(noun).__name__, []).append(noun)
     cargo.rest += [f"{s.what} of {Path(s.path or paths[0]).name} line {s.line}"
                    for s in content.skipped]  # fmt: skip
     cargo.notes += content.warnings
@@ -130,6 +182,7 @@ def _universal(paths: list[Path], cargo: Cargo) -> None:
 
 def _results(path: Path, deck: Any, subcase: int | None, cargo: Cargo) -> None:
     from ..adapters.nastran import describe_results, read_matrices, read_modes
+    from ..adapters.nastran.results.read_modes import HDF5, kind_of_results
 
     told = describe_results(path)
     if told["contents"].get("matrices"):
@@ -137,7 +190,7 @@ def _results(path: Path, deck: Any, subcase: int | None, cargo: Cargo) -> None:
             cargo.add("matrices", m.name, m)
     if told["contents"]["modes"] or not cargo.matrices:
         cargo.add("modes", "analysis", read_modes(path, deck, subcase))
-        if deck is None and told["format"] != "Nastran HDF5":
+        if deck is None and kind_of_results(path) != HDF5:
             cargo.notes.append(
                 f"{path.name}: shapes are taken as along basic axes; name the deck as well where "
                 "grids have displacement systems of their own"
@@ -164,11 +217,15 @@ def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:
 
 
 def _store(path: Path, cargo: Cargo) -> None:
-    from ..adapters.nastran import matrix_of
     from ..adapters.store import read_store
+
+    _stored(read_store(path), path, cargo)
+
+
+def _stored(content: StoreContent, path: Path, cargo: Cargo) -> None:
+    from ..adapters.nastran import matrix_of
     from ..adapters.universal import Function
 
-    content = read_store(path)
     _set_geometry(cargo, content.geometry, path)
     for name, modes in content.modes.items():
         cargo.add("modes", name, modes)
@@ -181,8 +238,7 @@ def _store(path: Path, cargo: Cargo) -> None:
     for name, matrix in content.matrices.items():
         rows, columns = (content.dofs.get(f"{side}/{name}") for side in ("rows", "columns"))
         used |= {f"{side}/{name}" for side in ("rows", "columns")}
-        own = _REPEATED.sub("", name)  # a second matrix of one name was given a number
-        own = own if own in content.matrices else name
+        own = content.matrix_names.get(name, name)
         cargo.add("matrices", name, matrix_of(own, matrix, rows, columns))
     dofs = {k: v for k, v in content.dofs.items() if k not in used}
     for key, value in (
@@ -192,5 +248,5 @@ def _store(path: Path, cargo: Cargo) -> None:
         if value is None or (not isinstance(value, Geometry) and not len(value)):
             continue
         if key in cargo.extras:
-            raise InputError(f"{path} holds a second {key.replace('_', ' ')}: convert one store")
+            raise Place(path).fault(f"holds a second {key.replace('_', ' ')}: convert one store")
         cargo.extras[key] = value

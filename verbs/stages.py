@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from ..core.data.parameter import Parameter
 from ..core.errors import InputError
-from ..core.parameter import Parameter
-from ..core.updating import Stage
+from ..core.updating.update import Stage
 from .study import Study
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ...core.data.geometry import Geometry
 from ...core.errors import InputError
-from ...core.geometry import Geometry
-from .casecontrol import CaseControl
-from .grids import read_points
-from .read import Deck, EigenRequest, read_deck
+from .cards import definitions
+from .deck.case_control import CaseControl
+from .deck.read_deck import Deck, EigenRequest
+from .deck_reader import read_deck
+from .properties.grids import read_points
 
 _FORMAT = "Nastran deck"
 _NOT_ELEMENTS = ("CORD", "CSET")
@@ -46,7 +48,7 @@ def deck_geometry(deck: Deck) -> Geometry:
 
     Elements are left out where the deck has some that trueup does not assemble.
     """
-    from .build import build_model
+    from .assembly.build_model import build_model
 
     try:
         return build_model(deck).geometry
@@ -96,6 +98,9 @@ def _box(deck: Deck) -> list[float] | None:
 
 
 def _is_element(name: str) -> bool:
+    known = definitions().get(name)
+    if known and known.number:
+        return known.number == "eid"
     is_one = name.startswith(("C", "R")) and not name.startswith(_NOT_ELEMENTS)
     return is_one and "SUP" not in name and name not in ("RELEASE", "RFORCE")
 

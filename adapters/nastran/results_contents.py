@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ..matrices.hdf5 import list_hdf5_matrices
-from ..matrices.op2 import list_op2_matrices
-from .modes import HDF5, HEAD_READERS, OP2, kind_of_results
-from .op2 import unread_op2_blocks
-from .table import ModeHead
+from .matrices.hdf5_matrices import list_hdf5_matrices
+from .matrices.op2_matrices import list_op2_matrices
+from .results.eigenvector_table import ModeHead
+from .results.op2_modes import unread_op2_blocks
+from .results.read_modes import HDF5, HEAD_READERS, OP2, kind_of_results
 
 _OTHER = "neither modes nor their eigenvalues"
 

@@ -1,18 +1,41 @@
-"""The self-contained HTML report of a run folder.
+"""The self-contained HTML report of a run, and its sections; each is imported when it is used."""
 
-`make_report` takes ``result.json`` as it is written (schemas ``trueup/correlate/1``,
-``trueup/update/1``, ``trueup/discover/1``). Besides the documented keys it knows, where present:
+from __future__ import annotations
 
-- ``before`` and ``after`` (each a correlation) of a discovery as of an update;
-- ``misfit``: ``{"grids", "values"}`` colours the structure, ``{"sensors": [{"node", "value"}]}``
-  the sensors, by size against the largest;
-- ``xyz`` and ``axis`` of each of ``alignment.sensors``; ``stage`` of each step of ``history``;
-- ``criteria.mac_min`` of a correlation, ruled across the MAC bars;
-- ``test_modes`` of a ``gap`` entry, for "20 of 24".
-"""
+from typing import TYPE_CHECKING
 
-from .headline import headline
-from .overlay import Overlay, overlay
-from .page import make_report
+from ...core.lazy_names import lazy_names
 
-__all__ = ["Overlay", "headline", "make_report", "overlay"]
+if TYPE_CHECKING:
+    from .page import make_report
+    from .pictures.shape_overlay import Overlay, overlay
+    from .sections.known_sections import SECTIONS, register_section
+    from .sections.section import ReportedRun, Section
+    from .tables.headline import headline
+    from .tables.table import Cell, Column, Table
+
+__all__ = [
+    "SECTIONS",
+    "Cell",
+    "Column",
+    "Overlay",
+    "ReportedRun",
+    "Section",
+    "Table",
+    "headline",
+    "make_report",
+    "overlay",
+    "register_section",
+]
+
+__getattr__ = lazy_names(
+    __name__,
+    {
+        ".page": "make_report",
+        ".pictures.shape_overlay": "Overlay overlay",
+        ".sections.known_sections": "SECTIONS register_section",
+        ".sections.section": "ReportedRun Section",
+        ".tables.headline": "headline",
+        ".tables.table": "Cell Column Table",
+    },
+)

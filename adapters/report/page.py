@@ -6,23 +6,29 @@ from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import PurePath
 
-from ...core.arrays import Floats
-from ...core.geometry import Geometry
-from . import colour, disagreement, discovery_sections, reading, sections, viewer
-from .headline import VERDICTS, figures, story
-from .markup import esc, tag
-from .overlay import Overlay
-from .reading import Result
-from .section import Section
+from ...core.data.geometry import Geometry
+from ...core.results.correlation import RunTables
+from ...core.results.discovery import DiscoverTables
+from .html.html_table import html_table
+from .html.markup import esc, tag
+from .pictures import colour
+from .pictures.shape_overlay import Overlay
+from .sections.findings import FINDINGS
+from .sections.known_sections import SECTIONS
+from .sections.pairs import PAIRS
+from .sections.parameters import PARAMETERS
+from .sections.section import ReportedRun
+from .tables.headline import VERDICTS, figures, story
 
+_FIRST = (FINDINGS, PAIRS, PARAMETERS)
+"""Sections whose tables a notebook shows."""
 _VERBS = {"correlate": "Correlation", "update": "Update", "discover": "Discovery"}
 
 
 def make_report(
-    result: Result,
+    answer: RunTables,
     diff: str | None = None,
     geometry: Geometry | None = None,
-    sensors_xyz: Floats | None = None,
     title: str | None = None,
     shapes: Overlay | None = None,
 ) -> str:
@@ -33,17 +39,12 @@ def make_report(
 
     Parameters
     ----------
-    result : mapping
-        The content of ``result.json``, schema ``trueup/correlate/1``, ``trueup/update/1`` or
-        ``trueup/discover/1``. A key that is absent leaves its section out; further keys are
-        passed over.
+    answer : CorrelateTables, UpdateTables or DiscoverTables
+        The content of ``result.json``.
     diff : str, optional
         Unified diff of the deck.
     geometry : Geometry, optional
         The analysis model, for the pictures; drawn coarser where it is large.
-    sensors_xyz : (n_sensor, 3) float, optional
-        Positions in the analysis frame and length unit, one a row of ``alignment.sensors``.
-        Default: the positions of their nearest grids.
     title : str, optional
         What was compared; stands above the headline.
     shapes : Overlay, optional
@@ -54,25 +55,26 @@ def make_report(
     str
         The page, UTF-8 when written.
     """
-    shown = [s for s in _sections(result, diff, geometry, sensors_xyz, shapes) if s is not None]
-    kind = _VERBS.get(reading.verb(result), "Run")
-    name = title or _compared(result)
+    run = ReportedRun(answer, geometry, shapes, diff or "")
+    shown = [(section, body) for section in SECTIONS if (body := section.body(run))]
+    kind = _VERBS[answer.verb]
+    name = title or _compared(answer)
     kicker = tag(
-        "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(result), class_="kicker"
+        "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(answer), class_="kicker"
     )
-    first, *rest = story(result)
-    links = tag("nav", *[tag("a", esc(s.heading), href=f"#{s.anchor}") for s in shown],
+    first, *rest = story(answer)
+    links = tag("nav", *[tag("a", esc(s.title), href=f"#{s.anchor}") for s, _ in shown],
                 aria_label="Sections")  # fmt: skip
     body = tag(
         "main",
         kicker,
         tag("h1", _unbroken(first)),
         tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
-        _strip(result),
-        _warnings(reading.texts(result, "warnings") + _nested_warnings(result)),
+        _strip(answer),
+        _warnings(answer.all_warnings),
         links if len(shown) > 2 else "",
-        *[tag("section", tag("h2", esc(s.heading), id=s.anchor), s.body) for s in shown],
-        tag("footer", esc(f"trueup · {result.get('schema', 'no schema')}")),
+        *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
+        tag("footer", esc(f"trueup · {answer.schema}")),
     )
     head = (
         '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
@@ -88,63 +90,37 @@ def make_report(
     )
 
 
+def summary(answer: RunTables) -> str:
+    """Return the headline of a run and its first tables as HTML, for a notebook."""
+    tables = [t for section in _FIRST for t in section.tables_of(answer)]
+    said = [tag("b", esc(t.title)) + html_table(t) for t in tables]
+    return tag("p", esc(" ".join(story(answer)))) + "".join(said)
+
+
 def _unbroken(text: str) -> str:
     """Escape; a number stays on the line of its percent sign."""
     return esc(text).replace(" %", "&nbsp;%")
 
 
-def _compared(result: Result) -> str:
+def _compared(answer: RunTables) -> str:
     """Name the deck and the test by their file names."""
-    deck = result.get("input_deck") or result.get("deck")
-    sides = ([str(deck)] if deck else [], reading.texts(result, "test"))
-    named = [", ".join(PurePath(p).name for p in paths) for paths in sides if paths]
-    return " against ".join(named)
+    deck, test = answer.sources
+    sides = ((deck,) if deck else (), test)
+    return " against ".join(", ".join(PurePath(p).name for p in side) for side in sides if side)
 
 
-def _sections(
-    result: Result,
-    diff: str | None,
-    geometry: Geometry | None,
-    sensors_xyz: Floats | None,
-    shapes: Overlay | None,
-) -> list[Section | None]:
-    return [
-        discovery_sections.findings(result, geometry, sensors_xyz),
-        discovery_sections.would_decide(result),
-        discovery_sections.gap(result),
-        discovery_sections.damping(result),
-        discovery_sections.responses(result),
-        disagreement.section(result, geometry),
-        sections.pairs(result),
-        sections.matrices(result),
-        viewer.shapes(shapes),
-        sections.unpaired(result),
-        sections.parameters(result),
-        discovery_sections.alternatives(result),
-        sections.alignment(result, geometry, sensors_xyz),
-        sections.deck(diff),
-    ]
+def _verdict(answer: RunTables) -> str:
+    if not isinstance(answer, DiscoverTables):
+        return ""
+    return tag("span", esc(VERDICTS.get(answer.verdict, answer.verdict)), class_="verdict")
 
 
-def _verdict(result: Result) -> str:
-    word = str(result.get("verdict") or "")
-    return tag("span", esc(VERDICTS.get(word, word)), class_="verdict") if word else ""
-
-
-def _strip(result: Result) -> str:
+def _strip(answer: RunTables) -> str:
     items = ""
-    for what, now, then in figures(result):
+    for what, now, then in figures(answer):
         before = tag("small", esc(f"before {then}")) if then else ""
         items += tag("div", tag("dt", esc(what)), tag("dd", esc(now), before))
-    return tag("dl", items, class_="figures") if items else ""
-
-
-def _nested_warnings(result: Result) -> list[str]:
-    own = set(reading.texts(result, "warnings"))
-    nested = [
-        w for k in ("before", "after") for w in reading.texts(reading.part(result, k), "warnings")
-    ]
-    return [w for w in dict.fromkeys(nested) if w not in own]
+    return tag("dl", items, class_="figures")
 
 
 def _warnings(warnings: Sequence[str]) -> str:

@@ -8,12 +8,12 @@ import numpy as np
 
 from ...core.arrays import Bools, Floats, Ints
 from ...core.identification import Identification
-from .axes import Plot, decades, spread, ticks
-from .formats import counted, fixed, general, hz, percent
-from .html_table import html_table
-from .markup import esc, short, svg_text, tag
+from .html.html_table import html_table
+from .html.markup import esc, short, svg_text, tag
 from .page import style
-from .tables import Cell, Column, Table
+from .pictures.axes import Plot, decades, spread, ticks
+from .tables.number_formats import counted, fixed, general, hz, percent
+from .tables.table import Cell, Column, Table
 
 _WIDTH, _HEIGHT = 1056, 500
 _DECADES = 7.0  # of the indicator that are shown at most

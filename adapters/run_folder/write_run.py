@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
-from ..core.errors import InputError
+from ...core.errors import InputError, Place
+from ...core.results.plain import plain
 
 _OWN = {
     "changes.diff",
@@ -38,8 +37,11 @@ def run_folder(path: Path, force: bool) -> Iterator[Path]:
         When `path` exists and `force` is not given, or cannot be written.
     """
     refuse_existing(path, force)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        work = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    except OSError as error:
+        raise _unwritten(path, error) from error
     try:
         yield work
         work.chmod(0o755)
@@ -51,8 +53,14 @@ def run_folder(path: Path, force: bool) -> Iterator[Path]:
             shutil.rmtree(old)
         else:
             os.replace(work, path)
+    except OSError as error:
+        raise _unwritten(path, error) from error
     finally:
         shutil.rmtree(work, ignore_errors=True)
+
+
+def _unwritten(path: Path, error: OSError) -> InputError:
+    return Place(path).fault(f"cannot be written: {error.strerror or error}")
 
 
 def _keep_foreign(old: Path, new: Path) -> None:
@@ -65,37 +73,28 @@ def _keep_foreign(old: Path, new: Path) -> None:
 def refuse_existing(path: Path, force: bool) -> None:
     """Raise `InputError` when a run folder would be written over an existing one."""
     if path.exists() and not force:
-        raise InputError(f"{path} exists; give --force to replace it or another --out")
+        raise Place(path).fault("exists; give force=True to replace it or another run folder")
     if path.exists() and not (path.is_dir() and (path / "result.json").exists()):
-        raise InputError(f"{path} exists and is not a run folder; give another --out")
+        raise Place(path).fault("exists and is not a run folder; give another run folder")
 
 
-def json_text(result: dict[str, Any]) -> str:
+def json_text(result: Mapping[str, object]) -> str:
     """Return strict JSON (a value that is not a number becomes null), keys in order."""
-    return json.dumps(_plain(result), indent=1, allow_nan=False) + "\n"
+    return json.dumps(plain(result), indent=1, allow_nan=False) + "\n"
 
 
-def write_json(path: Path, result: dict[str, Any]) -> None:
+def write_json(path: Path, result: Mapping[str, object]) -> None:
     """Write a result atomically."""
+    write_text(path, json_text(result))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically."""
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(json_text(result))
+            stream.write(text)
         Path(name).chmod(0o644)
         os.replace(name, path)
     except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Path):
-        return str(value)
-    return value
+        raise _unwritten(path, error) from error

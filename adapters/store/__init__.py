@@ -8,16 +8,17 @@ Layout, version 1 (``/`` carries ``format = "trueup"`` and ``version = 1``)::
     /functions/NAME               abscissa, values, and what they are as attributes
     /dofs/NAME                    node, component, axis
     /mac/NAME                     test, analysis, values
-    /matrices/NAME                a dense dataset, or data, indices, indptr of a CSR matrix
+    /matrices/NAME                a dense dataset, or data, indices, indptr of a CSR matrix;
+                                  attribute `name` where its source calls it otherwise
     /pairs, /history              tables: one dataset a column
 
 NAME may be nested by slashes. Every group says what it is (``kind``) and every dataset its
 ``units`` and, where it is not plain, its ``meaning``. Missing numbers are NaN.
 """
 
-from .content import StoreContent
-from .describing import describe_store, is_store
-from .reading import read_store
-from .writing import write_store
+from .describe_store import describe_store, is_store
+from .read_store import read_store
+from .store_content import StoreContent
+from .write_store import write_store
 
 __all__ = ["StoreContent", "describe_store", "is_store", "read_store", "write_store"]

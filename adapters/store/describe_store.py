@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .content import FORMAT, VERSION
-from .reading import DAMAGE, opened
+from .read_store import DAMAGE, opened
+from .store_content import FORMAT, VERSION
 
 if TYPE_CHECKING:
     import h5py

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
-from ...core.dofs import Dofs
-from ...core.errors import InputError
-from ...core.frfs import Frfs
-from ...core.geometry import Geometry
-from ...core.modes import Modes
-from .columns import read_table
-from .content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record, StoreContent
+from ...core.data.dofs import Dofs
+from ...core.data.frfs import Frfs
+from ...core.data.geometry import Geometry
+from ...core.data.modes import Modes
+from ...core.errors import InputError, Place
+from .result_columns import read_table
+from .store_content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record, StoreContent
 
 if TYPE_CHECKING:
     import h5py
@@ -41,6 +41,7 @@ def read_store(path: str | os.PathLike[str]) -> StoreContent:
             dofs=_named(file, "dofs", _dofs),
             mac=_named(file, "mac", _mac),
             matrices=_named(file, "matrices", _matrix),
+            matrix_names={k: n for k, n in _named(file, "matrices", _own_name).items() if n},
             functions=_named(file, "functions", _function),
             pairs=read_table(file["pairs"]) if "pairs" in file else (),
             history=read_table(file["history"]) if "history" in file else (),
@@ -54,9 +55,9 @@ def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
 
     source = Path(path)
     if not source.is_file():
-        raise InputError(f"{source} does not exist or is not a file")
+        raise Place(source).fault("does not exist or is not a file")
     if not h5py.is_hdf5(source):
-        raise InputError(f"{source} is not an HDF5 file or is truncated at its head")
+        raise Place(source).fault("is not an HDF5 file or is truncated at its head")
     try:
         file = h5py.File(source, "r")
     except OSError as error:
@@ -67,10 +68,10 @@ def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
         except DAMAGE as error:
             raise _damaged(source, error) from error
         if form != FORMAT:
-            raise InputError(f"{source} is an HDF5 file but no store of trueup")
+            raise Place(source).fault("is an HDF5 file but no store of trueup")
         if version != VERSION:
-            raise InputError(
-                f"{source} is a store of version {version}; this trueup reads version {VERSION}"
+            raise Place(source).fault(
+                f"is a store of version {version}; this trueup reads version {VERSION}"
             )
         try:
             yield file
@@ -87,7 +88,7 @@ DAMAGE = (
 
 def _damaged(source: Path, error: Exception) -> InputError:
     reason = " ".join(str(error).strip(chr(39)).split())[:200] or type(error).__name__
-    return InputError(f"{source} is a damaged store: {reason}")
+    return Place(source).fault(f"is a damaged store: {reason}")
 
 
 def _named(file: h5py.File, key: str, read: Callable[[h5py.Group], Any]) -> dict[str, Any]:
@@ -148,6 +149,7 @@ def _function(group: h5py.Group) -> Record:
         "abscissa": group["abscissa"][()],
         "values": group["values"][()],
         "response": tuple(int(n) for n in group.attrs["response"]),
+        **{k: tuple(int(n) for n in group.attrs[k]) for k in ("codes",) if k in group.attrs},
         "reference": tuple(int(n) for n in group.attrs["reference"]),
         "ids": tuple(str(t) for t in group.attrs["ids"]),
         **said,
@@ -156,6 +158,10 @@ def _function(group: h5py.Group) -> Record:
 
 def _mac(group: h5py.Group) -> dict[str, Any]:
     return {key: group[key][()] for key in ("test", "analysis", "values")}
+
+
+def _own_name(group: h5py.Group) -> str:
+    return str(group.attrs.get("name", ""))
 
 
 def _matrix(group: h5py.Group) -> Matrix:

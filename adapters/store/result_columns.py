@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .content import Record
+from .store_content import Record
 
 if TYPE_CHECKING:
     import h5py

@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from ...core.dofs import Dofs
-from ...core.frfs import Frfs
-from ...core.geometry import Geometry
-from ...core.modes import Modes
+from ...core.data.dofs import Dofs
+from ...core.data.frfs import Frfs
+from ...core.data.geometry import Geometry
+from ...core.data.modes import Modes
+from ...core.noun import Noun
 
 FORMAT, VERSION = "trueup", 1
 FUNCTION_TEXTS = ("function", "quantity", "per", "over", "abscissa_unit", "ordinate_unit")
@@ -23,15 +24,17 @@ Record: TypeAlias = Mapping[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class StoreContent:
+class StoreContent(Noun):
     """Everything a store holds, by name.
 
     `geometry` is the analysis model's, `test_geometry` the test's, each in its own frame and
     length unit. `mac` maps a name (``mac``, ``mac_rotated``) to ``{"test", "analysis",
-    "values"}`` as in result.json. `matrices` are arrays or CSR matrices. `pairs` and `history`
-    are rows as in result.json. `functions` maps a name to a measured function of any kind:
+    "values"}`` as in result.json. `matrices` are arrays or CSR matrices, `matrix_names` what
+    those are called at their source that go by another name here. `pairs` and `history` are rows
+    as in result.json. `functions` maps a name to a measured function of any kind:
     ``abscissa``, ``values`` and what they are (``function``, ``response``, ``reference``,
-    ``quantity``, ``per``, ``over``, ``abscissa_unit``, ``ordinate_unit``, ``ids``).
+    ``quantity``, ``per``, ``over``, ``abscissa_unit``, ``ordinate_unit``, ``ids``,
+    ``codes``).
     """
 
     geometry: Geometry | None = None
@@ -41,6 +44,7 @@ class StoreContent:
     dofs: dict[str, Dofs] = field(default_factory=dict)
     mac: dict[str, dict[str, npt.NDArray[np.float64]]] = field(default_factory=dict)
     matrices: dict[str, Matrix] = field(default_factory=dict)
+    matrix_names: dict[str, str] = field(default_factory=dict)
     functions: dict[str, Record] = field(default_factory=dict)
     pairs: Sequence[Record] = ()
     history: Sequence[Record] = ()

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from ...core.dofs import Dofs
-from ...core.errors import InputError
-from ...core.frfs import Frfs
-from ...core.geometry import Geometry
-from ...core.modes import Modes
-from .columns import write_table
-from .content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record
+from ...core.data.dofs import Dofs
+from ...core.data.frfs import Frfs
+from ...core.data.geometry import Geometry
+from ...core.data.modes import Modes
+from ...core.errors import InputError, Place
+from .result_columns import write_table
+from .store_content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record
 
 if TYPE_CHECKING:
     import h5py
@@ -42,6 +42,7 @@ def write_store(
     pairs: Sequence[Record] = (),
     mac: Mapping[str, Mapping[str, Any]] | None = None,
     matrices: Mapping[str, Any] | None = None,
+    matrix_names: Mapping[str, str] | None = None,
     functions: Mapping[str, Record] | None = None,
     history: Sequence[Record] = (),
 ) -> None:
@@ -59,6 +60,8 @@ def write_store(
     mac : mapping of str to {"test", "analysis", "values"}, optional
     matrices : mapping of str to array or scipy sparse matrix, optional
         Sparse ones are kept sparse.
+    matrix_names : mapping of str to str, optional
+        What matrices are called at their source, where by another name.
     functions : mapping of str to mapping, optional
         As in `StoreContent`.
 
@@ -92,6 +95,8 @@ def write_store(
             ):
                 for label, noun in _checked(named or {}, key).items():
                     write(_group(file, f"{key}/{label}", kind), noun)
+            for label, own in (matrix_names or {}).items():
+                file[f"matrices/{label}"].attrs["name"] = own
             for key, rows in (("pairs", pairs), ("history", history)):
                 if rows:
                     write_table(_group(file, key, "table"), rows)
@@ -104,7 +109,7 @@ def write_store(
 
 
 def _unwritable(path: Path, error: Exception) -> InputError:
-    return InputError(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}")
+    return Place(path).fault(f"cannot be written: {getattr(error, 'strerror', None) or error}")
 
 
 def _checked(named: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -182,6 +187,8 @@ def _function(group: h5py.Group, noun: Record) -> None:
         group.attrs[key] = str(noun.get(key, ""))
     for key in ("response", "reference"):
         group.attrs[key] = np.array(noun[key], np.int64)
+    if "codes" in noun:
+        group.attrs["codes"] = np.array(noun["codes"], np.int64)
     group.attrs["ids"] = [str(text) for text in noun.get("ids", ())] or [""]
     _put(group, "abscissa", noun["abscissa"], str(noun.get("abscissa_unit", "")))
     _put(group, "values", noun["values"], str(noun.get("ordinate_unit", "")))

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .content import Skipped
-from .layout58 import HEADER_LINES, REALS, columns, form, records
+from .text.layout58 import HEADER_LINES, REALS, columns, form, records
+from .universal_content import Skipped
 
 _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
 _LINE_END = re.compile(rb"\r\n|\r|\n")

@@ -3,34 +3,66 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from ...core.errors import InputError
-from ...core.frfs import Frfs
-from ...core.geometry import Geometry
-from ...core.measured import measured_directions
-from ...core.measurement import Measurement
-from ...core.modes import Modes
-from ...core.units import length_factor, to_length_unit
-from .content import UniversalContent
-from .reading import read_universal
+from ...core.data.measurement import Measurement
+from ...core.errors import InputError, Place
+from ...core.sensors.measured_directions import measured_directions
+from .pyuff_bridge import SAID, file_of, sets_of
+from .read_universal import read_universal
+from .universal_content import UniversalContent
 
 
-def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None) -> Measurement:
+@dataclass(frozen=True, eq=False)
+class ModalTest(Measurement):
+    """A test that was read from universal files or from pyuff's dictionaries.
+
+    `files` are the files it was read from, none where it was not.
+    """
+
+    files: tuple[Path, ...] = field(default=(), repr=False)
+
+    def to_pyuff(self) -> list[dict[str, Any]]:
+        """Return the test as pyuff's dictionaries: datasets 151, 164, 2411, 82 or 2412, 55, 58.
+
+        Directions that were not measured are zero in 55, as the format wants it.
+
+        Raises
+        ------
+        InputError
+            pyuff is not installed, or the format cannot hold the test.
+        """
+        return sets_of(self)
+
+
+def read_pyuff(source: object) -> ModalTest:
+    """Read a test from pyuff's dictionaries, which stay as they are, or from its ``UFF`` object.
+
+    Raises
+    ------
+    InputError
+        pyuff is not installed or does not accept them; what `read_test` refuses of a file.
+    """
+    with file_of(source) as path:
+        test = read_test(path)
+    said = tuple(w.replace(str(path), SAID) for w in test.warnings)
+    modes = test.modes and replace(test.modes, source=SAID)
+    return replace(test, files=(), warnings=said, modes=modes)
+
+
+def read_test(paths: Sequence[Path] | Path) -> ModalTest:
     """Read a test: positions, and modes or frequency responses in the measured directions.
 
     Parameters
     ----------
     paths : sequence of Path, or Path
         Universal files; modes or responses, geometry and coordinate systems may stand apart.
-    deck_length_unit : {"m", "mm", "in", "ft"}, optional
-        Convert positions and shapes to this unit, where the test declares its own. Default: they
-        stay in the test's unit.
 
     Returns
     -------
-    Measurement
+    ModalTest
         In the test's own frame. Directions that were not measured are absent.
 
     Raises
@@ -43,61 +75,43 @@ def read_test(paths: Sequence[Path] | Path, deck_length_unit: str | None = None)
     content = read_universal(paths)
     damaged = next((s for s in content.skipped if s.harm == "test"), None)
     if damaged is not None:
-        raise InputError(f"{damaged.path} line {damaged.line}: {damaged.why}")
-    names = " and ".join(content.files)
+        raise Place(damaged.path, damaged.line).error(damaged.why)
+    test = _of(content)
     if content.modes is None and content.frfs is None:
-        raise InputError(
-            f"{names}: neither mode shapes (dataset 55, 2414) nor frequency responses (58) to "
+        raise test.error(
+            "neither mode shapes (dataset 55, 2414) nor frequency responses (58) to "
             "compare with; give the file that holds them" + _first_skip(content)
         )
     if content.geometry is None:
-        raise InputError(
-            f"{names}: a test with no geometry cannot be placed on the model; "
+        raise test.error(
+            "a test with no geometry cannot be placed on the model; "
             "give the file with the nodes (dataset 15 or 2411) as well"
         )
     modes, silent = (None, ()) if content.modes is None else measured_directions(content.modes)
     if modes is not None and not len(modes.dofs):
-        raise InputError(f"{names}: every mode shape is zero at every node")
+        raise test.error("every mode shape is zero at every node")
     lost = [str(s) for s in content.skipped if s.harm == "lost"]
     warnings = [*content.warnings, *lost, *silent]
     if content.length_unit is None:
         warnings.append(
-            f"{names}: the length unit of the test is not declared (dataset 164 is missing or "
+            f"{test}: the length unit of the test is not declared (dataset 164 is missing or "
             "unknown)"
         )
-    geometry = content.geometry
-    if deck_length_unit is not None and content.length_unit not in (None, deck_length_unit):
-        return _converted(geometry, modes, content, deck_length_unit, tuple(warnings))
-    return _measurement(names, geometry, modes, content.frfs, tuple(warnings))
-
-
-def _converted(
-    geometry: Geometry,
-    modes: Modes | None,
-    content: UniversalContent,
-    unit: str,
-    warnings: tuple[str, ...],
-) -> Measurement:
-    """Return the test with positions, shapes and responses in another length unit."""
-    geometry, modes = to_length_unit(geometry, modes, str(content.length_unit), unit)
-    frfs = content.frfs
-    if frfs is not None:
-        factor = length_factor(str(content.length_unit), unit)
-        frfs = replace(frfs, values=frfs.values * factor)
-    return _measurement(" and ".join(content.files), geometry, modes, frfs, warnings)
-
-
-def _measurement(
-    names: str,
-    geometry: Geometry,
-    modes: Modes | None,
-    frfs: Frfs | None,
-    warnings: tuple[str, ...],
-) -> Measurement:
     try:
-        return Measurement(geometry, modes, frfs, geometry.length_unit, warnings)
+        return ModalTest(
+            content.geometry,
+            modes,
+            content.frfs,
+            content.length_unit,
+            tuple(warnings),
+            files=tuple(map(Path, content.files)),
+        )
     except InputError as error:
-        raise InputError(f"{names}: {error}") from None
+        raise test.error(str(error)) from None
+
+
+def _of(content: UniversalContent) -> Place:
+    return Place(content.files[0], shown=" and ".join(content.files))
 
 
 def _first_skip(content: UniversalContent) -> str:

@@ -8,17 +8,20 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO
 
-from ...core.errors import InputError
+from ...core.errors import InputError, Place
 from .container import Scan, Section, first_lines
-from .content import Skipped
+from .universal_content import Skipped
 
 
 class DatasetError(InputError):
     """One dataset that cannot be read; the others of its file may be."""
 
     def __init__(self, path: str, line: int, why: str) -> None:
-        super().__init__(f"{path} line {line}: {why}")
-        self.path, self.line, self.why = path, line, why
+        super().__init__(f"{path} line {line}: {why}", file=path, line=line)
+        self.why = why
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self.file), self.line, self.why)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +87,7 @@ def open_source(path: Path, exact_lines: bool = True) -> Source:
     try:
         stream = path.open("rb", buffering=0)
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from error
     try:
         # The file is mapped only to look for delimiters: pages that were mapped count as memory.
         with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
@@ -92,11 +95,11 @@ def open_source(path: Path, exact_lines: bool = True) -> Source:
             sections = tuple(scan.sections())
     except ValueError as error:
         stream.close()
-        raise InputError(f"{path} is empty; a universal file is expected") from error
+        raise Place(path).fault("is empty; a universal file is expected") from error
     if not sections:
         stream.close()
-        raise InputError(
-            f"{path} is not a universal file: no line '    -1' followed by a dataset number; "
+        raise Place(path).fault(
+            "is not a universal file: no line '    -1' followed by a dataset number; "
             "give a .unv or .uff file"
         )
     return Source(path, stream, sections, tuple(scan.skipped), tuple(scan.warnings))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...core.arrays import Floats, Ints, Numbers, frozen
-from ...core.frfs import Frfs
-from ...core.geometry import Geometry
-from ...core.modes import Modes
+from ...core.data.frfs import Frfs
+from ...core.data.geometry import Geometry
+from ...core.data.modes import Modes
+from ...core.noun import Noun
 from .systems import CoordinateSystem
 
 
@@ -69,14 +71,9 @@ class Units:
     temperature_offset: float = 273.15
     length_unit: str | None = None
 
-    @property
-    def length_to_m(self) -> float:
-        """What a length in the file is multiplied by to be in metres."""
-        return 1.0 / self.length_factor
-
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class Trace(Noun):
     """Dataset 82: a line drawn through nodes; 0 lifts the pen."""
 
     number: int
@@ -86,7 +83,7 @@ class Trace:
 
 
 @dataclass(frozen=True, eq=False)
-class Function:
+class Function(Noun):
     """A function of dataset 58 that is not part of the frequency responses (or stands alone).
 
     Parameters
@@ -101,6 +98,8 @@ class Function:
         What ordinate, denominator and abscissa are, as dataset 58 calls them.
     ids : tuple of str
         The five text lines.
+    codes : (4,) int
+        Numbers of `kind`, `over`, `quantity` and `per` in the file, for words of no known number.
     """
 
     kind: str
@@ -116,6 +115,7 @@ class Function:
     ids: tuple[str, ...] = ()
     line: int = 0
     path: str = ""
+    codes: tuple[int, ...] = (0, 0, 0, 0)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "abscissa", frozen(self.abscissa, np.float64))
@@ -123,7 +123,7 @@ class Function:
 
 
 @dataclass(frozen=True, eq=False)
-class UniversalContent:
+class UniversalContent(Noun):
     """Everything that one or several universal files hold, merged.
 
     Parameters
@@ -143,6 +143,8 @@ class UniversalContent:
         Dataset 164.
     headers, systems, traces, datasets, skipped, warnings
         Datasets 151, 18 and 2420, 82; the inventory; what was not read and why.
+    extensions : tuple
+        What datasets registered from outside hold, as their readers made it, in file order.
     """
 
     files: tuple[str, ...] = ()
@@ -157,6 +159,7 @@ class UniversalContent:
     datasets: tuple[Dataset, ...] = ()
     skipped: tuple[Skipped, ...] = ()
     warnings: tuple[str, ...] = ()
+    extensions: tuple[Any, ...] = ()
 
     @property
     def length_unit(self) -> str | None:

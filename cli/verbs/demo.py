@@ -6,73 +6,50 @@ import shutil
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ...core.errors import InputError
-from ..console import stdout
+from ...core.errors import InputError, Place
+from ...verbs.study import read_study
+from ..console import stdout, working
 from ..options import ForceOption, Output, QuietOption
-from ..study import Study, read_study
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from ...verbs.run import Run
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a demo: what is said, which study file, which verb, what differs."""
+    """One step of a demo: what is said, the study file, the verb, where to, the side to rotate."""
 
     says: str
     study: str
     verb: str
     folder: str
-    changes: dict[str, Any]
+    rotate: str = "analysis"
 
 
 _DUCT = (
-    Step(
-        "The deck as it is against the test, mode by mode",
-        "frequencies.toml",
-        "correlate",
-        "1_as_it_is",
-        {"rotate": "none"},
-    ),
-    Step(
-        "The same after close analysis modes are rotated onto the test",
-        "frequencies.toml",
-        "correlate",
-        "2_rotated",
-        {},
-    ),
-    Step(
-        "Strategy 1: the flange rings' inertias, by frequencies only",
-        "frequencies.toml",
-        "update",
-        "3_frequencies",
-        {},
-    ),
-    Step(
-        "Strategy 2: rim densities by the shapes alone, then the flanges by frequencies",
-        "masses_first.toml",
-        "update",
-        "4_masses_first",
-        {},
-    ),
-    Step(
-        "Strategy 3: frequencies and shapes together, rotated at every iteration",
-        "both.toml",
-        "update",
-        "5_both",
-        {},
-    ),
-    Step(
-        "Discover: what the model lacks, put into the deck, flanges fitted along",
-        "discover.toml",
-        "discover",
-        "6_discover",
-        {},
-    ),
-)
+    Step("The deck as it is against the test, mode by mode",
+         "frequencies.toml", "correlate", "1_as_it_is", "none"),
+    Step("The same after close analysis modes are rotated onto the test",
+         "frequencies.toml", "correlate", "2_rotated"),
+    Step("Strategy 1: the flange rings' inertias, by frequencies only",
+         "frequencies.toml", "update", "3_frequencies"),
+    Step("Strategy 2: rim densities by the shapes alone, then the flanges by frequencies",
+         "masses_first.toml", "update", "4_masses_first"),
+    Step("Strategy 3: frequencies and shapes together, rotated at every iteration",
+         "both.toml", "update", "5_both"),
+    Step("Discover: what the model lacks, put into the deck, flanges fitted along",
+         "discover.toml", "discover", "6_discover"),
+)  # fmt: skip
 _DEMOS = {"duct": _DUCT}
 
 
@@ -92,30 +69,27 @@ def demo(
     console = stdout()
     rows = []
     for step in _DEMOS[name]:
-        study = replace(
-            read_study(folder / step.study), out=folder / "runs" / step.folder, **step.changes
-        )
-        result, run = _verbs()[step.verb](study, Output(quiet=quiet))
-        rows.append((step, result))
+        study = replace(read_study(folder / step.study), rotate=step.rotate)
+        with working(step.says, Output(quiet=quiet)):
+            found = _verb(step.verb)(study=study)
+        run = found.save(folder / "runs" / step.folder)
+        rows.append((step, found))
         if not quiet:
-            _show(console, step, result, run)
+            _show(console, step, found, run)
     console.print(_summary(rows))
     console.print(f"files, run folders and reports: {folder}", markup=False)
 
 
-def _verbs() -> dict[str, Callable[[Study, Output], tuple[dict[str, Any], Path]]]:
-    from .correlate import run_correlate
-    from .discover import run_discover
-    from .update import run_update
-
-    return {"correlate": run_correlate, "update": run_update, "discover": run_discover}
+def _verb(name: str) -> Callable[..., Run]:
+    found: Callable[..., Run] = getattr(import_module(f"...verbs.{name}", __package__), name)
+    return found
 
 
 def _copy(name: str, folder: Path, force: bool) -> None:
     if folder.exists() and not force:
-        raise InputError(f"{folder} exists; give --force to replace it or another --out")
+        raise Place(folder).fault("exists; give --force to replace it or another --out")
     if folder.exists() and not (folder / "frequencies.toml").is_file():
-        raise InputError(f"{folder} exists and is not a demo; give another --out")
+        raise Place(folder).fault("exists and is not a demo; give another --out")
     source = files("trueup.fixtures") / name
     folder.absolute().parent.mkdir(parents=True, exist_ok=True)
     work = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.absolute().parent))
@@ -131,37 +105,26 @@ def _copy(name: str, folder: Path, force: bool) -> None:
         shutil.rmtree(work, ignore_errors=True)
 
 
-def _show(console: Any, step: Step, result: dict[str, Any], run: Path) -> None:
-    from ..tables import findings_table, pairs_table, parameters_table
+def _show(console: Console, step: Step, found: Run, run: Path) -> None:
+    from ..terminal_tables import brief_tables
 
     console.rule(step.says)
-    if "findings" in result:
-        console.print(findings_table(result))
-    if "parameters" in result:
-        console.print(parameters_table(result))
-    console.print(pairs_table(result.get("after", result)))
+    for table in brief_tables(found):
+        console.print(table)
     console.print(f"{run / 'report.html'}\n", markup=False)
 
 
-def _summary(rows: list[tuple[Step, dict[str, Any]]]) -> Any:
+def _summary(rows: list[tuple[Step, Run]]) -> Table:
     from rich.table import Table
 
     table = Table(title="What each step brought", title_justify="left")
     table.add_column("step")
     for column in ("pairs", "mean |deviation| %", "worst %", "mean MAC %"):
         table.add_column(column, justify="right")
-    for step, result in rows:
-        gap = result.get("after", result)["summary"]
-        table.add_row(
-            step.says,
-            str(gap["pairs"]),
-            *(
-                "-" if gap[k] is None else f"{scale * gap[k]:.1f}"
-                for k, scale in (
-                    ("mean_abs_deviation_percent", 1.0),
-                    ("worst_deviation_percent", 1.0),
-                    ("mean_mac", 100.0),
-                )
-            ),
-        )
+    for step, found in rows:
+        gap = found.final.summary
+        percent = None if gap.mean_mac is None else 100.0 * gap.mean_mac
+        figures = (gap.mean_abs_deviation_percent, gap.worst_deviation_percent, percent)
+        shown = ("-" if f is None else f"{f:.1f}" for f in figures)
+        table.add_row(step.says, str(gap.pairs), *shown)
     return table

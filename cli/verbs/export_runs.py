@@ -31,7 +31,7 @@ def export_runs(
     model with its parameters from trueup.adapters.nastran.read_runs.
     """
     from ...adapters.nastran import parse_parameter, write_runs
-    from ..runfolder import run_folder
+    from ...adapters.run_folder.write_run import run_folder
 
     output = Output(json=json, quiet=quiet)
     if not parameters:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from ..console import emit_json, speaks, stdout
-from ..formats import describe
 from ..options import JsonOption, Output, QuietOption
 
 
@@ -18,16 +17,15 @@ def inspect(
     quiet: QuietOption = False,
 ) -> None:
     """Say what is in a deck, results, matrices, a universal file or a store."""
+    from ...verbs.inspect import inspect as tell
+
     output = Output(json=json, quiet=quiet)
-    result: dict[str, Any] = {
-        "schema": "trueup/inspect/1",
-        "files": [describe(path) for path in files],
-    }
-    emit_json(result, output)
+    told = tell(files)
+    emit_json(told.to_dict(), output)
     if speaks(output):
         from ..inspecting import condensed
-        from ..tables import inspect_table
+        from ..terminal_tables import inspect_table
 
-        for entry in result["files"]:
-            stdout().print(f"{entry['path']}: {entry['format']}", markup=False, soft_wrap=True)
-            stdout().print(inspect_table(condensed(entry)))
+        for file in told.files:
+            stdout().print(f"{file.path}: {file.format}", markup=False, soft_wrap=True)
+            stdout().print(inspect_table(condensed(file)))

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats
-from .assembly import ElementBlock, Members, Recipe, assemble
-from .errors import CheckError
-from .expansion import Expansion, expand
-from .model import Factor, Term
+from ..arrays import Floats
+from ..data.parametric_model import Factor, Term
+from ..errors import CheckError
+from ..numerics.interpolative_expansion import Expansion, expand
+from .element_assembly import ElementBlock, Members, Recipe, assemble
 
 _FITTED = 24
 """Elements of a kind that the functions are found on; as many others check them."""

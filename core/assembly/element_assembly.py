@@ -8,14 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints
-from .sparse_sum import shared
+from ..arrays import Floats, Ints, Matrices
+from ..numerics.shared_pattern_sum import shared
 
 CHUNK = 1024
 """Elements evaluated at a time: bounds memory and keeps a chunk's matrices in cache."""
-
-Matrices = tuple[Floats | None, Floats | None]
-"""Stiffness and mass of some elements, each (n, m, m) or None where there is none."""
 
 Evaluate = Callable[[Ints, Floats, tuple[bool, bool]], Matrices]
 """``evaluate(rows, p, wanted)``: matrices of the elements of the given rows at the parameter
@@ -172,7 +169,6 @@ class _BlockSum:
 
     def __init__(self, members: Sequence[Members], width: int, n_point: int) -> None:
         self._width = width
-        self._n_point = n_point
         self._members = members
         self._pattern: tuple[Ints, list[Ints]] | None = None
         self._data: list[Floats | None] = [None] * n_point

@@ -6,8 +6,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse import linalg as spla
 
-from .arrays import Floats, Ints
-from .errors import InputError
+from ..arrays import Floats, Ints
+from ..errors import InputError
 
 
 def static_condensation(K: sp.csr_matrix, kept: Ints) -> Floats:

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse import csgraph
-from scipy.sparse import linalg as spla
 
-from .arrays import Floats, Ints
-from .errors import InputError
-from .sparse_sum import select
-
-Bools = Any
+from ..arrays import Bools, Floats, Ints
+from ..errors import Place
+from ..numerics.shared_pattern_sum import select
 
 _ALONG = 1.0 - 1e-6
 """Share of a direction in one component from which it is that component's."""
@@ -36,13 +31,13 @@ class Equations:
         Degree of freedom that each equation gives.
     matrix : (m, n_dof) sparse
         Coefficients.
-    owner : tuple of str
+    owner : tuple of Place
         Which element or card makes each equation, for messages.
     """
 
     dependent: Ints
     matrix: sp.csr_matrix
-    owner: tuple[str, ...]
+    owner: tuple[Place, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,18 +126,18 @@ def reduction(
 
 
 def _check_single(equations: Equations, fixed: Bools, label: Callable[[int], str]) -> None:
-    owner: dict[int, str] = {}
+    owner: dict[int, Place] = {}
     for dof, name in zip(equations.dependent.tolist(), equations.owner, strict=True):
         if dof in owner:
             both = f"{owner[dof]} and {name}" if owner[dof] != name else f"{name} twice"
-            raise InputError(
+            raise name.about(
                 f"{label(dof)} (grid:component) is made dependent by {both}: it can be dependent "
                 "on one only"
             )
         owner[dof] = name
     both_ways = [d for d in owner if fixed[d]]
     if both_ways:
-        raise InputError(
+        raise owner[both_ways[0]].about(
             f"{label(both_ways[0])} (grid:component) is dependent in {owner[both_ways[0]]} and "
             "constrained by an SPC as well: constrain the independent grid instead"
         )
@@ -158,6 +153,8 @@ def _resolve(
     chained.eliminate_zeros()
     if not chained.nnz:
         return direct
+    from scipy.sparse import csgraph
+
     n_parts, part = csgraph.connected_components(chained, connection="strong")
     if n_parts < chained.shape[0] or chained.diagonal().any():
         return _resolve_cycle(chained, direct, equations, part)
@@ -172,20 +169,22 @@ def _resolve_cycle(
     chained: sp.csr_matrix, direct: sp.csr_matrix, equations: Equations, part: Ints
 ) -> sp.csr_matrix:
     """Equations that refer to each other: solved together, as long as they determine a solution."""
+    from scipy.sparse import linalg as spla
+
     system = (sp.identity(chained.shape[0]) - chained).tocsc()
     counts = np.bincount(part)
     ring = np.flatnonzero(counts[part] > 1)
     ring = ring if len(ring) else np.flatnonzero(chained.diagonal())
-    names = list(dict.fromkeys(equations.owner[k] for k in ring))
+    owners = list(dict.fromkeys(equations.owner[k] for k in ring))
     try:
         factor = spla.splu(system)
         pivots = np.abs(factor.U.diagonal())
         if pivots.min() <= 1e-12 * pivots.max():
             raise RuntimeError
     except RuntimeError:
-        raise InputError(
-            f"{', '.join(names[:6])} depend on each other in a circle, so none of them is "
-            "determined: make another grid the dependent one"
+        raise owners[0].about(
+            f"{', '.join(map(str, owners[:6]))} depend on each other in a circle, so none of them "
+            "is determined: make another grid the dependent one"
         ) from None
     columns = np.unique(direct.indices)
     solved = factor.solve(direct[:, columns].toarray())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .arrays import Bools, Floats
+from ..arrays import Bools, Floats
 
 
 def assign(score: Floats, allowed: Bools) -> tuple[tuple[int, int], ...]:

@@ -7,23 +7,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from .alignment import Alignment, align
-from .arrays import Numbers
-from .correlate import Correlation, Criteria, correlate
-from .errors import InputError
-from .geometry import Geometry
-from .measurement import Measurement
-from .modes import Modes
-from .observation import Observation, observe
-from .units import POSSIBLE, reconcile_units, to_length_unit
-from .weighting import ModeErrors, mode_errors, told
+from ..arrays import Numbers
+from ..data.geometry import Geometry
+from ..data.length_units import to_length_unit
+from ..data.measurement import Measurement
+from ..data.modes import Modes
+from ..errors import InputError
+from ..noun import Noun
+from ..registration.alignment import Alignment, align
+from ..registration.length_units import POSSIBLE, reconcile_units
+from ..sensors.sensor_map import Observation, observe
+from .mode_errors import ModeErrors, mode_errors, told
+from .mode_pairing import Correlation, Criteria, correlate
 
 _ON_MODEL = 0.9
 """Share of the sensors on the model that proves a very small test to be a part of it."""
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class Placed(Noun):
     """A test laid onto a model.
 
     Parameters
@@ -39,6 +41,8 @@ class Placed:
     warnings : tuple of str
     errors : ModeErrors, optional
         Standard errors of `test` where it was identified here; they weigh.
+    length_factor : float
+        Deck length units in one of the test's own; `test` and `test_geometry` have it already.
     """
 
     alignment: Alignment
@@ -47,6 +51,7 @@ class Placed:
     test_geometry: Geometry
     warnings: tuple[str, ...] = ()
     errors: ModeErrors | None = None
+    length_factor: float = 1.0
 
     def take(self, rows: Numbers) -> Placed:
         """Return the test at some of its sensors (indices or mask)."""
@@ -74,7 +79,7 @@ class Placed:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(Noun):
     """A model and a test, correlated.
 
     Parameters
@@ -183,10 +188,10 @@ def place_test(
     # An undecided alignment warns of its ambiguity itself.
     ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
     warnings = (*measurement.warnings, *resting, *units.warnings, *alignment.warnings, *ambiguity)
-    scaled = replace(alignment, scale=units.factor)
     errors = _errors(measurement, rows)
     weighed = (told(errors, kept.sensors.labels),) if errors else ()
-    return Placed(scaled, kept, at_sensors, in_frame, (*warnings, *seen.warnings, *weighed), errors)
+    said = (*warnings, *seen.warnings, *weighed)
+    return Placed(alignment, kept, at_sensors, in_frame, said, errors, units.factor)
 
 
 def _frequencies(modes: Modes) -> tuple[str, ...]:

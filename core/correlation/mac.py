@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arrays import Floats, Numbers
-from .errors import InputError
+from ..arrays import Floats, Numbers
+from ..errors import InputError
 
 
 def mac(a: Numbers, b: Numbers) -> Floats:
@@ -33,9 +33,16 @@ def mac(a: Numbers, b: Numbers) -> Floats:
     """
     if a.ndim != 2 or b.ndim != 2 or len(a) != len(b):
         raise InputError(f"shapes of {a.shape} and {b.shape} are not at the same sensors")
+    a, b = _unit_peak(a), _unit_peak(b)
     cross = np.abs(a.conj().T @ b) ** 2
     scale = np.outer(np.sum(np.abs(a) ** 2, axis=0), np.sum(np.abs(b) ** 2, axis=0))
     return np.asarray(np.divide(cross, scale, out=np.zeros_like(cross), where=scale > 0.0))
+
+
+def _unit_peak(shapes: Numbers) -> Numbers:
+    """Return columns of largest magnitude 1, whose squares cannot underflow; zero ones as are."""
+    peak = np.max(np.abs(shapes), axis=0, initial=0.0)
+    return np.asarray(shapes / np.where(peak > 0.0, peak, 1.0))
 
 
 def deviation_percent(analysis_hz: Numbers, test_hz: Numbers) -> Floats:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from .arrays import Floats, Numbers, frozen
-from .errors import InputError
+from ..arrays import Floats, Numbers, frozen
+from ..errors import InputError
+from ..noun import Noun
 
 _OF_SENSORS = 0.05
 """Error of a reading besides that of the fit, over the rms reading: gain, place, model."""
@@ -18,7 +18,7 @@ _LITTLE = 0.5  # weight below which a sensor is named
 
 
 @dataclass(frozen=True, eq=False)
-class ModeErrors:
+class ModeErrors(Noun):
     """Standard errors of test modes, relative.
 
     Parameters
@@ -101,14 +101,3 @@ def told(errors: ModeErrors, labels: Sequence[str]) -> str:
         "the identified modes weigh by their standard errors (frequencies "
         f"{f.min():.2g} to {f.max():.2g} %, shapes {s.min():.2g} to {s.max():.2g} %){less}"
     )
-
-
-def weight_tables(errors: ModeErrors | None) -> dict[str, Any] | None:
-    """Return the errors as in result.json: by test mode and by sensor."""
-    if errors is None:
-        return None
-    return {
-        "frequency_std_percent": (100.0 * errors.frequency).tolist(),
-        "shape_std_percent": (100.0 * errors.length).tolist(),
-        "sensor_weights": errors.sensors.tolist(),
-    }

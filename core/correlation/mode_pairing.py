@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Bools, Floats, Numbers, frozen
-from .clusters import clusters_by_bandwidth
-from .correlation import mac, realised
-from .errors import InputError
-from .pairing import assign
-from .rotation import ClusterRotation, rotate_cluster, subspace_mac
+from ..arrays import Bools, Floats, Numbers, frozen
+from ..errors import InputError
+from ..noun import Noun
+from .assignment import assign
+from .mac import mac, realised
+from .mode_clusters import clusters_by_bandwidth
+from .subspace_rotation import ClusterRotation, rotate_cluster, subspace_mac
 
 SIDES = ("analysis", "test", "none")
 
@@ -77,7 +78,7 @@ class Cluster:
 
 
 @dataclass(frozen=True, eq=False)
-class Correlation:
+class Correlation(Noun):
     """What pairs with what.
 
     `mac` (n_test, n_analysis) is as measured; `mac_rotated` after rotation. `transformation`

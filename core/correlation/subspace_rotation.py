@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats
-from .correlation import mac
+from ..arrays import Floats
+from ..noun import Noun
+from .mac import mac
 
 
 def combinations(cluster: Floats, test: Floats) -> Floats:
@@ -51,7 +52,7 @@ def subspace_mac(cluster: Floats, test: Floats) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class ClusterRotation:
+class ClusterRotation(Noun):
     """How a cluster is turned onto its test shapes.
 
     `matrix` (m, m) is orthogonal; its first columns belong, in order, to the test shapes

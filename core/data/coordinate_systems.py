@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, frozen, require_shape
-from .errors import InputError
+from ..arrays import Floats, frozen, require_shape
+from ..errors import InputError
+from ..noun import Noun
 
 KINDS = ("rectangular", "cylindrical", "spherical")
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(Noun):
     """A coordinate system given in the basic frame.
 
     Parameters

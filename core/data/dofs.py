@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Ints, frozen, require_shape
+from ..arrays import Floats, Ints, frozen, require_shape
+from ..noun import Noun
 
 _AXES = np.vstack([np.eye(3), np.eye(3)])
 
 
 @dataclass(frozen=True, eq=False)
-class Dofs:
+class Dofs(Noun):
     """One row per degree of freedom; analysis and test use the same type.
 
     Parameters
@@ -46,7 +47,12 @@ class Dofs:
         return Dofs(self.node[rows], self.component[rows], self.axis[rows])
 
     @property
-    def labels(self) -> list[str]:
-        """``node:direction`` with the direction as engineers write it, e.g. ``12:+Z``."""
+    def directions(self) -> list[str]:
+        """Directions as engineers write them: X, Y, Z, RX, RY, RZ."""
         letters = ("X", "Y", "Z", "RX", "RY", "RZ")
-        return [f"{n}:{letters[c - 1]}" for n, c in zip(self.node, self.component, strict=True)]
+        return [letters[c - 1] for c in self.component]
+
+    @property
+    def labels(self) -> list[str]:
+        """``node:direction``, e.g. ``12:Z``."""
+        return [f"{n}:{d}" for n, d in zip(self.node, self.directions, strict=True)]

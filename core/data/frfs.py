@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..noun import Noun
 from .dofs import Dofs
 
 QUANTITIES = ("displacement", "velocity", "acceleration")
 
 
 @dataclass(frozen=True, eq=False)
-class Frfs:
+class Frfs(Noun):
     """Frequency responses between response and reference degrees of freedom.
 
     Parameters

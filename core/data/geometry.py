@@ -6,12 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .arrays import Floats, Ints, frozen, require_finite, require_shape
-from .errors import InputError
+from ..arrays import Floats, Ints, frozen, require_finite, require_shape
+from ..errors import InputError
+from ..noun import Noun
 
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
+class Geometry(Noun):
     """Node ids, positions and elements of an analysis or a test model.
 
     Parameters

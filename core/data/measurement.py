@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arrays import Floats
-from .errors import InputError
+from ..arrays import Floats
+from ..errors import InputError
+from ..noun import Noun
 from .frfs import Frfs
 from .geometry import Geometry
 from .modes import Modes
 
 
 @dataclass(frozen=True, eq=False)
-class Measurement:
+class Measurement(Noun):
     """A test with its geometry; modes, frequency responses or both.
 
     Parameters

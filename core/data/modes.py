@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..noun import Noun
 from .dofs import Dofs
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
+class Modes(Noun):
     """Natural frequencies and mode shapes.
 
     Parameters

@@ -8,12 +8,13 @@ from math import prod
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, frozen
+from ..arrays import Floats, frozen
+from ..errors import InputError
+from ..noun import Noun
+from ..numerics.shared_pattern_sum import weighted_sum
 from .dofs import Dofs
-from .errors import InputError
 from .geometry import Geometry
 from .parameter import Parameter
-from .sparse_sum import weighted_sum
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def proportional(parameter: int, lower: float, upper: float) -> Factor:
 
 
 @dataclass(frozen=True, eq=False)
-class Term:
+class Term(Noun):
     """A constant symmetric sparse matrix times a product of factors (none: constant)."""
 
     matrix: sp.csr_matrix
@@ -77,7 +78,7 @@ class Term:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(Noun):
     """A finite-element model on its free (independent, unconstrained) degrees of freedom.
 
     K(p) = sum_t c_t(p) K_t, and likewise M(p): equation (1) of the source paper written

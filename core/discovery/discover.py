@@ -5,24 +5,34 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import Bools, Floats
-from ..correlation import realised
+from ..correlation.mac import realised
 from ..errors import TrueupError
-from .basis import Basis, build_basis
-from .beam import Found
-from .bench import Bench
-from .candidates import Candidates
-from .compliance import Compliance, Flexibility, SharedFlexibility
-from .evidence import Evidence, noise_of
+from .dampers.damper_evidence import weighed
+from .discovery_numbers import DISCOVERY
+from .effects import KINDS
+from .effects.candidates import Candidates
+from .effects.effect_laws import ReleaseLaw
+from .effects.effect_scale import Scale
 from .findings import Discovery
-from .fitting import evaluate, fit
-from .hearing import hearing, with_responses
-from .judge import (
+from .likelihood.frf_evidence import hearing, with_responses
+from .likelihood.hypothesis import Fit, Prior, Problem
+from .likelihood.map_fit import evaluate, fit
+from .likelihood.mode_likelihood import Evidence, noise_of
+from .likelihood.request import Request as Request
+from .narrative.build_findings import build_discovery
+from .narrative.damper_findings import with_damper
+from .reduction.discretisation_error import lumping, with_consistent_bars
+from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
+from .reduction.search_basis import Basis, build_basis
+from .search.beam_search import Found
+from .search.coarse_scan import first_places
+from .search.merge_neighbours import merged
+from .search.model_selection import (
     Judgement,
     contenders,
     cost,
@@ -31,32 +41,11 @@ from .judge import (
     noise_scale,
     with_rival,
 )
-from .kinds import KINDS
-from .kinds.scale import Scale
-from .laws import ReleaseLaw
-from .merging import merged
-from .mesh_error import lumping, with_consistent_bars
-from .paths import searched
-from .polish import polished
-from .problem import Fit, Prior, Problem
-from .request import Request as Request
-from .search import Searcher
-from .shaping import reshaped
-from .structure import thinned
-from .telling import told
-from .telling_dampers import with_damper
-from .weighing_dampers import weighed
-
-_MESH = (1.0, -1.0, 1.05)
-"""Spread and bounds of the error of the mesh, see `mesh_error`."""
-_RITZ = 110
-_BAND, _MORE = 1.15, 4
-"""How far above the test's band a mode may lie and match, and so many modes more."""
-_CONTESTED, _RIVALS = 30.0, 2
-"""Rivals less than this (twice the log of a likelihood ratio) behind, and so many of them, are
-fitted as carefully as the best."""
-_ALONG_AXES = {"ground_spring", "tuned_absorber"}
-"""Kinds with one direction at a point, looked at only where something moves that way."""
+from .search.moves import Searcher
+from .search.patch_reshaping import reshaped
+from .search.refit_own_basis import polished
+from .search.strategy import searched
+from .sensor_faults.sensor_check import Bench
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -76,8 +65,8 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     bench = Bench(request.placed, request.structure.model)
     solution, n = request.solution, len(bench.survey.node)
     hz = bench.survey.frequencies_hz
-    modes_out = held_out(len(hz), 4, 6) if len(hz) >= 10 else np.zeros(len(hz), bool)
-    sensors_out = held_out(n, 5, 10) if n >= 30 else np.zeros(n, bool)
+    modes_out = held_out(len(hz), *DISCOVERY.modes_held, DISCOVERY.modes_enough)
+    sensors_out = held_out(n, *DISCOVERY.sensors_held, DISCOVERY.sensors_enough)
     motion = np.asarray(request.structure.model.expansion @ solution.vectors)
     first = bench.judged(motion, solution.eigenvalues)
     progress("making the catalogue of effects")
@@ -89,20 +78,19 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
         trial = _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
     searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
-        last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
-        if np.any(last.accused & ~trial.aside):
+        tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
+        if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
-            aside = trial.aside | last.doubtful
-            trial = _Trial(request, ground, aside, last.noise, modes_out, sensors_out)
+            aside = trial.aside | tested.doubtful
+            trial = _Trial(request, ground, aside, tested.noise, modes_out, sensors_out)
             searcher, found, verdict = _searched(trial, progress)
-            last = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
-        tested = last
+            tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
     out = modes_out, sensors_out
-    said = told(request, searcher, found, verdict, trial.zero, tested, out)
+    said = build_discovery(request, searcher, found, verdict, trial.zero, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
     said = with_damper(request, weighed(trial.request, searcher.problem, best), said)
-    return with_responses(searcher.problem, found.levels[0].log_p, best, said)
+    return with_responses(searcher.problem, found.levels[0].nuisance, best, said)
 
 
 class _Trial:
@@ -127,38 +115,30 @@ class _Trial:
 
 def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
     best = found.levels[verdict.accepted]
-    return evaluate(searcher.problem, best.log_p, best.suspects)
+    return evaluate(searcher.problem, best.nuisance, best.suspects)
 
 
 def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, Judgement]:
     """Search on sensors taken as sound, and weigh."""
-    request, problem, sensors = trial.request, trial.problem, trial.sensors
-    made = trial.ground.catalogue
     searcher = _searcher(trial)
-    if request.responses is not None:
-        searcher = replace(searcher, problem=hearing(request, searcher.problem, trial.null.log_p))
+    if trial.request.responses is not None:
+        heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
+        searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress)
     searcher, found = _reshaped(searcher, found)
-    made = list(searcher.problem.catalogue)
     progress("weighing the best hypotheses on bases of their own")
-    found, verdict = _weighed(request, searcher, made, found, sensors)
+    found, verdict = _weighed(trial, searcher, found)
     best = found.levels[verdict.accepted]
     one = merged(searcher, best)
     if one is not best:
         with suppress(TrueupError):
             as_many = found.levels[len(one.suspects)]
-            one = min(
-                (_polished(request, searcher, made, f, sensors) for f in (one, as_many)),
-                key=lambda f: f.objective,
-            )
+            both = (_polished(trial, searcher, f) for f in (one, as_many))
+            one = min(both, key=lambda f: f.objective)
             levels = (*found.levels[: verdict.accepted], one)
-            scale = max(verdict.scale, noise_scale(problem, one))
+            scale = max(verdict.scale, noise_scale(trial.problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
     return searcher, found, verdict
-
-
-def _hz(eigenvalues: Floats) -> Floats:
-    return np.asarray(np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi))
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +164,7 @@ def _ground(request: Request, modes: Bools) -> _Ground:
     return _Ground(
         basis,
         lumping(request.structure, basis.vectors),
-        targets + _MORE,
+        targets + DISCOVERY.band_more,
         Compliance(request.structure.model, request.solution),
         _catalogue(request, request.placed.test.frequencies_hz[modes]),
     )
@@ -192,15 +172,15 @@ def _ground(request: Request, modes: Bools) -> _Ground:
 
 def _below(eigenvalues: Floats, top: float) -> int:
     """Return the number of modes that may match one up to `top` [Hz]."""
-    return int(np.count_nonzero(_hz(eigenvalues) < _BAND * top))
+    return int(np.count_nonzero(eigenvalues < (2.0 * np.pi * DISCOVERY.band * top) ** 2))
 
 
 def _prepared(
-    request: Request, ground: _Ground, noise: float, modes: Any, sensors: Any
+    request: Request, ground: _Ground, noise: float, modes: Bools, sensors: Bools
 ) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
-    model, hz = request.structure.model, request.placed.test.frequencies_hz
-    placed = request.placed
+    model, placed = request.structure.model, request.placed
+    hz = placed.test.frequencies_hz
     shapes = np.asarray(placed.weighted(realised(placed.test.shapes)))
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
     whole = Evidence(hz, unit, noise_of(placed.errors, noise))
@@ -208,27 +188,18 @@ def _prepared(
     basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
     prior = Prior(
-        np.append(request.spread, _MESH[0]),
-        np.append(np.log([q.lower for q in model.parameters]), _MESH[1]),
-        np.append(np.log([q.upper for q in model.parameters]), _MESH[2]),
+        np.append(request.spread, DISCOVERY.mesh_spread),
+        np.append(np.log([q.lower for q in model.parameters]), DISCOVERY.mesh_bounds[0]),
+        np.append(np.log([q.upper for q in model.parameters]), DISCOVERY.mesh_bounds[1]),
     )
+    mesh, size = ground.mesh, min(basis.size, DISCOVERY.modes)
     problem = Problem(
-        e,
-        whole,
-        basis,
-        observed[sensors],
-        observed,
-        ground.mesh,
-        (),
-        (),
-        prior,
-        min(basis.size, _RITZ),
-        ground.columns,
+        e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
     )
     n = len(prior.spread)
-    zero = fit(problem, np.zeros(n), (), (n - 1,), 10)
-    null = fit(problem, np.zeros(n), (), tuple(range(n)), 30)
-    columns = _below(null.eigenvalues, float(hz.max())) + _MORE
+    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
+    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
+    columns = _below(null.eigenvalues, float(hz.max())) + DISCOVERY.band_more
     return replace(problem, columns=columns), null, zero
 
 
@@ -240,7 +211,7 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
         float((2.0 * np.pi * np.median(hz)) ** 2),
         (float(hz.min()), float(hz.max())),
     )
-    return [c for make in KINDS.values() for c in make(request.structure, scale)]
+    return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
 def _reshaped(searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
@@ -252,9 +223,7 @@ def _reshaped(searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
     return searcher, Found(tuple(levels), found.rivals)
 
 
-def _weighed(
-    request: Request, searcher: Searcher, made: list[Candidates], found: Found, sensors: Any
-) -> tuple[Found, Judgement]:
+def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:
     """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again.
 
     A hypothesis whose completed model does not solve (a release larger than what is there) stays
@@ -266,20 +235,15 @@ def _weighed(
     while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
         for k in wanted:
             with suppress(TrueupError):
-                levels[k] = _polished(request, searcher, made, levels[k], sensors)
+                levels[k] = _polished(trial, searcher, levels[k])
             done.add(k)
         kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
         verdict, found = judge(searcher, kept), kept
-    return _contested(request, searcher, made, found, verdict, sensors)
+    return _contested(trial, searcher, found, verdict)
 
 
 def _contested(
-    request: Request,
-    searcher: Searcher,
-    made: list[Candidates],
-    found: Found,
-    verdict: Judgement,
-    sensors: Any,
+    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
 ) -> tuple[Found, Judgement]:
     """Fit the nearest rivals on bases of their own too, and let the best of all win."""
     best = cost(searcher, found.levels[verdict.accepted], verdict.scale)
@@ -287,26 +251,20 @@ def _contested(
     def behind(f: Fit) -> float:
         return cost(searcher, f, verdict.scale) - best
 
-    near = sorted(
-        (f for f in contenders(searcher, found, verdict.accepted) if behind(f) < _CONTESTED),
-        key=behind,
-    )[:_RIVALS]
+    rivals = sorted(contenders(searcher, found, verdict.accepted), key=behind)
+    near = [f for f in rivals if behind(f) < DISCOVERY.contested][: DISCOVERY.contested_most]
     for rival in near if verdict.accepted else ():
         with suppress(TrueupError):
-            found = with_rival(
-                searcher, found, rival, _polished(request, searcher, made, rival, sensors)
-            )
+            found = with_rival(searcher, found, rival, _polished(trial, searcher, rival))
     return found, judge(searcher, found)
 
 
-def _polished(
-    request: Request, searcher: Searcher, made: list[Candidates], state: Fit, sensors: Any
-) -> Fit:
+def _polished(trial: _Trial, searcher: Searcher, state: Fit) -> Fit:
     """Fit a hypothesis on a basis of its own."""
-    model = request.structure.model
-    placed = request.placed
-    observation = sp.csr_matrix(placed.weighted(placed.observation.matrix @ model.expansion))
-    return polished(request.structure, made, observation, sensors, searcher.problem, state)
+    structure, placed = trial.request.structure, trial.request.placed
+    motion = placed.observation.matrix @ structure.model.expansion
+    observation = sp.csr_matrix(placed.weighted(motion))
+    return polished(structure, observation, trial.sensors, searcher.problem, state)
 
 
 def _searcher(trial: _Trial) -> Searcher:
@@ -315,44 +273,26 @@ def _searcher(trial: _Trial) -> Searcher:
     made, compliance = trial.ground.catalogue, trial.ground.compliance
     size = request.structure.model.geometry.size
     small = problem.turned(null.vectors)
-    small = replace(small, modes=min(80, small.basis.size))
+    small = replace(small, modes=min(DISCOVERY.small_modes, small.basis.size))
     vectors = small.basis.vectors
     inverse = compliance.on(vectors)
     missing = tuple(_missing(c, compliance, vectors, inverse) for c in made)
     factors = tuple(c.factors(small.basis) for c in made)
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
-    coarse = tuple(_coarse(c, f, small, size) for c, f in zip(made, factors, strict=True))
+    both, columns = zip(made, factors, strict=True), small.columns
+    coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.log_p, size, request.effort)
+    return Searcher(small, coarse, active, null.nuisance, size, request.effort)
 
 
-def _missing(c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats) -> Any:
+def _missing(
+    c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
+) -> Flexibility | SharedFlexibility | None:
     """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
-    if not c.needs_flexibility:
+    if not c.rows_each:
         return None
     if isinstance(c.law, ReleaseLaw):
-        loads = c.extra.get("loads", c.root)
-        turns = c.extra.get("turns", sp.identity(c.root.shape[0], format="csr"))
+        loads = c.root if c.loads is None else c.loads
+        turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
         return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)
     return Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
-
-
-def _coarse(c: Candidates, factors: Any, problem: Problem, size: float) -> Any:
-    """Rows that the first scan looks at: spread over the structure, where anything moves."""
-    rows = np.arange(len(c))
-    if c.kind in _ALONG_AXES:
-        moves = np.sum(factors[rows][:, 0, : problem.columns] ** 2, axis=1)
-        live = np.flatnonzero(moves > 0.02 * moves.max())
-        parts = []
-        component = np.array([w["components"][0] for w in c.where])
-        for k in (1, 2, 3):
-            own = live[component[live] == k]
-            if len(own):
-                parts.append(own[thinned(c.xyz[own], size / 13.0)])
-        return np.concatenate(parts) if parts else rows[:0]
-    if "patches" in c.extra:
-        first = np.flatnonzero([p.first for p in c.extra["patches"]])
-        return first[thinned(c.xyz[first], size / 18.0)] if c.kind == "point_mass" else first
-    if c.kind == "point_mass":
-        return thinned(c.xyz, size / 18.0)
-    return rows

@@ -11,13 +11,79 @@ from ..arrays import Bools, Floats
 
 
 @dataclass(frozen=True, eq=False)
+class FaultKind:
+    """A way in which a sensor does not read what it should.
+
+    Parameters
+    ----------
+    name : str
+        The fixed word of result.json.
+    label : str
+        What the report calls it.
+    sentence : str
+        A template of ``sensors``, ``others`` (of an exchange) and ``size``.
+    magnitude : str
+        Word of the size in result.json, "" where there is none.
+    exchanges : bool
+        Whether half of its sensors read what the other half should.
+    like_model : bool
+        Whether an error of a model may look like it.
+    accuses : bool
+        Whether it is a finding; else a remark.
+    """
+
+    name: str
+    label: str
+    sentence: str
+    magnitude: str = ""
+    exchanges: bool = False
+    like_model: bool = True
+    accuses: bool = True
+
+
+POLARITY = FaultKind(
+    "sensor_polarity",
+    "sensor polarity",
+    "Sensor {sensors} reads with the wrong sign in every mode: it is wired backwards",
+    like_model=False,
+)
+GAIN = FaultKind(
+    "sensor_gain",
+    "sensor gain",
+    "Sensor {sensors} reads {size:.2f} times what all the others say it should",
+    "factor",
+)
+SWAP = FaultKind(
+    "sensor_swap",
+    "swapped sensors",
+    "Sensors {sensors} and {others} are swapped: each reads what the other should",
+    exchanges=True,
+    like_model=False,
+)
+AXIS = FaultKind(
+    "sensor_axis",
+    "turned sensor axis",
+    "Sensor {sensors} is turned by {size:.0f}° from the axes that the test says",
+    "angle_deg",
+)
+DOUBLED = FaultKind(
+    "doubled",
+    "doubled readings",
+    "sensor {sensors} reads twice what all the others say, as if two measurements of it had been "
+    "added up; its values were halved for the comparison",
+    accuses=False,
+)
+FAULTS: dict[str, FaultKind] = {k.name: k for k in (POLARITY, GAIN, SWAP, AXIS, DOUBLED)}
+
+
+@dataclass(frozen=True, eq=False)
 class Fault:
     """A sensor that does not read what it should.
 
     Parameters
     ----------
     kind : str
-        ``sensor_polarity``, ``sensor_gain``, ``sensor_swap``, ``sensor_axis`` or ``doubled``.
+        One of `FAULTS`.
     sensors : tuple of int
         Rows concerned.
     reads : (n, n) float or None

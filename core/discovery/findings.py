@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from .faults import Fault
@@ -39,17 +39,26 @@ class Finding:
     credible_set: tuple[dict[str, Any], ...]
     confidence: float
     sentence: str
-    handle: dict[str, Any] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True)
 class Alternative:
-    """What else was considered and how many times less likely it is."""
+    """What else was considered: `where`, and how many times less likely it is, `odds` in words.
+
+    `regions` are the places in words, one a kind.
+    """
 
     kinds: tuple[str, ...]
     places: tuple[tuple[float, ...], ...]
     times_less_likely: float
-    sentence: str
+    where: str
+    odds: str
+    regions: tuple[str, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """Both in one."""
+        return f"{self.where}: {self.odds}"
 
 
 @dataclass(frozen=True)
@@ -109,7 +118,6 @@ class Discovery:
     alternatives: tuple[Alternative, ...]
     parameters: tuple[MovedParameter, ...]
     noise_scale: float
-    objectives: tuple[float, ...]
     evidence_for: float
     posterior: float
     foretold: float

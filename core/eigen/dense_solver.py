@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as sl
 
-from .arrays import Floats
-from .errors import InputError
-from .lanczos import NEGATIVE_MASS
-from .mechanism import diagnose
-from .model import Model
+from ..arrays import Floats
+from ..data.parametric_model import Model
+from ..errors import InputError
+from ..numerics.block_lanczos import NEGATIVE_MASS
+from .mechanisms import diagnose
 from .pencil import Pencil
-from .spectrum import Spectrum
+from .solver_result import Spectrum
 
 _NO_MASS = 1e-12
 

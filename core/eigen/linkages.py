@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints, Numbers
-from .errors import InputError
-from .mechanism import where
-from .model import Model
+from ..arrays import Floats, Ints, Numbers
+from ..data.parametric_model import Model
+from ..errors import InputError
+from .mechanisms import where
 from .pencil import Pencil
 
 _MOVED = 1e-6

@@ -7,10 +7,10 @@ import scipy.linalg as sl
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from .arrays import Floats, Numbers
-from .errors import InputError
-from .factor import Backend, Factorisation, factorise
-from .model import Model
+from ..arrays import Floats, Numbers
+from ..data.parametric_model import Model
+from ..errors import InputError
+from ..numerics.factorisation import Backend, Factorisation, factorise
 from .pencil import Pencil
 
 _SINGULAR = 1e-13

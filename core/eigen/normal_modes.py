@@ -9,18 +9,19 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, frozen
-from .dense import dense_modes
-from .errors import CheckError, InputError
-from .factor import Backend, Factorisation, best_backend, factorise
-from .linkage import refuse_linkage
-from .mechanism import Massless, hold, mechanism, strain_free
-from .model import Model
-from .modes import Modes
+from ..arrays import Floats, frozen
+from ..data.modes import Modes
+from ..data.parametric_model import Model
+from ..errors import CheckError, InputError
+from ..noun import Noun
+from ..numerics.factorisation import Backend, Factorisation, best_backend, factorise
+from .dense_solver import dense_modes
+from .linkages import refuse_linkage
+from .mechanisms import Massless, hold, mechanism, strain_free
 from .pencil import Pencil
-from .rigid import RigidBody, rigid_body
-from .sparse_modes import Request, sparse_modes
-from .spectrum import Spectrum
+from .rigid_body_modes import RigidBody, rigid_body
+from .shift_invert_solver import Request, sparse_modes
+from .solver_result import Spectrum
 
 _DENSE = 600
 _DEFAULT_MODES = 10
@@ -30,7 +31,7 @@ _HELD = 20
 
 
 @dataclass(frozen=True, eq=False)
-class Eigensolution:
+class Eigensolution(Noun):
     """The lowest modes of K x = lambda M x, checked.
 
     Parameters

@@ -7,12 +7,16 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints, require_finite
-from .errors import InputError
-from .model import Model
+from ..arrays import Floats, Ints, require_finite
+from ..data.parametric_model import Model
+from ..errors import InputError
+from ..numerics.block_lanczos import NEGATIVE_MASS
 
 _ROUNDING = 1e-12
 """Mass over stiffness, beside that of most, below which a mass is rounding of a rotation."""
+
+_MASS_STEPS = 40
+"""Lanczos steps on the mass that look for a negative eigenvalue."""
 
 
 class Pencil:
@@ -177,3 +181,25 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
 def _digits(value: float) -> int:
     """Significant decimal digits that a number needs, at most 17."""
     return len(repr(float(value)).split("e")[0].replace(".", "").strip("-0"))
+
+
+def refuse_indefinite_mass(pencil: Pencil) -> None:
+    """Raise `InputError` where a few Lanczos steps on the mass find a negative eigenvalue."""
+    M = pencil.M
+    if (M - sp.diags(pencil.m_diagonal)).count_nonzero() == 0:
+        return
+    root = np.sqrt(pencil.m_diagonal)
+    d = np.divide(1.0, root, out=np.zeros_like(root), where=root > 0.0)
+    q = d * (M @ np.random.default_rng(6).standard_normal(pencil.n))
+    Q = np.zeros((pencil.n, _MASS_STEPS))
+    T = np.zeros((_MASS_STEPS, _MASS_STEPS))
+    for j in range(_MASS_STEPS):
+        norm = np.linalg.norm(q)
+        if norm <= 1e-10:
+            break
+        Q[:, j] = q / norm
+        image = d * (M @ (d * Q[:, j]))
+        T[:, j] = Q.T @ image
+        q = image - Q @ T[:, j]
+    if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -1e-6:
+        raise InputError(NEGATIVE_MASS)

@@ -10,10 +10,10 @@ import scipy.sparse as sp
 from scipy.linalg import qr
 from scipy.sparse.csgraph import connected_components
 
-from .arrays import Floats, Ints, Numbers
-from .errors import CheckError
-from .factor import factorise
-from .model import Model
+from ..arrays import Floats, Ints, Numbers
+from ..data.parametric_model import Model
+from ..errors import CheckError
+from ..numerics.factorisation import factorise
 from .pencil import Pencil
 
 _ROUNDING = 1e-13

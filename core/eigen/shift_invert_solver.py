@@ -6,16 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as sl
-import scipy.sparse as sp
 
-from .arrays import Floats
-from .errors import CheckError, InputError
-from .factor import Backend, Factorisation, NotDefinite, factorise
-from .lanczos import NEGATIVE_MASS, BlockLanczos
-from .mechanism import diagnose, refuse_unresisted
-from .model import Model
-from .pencil import Pencil
-from .spectrum import Spectrum
+from ..arrays import Floats
+from ..data.parametric_model import Model
+from ..errors import CheckError, InputError
+from ..numerics.block_lanczos import NEGATIVE_MASS, BlockLanczos
+from ..numerics.factorisation import Backend, Factorisation, NotDefinite, factorise
+from .mechanisms import diagnose, refuse_unresisted
+from .pencil import Pencil, refuse_indefinite_mass
+from .solver_result import Spectrum
 
 _FIRST_SHIFT_HZ = 20.0  # a guess, bettered when the first Ritz values are seen
 _SHIFTS = 6  # guesses at most
@@ -109,7 +108,7 @@ def _started(
     model: Model | None, pencil: Pencil, rigid: Floats, elastic: int, request: Request
 ) -> tuple[float, Factorisation, BlockLanczos]:
     """Choose a shift that suits the spectrum, with its factor and the first Krylov vectors."""
-    _refuse_indefinite_mass(pencil)
+    refuse_indefinite_mass(pencil)
     typical = float(np.median(pencil.stiffness_over_mass))
     hertz = _FIRST_SHIFT_HZ
     first = (2.0 * np.pi * hertz) ** 2 if request.limit is None else 0.05 * request.limit
@@ -202,28 +201,6 @@ def _converged(
     found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(firm), theta[:firm])
     ahead = sigma + 1.0 / theta[firm : max(loose, firm)]
     return replace(found, complete=lanczos.exhausted, ahead=ahead)
-
-
-def _refuse_indefinite_mass(pencil: Pencil, steps: int = 40) -> None:
-    """Raise `InputError` where a few Lanczos steps on the mass find a negative eigenvalue."""
-    M = pencil.M
-    if (M - sp.diags(pencil.m_diagonal)).count_nonzero() == 0:
-        return
-    root = np.sqrt(pencil.m_diagonal)
-    d = np.divide(1.0, root, out=np.zeros_like(root), where=root > 0.0)
-    q = d * (M @ np.random.default_rng(6).standard_normal(pencil.n))
-    Q = np.zeros((pencil.n, steps))
-    T = np.zeros((steps, steps))
-    for j in range(steps):
-        norm = np.linalg.norm(q)
-        if norm <= 1e-10:
-            break
-        Q[:, j] = q / norm
-        image = d * (M @ (d * Q[:, j]))
-        T[:, j] = Q.T @ image
-        q = image - Q @ T[:, j]
-    if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -1e-6:
-        raise InputError(NEGATIVE_MASS)
 
 
 def _refuse_negative(pencil: Pencil, sigma: float, factor: Factorisation) -> None:

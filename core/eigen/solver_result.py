@@ -6,12 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .arrays import Floats
-from .factor import Factorisation
+from ..arrays import Floats
+from ..noun import Noun
+from ..numerics.factorisation import Factorisation
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(Noun):
     """Modes besides the rigid-body modes that were known beforehand.
 
     Parameters

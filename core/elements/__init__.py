@@ -1,126 +1,41 @@
-"""Element matrices, vectorised over elements."""
+"""Elements: from node positions and constants to matrices, vectorised over elements.
 
-from .bar import (
-    bar_axes,
-    bar_mass,
-    bar_stiffness,
-    offset_transform,
-    rod_mass,
-    rod_stiffness,
-)
-from .beam import BeamSections, beam_mass, beam_stiffness
-from .bush import bush_stiffness
-from .curved_shell import (
-    QUAD8_EDGES,
-    TRIA6_EDGES,
-    quad8_axes,
-    quad8_mass,
-    quad8_stiffness,
-    tria6_axes,
-    tria6_mass,
-    tria6_stiffness,
-)
-from .hexa import hexa8_stiffness, hexa20_stiffness
-from .material import isotropic_solid, rotate_material
-from .middle_nodes import drop_middle_nodes, fill_middle_nodes
-from .penta import penta6_stiffness, penta15_stiffness
-from .quadr import quadr_stiffness, triar_stiffness
-from .shear import shear_panel_mass, shear_panel_stiffness
-from .shell import (
-    ShellSection,
-    corner_normals,
-    grid_normals,
-    isotropic_section,
-    quad4_axes,
-    quad4_corner_jacobians,
-    quad4_mass,
-    quad4_stiffness,
-    rotate_section,
-    tria3_area,
-    tria3_axes,
-    tria3_mass,
-    tria3_stiffness,
-)
-from .solid import (
-    hexa8_mass,
-    hexa20_mass,
-    penta6_mass,
-    penta15_mass,
-    pyramid5_mass,
-    pyramid5_stiffness,
-    pyramid13_mass,
-    pyramid13_stiffness,
-    solid_volume,
-    tetra4_mass,
-    tetra4_stiffness,
-    tetra10_mass,
-    tetra10_stiffness,
-)
-from .solid_shapes import HEXA8, HEXA20, PENTA6, PENTA15, PYRAMID5, PYRAMID13, TETRA4, TETRA10
+An element is one file that declares its facts in an `Element`, and one line here;
+`register_element` adds one from outside.
+"""
 
-__all__ = [
-    "HEXA8",
-    "HEXA20",
-    "PENTA6",
-    "PENTA15",
-    "PYRAMID5",
-    "PYRAMID13",
-    "QUAD8_EDGES",
-    "TETRA4",
-    "TETRA10",
-    "TRIA6_EDGES",
-    "BeamSections",
-    "ShellSection",
-    "bar_axes",
-    "bar_mass",
-    "bar_stiffness",
-    "beam_mass",
-    "beam_stiffness",
-    "bush_stiffness",
-    "corner_normals",
-    "drop_middle_nodes",
-    "fill_middle_nodes",
-    "grid_normals",
-    "hexa8_mass",
-    "hexa8_stiffness",
-    "hexa20_mass",
-    "hexa20_stiffness",
-    "isotropic_section",
-    "isotropic_solid",
-    "offset_transform",
-    "penta6_mass",
-    "penta6_stiffness",
-    "penta15_mass",
-    "penta15_stiffness",
-    "pyramid5_mass",
-    "pyramid5_stiffness",
-    "pyramid13_mass",
-    "pyramid13_stiffness",
-    "quad4_axes",
-    "quad4_corner_jacobians",
-    "quad4_mass",
-    "quad4_stiffness",
-    "quad8_axes",
-    "quad8_mass",
-    "quad8_stiffness",
-    "quadr_stiffness",
-    "rod_mass",
-    "rod_stiffness",
-    "rotate_material",
-    "rotate_section",
-    "shear_panel_mass",
-    "shear_panel_stiffness",
-    "solid_volume",
-    "tetra4_mass",
-    "tetra4_stiffness",
-    "tetra10_mass",
-    "tetra10_stiffness",
-    "tria3_area",
-    "tria3_axes",
-    "tria3_mass",
-    "tria3_stiffness",
-    "tria6_axes",
-    "tria6_mass",
-    "tria6_stiffness",
-    "triar_stiffness",
-]
+from __future__ import annotations
+
+from ..errors import InputError
+from .bar import BAR, ROD
+from .beam import BEAM
+from .bush import BUSH, GROUNDED_BUSH
+from .curved_shell import QUAD8, TRIA6
+from .element import Element
+from .hexa import HEXA8, HEXA20
+from .lumped import MASS, SPRING
+from .penta import PENTA6, PENTA15
+from .pyramid import PYRAMID5, PYRAMID13
+from .quad4 import QUAD4
+from .quadr import QUADR, TRIAR
+from .shear import SHEAR_PANEL
+from .tetra import TETRA4, TETRA10
+from .tria3 import TRIA3
+
+__all__ = ["ELEMENTS", "Element", "register_element"]
+
+ELEMENTS = {e.name: e for e in tuple(vars().values()) if isinstance(e, Element)}
+"""Every element that is imported above, by name."""
+
+
+def register_element(element: Element) -> None:
+    """Add an element; ``del ELEMENTS[name]`` undoes it.
+
+    Raises
+    ------
+    InputError
+        Its name is taken.
+    """
+    if element.name in ELEMENTS:
+        raise InputError(f"there is an element {element.name!r} already")
+    ELEMENTS[element.name] = element

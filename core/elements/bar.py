@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
+from ..data.shapes import LINE
 from .batch import congruent, skew, symmetric, transpose, unit
+from .element import Element
 
 _RELEASED = 1e-10
 
@@ -93,7 +95,7 @@ def bar_stiffness(
     V, R = bending_modes(L)
     K += transpose(V) @ antisymmetric @ V + transpose(R) @ (EI / L[:, None, None]) @ R
     K = release(K, np.concatenate([pins_a, pins_b], axis=1))
-    return congruent(K, _block4(bar_axes(xa, xb, v)))
+    return congruent(K, axes4(bar_axes(xa, xb, v)))
 
 
 def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
@@ -119,23 +121,22 @@ def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled
         rows = np.array([w, r, w + 6, r + 6])
         M[:, rows[:, None], rows] = _hermite_mass(sign * L)
     M *= (mass_per_length * L / 420.0)[:, None, None]
-    return congruent(M, _block4(bar_axes(xa, xb, v)))
+    return congruent(M, axes4(bar_axes(xa, xb, v)))
 
 
-def rod_stiffness(xa: Floats, xb: Floats, E: Floats, A: Floats, G: Floats, J: Floats) -> Floats:
+def rod_stiffness(xyz: Floats, E: Floats, A: Floats, G: Floats, J: Floats) -> Floats:
     """Stiffness of rods, (n, 12, 12): axial E A / L and torsion G J / L, basic frame.
 
     Parameters
     ----------
-    xa, xb : (n, 3) float
+    xyz : (n, 2, 3) float
         Ends, basic frame.
     E, A, G, J : (n,) float
         Moduli, area, torsion constant.
     """
-    L = np.linalg.norm(xb - xa, axis=1)
-    x = (xb - xa) / L[:, None]
+    x, L = _along(xyz)
     outer = x[:, :, None] * x[:, None, :]
-    K = np.zeros((len(xa), 2, 6, 2, 6))
+    K = np.zeros((len(xyz), 2, 6, 2, 6))
     for first, k in ((0, E * A / L), (3, G * J / L)):
         part = slice(first, first + 3)
         block = k[:, None, None] * outer
@@ -144,12 +145,12 @@ def rod_stiffness(xa: Floats, xb: Floats, E: Floats, A: Floats, G: Floats, J: Fl
     return K.reshape(-1, 12, 12)
 
 
-def rod_mass(xa: Floats, xb: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
+def rod_mass(xyz: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
     """Mass of rods, (n, 12, 12), translations only, basic frame.
 
     Parameters
     ----------
-    xa, xb : (n, 3) float
+    xyz : (n, 2, 3) float
         Ends, basic frame.
     mass_per_length : (n,) float
         rho A + non-structural mass.
@@ -157,17 +158,23 @@ def rod_mass(xa: Floats, xb: Floats, mass_per_length: Floats, coupled: bool) -> 
         Along the axis the mean of lumped and consistent mass (5/12, 1/12), lumped across it;
         otherwise half the mass at each end.
     """
-    L = np.linalg.norm(xb - xa, axis=1)
+    x, L = _along(xyz)
     mass = mass_per_length * L
     M = _lumped(mass)
     if coupled:
-        x = (xb - xa) / L[:, None]
         twelfth = (mass / 12.0)[:, None, None] * x[:, :, None] * x[:, None, :]
         M[:, 0:3, 0:3] -= twelfth
         M[:, 6:9, 6:9] -= twelfth
         M[:, 0:3, 6:9] += twelfth
         M[:, 6:9, 0:3] += twelfth
     return M
+
+
+def _along(xyz: Floats) -> tuple[Floats, Floats]:
+    """Directions (n, 3) and lengths (n,) of lines."""
+    d = xyz[:, 1] - xyz[:, 0]
+    L = np.linalg.norm(d, axis=1)
+    return d / L[:, None], L
 
 
 def add_spring(K: Floats, dof: int, k: Floats) -> None:
@@ -208,7 +215,8 @@ def release(K: Floats, pins: Numbers) -> Floats:
     return K
 
 
-def _block4(axes: Floats) -> Floats:
+def axes4(axes: Floats) -> Floats:
+    """Turn the four triples of two ends to the axes, (n, 12, 12)."""
     T = np.zeros((len(axes), 4, 3, 4, 3))
     for i in range(4):
         T[:, i, :, i, :] = axes
@@ -236,3 +244,9 @@ def _hermite_mass(L: Floats) -> Floats:
     i, j = np.triu_indices(4)
     M[:, i, j] = M[:, j, i] = upper
     return M
+
+
+BAR = Element(
+    name="bar", shape=LINE, freedoms=6, stiffness=bar_stiffness, mass=bar_mass, exact=True
+)
+ROD = Element(name="rod", shape=LINE, freedoms=6, stiffness=rod_stiffness, mass=rod_mass)

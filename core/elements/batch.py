@@ -96,3 +96,12 @@ def condense(K: Floats, kept: Ints, dropped: Ints) -> Floats:
     np.einsum("nii->ni", Kpp)[empty] = 1.0
     Kpk = K[:, dropped[:, None], kept]
     return np.asarray(K[:, kept[:, None], kept] - transpose(Kpk) @ np.linalg.solve(Kpp, Kpk))
+
+
+def translations(m: Floats, freedoms: int) -> Floats:
+    """Return masses of nodes, (n, k, k), alike in all directions as (n, k freedoms, k freedoms)."""
+    n, k, _ = m.shape
+    M = np.zeros((n, k, freedoms, k, freedoms))
+    for axis in range(3):
+        M[:, :, axis, :, axis] = m
+    return M.reshape(n, k * freedoms, k * freedoms)

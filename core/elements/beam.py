@@ -7,8 +7,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..arrays import Floats, Numbers, frozen, require_shape
-from .bar import add_spring, bar_axes, release
+from ..data.shapes import LINE
+from .bar import add_spring, axes4, bar_axes, release
 from .batch import congruent, symmetric, transpose
+from .element import Element
 
 _X, _W = np.polynomial.legendre.leggauss(8)
 _X, _W = 0.5 * (_X + 1.0), 0.5 * _W
@@ -118,7 +120,7 @@ def beam_stiffness(
     bending[dead] = 0.0
     K = congruent(K + symmetric(bending), _neutral_axis(neutral_a, neutral_b))
     K = release(K, np.concatenate([pins_a, pins_b], axis=1))
-    return congruent(K, _axes4(bar_axes(xa, xb, v)))
+    return congruent(K, axes4(bar_axes(xa, xb, v)))
 
 
 def beam_mass(
@@ -183,7 +185,7 @@ def beam_mass(
             N = _lumped(_ends(x, weight * line), _ends(x, spin))
         arms = _arms(zero if nsm_a is None else nsm_a, zero if nsm_b is None else nsm_b)
         M = M + congruent(N, arms)
-    return congruent(M, _axes4(bar_axes(xa, xb, v)))
+    return congruent(M, axes4(bar_axes(xa, xb, v)))
 
 
 def _series(w: Floats, stiffness: Floats) -> Floats:
@@ -268,8 +270,6 @@ def _hermite(x: Floats, m: Floats, i1: Floats, i2: Floats, L: Floats) -> Floats:
     return M
 
 
-def _axes4(axes: Floats) -> Floats:
-    T = np.zeros((len(axes), 4, 3, 4, 3))
-    for i in range(4):
-        T[:, i, :, i, :] = axes
-    return T.reshape(-1, 12, 12)
+BEAM = Element(
+    name="beam", shape=LINE, freedoms=6, stiffness=beam_stiffness, mass=beam_mass, exact=True
+)

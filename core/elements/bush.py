@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import Floats
+from ..data.shapes import LINE, POINT
 from .bar import offset_transform
 from .batch import congruent
+from .element import Element
 
 
 def bush_stiffness(axes: Floats, k: Floats, arm_a: Floats, arm_b: Floats) -> Floats:
@@ -32,10 +36,9 @@ def bush_stiffness(axes: Floats, k: Floats, arm_a: Floats, arm_b: Floats) -> Flo
         part = slice(first, first + 3)
         relative[:, part, part] = -axes
         relative[:, part, slice(first + 6, first + 9)] = axes
-    K = congruent_diagonal(k, relative)
+    K = np.asarray(relative.swapaxes(-1, -2) @ (k[..., None] * relative))
     return congruent(K, offset_transform(arm_a, arm_b))
 
 
-def congruent_diagonal(k: Floats, T: Floats) -> Floats:
-    """Return T^T diag(k) T of each element."""
-    return np.asarray(T.swapaxes(-1, -2) @ (k[..., None] * T))
+BUSH = Element(name="bush", shape=LINE, freedoms=6, stiffness=bush_stiffness, material=False)
+GROUNDED_BUSH = replace(BUSH, name="grounded_bush", shape=POINT)

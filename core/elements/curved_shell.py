@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from .batch import arms, congruent, in_chunks, skew, symmetric, transpose, unit
-from .lumping import to_middle_nodes
-from .section import ShellSection
-from .solid_shapes import gauss_tria
-from .transverse_shear import finite_shear
+from ..arrays import Floats
+from ..data.shapes import QUAD, TRIA, Shape
+from .batch import arms, congruent, skew, symmetric, translations, transpose, unit
+from .element import Element
+from .middle_nodes import to_middle_nodes
+from .quad4 import quad4_sound
+from .quadrature import gauss_tria
+from .section import ShellSection, finite_shear, shell_stiffness
+from .tria3 import tria3_sound
 
 _G = 1.0 / np.sqrt(3.0)
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -21,8 +25,6 @@ _MIDDLES = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
 _HOURGLASS = 0.25
 _TRIA_RESIDUAL = 1.0 / 24.0
 _CHUNK = 1024
-
-Shape = Callable[[Floats], tuple[Floats, Floats]]
 
 
 def quad8_shape(p: Floats) -> tuple[Floats, Floats]:
@@ -56,7 +58,7 @@ def tria6_shape(p: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, eq=False)
 class _Rule:
-    shape: Shape
+    shape: Callable[[Floats], tuple[Floats, Floats]]
     nodes: Floats
     centre: Floats
     points: Floats
@@ -73,120 +75,36 @@ _QUAD = _Rule(
 _TRIANGLE = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
 _TRIA = _Rule(tria6_shape, _TRIANGLE, np.full((1, 2), 1 / 3), *gauss_tria(3))
 
-QUAD8_EDGES: Ints = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-TRIA6_EDGES: Ints = np.array([[0, 1], [1, 2], [2, 0]])
 
-
-def quad8_axes(xyz: Floats) -> Floats:
-    """Element axes at the centre, (n, 3, 3): x along xi, z normal."""
-    return _frame(xyz, _QUAD.shape(_QUAD.centre)[1])[:, 0]
-
-
-def tria6_axes(xyz: Floats) -> Floats:
-    """Element axes at the centre, (n, 3, 3): x along the edge 1-2, z normal."""
-    return _frame(xyz, _TRIA.shape(_TRIA.centre)[1])[:, 0]
-
-
-def quad8_stiffness(xyz: Floats, section: ShellSection, offset: Floats | float = 0.0) -> Floats:
-    """Stiffness of eight-node curved shells, (n, 48, 48).
-
-    2 x 2 points; what they do not see of the direct strains is held by a quarter of its
-    stiffness, which with the rest is MSC Nastran's membrane exactly. Its law of transverse shear
-    is not identified: with the plain one here the energies of a thick square are 1 to 15 % above
-    MSC's, and thin plates and cylinders converge fast. There is no stiffness about the normals of
-    the surface at the nodes.
-
-    Parameters
-    ----------
-    xyz : (n, 8, 3) float
-        Corners, then middle nodes, basic frame; see `fill_middle_nodes` for missing ones.
-    section : ShellSection
-        In the axes at each point: x along xi, z normal.
-    offset : (n,) float
-        From the nodes to the middle surface, along the normals of the surface at the nodes.
-    """
-    return _offset_stiffness(_QUAD, _quad8, xyz, section, offset)
-
-
-def tria6_stiffness(xyz: Floats, section: ShellSection, offset: Floats | float = 0.0) -> Floats:
-    """Stiffness of six-node curved shells, (n, 36, 36).
-
-    Three points; the membrane is MSC Nastran's, transverse shear at the points with a residual
-    bending flexibility A / (12 D) is an approximation (energies of a thick triangle 6 % below to
-    28 % above MSC's). There is no stiffness about the normals of the surface at the nodes.
-
-    Parameters as for `quad8_stiffness`, `xyz` (n, 6, 3).
-    """
-    return _offset_stiffness(_TRIA, _tria6, xyz, section, offset)
-
-
-def _offset_stiffness(
-    rule: _Rule,
-    stiffness: Callable[[Floats, ShellSection], Floats],
-    xyz: Floats,
-    section: ShellSection,
-    offset: Floats | float,
-) -> Floats:
-    """Stiffness of the shifted surface, carried to the nodes by rigid arms."""
-    n, nodes = xyz.shape[:2]
-    offset = np.broadcast_to(np.asarray(offset, float), (n,))
-
-    def matrices(part: slice) -> Floats:
-        at, z = xyz[part], offset[part]
-        if not z.any():
-            return stiffness(at, section.take(part))
-        arm = z[:, None, None] * _frame(at, rule.shape(rule.nodes)[1])[:, :, 2]
-        basic = np.broadcast_to(np.eye(3), (len(at), 3, 3))
-        return congruent(stiffness(at + arm, section.take(part)), arms(basic, arm))
-
-    return in_chunks(n, 6 * nodes, matrices, _CHUNK)
-
-
-def quad8_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
-    """Mass of eight-node shells, (n, 48, 48), translations only; see `tria6_mass`."""
-    x, w = np.polynomial.legendre.leggauss(3)
-    points = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-    return _mass(quad8_shape, points, np.outer(w, w).ravel(), 4, xyz, areal_density, coupled)
-
-
-def tria6_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
-    """Mass of six-node shells, (n, 36, 36), translations only.
-
-    Parameters
-    ----------
-    xyz : (n, 6, 3) float
-        Corners, then middle nodes.
-    areal_density : (n,) float
-        Mass per area.
-    coupled : bool
-        Consistent mass; otherwise all of it at the middle nodes, as MSC does (see
-        `lumping.to_middle_nodes`).
-    """
-    return _mass(tria6_shape, *gauss_tria(7), 3, xyz, areal_density, coupled)
+def _axes(rule: _Rule, xyz: Floats) -> Floats:
+    """Element axes at the centre, (n, 3, 3): x along xi (of the triangle: edge 1-2), z normal."""
+    return _frame(xyz, rule.shape(rule.centre)[1])[:, 0]
 
 
 def _mass(
+    rule: _Rule,
     shape: Shape,
     points: Floats,
     weights: Floats,
-    corners: int,
     xyz: Floats,
     areal_density: Floats,
     coupled: bool,
 ) -> Floats:
-    N, dN = shape(points)
+    """Mass of second-order shells, (n, 6 k, 6 k), translations only.
+
+    Consistent where `coupled`; otherwise all of it at the middle nodes, as MSC does (see
+    `to_middle_nodes`).
+    """
+    N, dN = rule.shape(points)
     J = dN @ xyz[:, None]
     area = np.linalg.norm(np.cross(J[:, :, 0], J[:, :, 1]), axis=2)
     weight = area * weights * areal_density[:, None]
     if coupled:
         m = transpose(N * weight[..., None]) @ N
     else:
-        share = to_middle_nodes(weight @ N, xyz, corners)
+        share = to_middle_nodes(weight @ N, xyz, shape.corners)
         m = share[:, :, None] * np.eye(N.shape[1])
-    M = np.zeros((len(xyz), N.shape[1], 6, N.shape[1], 6))
-    for k in range(3):
-        M[:, :, k, :, k] = m
-    return M.reshape(len(xyz), 6 * N.shape[1], -1)
+    return translations(m, 6)
 
 
 def _frame(xyz: Floats, dN: Floats) -> Floats:
@@ -271,6 +189,13 @@ def _plane_energy(section: ShellSection, e: Floats, c: Floats, weight: Floats) -
 
 
 def _quad8(xyz: Floats, section: ShellSection) -> Floats:
+    """Stiffness of eight-node curved shells.
+
+    2 x 2 points; what they do not see of the direct strains is held by a quarter of its
+    stiffness, which with the rest is MSC Nastran's membrane exactly. Its law of transverse shear
+    is not identified: with the plain one here the energies of a thick square are 1 to 15 % above
+    MSC's, and thin plates and cylinders converge fast.
+    """
     e, c, area = _strains(_QUAD, xyz, _QUAD.points)
     K = _plane_energy(section, e, c, area)
     K += _hourglass(section, xyz, area.sum(axis=1))
@@ -303,6 +228,12 @@ def _hourglass(section: ShellSection, xyz: Floats, area: Floats) -> Floats:
 
 
 def _tria6(xyz: Floats, section: ShellSection) -> Floats:
+    """Stiffness of six-node curved shells.
+
+    Three points; the membrane is MSC Nastran's, transverse shear at the points with a residual
+    bending flexibility A / (12 D) is an approximation (energies of a thick triangle 6 % below to
+    28 % above MSC's).
+    """
     e, c, area = _strains(_TRIA, xyz, _TRIA.points)
     weight = area * _TRIA.weights
     K = _plane_energy(section, e, c, weight)
@@ -320,3 +251,49 @@ def _tria6(xyz: Floats, section: ShellSection) -> Floats:
 def _bending_only(section: ShellSection, S: Floats) -> Floats:
     """No transverse shear where there is no bending."""
     return np.where((section.D[:, 0, 0] > 0.0)[:, None, None], S, 0.0)
+
+
+def _offset(
+    rule: _Rule,
+    stiffness: Callable[[Floats, ShellSection], Floats],
+    xyz: Floats,
+    section: ShellSection,
+    _k6rot: float,
+    offset: Floats,
+    _normals: Floats | None,
+) -> Floats:
+    """Stiffness of the shifted surface, carried to the nodes by rigid arms.
+
+    The offsets stand on the normals of the surface at the nodes, about which there is no
+    stiffness; normals averaged over elements are not for curved shells.
+    """
+    if not offset.any():
+        return stiffness(xyz, section)
+    arm = offset[:, None, None] * _frame(xyz, rule.shape(rule.nodes)[1])[:, :, 2]
+    basic = np.broadcast_to(np.eye(3), (len(xyz), 3, 3))
+    return congruent(stiffness(xyz + arm, section), arms(basic, arm))
+
+
+_X, _W = np.polynomial.legendre.leggauss(3)
+_NINE = np.stack(np.meshgrid(_X, _X, indexing="ij"), axis=-1).reshape(-1, 2)
+
+QUAD8 = Element(
+    name="quad8",
+    shape=QUAD,
+    freedoms=6,
+    edges=np.array(QUAD.sides),
+    stiffness=shell_stiffness(partial(_offset, _QUAD, _quad8), _CHUNK),
+    mass=partial(_mass, _QUAD, QUAD, _NINE, np.outer(_W, _W).ravel()),
+    axes=partial(_axes, _QUAD),
+    sound=quad4_sound,
+)
+TRIA6 = Element(
+    name="tria6",
+    shape=TRIA,
+    freedoms=6,
+    edges=np.array(TRIA.sides),
+    stiffness=shell_stiffness(partial(_offset, _TRIA, _tria6), _CHUNK),
+    mass=partial(_mass, _TRIA, TRIA, *gauss_tria(7)),
+    axes=partial(_axes, _TRIA),
+    sound=tria3_sound,
+)

@@ -5,14 +5,54 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats
-from .batch import condense, in_chunks, symmetric, transpose
-from .material import strain_transform
-from .solid import displacement_gradients, energy, solid_stiffness, strain_operator
-from .solid_shapes import HEXA8, HEXA20, gauss_line, hexa8, hexa20
+from ..data.shapes import HEXA
+from .batch import condense, symmetric, transpose
+from .quadrature import gauss_hexa, gauss_line
+from .solid import (
+    Solid,
+    displacement_gradients,
+    energy,
+    stacked_edges,
+    strain_operator,
+    strain_transform,
+)
 
-_CHUNK = 128
+SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+_HEXA = np.column_stack([np.tile(SQUARE, (2, 1)), np.repeat([-1.0, 1.0], 4)])
+_EDGES = stacked_edges(4)
+_TWO, _THREE = gauss_hexa(2), gauss_hexa(3)
 # shear component -> natural direction along which it keeps its variation
 _KEPT = {3: 2, 4: 0, 5: 1}
+
+
+def hexa8(p: Floats) -> tuple[Floats, Floats]:
+    """Trilinear shape functions."""
+    f = 1.0 + _HEXA * p[:, None, :]
+    N = f.prod(axis=2) / 8.0
+    d = [_HEXA[:, k] * f[:, :, k - 2] * f[:, :, k - 1] / 8.0 for k in range(3)]
+    return N, np.stack(d, axis=1)
+
+
+def hexa20(p: Floats) -> tuple[Floats, Floats]:
+    """Serendipity shape functions of the 20-node brick."""
+    middle = np.array([0.5 * (_HEXA[i] + _HEXA[j]) for i, j in _EDGES])
+    N, dN = np.empty((len(p), 20)), np.empty((len(p), 3, 20))
+    f = 1.0 + _HEXA * p[:, None, :]
+    s = (_HEXA * p[:, None, :]).sum(axis=2) - 2.0
+    N[:, :8] = f.prod(axis=2) * s / 8.0
+    for k in range(3):
+        pair = f[:, :, k - 2] * f[:, :, k - 1]
+        dN[:, k, :8] = _HEXA[:, k] * pair * (s + f[:, :, k]) / 8.0
+    for m, at in enumerate(middle):
+        along = int(np.flatnonzero(at == 0.0)[0])
+        i, j = (along + 1) % 3, (along + 2) % 3
+        a, b = 1.0 + at[i] * p[:, i], 1.0 + at[j] * p[:, j]
+        c = 1.0 - p[:, along] ** 2
+        N[:, 8 + m] = a * b * c / 4.0
+        dN[:, along, 8 + m] = -0.5 * p[:, along] * a * b
+        dN[:, i, 8 + m] = at[i] * b * c / 4.0
+        dN[:, j, 8 + m] = at[j] * a * c / 4.0
+    return N, dN
 
 
 def _bubbles(p: Floats) -> Floats:
@@ -32,55 +72,31 @@ def _bubbles(p: Floats) -> Floats:
 
 
 _AT_CENTRE = hexa8(np.zeros((1, 3)))[1]
-_BUBBLES = _bubbles(HEXA8.points)
+_BUBBLES = _bubbles(_TWO[0])
 _OUTER, _INNER = np.arange(24), np.arange(24, 39)
 
 
-def hexa8_stiffness(xyz: Floats, C: Floats, integration: str = "bubble") -> Floats:
-    """Stiffness of eight-node bricks.
+def _hexa8(xyz: Floats, C: Floats, integration: str) -> Floats:
+    """Stiffness of eight-node bricks, with bubbles and reduced shear or with the latter only.
 
-    By default 2x2x2 points with reduced shear and bubble functions, Nastran's default: each
-    shear is its mean over the two directions that it shears, direct strains are enhanced by
-    internal modes that take away the Poisson stiffening. This reproduces the NX and MSC element
-    matrix of a cube to rounding; on distorted bricks strains are taken in the basis of the
-    Jacobian at the centre, after MacNeal (1987), *The shape sensitivity of isoparametric
-    elements*, and Taylor, Beresford, Wilson (1976) for the internal modes.
-
-    Parameters
-    ----------
-    xyz : (n, 8, 3) float
-        Node positions, basic frame.
-    C : (n, 6, 6) float
-        Elastic matrices, basic frame.
-    integration : {"bubble", "reduced", "full"}
-        With bubbles and reduced shear, with reduced shear only, or plain isoparametric.
-
-    Returns
-    -------
-    (n, 24, 24) float
-        u v w of node 1, of node 2, ...
+    2x2x2 points with reduced shear and bubble functions are Nastran's default: each shear is its
+    mean over the two directions that it shears, direct strains are enhanced by internal modes
+    that take away the Poisson stiffening. This reproduces the NX and MSC element matrix of a cube
+    to rounding; on distorted bricks strains are taken in the basis of the Jacobian at the centre,
+    after MacNeal (1987), *The shape sensitivity of isoparametric elements*, and Taylor,
+    Beresford, Wilson (1976) for the internal modes.
     """
-    if integration == "full":
-        return solid_stiffness(HEXA8, xyz, C)
-    with_bubbles = integration == "bubble"
-
-    def matrices(part: slice) -> Floats:
-        return _hexa8(xyz[part], C[part], with_bubbles)
-
-    return in_chunks(len(xyz), 24, matrices, _CHUNK)
-
-
-def _hexa8(xyz: Floats, C: Floats, with_bubbles: bool) -> Floats:
     T, C = centre_basis(xyz, C, _AT_CENTRE)
-    _, derivatives = HEXA8.shape(HEXA8.points)
+    points = _TWO[0]
+    _, derivatives = hexa8(points)
     _, detJ, g = displacement_gradients(xyz, derivatives)
     B = T[:, None] @ strain_operator(g)
     for row, kept in _KEPT.items():
         for side in (-1.0, 1.0):
-            at = np.flatnonzero(HEXA8.points[:, kept] * side > 0.0)
+            at = np.flatnonzero(points[:, kept] * side > 0.0)
             weight = detJ[:, at] / detJ[:, at].sum(axis=1, keepdims=True)
             B[:, at, row] = np.einsum("nm,nmk->nk", weight, B[:, at, row])[:, None]
-    if not with_bubbles:
+    if integration == "reduced":
         return energy(B, C, detJ)
     ratio = (np.linalg.det(_AT_CENTRE @ xyz[:, None])[:, 0, None] / detJ)[..., None, None]
     both = np.concatenate([B, _BUBBLES * ratio], axis=3)
@@ -115,7 +131,7 @@ def _reduction(row: int) -> tuple[Floats, Floats]:
     samples = np.zeros((12, 3))
     a, b, c = np.meshgrid(two, two, three, indexing="ij")
     samples[:, i], samples[:, j], samples[:, kept] = a.ravel(), b.ravel(), c.ravel()
-    p = HEXA20.points[:, None]
+    p = _THREE[0][:, None]
     linear = (
         0.25 * (1.0 + 3.0 * p[..., i] * samples[:, i]) * (1.0 + 3.0 * p[..., j] * samples[:, j])
     )
@@ -126,39 +142,36 @@ def _reduction(row: int) -> tuple[Floats, Floats]:
 _REDUCTIONS = {row: _reduction(row) for row in _KEPT}
 
 
-def hexa20_stiffness(xyz: Floats, C: Floats, integration: str = "reduced") -> Floats:
-    """Stiffness of twenty-node bricks, (n, 60, 60).
-
-    Parameters
-    ----------
-    xyz : (n, 20, 3) float
-        Node positions, basic frame.
-    C : (n, 6, 6) float
-        Elastic matrices, basic frame.
-    integration : {"reduced", "full", "two"}
-        3x3x3 points with shears sampled at 2x2 points of their plane (Nastran's default), plain
-        3x3x3, or plain 2x2x2.
-    """
-    if integration == "full":
-        return solid_stiffness(HEXA20, xyz, C)
-
-    def matrices(part: slice) -> Floats:
-        if integration == "two":
-            _, derivatives = hexa20(HEXA8.points)
-            _, detJ, g = displacement_gradients(xyz[part], derivatives)
-            return energy(strain_operator(g), C[part], detJ)
-        return _hexa20(xyz[part], C[part])
-
-    return in_chunks(len(xyz), 60, matrices, _CHUNK // 2)
-
-
-def _hexa20(xyz: Floats, C: Floats) -> Floats:
+def _hexa20(xyz: Floats, C: Floats, _integration: str) -> Floats:
+    """Stiffness of twenty-node bricks, shears sampled at 2x2 points of their plane."""
     T, C = centre_basis(xyz, C, hexa20(np.zeros((1, 3)))[1])
-    _, derivatives = HEXA20.shape(HEXA20.points)
+    points, point_weights = _THREE
+    _, derivatives = hexa20(points)
     _, detJ, g = displacement_gradients(xyz, derivatives)
     B = T[:, None] @ strain_operator(g)
     for row, (samples, weights) in _REDUCTIONS.items():
         _, _, g = displacement_gradients(xyz, hexa20(samples)[1])
         sampled = (T[:, None, row : row + 1] @ strain_operator(g))[:, :, 0]
         B[:, :, row] = weights @ sampled
-    return energy(B, C, detJ * HEXA20.weights)
+    return energy(B, C, detJ * point_weights)
+
+
+HEXA8 = Solid(
+    name="hexa8",
+    shape=HEXA,
+    interpolation=hexa8,
+    rules={"full": _TWO},
+    mass_rule=_TWO,
+    kernel=_hexa8,
+    integrations=("bubble", "reduced", "full"),
+)
+HEXA20 = Solid(
+    name="hexa20",
+    shape=HEXA,
+    edges=_EDGES,
+    interpolation=hexa20,
+    rules={"full": _THREE, "two": _TWO},
+    mass_rule=_THREE,
+    kernel=_hexa20,
+    integrations=("reduced", "full", "two"),
+)

@@ -5,62 +5,79 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats
-from .batch import condense, in_chunks, symmetric, transpose, unit
-from .material import strain_transform
-from .solid import displacement_gradients, energy, solid_stiffness, strain_operator
-from .solid_shapes import PENTA6, PENTA15, gauss_line, gauss_tria, penta6, penta15
+from ..data.shapes import PENTA, TRIA
+from .batch import condense, symmetric, transpose, unit
+from .quadrature import gauss_line, gauss_tria, gauss_wedge
+from .solid import (
+    Solid,
+    area_coordinates,
+    displacement_gradients,
+    energy,
+    stacked_edges,
+    strain_operator,
+    strain_transform,
+)
 
-_CHUNK = 128
+_SIX, _TWENTY_ONE = gauss_wedge(3, 2), gauss_wedge(7, 3)
+
+
+def penta6(p: Floats) -> tuple[Floats, Floats]:
+    """Shape functions of the wedge: area coordinates times linear along the axis."""
+    L, dL = area_coordinates(p)
+    z = p[:, 2:3]
+    low, high = 0.5 * (1.0 - z), 0.5 * (1.0 + z)
+    N = np.concatenate([L * low, L * high], axis=1)
+    dN = np.empty((len(p), 3, 6))
+    dN[:, :2] = np.concatenate([dL * low[:, None], dL * high[:, None]], axis=2)
+    dN[:, 2] = np.concatenate([-0.5 * L, 0.5 * L], axis=1)
+    return N, dN
+
+
+def penta15(p: Floats) -> tuple[Floats, Floats]:
+    """Serendipity shape functions of the 15-node wedge."""
+    L, dL = area_coordinates(p)
+    z = p[:, 2:3]
+    N, dN = np.empty((len(p), 15)), np.zeros((len(p), 3, 15))
+    edges = np.array(TRIA.sides)
+    La, Lb = L[:, edges[:, 0]], L[:, edges[:, 1]]
+    dab = dL[:, :, edges[:, 0]] * Lb[:, None] + dL[:, :, edges[:, 1]] * La[:, None]
+    for corner, edge, sign in ((slice(0, 3), slice(6, 9), -1.0), (slice(3, 6), slice(12, 15), 1.0)):
+        f = 1.0 + sign * z
+        N[:, corner] = 0.5 * L * ((2.0 * L - 1.0) * f - (1.0 - z**2))
+        dN[:, :2, corner] = 0.5 * dL * ((4.0 * L - 1.0) * f - (1.0 - z**2))[:, None]
+        dN[:, 2, corner] = 0.5 * L * ((2.0 * L - 1.0) * sign + 2.0 * z)
+        N[:, edge] = 2.0 * La * Lb * f
+        dN[:, :2, edge] = 2.0 * dab * f[:, None]
+        dN[:, 2, edge] = 2.0 * La * Lb * sign
+    N[:, 9:12] = L * (1.0 - z**2)
+    dN[:, :2, 9:12] = dL * (1.0 - z**2)[:, None]
+    dN[:, 2, 9:12] = -2.0 * L * z
+    return N, dN
+
+
 _AT_CENTRE = penta6(np.array([[1.0 / 3.0, 1.0 / 3.0, 0.0]]))[1][0]
 # middles of the three faces, edges 1-2, 2-3, 3-1
 _FACES = np.array([[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]])
-_EDGES = ((0, 1), (1, 2), (2, 0))
 _OUTER, _INNER = np.arange(18), np.arange(18, 21)
 
 
-def penta6_stiffness(xyz: Floats, C: Floats, integration: str = "bubble") -> Floats:
-    """Stiffness of six-node wedges.
+def _penta6(xyz: Floats, C: Floats, integration: str) -> Floats:
+    """Stiffness of six-node wedges, with bubbles and reduced shear or with the latter only.
 
-    By default 3 x 2 points with reduced shear and bubble functions, Nastran's default. Shear
-    across the triangle is fixed by the strains g along the middles of its three edges:
-    g = t . gamma + q, and gamma + q t_k at the k-th point, t being the edge directions; internal
-    modes are quadratic along the axis, and L1 L2 + L2 L3 + L3 L1 in the plane. This law was
-    identified from NX and MSC Nastran, whose matrices of right isosceles wedges it reproduces to
-    rounding.
-
-    Parameters
-    ----------
-    xyz : (n, 6, 3) float
-        Node positions, basic frame.
-    C : (n, 6, 6) float
-        Elastic matrices, basic frame.
-    integration : {"bubble", "reduced", "full"}
-        With bubbles and reduced shear, with reduced shear only, or plain isoparametric.
-
-    Returns
-    -------
-    (n, 18, 18) float
-        u v w of node 1, of node 2, ...
+    3 x 2 points with reduced shear and bubble functions are Nastran's default. Shear across the
+    triangle is fixed by the strains g along the middles of its three edges: g = t . gamma + q, and
+    gamma + q t_k at the k-th point, t being the edge directions; internal modes are quadratic
+    along the axis, and L1 L2 + L2 L3 + L3 L1 in the plane. This law was identified from NX and
+    MSC Nastran, whose matrices of right isosceles wedges it reproduces to rounding.
     """
-    if integration == "full":
-        return solid_stiffness(PENTA6, xyz, C)
-    with_bubbles = integration == "bubble"
-
-    def matrices(part: slice) -> Floats:
-        return _penta6(xyz[part], C[part], with_bubbles)
-
-    return in_chunks(len(xyz), 18, matrices, _CHUNK)
-
-
-def _penta6(xyz: Floats, C: Floats, with_bubbles: bool) -> Floats:
     n = len(xyz)
     basis, T, C = _middle_basis(xyz, C)
-    _, derivatives = PENTA6.shape(PENTA6.points)
+    _, derivatives = penta6(_SIX[0])
     _, detJ, g = displacement_gradients(xyz, derivatives)
     B = T[:, None] @ strain_operator(g)
 
     corner = 0.5 * (xyz[:, :3] + xyz[:, 3:]) @ transpose(basis)[:, :, :2]
-    t = unit(np.stack([corner[:, j] - corner[:, i] for i, j in _EDGES], axis=1))
+    t = unit(np.stack([corner[:, j] - corner[:, i] for i, j in TRIA.sides], axis=1))
     _, _, g = displacement_gradients(xyz, penta6(_FACES)[1])
     at_faces = T[:, None] @ strain_operator(g)
     shear = at_faces[:, :, [5, 4]]  # zx, yz
@@ -71,8 +88,8 @@ def _penta6(xyz: Floats, C: Floats, with_bubbles: bool) -> Floats:
         B[:, point, 5] = field[:, 0] + t[:, k, 0, None] * field[:, 2]
         B[:, point, 4] = field[:, 1] + t[:, k, 1, None] * field[:, 2]
 
-    weight = detJ * PENTA6.weights
-    if not with_bubbles:
+    weight = detJ * _SIX[1]
+    if integration == "reduced":
         return energy(B, C, weight)
     J0 = _AT_CENTRE @ xyz
     ratio = np.linalg.det(J0)[:, None] / detJ
@@ -94,7 +111,7 @@ def _middle_basis(xyz: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
 def _bubbles(corner: Floats) -> Floats:
     """Strains of the internal modes at the points, (n, 6, 6, 3), from the middle triangle."""
     modes = np.zeros((len(corner), 6, 6, 3))
-    p = PENTA6.points
+    p = _SIX[0]
     L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])
     edge = np.stack([corner[:, k - 1] - corner[:, k - 2] for k in range(3)], axis=1)
     area2 = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
@@ -110,7 +127,7 @@ def _samples() -> tuple[Floats, Floats]:
     """Points where transverse shears of the fifteen-node wedge are sampled, and weights."""
     tria, line = gauss_tria(3)[0], gauss_line(2)[0]
     samples = np.concatenate([np.column_stack([tria, np.full(3, z)]) for z in line])
-    p = PENTA15.points
+    p = _TWENTY_ONE[0]
     L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])
     nodal = 2.0 * L - 1.0 / 3.0  # linear functions that are one at a sample, zero at the others
     axial = 0.5 * (1.0 + 3.0 * p[:, 2:3] * line)
@@ -121,38 +138,34 @@ def _samples() -> tuple[Floats, Floats]:
 _SAMPLES, _WEIGHTS = _samples()
 
 
-def penta15_stiffness(xyz: Floats, C: Floats, integration: str = "reduced") -> Floats:
-    """Stiffness of fifteen-node wedges, (n, 45, 45).
-
-    Parameters
-    ----------
-    xyz : (n, 15, 3) float
-        Node positions, basic frame.
-    C : (n, 6, 6) float
-        Elastic matrices, basic frame.
-    integration : {"reduced", "full", "two"}
-        7 x 3 points with the shears across the triangle sampled at 3 x 2 points, plain 7 x 3, or
-        plain 3 x 2.
-    """
-    if integration == "full":
-        return solid_stiffness(PENTA15, xyz, C)
-
-    def matrices(part: slice) -> Floats:
-        if integration == "two":
-            _, derivatives = penta15(PENTA6.points)
-            _, detJ, g = displacement_gradients(xyz[part], derivatives)
-            return energy(strain_operator(g), C[part], detJ * PENTA6.weights)
-        return _penta15(xyz[part], C[part])
-
-    return in_chunks(len(xyz), 45, matrices, _CHUNK // 2)
-
-
-def _penta15(xyz: Floats, C: Floats) -> Floats:
+def _penta15(xyz: Floats, C: Floats, _integration: str) -> Floats:
+    """Stiffness of fifteen-node wedges, shears across the triangle sampled at 3 x 2 points."""
     _, T, C = _middle_basis(xyz[:, :6], C)
-    _, derivatives = PENTA15.shape(PENTA15.points)
+    _, derivatives = penta15(_TWENTY_ONE[0])
     _, detJ, g = displacement_gradients(xyz, derivatives)
     B = T[:, None] @ strain_operator(g)
     _, _, g = displacement_gradients(xyz, penta15(_SAMPLES)[1])
     sampled = T[:, None, 4:6] @ strain_operator(g)
     B[:, :, 4:6] = np.einsum("ps,nsrk->nprk", _WEIGHTS, sampled)
-    return energy(B, C, detJ * PENTA15.weights)
+    return energy(B, C, detJ * _TWENTY_ONE[1])
+
+
+PENTA6 = Solid(
+    name="penta6",
+    shape=PENTA,
+    interpolation=penta6,
+    rules={"full": _SIX},
+    mass_rule=gauss_wedge(7, 2),
+    kernel=_penta6,
+    integrations=("bubble", "reduced", "full"),
+)
+PENTA15 = Solid(
+    name="penta15",
+    shape=PENTA,
+    edges=stacked_edges(3),
+    interpolation=penta15,
+    rules={"full": _TWENTY_ONE, "two": _SIX},
+    mass_rule=_TWENTY_ONE,
+    kernel=_penta15,
+    integrations=("reduced", "full", "two"),
+)

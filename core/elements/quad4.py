@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
-from .batch import arms, condense, congruent, in_chunks, symmetric, transpose, unit
+from ..arrays import Bools, Floats
+from ..data.shapes import QUAD
+from .batch import arms, condense, congruent, symmetric, translations, transpose, unit
+from .element import Element
 from .normals import director_slopes, is_warped, normal_map, warp_map
-from .section import ShellSection
-from .transverse_shear import finite_shear, strip_stiffness
+from .section import ShellSection, finite_shear, shell_stiffness, strip_stiffness
 
 XI = np.array([-1.0, 1.0, 1.0, -1.0])
 ETA = np.array([-1.0, -1.0, 1.0, 1.0])
@@ -46,6 +47,8 @@ _INNER = np.array([4, 5, 10, 11])
 _MEMBRANE = np.concatenate([_NODE, _NODE + 1])
 _BENDING = np.concatenate([_NODE + 4, _NODE + 3])  # beta_x = ry, beta_y = -rx
 _SIGN = np.repeat([1.0, -1.0], 4)
+_FLAT, _FOLDED = 1e-9, 1e-6
+LINEAR_MASS = np.array([[4, 2, 1, 2], [2, 4, 2, 1], [1, 2, 4, 2], [2, 1, 2, 4]]) / 36.0
 
 
 def quad4_axes(xyz: Floats) -> Floats:
@@ -73,46 +76,15 @@ def quad4_corner_jacobians(xyz: Floats) -> Floats:
     return np.asarray(4.0 * np.linalg.det(J))
 
 
-def quad4_stiffness(
-    xyz: Floats,
-    section: ShellSection,
-    k6rot: float = 100.0,
-    offset: Floats | float = 0.0,
-    normals: Floats | None = None,
-) -> Floats:
-    """Stiffness of four-node shells.
-
-    Membrane and bending by the QM6 operator (Taylor, Beresford, Wilson 1976), transverse shear
-    assumed along the edges (Dvorkin, Bathe 1984) with MacNeal's residual bending flexibility
-    (1978): found to be what NX and MSC Nastran's element matrices hold. A warped quad is its
-    projection on the mean plane, see `warp_map`.
-
-    Parameters
-    ----------
-    xyz : (n, 4, 3) float
-        Grid positions, basic frame.
-    section : ShellSection
-        Of each element, in element axes (`quad4_axes`).
-    k6rot : float
-        Factor on the stiffness about the normal, 1e-6 G t A.
-    offset : (n,) float
-        Distance of the reference surface from the grids along the element normal.
-    normals : (n, 4, 3) float, optional
-        Grid normals at the corners, basic frame, NaN where a grid has none (`grid_normals`).
-
-    Returns
-    -------
-    (n, 24, 24) float
-        Basic frame; u v w rx ry rz of node 1, of node 2, ...
-    """
-    n = len(xyz)
-    offset = np.broadcast_to(np.asarray(offset, float), (n,))
-
-    def matrices(part: slice) -> Floats:
-        at = None if normals is None else normals[part]
-        return _stiffness(xyz[part], section.take(part), k6rot, offset[part], at)
-
-    return in_chunks(n, 24, matrices)
+def quad4_sound(xyz: Floats) -> Bools:
+    """Quads with an area and no corner turned inside out, (n,)."""
+    xyz = xyz[:, :4]
+    d1, d2 = xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1]
+    scale = np.linalg.norm(d1, axis=1) * np.linalg.norm(d2, axis=1)
+    flat = np.linalg.norm(np.cross(d1, d2), axis=1) <= _FLAT * scale
+    smallest = np.zeros(len(xyz))
+    smallest[~flat] = quad4_corner_jacobians(xyz[~flat]).min(axis=1)
+    return np.asarray(smallest > _FOLDED * scale)
 
 
 def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
@@ -127,7 +99,6 @@ def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
     coupled : bool
         Consistent mass of the bilinear shape functions; otherwise a quarter of the mass a grid.
     """
-    n = len(xyz)
     local, _ = flat(xyz, quad4_axes(xyz))
     detJ = np.linalg.det(AT_GAUSS @ local[:, None])
     shapes = 0.25 * (1.0 + XI * _G * XI[:, None]) * (1.0 + ETA * _G * ETA[:, None])
@@ -136,10 +107,7 @@ def quad4_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
     else:
         quarter = 0.25 * detJ.sum(axis=1) * areal_density
         m = quarter[:, None, None] * np.eye(4)
-    M = np.zeros((n, 4, 6, 4, 6))
-    for k in range(3):
-        M[:, :, k, :, k] = m
-    return M.reshape(n, 24, 24)
+    return translations(m, 6)
 
 
 def flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
@@ -151,6 +119,13 @@ def flat(xyz: Floats, axes: Floats) -> tuple[Floats, Floats]:
 def _stiffness(
     xyz: Floats, section: ShellSection, k6rot: float, offset: Floats, normals: Floats | None
 ) -> Floats:
+    """Stiffness of four-node shells.
+
+    Membrane and bending by the QM6 operator (Taylor, Beresford, Wilson 1976), transverse shear
+    assumed along the edges (Dvorkin, Bathe 1984) with MacNeal's residual bending flexibility
+    (1978): found to be what NX and MSC Nastran's element matrices hold. A warped quad is its
+    projection on the mean plane, see `warp_map`. K6ROT is a factor on 1e-6 G t A.
+    """
     axes = quad4_axes(xyz)
     local, height = flat(xyz, axes)
     J = AT_GAUSS @ local[:, None]
@@ -291,3 +266,15 @@ def _add_drilling(K: Floats, stiffness: Floats, local: Floats) -> None:
     r[:, np.arange(4), 8 + np.arange(4)] = 1.0
     rows = np.concatenate([_NODE, _NODE + 1, _NODE + 5])
     K[:, rows[:, None], rows] += transpose(r * (stiffness[:, None] * area)[..., None]) @ r
+
+
+QUAD4 = Element(
+    name="quad4",
+    shape=QUAD,
+    freedoms=6,
+    stiffness=shell_stiffness(_stiffness),
+    mass=quad4_mass,
+    axes=quad4_axes,
+    sound=quad4_sound,
+    linear_mass=LINEAR_MASS,
+)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import Floats
-from .batch import arms, condense, congruent, in_chunks, symmetric, transpose
-from .normals import director_slopes, normal_map
+from ..data.shapes import QUAD, TRIA
+from .batch import condense, congruent, symmetric, transpose
 from .quad4 import (
     AT_CENTRE,
     AT_GAUSS,
     BUBBLES,
     ETA,
+    QUAD4,
     XI,
     add_shear,
     corner_motions,
@@ -19,9 +22,8 @@ from .quad4 import (
     flat,
     quad4_axes,
 )
-from .section import ShellSection
-from .transverse_shear import finite_shear, strip_stiffness
-from .tria3 import tria3_area, tria3_axes
+from .section import ShellSection, finite_shear, shell_stiffness, strip_stiffness
+from .tria3 import TRIA3, triangle
 
 # found in MSC Nastran's grid point forces of a square and of a right isosceles triangle
 _UNIFORM = 0.75  # residual bending flexibility of the quad, relative to the CQUAD4's
@@ -33,58 +35,7 @@ _TRIA_BENDING = 0.75  # its in-plane bending by the rotations, relative to Allma
 _NODE4, _NODE3 = 6 * np.arange(4), 6 * np.arange(3)
 _KEPT = np.array([0, 1, 2, 3, 6, 7, 8, 9, 12, 13, 14, 15])
 _INNER = np.array([4, 5, 10, 11])
-_QUAD_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
-_TRIA_EDGES = ((0, 1), (1, 2), (2, 0))
 _TRIA_POINTS = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
-
-
-def quadr_stiffness(
-    xyz: Floats,
-    section: ShellSection,
-    offset: Floats | float = 0.0,
-    normals: Floats | None = None,
-) -> Floats:
-    """Stiffness of four-node shells with rotation about the normal, (n, 24, 24).
-
-    The membrane is the CQUAD4's with Allman's (1984) mean strains from the rotations; the
-    rotations are held to that of the plane by G times their mean difference squared (Hughes,
-    Brezzi 1989) and a part of their linear difference. Bending has MacNeal's (1978) twist.
-    Identified from MSC Nastran's grid point forces of a square.
-
-    Parameters as for `quad4_stiffness`, without K6ROT.
-    """
-    n = len(xyz)
-    offset = np.broadcast_to(np.asarray(offset, float), (n,))
-
-    def matrices(part: slice) -> Floats:
-        at = None if normals is None else normals[part]
-        return _quadr(xyz[part], section.take(part), offset[part], at)
-
-    return in_chunks(n, 24, matrices)
-
-
-def triar_stiffness(
-    xyz: Floats,
-    section: ShellSection,
-    offset: Floats | float = 0.0,
-    normals: Floats | None = None,
-) -> Floats:
-    """Stiffness of three-node shells with rotation about the normal, (n, 18, 18).
-
-    Mean membrane strains as in `quadr_stiffness`, exactly as in MSC Nastran; the small stiffness
-    against unequal rotations is an approximation to its (16 % off on a right isosceles
-    triangle).
-
-    Parameters as for `tria3_stiffness`, without K6ROT.
-    """
-    n = len(xyz)
-    offset = np.broadcast_to(np.asarray(offset, float), (n,))
-
-    def matrices(part: slice) -> Floats:
-        at = None if normals is None else normals[part]
-        return _triar(xyz[part], section.take(part), offset[part], at)
-
-    return in_chunks(n, 18, matrices)
 
 
 def _mean_strain(local: Floats, edges: tuple[tuple[int, int], ...], area: Floats) -> Floats:
@@ -99,7 +50,16 @@ def _mean_strain(local: Floats, edges: tuple[tuple[int, int], ...], area: Floats
     return B
 
 
-def _quadr(xyz: Floats, section: ShellSection, offset: Floats, normals: Floats | None) -> Floats:
+def _quadr(
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
+    """Stiffness of four-node shells with rotation about the normal.
+
+    The membrane is the CQUAD4's with Allman's (1984) mean strains from the rotations; the
+    rotations are held to that of the plane by G times their mean difference squared (Hughes,
+    Brezzi 1989) and a part of their linear difference. Bending has MacNeal's (1978) twist.
+    Identified from MSC Nastran's grid point forces of a square.
+    """
     axes = quad4_axes(xyz)
     local, height = flat(xyz, axes)
     J = AT_GAUSS @ local[:, None]
@@ -125,7 +85,7 @@ def _add_quad_plane(
         shifted = slice(first + 6, first + 6 + gradient.shape[-1])
         m[:, :, 0, k] = m[:, :, 2, shifted] = gradient[:, :, 0]
         m[:, :, 1, shifted] = m[:, :, 2, k] = gradient[:, :, 1]
-    m[..., 12:] = _mean_strain(local, _QUAD_EDGES, detJ.sum(axis=1))[:, None]
+    m[..., 12:] = _mean_strain(local, QUAD.sides, detJ.sum(axis=1))[:, None]
     b = np.zeros((n, 4, 3, 8))
     gc = (np.linalg.inv(centre) @ AT_CENTRE)[:, None]
     twist = 2.0 * g - gc
@@ -177,25 +137,19 @@ def _add_quad_spin(K: Floats, stiffness: Floats, local: Floats, area: Floats) ->
     K[:, rows[:, None], rows] += weight * spin
 
 
-def _triar(xyz: Floats, section: ShellSection, offset: Floats, normals: Floats | None) -> Floats:
-    n = len(xyz)
-    axes = tria3_axes(xyz)
-    local = ((xyz - xyz[:, :1]) @ transpose(axes))[:, :, :2]
-    area = tria3_area(xyz)
-    edge = np.stack([local[:, j] - local[:, i] for i, j in _TRIA_EDGES], axis=1)
-    opposite = edge[:, [1, 2, 0]] / (2.0 * area)[:, None, None]
-    g = np.stack([-opposite[:, :, 1], opposite[:, :, 0]], axis=1)
-    K = np.zeros((n, 18, 18))
-    _add_tria_plane(K, section, local, g, area)
-    _add_tria_shear(K, section, edge, area)
-    arm = np.zeros((n, 3, 3))
-    arm[:, :, 2] = offset[:, None]
-    T = arms(axes, arm)
-    if normals is not None:
-        slopes = director_slopes(normals, axes)
-        if slopes.any():
-            T = normal_map(slopes, np.broadcast_to(g[:, None], (n, 3, 2, 3))) @ T
-    return congruent(K, T)
+def _triar(
+    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
+) -> Floats:
+    """Stiffness of three-node shells with rotation about the normal.
+
+    Mean membrane strains as in `_quadr`, exactly as in MSC Nastran; the small stiffness against
+    unequal rotations is an approximation to its (16 % off on a right isosceles triangle).
+    """
+    t = triangle(xyz)
+    K = np.zeros((len(xyz), 18, 18))
+    _add_tria_plane(K, section, t.local, t.g, t.area)
+    _add_tria_shear(K, section, t.edge, t.area)
+    return congruent(K, t.corner_motions(offset, normals))
 
 
 def _add_tria_plane(
@@ -205,7 +159,7 @@ def _add_tria_plane(
     m = np.zeros((n, 3, 9))
     m[:, 0, :3] = m[:, 2, 3:6] = g[:, 0]
     m[:, 1, 3:6] = m[:, 2, :3] = g[:, 1]
-    m[:, :, 6:] = _mean_strain(local, _TRIA_EDGES, area)
+    m[:, :, 6:] = _mean_strain(local, TRIA.sides, area)
     b = np.zeros((n, 3, 6))
     b[:, 0, :3], b[:, 1, 3:] = g[:, 0], -g[:, 1]
     b[:, 2, :3], b[:, 2, 3:] = g[:, 1], -g[:, 0]
@@ -238,7 +192,7 @@ def _bending_by_rotations(
     total = np.zeros((len(A), 3, 3))
     for L in _TRIA_POINTS:
         B = np.zeros((len(A), 2, 3))
-        for i, j in _TRIA_EDGES:
+        for i, j in TRIA.sides:
             d = local[:, j] - local[:, i]
             normal = np.stack([d[:, 1], -d[:, 0]], axis=1)
             strain = 0.5 * normal * (g[:, :, i] * L[j] + g[:, :, j] * L[i])
@@ -263,6 +217,10 @@ def _add_tria_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats
     F = F + uniform[:, None, None] * (length[:, :, None] * length[:, None, :])
     C = symmetric(np.linalg.inv(F)) * area[:, None, None]
     C[~bends] = 0.0
-    V = edge_shear_operator(edge, _TRIA_EDGES, 3)
+    V = edge_shear_operator(edge, TRIA.sides, 3)
     rows = np.concatenate([_NODE3 + 2, _NODE3 + 3, _NODE3 + 4])
     K[:, rows[:, None], rows] += transpose(V) @ C @ V
+
+
+QUADR = replace(QUAD4, name="quadr", stiffness=shell_stiffness(_quadr))
+TRIAR = replace(TRIA3, name="triar", stiffness=shell_stiffness(_triar))

@@ -1,13 +1,22 @@
-"""Stiffness of a shell per unit length: what an element needs to know of its property."""
+"""Stiffness of a shell per unit length: what an element needs to know of its property.
+
+A plate element with assumed edge shears is too stiff where the moment varies along it. MacNeal
+(1978), *A simple quadrilateral shell element*, Computers & Structures 8, 175-183, adds what is
+missing to the shear flexibility: l**2 / (12 D) for a shear force that is constant over the
+element, D being the bending stiffness of the strip of length l with every other curvature held.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Floats, Numbers, frozen, require_shape
-from .batch import symmetric, transpose
+from .batch import CHUNK, in_chunks, symmetric, transpose
+
+_RIGID = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,48 +62,6 @@ class ShellSection:
         )
 
 
-def isotropic_section(
-    E: Floats,
-    nu: Floats,
-    G: Floats,
-    t: Floats,
-    bending_ratio: Floats | float = 1.0,
-    shear_ratio: Floats | float = 0.833333,
-) -> ShellSection:
-    """Section of a homogeneous isotropic plate, all arguments (n,) or scalar.
-
-    In-plane shear follows from E and nu, transverse shear from G, as NX Nastran does it.
-
-    Parameters
-    ----------
-    E, nu, G : float
-        Young's modulus, Poisson's ratio, modulus of transverse shear.
-    t : float
-        Thickness.
-    bending_ratio : float
-        12 I / t**3, bending inertia relative to the homogeneous plate; 0: no bending.
-    shear_ratio : float
-        ts / t; infinite: rigid in transverse shear.
-    """
-    E, nu, G, t, ratio, shear = np.broadcast_arrays(
-        *(np.atleast_1d(np.asarray(a, float)) for a in (E, nu, G, t, bending_ratio, shear_ratio))
-    )
-    n = len(E)
-    Q = np.zeros((n, 3, 3))
-    Q[:, 0, 0] = Q[:, 1, 1] = E / (1.0 - nu**2)
-    Q[:, 0, 1] = Q[:, 1, 0] = nu * Q[:, 0, 0]
-    Q[:, 2, 2] = E / (2.0 * (1.0 + nu))
-    S = np.zeros((n, 2, 2))
-    S[:, 0, 0] = S[:, 1, 1] = G * shear * t
-    return ShellSection(
-        A=Q * t[:, None, None],
-        B=np.zeros((n, 3, 3)),
-        D=Q * (ratio * t**3 / 12.0)[:, None, None],
-        S=S,
-        drilling=Q[:, 2, 2] * t,
-    )
-
-
 def rotate_section(section: ShellSection, angle: Floats) -> ShellSection:
     """Turn a section from material axes to element axes.
 
@@ -126,3 +93,85 @@ def rotate_section(section: ShellSection, angle: Floats) -> ShellSection:
         S=S,
         drilling=section.drilling,
     )
+
+
+def strip_stiffness(D: Floats, direction: Floats) -> tuple[Floats, Floats]:
+    """Bending stiffness along and across a direction, each (n,).
+
+    Parameters
+    ----------
+    D : (n, 3, 3) float
+        Bending stiffness in element axes.
+    direction : (n, 2) float
+        In element axes, any length.
+    """
+    c, s = (direction / np.linalg.norm(direction, axis=1, keepdims=True)).T
+    along = np.stack([c * c, s * s, 2.0 * s * c], axis=1)
+    across = np.stack([s * s, c * c, -2.0 * s * c], axis=1)
+    D1 = np.einsum("ni,nij,nj->n", along, D, along)
+    D2 = np.einsum("ni,nij,nj->n", across, D, across)
+    return D1, D2
+
+
+def bending_scale(D: Floats) -> Floats:
+    """1 / sqrt of the bending stiffness along element x and y, (n, 2); 0 without bending."""
+    diagonal = np.stack([D[:, 0, 0], D[:, 1, 1]], axis=1)
+    positive = diagonal > 0.0
+    return np.where(positive, 1.0 / np.sqrt(np.where(positive, diagonal, 1.0)), 0.0)
+
+
+def residual_flexibility(edges: Floats, scale: Floats) -> Floats:
+    """Z_b = sum(e e^T) / (24 D), (n, 2, 2), of triangles, from edges and `bending_scale`."""
+    e = edges * scale[:, None, :]
+    return np.asarray(transpose(e) @ e / 24.0)
+
+
+def finite_shear(section: ShellSection, size: Floats) -> Floats:
+    """S with "infinite" replaced by a number that is large beside 12 D / size**2."""
+    rigid = np.isinf(section.S).any(axis=(1, 2))
+    if not rigid.any():
+        return section.S
+    D = np.maximum(section.D[:, 0, 0], section.D[:, 1, 1])
+    large = (_RIGID * D / size**2)[:, None, None] * np.eye(2)
+    return np.where(rigid[:, None, None], large, section.S)
+
+
+Kernel = Callable[[Floats, ShellSection, float, Floats, Floats | None], Floats]
+"""Stiffness of some shells: positions, sections, K6ROT, offsets (n,), grid normals."""
+
+
+def shell_stiffness(kernel: Kernel, chunk: int = CHUNK) -> Callable[..., Floats]:
+    """Return the stiffness routine of a shell whose kernel makes a chunk of elements at a time."""
+
+    def stiffness(
+        xyz: Floats,
+        section: ShellSection,
+        k6rot: float = 100.0,
+        offset: Floats | float = 0.0,
+        normals: Floats | None = None,
+    ) -> Floats:
+        """Stiffness of shells, (n, 6 k, 6 k), basic frame; u v w rx ry rz of node 1, of node 2...
+
+        Parameters
+        ----------
+        xyz : (n, k, 3) float
+            Node positions, basic frame.
+        section : ShellSection
+            Of each element, in its axes.
+        k6rot : float
+            Factor on the stiffness about the normal, for the elements that have one by it.
+        offset : (n,) float
+            Distance of the reference surface from the nodes along the element normal.
+        normals : (n, k, 3) float, optional
+            Grid normals at the corners, basic frame, NaN where a grid has none (`grid_normals`).
+        """
+        n, nodes = xyz.shape[:2]
+        z = np.broadcast_to(np.asarray(offset, float), (n,))
+
+        def matrices(part: slice) -> Floats:
+            at = None if normals is None else normals[part]
+            return kernel(xyz[part], section.take(part), k6rot, z[part], at)
+
+        return in_chunks(n, 6 * nodes, matrices, chunk)
+
+    return stiffness

@@ -1,25 +1,61 @@
-"""Isoparametric solids: stiffness by quadrature, lumped and consistent mass."""
+"""Isoparametric solids: stiffness by quadrature, lumped and consistent mass, elastic matrices.
+
+Nodes are numbered as usual: corners of the first face, corners of the second, then middle nodes
+edge by edge. Strains stand in the order xx, yy, zz, xy, yz, zx.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 
-from ..arrays import Floats
-from .batch import in_chunks, symmetric, transpose
-from .lumping import to_middle_nodes
-from .solid_shapes import (
-    HEXA8,
-    HEXA20,
-    PENTA6,
-    PENTA15,
-    PYRAMID5,
-    PYRAMID13,
-    TETRA4,
-    TETRA10,
-    Solid,
-)
+from ..arrays import Bools, Floats, Ints
+from .batch import in_chunks, symmetric, translations, transpose
+from .element import Element
+from .middle_nodes import to_middle_nodes
 
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 _CHUNK = 128
+_FLAT = 1e-9
+
+Rule = tuple[Floats, Floats]
+"""Integration points (m, 3), natural coordinates, and weights (m,)."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Solid(Element):
+    """A solid element by its shape functions.
+
+    Its `stiffness` is ``stiffness(xyz, C, integration=...)`` with positions (n, k, 3) and elastic
+    matrices (n, 6, 6), its `mass` ``mass(xyz, density, coupled)``; see `solid_mass`.
+
+    Parameters
+    ----------
+    interpolation : callable
+        (m, 3) natural coordinates -> shape functions (m, nodes), derivatives (m, 3, nodes).
+    rules : mapping of str to Rule
+        Plain isoparametric integrations of the stiffness by their words.
+    mass_rule : Rule
+        Integration of the mass.
+    kernel : callable or None
+        ``kernel(xyz, C, word)`` for the words that are no plain integration.
+    """
+
+    interpolation: Callable[[Floats], tuple[Floats, Floats]]
+    rules: Mapping[str, Rule]
+    mass_rule: Rule
+    kernel: Callable[[Floats, Floats, str], Floats] | None = None
+    freedoms: int = 3
+    stiffness: Callable[..., Floats] = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stiffness", partial(solid_stiffness, self))
+        object.__setattr__(self, "mass", partial(solid_mass, self))
+        object.__setattr__(self, "sound", partial(_sound, self))
+        object.__setattr__(self, "integrations", self.integrations or tuple(self.rules))
 
 
 def displacement_gradients(xyz: Floats, derivatives: Floats) -> tuple[Floats, Floats, Floats]:
@@ -53,15 +89,31 @@ def energy(B: Floats, C: Floats, weight: Floats) -> Floats:
     return symmetric(transpose(B.reshape(n, m * 6, k)) @ CB.reshape(n, m * 6, k))
 
 
-def solid_stiffness(solid: Solid, xyz: Floats, C: Floats) -> Floats:
-    """Stiffness by the element's own quadrature, (n, 3 k, 3 k); see the named functions."""
+def solid_stiffness(solid: Solid, xyz: Floats, C: Floats, integration: str | None = None) -> Floats:
+    """Stiffness of solids, (n, 3 k, 3 k).
+
+    Parameters
+    ----------
+    solid : Solid
+        Which element.
+    xyz : (n, k, 3) float
+        Node positions, basic frame.
+    C : (n, 6, 6) float
+        Elastic matrices, basic frame.
+    integration : str, optional
+        One of its `integrations`, by default the first.
+    """
+    word = integration or solid.integrations[0]
 
     def matrices(part: slice) -> Floats:
-        _, derivatives = solid.shape(solid.points)
+        if solid.kernel and word not in solid.rules:
+            return solid.kernel(xyz[part], C[part], word)
+        points, weights = solid.rules[word]
+        _, derivatives = solid.interpolation(points)
         _, detJ, g = displacement_gradients(xyz[part], derivatives)
-        return energy(strain_operator(g), C[part], detJ * solid.weights)
+        return energy(strain_operator(g), C[part], detJ * weights)
 
-    return in_chunks(len(xyz), 3 * solid.nodes, matrices, _CHUNK)
+    return in_chunks(len(xyz), 3 * solid.nodes, matrices, _CHUNK // (1 + (solid.nodes > 10)))
 
 
 def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Floats:
@@ -81,91 +133,87 @@ def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Flo
     k = solid.nodes
 
     def matrices(part: slice) -> Floats:
-        N, derivatives = solid.shape(solid.mass_points)
+        points, weights = solid.mass_rule
+        N, derivatives = solid.interpolation(points)
         detJ = np.linalg.det(derivatives @ xyz[part][:, None])
-        weight = detJ * solid.mass_weights * density[part, None]
+        weight = detJ * weights * density[part, None]
         m = transpose(N[None] * weight[..., None]) @ N
         if not coupled:
             share = m.sum(axis=2)
             if len(solid.edges):
-                share = to_middle_nodes(share, xyz[part], k - len(solid.edges))
+                share = to_middle_nodes(share, xyz[part], solid.corners)
             m = share[:, :, None] * np.eye(k)
-        M = np.zeros((len(m), k, 3, k, 3))
-        for i in range(3):
-            M[:, :, i, :, i] = m
-        return M.reshape(-1, 3 * k, 3 * k)
+        return translations(m, 3)
 
     return in_chunks(len(xyz), 3 * k, matrices, _CHUNK)
 
 
-def solid_volume(solid: Solid, xyz: Floats) -> Floats:
-    """Volumes, (n,); negative: inside out."""
-    _, derivatives = solid.shape(solid.mass_points)
-    return np.asarray(np.linalg.det(derivatives @ xyz[:, None]) @ solid.mass_weights)
+def _sound(solid: Solid, xyz: Floats) -> Bools:
+    """Solids that are neither flat nor turned inside out at an integration point, (n,)."""
+    _, derivatives = solid.interpolation(solid.rules["full"][0])
+    parts = np.array_split(xyz, max(len(xyz) // 4096, 1))
+    smallest = [np.linalg.det(derivatives @ part[:, None]).min(axis=1) for part in parts]
+    return np.asarray(np.concatenate(smallest) > _FLAT * np.ptp(xyz, axis=1).max(axis=1) ** 3)
 
 
-def tetra4_stiffness(xyz: Floats, C: Floats) -> Floats:
-    """Stiffness of four-node tetrahedra, constant strain, (n, 12, 12).
+def stacked_edges(k: int) -> Ints:
+    """Edges of two faces of `k` corners one above the other: below, upright, above."""
+    ring = [(i, (i + 1) % k) for i in range(k)]
+    upright = [(i, i + k) for i in range(k)]
+    return np.array([*ring, *upright, *((i + k, j + k) for i, j in ring)])
 
-    `xyz` (n, 4, 3), `C` (n, 6, 6) in the basic frame; u v w of node 1, of node 2, ...
+
+def pointed_edges(k: int) -> Ints:
+    """Edges of a face of `k` corners below an apex."""
+    return np.array([(i, (i + 1) % k) for i in range(k)] + [(i, k) for i in range(k)])
+
+
+def area_coordinates(p: Floats) -> tuple[Floats, Floats]:
+    """Linear shape functions of the triangle, (m, 3), and derivatives by the first two, third."""
+    L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])
+    d = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
+    return L, np.broadcast_to(d, (len(p), 2, 3))
+
+
+def isotropic_solid(E: Floats, nu: Floats) -> Floats:
+    """Elastic matrices (n, 6, 6) of isotropic materials; shear follows from E and nu as in NX."""
+    E, nu = np.broadcast_arrays(np.atleast_1d(E), np.atleast_1d(nu))
+    C = np.zeros((len(E), 6, 6))
+    G = E / (2.0 * (1.0 + nu))
+    C[:, :3, :3] = (2.0 * G * nu / (1.0 - 2.0 * nu))[:, None, None]
+    for i in range(3):
+        C[:, i, i] += 2.0 * G
+        C[:, i + 3, i + 3] = G
+    return C
+
+
+def strain_transform(axes: Floats) -> Floats:
+    """Strains in the basis of the rows of `axes` from Cartesian strains, (n, 6, 6).
+
+    E_ij = a_i . e . a_j with engineering shears; the rows (n, 3, 3) need be neither orthogonal
+    nor of unit length.
     """
-    return solid_stiffness(TETRA4, xyz, C)
+    T = np.empty((*axes.shape[:-2], 6, 6))
+    for r, (i, j) in enumerate(PAIRS):
+        a, b = axes[..., i, :], axes[..., j, :]
+        double = 1.0 if i == j else 2.0
+        for c, (k, m) in enumerate(PAIRS):
+            if k == m:
+                T[..., r, c] = double * a[..., k] * b[..., k]
+            else:
+                T[..., r, c] = 0.5 * double * (a[..., k] * b[..., m] + a[..., m] * b[..., k])
+    return T
 
 
-def tetra10_stiffness(xyz: Floats, C: Floats) -> Floats:
-    """Stiffness of ten-node tetrahedra, (n, 30, 30).
+def rotate_material(C: Floats, axes: Floats) -> Floats:
+    """Elastic matrices in the basic frame from those in material axes.
 
-    Five points, exact for straight edges; on a curved one this is MSC Nastran's matrix to seven
-    digits.
+    Parameters
+    ----------
+    C : (n, 6, 6) float
+        In material axes.
+    axes : (n, 3, 3) float
+        Rows are the material axes in the basic frame.
     """
-    return solid_stiffness(TETRA10, xyz, C)
-
-
-def pyramid5_stiffness(xyz: Floats, C: Floats) -> Floats:
-    """Stiffness of five-node pyramids, (n, 15, 15)."""
-    return solid_stiffness(PYRAMID5, xyz, C)
-
-
-def pyramid13_stiffness(xyz: Floats, C: Floats) -> Floats:
-    """Stiffness of thirteen-node pyramids, (n, 39, 39)."""
-    return solid_stiffness(PYRAMID13, xyz, C)
-
-
-def hexa8_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of eight-node bricks, (n, 24, 24)."""
-    return solid_mass(HEXA8, xyz, density, coupled)
-
-
-def hexa20_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of twenty-node bricks, (n, 60, 60)."""
-    return solid_mass(HEXA20, xyz, density, coupled)
-
-
-def penta6_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of six-node wedges, (n, 18, 18)."""
-    return solid_mass(PENTA6, xyz, density, coupled)
-
-
-def penta15_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of fifteen-node wedges, (n, 45, 45)."""
-    return solid_mass(PENTA15, xyz, density, coupled)
-
-
-def tetra4_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of four-node tetrahedra, (n, 12, 12)."""
-    return solid_mass(TETRA4, xyz, density, coupled)
-
-
-def tetra10_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of ten-node tetrahedra, (n, 30, 30)."""
-    return solid_mass(TETRA10, xyz, density, coupled)
-
-
-def pyramid5_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of five-node pyramids, (n, 15, 15)."""
-    return solid_mass(PYRAMID5, xyz, density, coupled)
-
-
-def pyramid13_mass(xyz: Floats, density: Floats, coupled: bool) -> Floats:
-    """Mass of thirteen-node pyramids, (n, 39, 39)."""
-    return solid_mass(PYRAMID13, xyz, density, coupled)
+    T = strain_transform(axes)
+    return symmetric(transpose(T) @ C @ T)

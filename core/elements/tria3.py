@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ..arrays import Floats
-from .batch import arms, congruent, in_chunks, transpose, unit
+from ..arrays import Bools, Floats
+from ..data.shapes import TRIA
+from .batch import arms, congruent, translations, transpose, unit
+from .element import Element
 from .normals import director_slopes, normal_map
 from .quad4 import edge_shear_operator
-from .section import ShellSection
-from .transverse_shear import bending_scale, finite_shear, residual_flexibility
+from .section import (
+    ShellSection,
+    bending_scale,
+    finite_shear,
+    residual_flexibility,
+    shell_stiffness,
+)
 
-_EDGES = ((0, 1), (1, 2), (2, 0))
 _NODE = 6 * np.arange(3)
 _MEMBRANE = np.concatenate([_NODE, _NODE + 1])
 _BENDING = np.concatenate([_NODE + 4, _NODE + 3])  # beta_x = ry, beta_y = -rx
 _SIGN = np.repeat([1.0, -1.0], 3)
-_CONSISTENT = (np.ones((3, 3)) + np.eye(3)) / 12.0
+_NO_AREA = 1e-6
+LINEAR_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0
 
 
 def tria3_axes(xyz: Floats) -> Floats:
@@ -42,47 +51,10 @@ def tria3_area(xyz: Floats) -> Floats:
     return np.asarray(0.5 * np.linalg.norm(normal, axis=1))
 
 
-def tria3_stiffness(
-    xyz: Floats,
-    section: ShellSection,
-    k6rot: float = 100.0,
-    offset: Floats | float = 0.0,
-    normals: Floats | None = None,
-) -> Floats:
-    """Stiffness of three-node shells.
-
-    Constant membrane strain and curvature; transverse shear assumed constant along each edge
-    with the flexibility t Z t^T + tr(Z) / 2 between unit edge strains, where t are the edge
-    directions and Z = 1 / (G ts) + Z_b holds MacNeal's residual bending flexibility. This law
-    was identified from NX Nastran's element matrices, which it reproduces to rounding for right
-    isosceles triangles of three thicknesses.
-
-    Parameters
-    ----------
-    xyz : (n, 3, 3) float
-        Grid positions, basic frame.
-    section : ShellSection
-        Of each element, in element axes (`tria3_axes`).
-    k6rot : float
-        Factor on the stiffness about the normal, 1e-6 G t 2A.
-    offset : (n,) float
-        Distance of the reference surface from the grids along the element normal.
-    normals : (n, 3, 3) float, optional
-        Grid normals at the corners, basic frame, NaN where a grid has none (`grid_normals`).
-
-    Returns
-    -------
-    (n, 18, 18) float
-        Basic frame; u v w rx ry rz of node 1, of node 2, ...
-    """
-    n = len(xyz)
-    offset = np.broadcast_to(np.asarray(offset, float), (n,))
-
-    def matrices(part: slice) -> Floats:
-        at = None if normals is None else normals[part]
-        return _stiffness(xyz[part], section.take(part), k6rot, offset[part], at)
-
-    return in_chunks(n, 18, matrices)
+def tria3_sound(xyz: Floats) -> Bools:
+    """Triangles with an area, (n,)."""
+    side = np.linalg.norm(xyz[:, 1] - xyz[:, 0], axis=1)
+    return np.asarray(tria3_area(xyz) > _NO_AREA * np.square(side))
 
 
 def tria3_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
@@ -98,36 +70,75 @@ def tria3_mass(xyz: Floats, areal_density: Floats, coupled: bool) -> Floats:
         Consistent mass of the linear shape functions; otherwise a third of the mass a grid.
     """
     mass = areal_density * tria3_area(xyz)
-    m = mass[:, None, None] * (_CONSISTENT if coupled else np.eye(3) / 3.0)
-    M = np.zeros((len(xyz), 3, 6, 3, 6))
-    for k in range(3):
-        M[:, :, k, :, k] = m
-    return M.reshape(-1, 18, 18)
+    m = mass[:, None, None] * (LINEAR_MASS if coupled else np.eye(3) / 3.0)
+    return translations(m, 6)
+
+
+@dataclass(frozen=True, eq=False)
+class Triangle:
+    """Flat triangles in their own axes.
+
+    Parameters
+    ----------
+    axes : (n, 3, 3) float
+        Rows are the element axes.
+    local : (n, 3, 2) float
+        Corners.
+    edge : (n, 3, 2) float
+        Sides, in turn.
+    area : (n,) float
+    g : (n, 2, 3) float
+        Derivatives of the shape functions by x and y.
+    """
+
+    axes: Floats
+    local: Floats
+    edge: Floats
+    area: Floats
+    g: Floats
+
+    def corner_motions(self, offset: Floats, normals: Floats | None) -> Floats:
+        """Motions that the flat element uses from those of the grids, (n, 18, 18)."""
+        n = len(self.area)
+        arm = np.zeros((n, 3, 3))
+        arm[:, :, 2] = offset[:, None]
+        T = arms(self.axes, arm)
+        if normals is not None:
+            slopes = director_slopes(normals, self.axes)
+            if slopes.any():
+                T = normal_map(slopes, np.broadcast_to(self.g[:, None], (n, 3, 2, 3))) @ T
+        return T
+
+
+def triangle(xyz: Floats) -> Triangle:
+    """Return triangles in their own axes."""
+    axes = tria3_axes(xyz)
+    local = ((xyz - xyz[:, :1]) @ transpose(axes))[:, :, :2]
+    edge = np.stack([local[:, j] - local[:, i] for i, j in TRIA.sides], axis=1)
+    area = tria3_area(xyz)
+    # gradients of the shape functions: the opposite edge turned by a right angle, over 2 A
+    opposite = edge[:, [1, 2, 0]] / (2.0 * area)[:, None, None]
+    g = np.stack([-opposite[:, :, 1], opposite[:, :, 0]], axis=1)
+    return Triangle(axes, local, edge, area, g)
 
 
 def _stiffness(
     xyz: Floats, section: ShellSection, k6rot: float, offset: Floats, normals: Floats | None
 ) -> Floats:
-    n = len(xyz)
-    axes = tria3_axes(xyz)
-    local = ((xyz - xyz[:, :1]) @ transpose(axes))[:, :, :2]
-    edge = np.stack([local[:, j] - local[:, i] for i, j in _EDGES], axis=1)
-    area = tria3_area(xyz)
-    # gradients of the shape functions: the opposite edge turned by a right angle, over 2 A
-    opposite = edge[:, [1, 2, 0]] / (2.0 * area)[:, None, None]
-    g = np.stack([-opposite[:, :, 1], opposite[:, :, 0]], axis=1)
-    K = np.zeros((n, 18, 18))
-    _add_plane(K, section, g, area)
-    _add_shear(K, section, edge, area)
-    _add_drilling(K, section.drilling * k6rot * 1e-6 * 2.0 * area, g)
-    arm = np.zeros((n, 3, 3))
-    arm[:, :, 2] = offset[:, None]
-    T = arms(axes, arm)
-    if normals is not None:
-        slopes = director_slopes(normals, axes)
-        if slopes.any():
-            T = normal_map(slopes, np.broadcast_to(g[:, None], (n, 3, 2, 3))) @ T
-    return congruent(K, T)
+    """Stiffness of three-node shells.
+
+    Constant membrane strain and curvature; transverse shear assumed constant along each edge
+    with the flexibility t Z t^T + tr(Z) / 2 between unit edge strains, where t are the edge
+    directions and Z = 1 / (G ts) + Z_b holds MacNeal's residual bending flexibility. This law
+    was identified from NX Nastran's element matrices, which it reproduces to rounding for right
+    isosceles triangles of three thicknesses. K6ROT is a factor on 1e-6 G t 2A.
+    """
+    t = triangle(xyz)
+    K = np.zeros((len(xyz), 18, 18))
+    _add_plane(K, section, t.g, t.area)
+    _add_shear(K, section, t.edge, t.area)
+    _add_drilling(K, section.drilling * k6rot * 1e-6 * 2.0 * t.area, t.g)
+    return congruent(K, t.corner_motions(offset, normals))
 
 
 def _add_plane(K: Floats, section: ShellSection, g: Floats, area: Floats) -> None:
@@ -154,7 +165,7 @@ def _add_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats) -> 
     F = edge @ Z @ transpose(edge) + uniform * (length[:, :, None] * length[:, None, :])
     C = np.linalg.inv(F) * area[:, None, None]
     C[~bends] = 0.0
-    V = edge_shear_operator(edge, _EDGES, 3)
+    V = edge_shear_operator(edge, TRIA.sides, 3)
     plate = np.concatenate([_NODE + 2, _NODE + 3, _NODE + 4])
     K[:, plate[:, None], plate] += transpose(V) @ C @ V
 
@@ -167,3 +178,15 @@ def _add_drilling(K: Floats, stiffness: Floats, g: Floats) -> None:
     r[:, np.arange(3), 6 + np.arange(3)] = 1.0
     rows = np.concatenate([_NODE, _NODE + 1, _NODE + 5])
     K[:, rows[:, None], rows] += transpose(r * stiffness[:, None, None]) @ r
+
+
+TRIA3 = Element(
+    name="tria3",
+    shape=TRIA,
+    freedoms=6,
+    stiffness=shell_stiffness(_stiffness),
+    mass=tria3_mass,
+    axes=tria3_axes,
+    sound=tria3_sound,
+    linear_mass=LINEAR_MASS,
+)

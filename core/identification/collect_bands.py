@@ -5,20 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
-from ..geometry import Geometry
-from ..modes import Modes
-from .bands import cmif
+from ..data.geometry import Geometry
+from ..data.modes import Modes
+from .identification_numbers import IDENTIFICATION
+from .mode_table import ModeTable, collect, physical
+from .poles.band_sweeps import BandFit
+from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .remarks import of_leakage, of_modes, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
-from .rigid import rigid_share
-from .scaling import driving_points, scale
-from .stabilisation import Chart
-from .survey import Survey
-from .sweeps import BandFit
-from .synthesis import modal_response
-from .table import ModeTable, collect, physical
-from .uncertainty import frequency_and_damping_errors
+from .survey.driving_points import driving_points, scale
+from .survey.modal_synthesis import modal_response
+from .survey.mode_indicator import cmif
+from .survey.survey_data import Survey
+from .survey.suspension import rigid_share
+from .uncertainty.standard_errors import frequency_and_damping_errors
 
 
 def assemble(
@@ -117,7 +118,8 @@ def _backgrounds(
         weighted = Background(b.band, residuals.transpose(2, 0, 1), *roots)
         synthesised = modal + background_response(f, weighted, survey.quantity)
         for k in np.flatnonzero((hz >= b.band.low) & (hz <= b.band.high)):
-            half = max(2.0 * abs(t.poles[k].real) / np.pi, 5.0 * float(np.median(np.diff(f))))
+            least = IDENTIFICATION.near_lines * float(np.median(np.diff(f)))
+            half = max(2.0 * abs(t.poles[k].real) / np.pi, least)
             near = np.abs(f - hz[k]) <= half
             used = survey.measured
             quality[k] = correlation(measured[:, :, near][used], synthesised[:, :, near][used])

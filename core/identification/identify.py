@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats
+from ..data.frfs import Frfs
+from ..data.geometry import Geometry
 from ..errors import InputError
-from ..frfs import Frfs
-from ..geometry import Geometry
-from .assembly import assemble
-from .bands import Band, cmif, peaks, split
-from .candidates import propose
-from .plscf import poles_by_order
+from .collect_bands import assemble
+from .identification_numbers import IDENTIFICATION
+from .poles.band_sweeps import fit_range
+from .poles.plscf import poles_by_order
+from .poles.pole_candidates import propose
 from .result import Identification
-from .survey import Survey, prepare
-from .sweeps import fit_range
+from .survey.mode_indicator import Band, cmif, peaks, split
+from .survey.survey_data import Survey, prepare
 
 
 def identify(
@@ -87,12 +88,13 @@ def _refuse_conjugated(survey: Survey) -> None:
     values = survey.values[complete]
     count = []
     for v in (values, values.conj()):
-        top = poles_by_order(survey.frequencies_hz, v, range(2, 21))
-        stable = [
-            s.values[(s.values.real < 0) & (s.values.real > -0.1 * abs(s.values))] for s in top
-        ]
-        count.append(sum(len(s) for s in stable[-6:]))
-    if count[1] > 3 * max(count[0], 2):
+        orders = range(IDENTIFICATION.orders[0], IDENTIFICATION.orders[1] + 1)
+        top = poles_by_order(survey.frequencies_hz, v, orders)
+        most = IDENTIFICATION.stable
+        poles = [s.values for s in top]
+        stable = [z[(z.real < 0) & (z.real > -most * abs(z))] for z in poles]
+        count.append(sum(len(s) for s in stable[-IDENTIFICATION.orders_last :]))
+    if count[1] > IDENTIFICATION.backwards * max(count[0], 2):
         raise InputError(
             f"the functions of {survey.source or 'the survey'} run backwards in phase (conjugated,"
             " the e^(-jωt) convention): conjugate them"

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Bools, Floats, Numbers
-from .model_error import CHAIN, pole_errors
-from .shapes import KNOWN, known_components, real_shapes, turned_to_principal_phase
-from .survey import Survey
-from .sweeps import BandFit
-from .uncertainty import errors
+from .poles.band_sweeps import BandFit
+from .survey.real_shapes import known_components, real_shapes, turned_to_principal_phase
+from .survey.survey_data import Survey
+from .survey.survey_numbers import SURVEY
+from .uncertainty.model_error import pole_errors
+from .uncertainty.standard_errors import errors
+from .uncertainty.uncertainty_numbers import UNCERTAINTY
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +112,12 @@ def physical(survey: Survey, t: ModeTable) -> Physical:
     variance = np.einsum("ka,okab,kb->ok", turn, t.shape_covariance, turn)
     std = np.sqrt(np.maximum(variance, 0.0)) / survey.output_weight[:, None]
     size, real_size = _largest(shapes, std), _largest(real, std)
-    std = np.hypot(std / real_size, CHAIN)
+    std = np.hypot(std / real_size, UNCERTAINTY.chain)
     return Physical(shapes, real, participation, size, real_size, std, known)
 
 
 def _largest(shapes: Numbers, std: Floats) -> Floats:
     """Magnitude of the largest component of each shape that is known well enough to scale by."""
     magnitude = np.abs(shapes)
-    known = np.where(std < KNOWN * magnitude, magnitude, 0.0).max(axis=0, initial=0.0)
+    known = np.where(std < SURVEY.known * magnitude, magnitude, 0.0).max(axis=0, initial=0.0)
     return np.asarray(np.where(known > 0.0, known, magnitude.max(axis=0, initial=0.0)))

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
-
-_TINY = 1e-300
+from .identification_numbers import IDENTIFICATION
 
 
 def phase_collinearity(shapes: Numbers) -> Floats:
@@ -24,7 +23,7 @@ def phase_collinearity(shapes: Numbers) -> Floats:
     xx = np.sum(shapes.real**2, axis=0)
     yy = np.sum(shapes.imag**2, axis=0)
     xy = np.sum(shapes.real * shapes.imag, axis=0)
-    total = np.maximum(xx + yy, _TINY)
+    total = np.maximum(xx + yy, 1e-300)
     return np.asarray(((xx - yy) ** 2 + 4.0 * xy**2) / total**2)
 
 
@@ -41,8 +40,8 @@ def phase_deviation(shapes: Numbers) -> Floats:
     """
     straight = shapes * np.exp(-0.5j * np.angle(np.sum(shapes**2, axis=0)))
     size = np.abs(shapes)
-    angle = np.arctan2(np.abs(straight.imag), np.maximum(np.abs(straight.real), _TINY))
-    return np.asarray(np.degrees((size * angle).sum(axis=0) / np.maximum(size.sum(axis=0), _TINY)))
+    angle = np.arctan2(np.abs(straight.imag), np.maximum(np.abs(straight.real), 1e-300))
+    return np.asarray(np.degrees((size * angle).sum(axis=0) / np.maximum(size.sum(axis=0), 1e-300)))
 
 
 def multivariate_indicator(values: Numbers, order: int) -> Floats:
@@ -69,7 +68,7 @@ def multivariate_indicator(values: Numbers, order: int) -> Floats:
     a = phase.transpose(0, 2, 1) @ phase
     b = a + quadrature.transpose(0, 2, 1) @ quadrature
     value, vector = np.linalg.eigh(b)
-    excited = value > 1e-9 * value[:, -1:]
+    excited = value > IDENTIFICATION.excited * value[:, -1:]
     root = np.where(excited, 1.0 / np.sqrt(np.where(excited, value, 1.0)), 0.0)
     turned = root[:, :, None] * vector.transpose(0, 2, 1)
     ratio = turned @ a @ turned.transpose(0, 2, 1)

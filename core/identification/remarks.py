@@ -5,15 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
-from .shapes import KNOWN
-from .survey import Survey
-from .table import ModeTable, Physical
-
-_POOR_QUALITY = 0.9
-_POOR_MPC = 0.7
-_POOR_INDICATOR = 0.3
-_WEAK = 0.05  # relative standard error of the shape above which it is called uncertain
-_INPUT_RANK = 0.02  # singular value ratio below which references see one and the same
+from .identification_numbers import IDENTIFICATION
+from .mode_table import ModeTable, Physical
+from .survey.survey_data import Survey
+from .survey.survey_numbers import SURVEY
 
 
 def pair_possible(t: ModeTable, warnings: list[str]) -> Numbers:
@@ -29,7 +24,7 @@ def pair_possible(t: ModeTable, warnings: list[str]) -> Numbers:
             "hide behind any of the modes"
         )
         return np.ones(n, bool)
-    if n > 1 and len(singular) > 1 and singular[1] < _INPUT_RANK * singular[0]:
+    if n > 1 and len(singular) > 1 and singular[1] < IDENTIFICATION.input_rank * singular[0]:
         warnings.append(
             "all references excite the same combination of modes, as one reference would: a "
             "close pair may hide behind any of the modes"
@@ -42,8 +37,8 @@ def of_leakage(hz: Floats, blurred: Numbers) -> list[str]:
     """Name the modes whose damping a window may have raised."""
     if not blurred.any():
         return []
-    which = ", ".join(f"{f:.2f}" for f in hz[blurred][:5])
-    which += ", ..." if np.count_nonzero(blurred) > 5 else ""
+    which = ", ".join(f"{f:.2f}" for f in hz[blurred][: SURVEY.named])
+    which += ", ..." if np.count_nonzero(blurred) > SURVEY.named else ""
     return [
         f"{np.count_nonzero(blurred)} mode(s) ({which} Hz) are narrow for the lines and leave a "
         "residual that is not noise (leakage): their damping may be too high, as its standard "
@@ -60,18 +55,18 @@ def of_modes(
     real = p.real / p.real_size
     for k, hz in enumerate(t.hz):
         found = []
-        if quality[k] < _POOR_QUALITY:
+        if quality[k] < IDENTIFICATION.poor_quality:
             found.append(f"synthesised and measured functions agree to {quality[k]:.2f} only")
-        if mpc[k] < _POOR_MPC:
+        if mpc[k] < IDENTIFICATION.poor_mpc:
             found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
-        if indicator[k] < _POOR_INDICATOR:
+        if indicator[k] < IDENTIFICATION.poor_indicator:
             found.append(f"no clear resonance of all responses (mode indicator {indicator[k]:.2f})")
         sure, std, shape = p.known[:, k], p.std[:, k], real[:, k]
-        if np.any(std[~sure] > KNOWN * np.abs(shape[sure]).max(initial=0.0)):
-            where = [labels[o] for o in np.flatnonzero(~sure)[:5]]
+        if np.any(std[~sure] > SURVEY.known * np.abs(shape[sure]).max(initial=0.0)):
+            where = [labels[o] for o in np.flatnonzero(~sure)[: SURVEY.named]]
             found.append(f"its shape is hardly known at {', '.join(where)}")
         spread = np.sqrt(np.mean(std[sure] ** 2) / np.mean(shape[sure] ** 2))
-        if spread > _WEAK:
+        if spread > IDENTIFICATION.weak:
             found.append(f"uncertain shape ({100 * spread:.0f} %)")
         width = abs(t.poles[k].real) / np.pi
         if hz - f[0] < width or f[-1] - hz < width:

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats, Numbers
-from ..dofs import Dofs
-from ..frfs import Frfs
-from ..modes import Modes
-from .bands import Band
-from .rigid import RIGID
-from .stabilisation import Chart
-from .synthesis import modal_response
+from ..data.dofs import Dofs
+from ..data.frfs import Frfs
+from ..data.modes import Modes
+from ..noun import Noun
+from .poles.pole_stabilisation import Chart
+from .survey.modal_synthesis import modal_response
+from .survey.mode_indicator import Band
+from .survey.survey_numbers import SURVEY
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,7 @@ class Background:
 
 
 @dataclass(frozen=True, eq=False)
-class Identification:
+class Identification(Noun):
     """Modes of a test with their uncertainty and quality, by rising frequency.
 
     Parameters
@@ -126,7 +127,7 @@ class Identification:
     @property
     def suspension(self) -> Numbers:
         """Modes that move the whole body as one, (n_mode,) bool."""
-        return np.asarray(self.rigid_share > RIGID)
+        return np.asarray(self.rigid_share > SURVEY.rigid)
 
     @property
     def poles(self) -> Numbers:

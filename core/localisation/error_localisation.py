@@ -10,10 +10,12 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from .arrays import Floats, Ints, frozen
-from .comparison import Comparison
-from .correlation import realised
-from .evidence import (
+from ..arrays import Floats, Ints, frozen
+from ..correlation.comparison import Comparison
+from ..correlation.mac import realised
+from ..data.geometry import Geometry
+from ..noun import Noun
+from .first_order_maps import (
     Linearisation,
     linearise,
     mass_evidence,
@@ -21,9 +23,8 @@ from .evidence import (
     root_of,
     stiffness_evidence,
 )
-from .geometry import Geometry
-from .misfit import Misfit, misfit, paired_shapes, spread
-from .noise import Noise, estimate_noise, given_noise
+from .shape_misfit import Misfit, misfit, paired_shapes, spread
+from .shape_noise import Noise, estimate_noise, given_noise
 
 _PLACES = 3000
 _ELEMENTS = 20_000
@@ -39,7 +40,10 @@ _WITHIN, _ENOUGH = 2.0, 6
 class ElementGroup(Protocol):
     """Elements of one kind, with their matrices."""
 
-    corners: Ints
+    @property
+    def corners(self) -> Ints:
+        """Rows of the geometry, (n, k)."""
+        ...
 
     def matrices(self, rows: Ints, p: Floats) -> tuple[Floats | None, Floats | None]:
         """Stiffness and mass of some of them, each (n, m, m)."""
@@ -51,7 +55,7 @@ class ElementGroup(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Disagreement:
+class Disagreement(Noun):
     """Maps of a misfit.
 
     Parameters
@@ -128,7 +132,7 @@ def disagreement(
     measured = misfit(found, pairs, noise)
     places = _evenly(len(geometry.xyz), _PLACES)
     centres = geometry.xyz[places]
-    motion, _ = spread(measured.by_sensor, seen.xyz, centres)
+    motion = spread(measured.by_sensor, seen.xyz, centres)
     lin = linearise(found, pairs, noise, hz, at_sensors)
     radius = _REACH * geometry.size
     moves = _translations(compared, geometry)

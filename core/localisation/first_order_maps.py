@@ -8,11 +8,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from .arrays import Floats, Numbers, frozen
-from .correlate import Correlation
-from .errors import InputError
-from .misfit import PairedShapes
-from .noise import Noise
+from ..arrays import Floats, Numbers, frozen
+from ..correlation.mode_pairing import Correlation
+from ..errors import InputError
+from .shape_misfit import PairedShapes
+from .shape_noise import Noise
 
 NEAR = 0.1
 """Modes within this relative distance in frequency mix too readily to say where."""

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
-from .correlate import Correlation
-from .correlation import realised
-from .errors import InputError
-from .noise import Noise
+from ..arrays import Floats, Ints, Numbers, frozen, require_shape
+from ..correlation.mac import realised
+from ..correlation.mode_pairing import Correlation
+from ..errors import InputError
+from ..noun import Noun
+from .shape_noise import Noise
 
 _SPREAD_NEIGHBOURS = 12
 
@@ -36,7 +37,7 @@ class PairedShapes:
 
 
 @dataclass(frozen=True, eq=False)
-class Misfit:
+class Misfit(Noun):
     """Disagreement of paired shapes in standard deviations of the measurement.
 
     Parameters
@@ -51,8 +52,6 @@ class Misfit:
         Coordinate modal assurance criterion, 1 where all pairs agree at a sensor.
     frequency : (n_pair,) float
         Deviation over its standard deviation.
-    chi_square, degrees_of_freedom : float, int
-        Sum of squares of `normalised`, and what it would be on average without a misfit.
     """
 
     normalised: Floats
@@ -60,8 +59,6 @@ class Misfit:
     by_sensor: Floats
     comac: Floats
     frequency: Floats
-    chi_square: float
-    degrees_of_freedom: int
 
 
 def paired_shapes(
@@ -102,7 +99,6 @@ def misfit(
     shapes: PairedShapes,
     noise: Noise,
     frequency_sigma: float | Floats = 0.005,
-    sensors: Bools | None = None,
 ) -> Misfit:
     """Measure where paired shapes and frequencies disagree, in units of the noise.
 
@@ -112,24 +108,21 @@ def misfit(
     shapes : PairedShapes
         From `paired_shapes`.
     noise : Noise
-        Of the test shapes: given or estimated (`noise`).
+        Of the test shapes: given or estimated (`noise`). Sensors that it calls outliers do not
+        count for `by_mode`; the maps by sensor cover all.
     frequency_sigma : float or (n_pair,) float
         Standard deviation of a relative frequency difference: of the measurement, and of what
         the mesh cannot tell.
-    sensors : (n_sensor,) bool, optional
-        Sensors that count for `by_mode` and `chi_square` (default: those that `noise` does not
-        call outliers); the maps by sensor always cover all.
 
     Raises
     ------
     InputError
         There are no pairs.
     """
-    n_pair = len(found.pairs)
-    if n_pair == 0:
+    if not found.pairs:
         raise InputError("no pair of modes to compare; lower the MAC limit")
     require_shape(noise.sigma, (shapes.mixing.shape[0],), "the noise of the test shapes")
-    counted = ~noise.outlier if sensors is None else np.asarray(sensors, bool)
+    counted = ~noise.outlier
     sigma = np.sqrt((shapes.mixing**2).T @ noise.sigma**2)
     z = (shapes.test - shapes.analysis) / sigma
     # The scale of each shape was fitted: one degree of freedom a pair.
@@ -142,8 +135,6 @@ def misfit(
         frozen(np.sqrt(np.mean(z**2, axis=1) * inside / share)),
         frozen(comac(shapes.analysis, shapes.test)),
         frozen(deviation / frequency_sigma),
-        float(np.sum(z[counted] ** 2)),
-        share * n_pair,
     )
 
 
@@ -174,54 +165,43 @@ def comac(analysis: Floats, test: Floats) -> Floats:
     return np.asarray(np.divide(top, bottom, out=np.full(len(a), np.nan), where=bottom > 0))
 
 
-def spread(
-    values: Floats, sensor_xyz: Floats, grid_xyz: Floats, width: float | None = None
-) -> tuple[Floats, Floats]:
+def spread(values: Floats, sensor_xyz: Floats, grid_xyz: Floats) -> Floats:
     """Spread what sensors say over the grids of a model, for a map.
 
     Averages over the nearest sensors with Gaussian weights of their distance (Nadaraya, 1964;
-    Watson, 1964). A map is a picture of where to look; it locates nothing.
+    Watson, 1964), as wide as the median distance of a sensor position to its third nearest
+    other. A map is a picture of where to look; it locates nothing.
 
     Parameters
     ----------
-    values : (n_sensor,) or (n_sensor, k) float
-        One or several maps; NaN where a sensor says nothing.
+    values : (n_sensor,) float
+        NaN where a sensor says nothing.
     sensor_xyz : (n_sensor, 3) float
     grid_xyz : (n_grid, 3) float
         In the same frame and unit.
-    width : float, optional
-        Standard deviation of the weights. Default: the median distance of a sensor position to
-        its third nearest other.
 
     Returns
     -------
-    map : (n_grid,) or (n_grid, k) float
+    (n_grid,) float
         NaN where no sensor with a value is near.
-    support : (n_grid,) float
-        Distance to the nearest sensor over `width`: large where the map is a guess.
 
     Raises
     ------
     InputError
-        There is no sensor, or the width is not positive.
+        There is no sensor.
     """
     if not len(sensor_xyz):
         raise InputError("no sensor to draw a map from")
-    width = _width(sensor_xyz) if width is None else width
-    if not width > 0:
-        raise InputError(f"the width of the map is {width}; it must be positive")
-    table = np.atleast_2d(np.asarray(values, float).T).T
+    width = _width(sensor_xyz)
     k = min(_SPREAD_NEIGHBOURS, len(sensor_xyz))
     distance, near = cKDTree(sensor_xyz).query(grid_xyz, k=np.arange(1, k + 1))
     # Relative to the nearest sensor, so that far grids follow it instead of falling to 0 / 0.
     weight = np.exp(-0.5 * (distance**2 - distance[:, :1] ** 2) / width**2)
-    picked = table[near]
+    picked = np.asarray(values)[near]
     known = np.isfinite(picked)
-    total = np.einsum("gk,gkm->gm", weight, known.astype(float))
-    summed = np.einsum("gk,gkm->gm", weight, np.where(known, picked, 0.0))
-    spread_out = np.divide(summed, total, out=np.full_like(summed, np.nan), where=total > 0)
-    shape = (len(grid_xyz), *np.shape(values)[1:])
-    return spread_out.reshape(shape), distance[:, 0] / width
+    total = np.sum(weight, axis=1, where=known)
+    summed = np.sum(weight * np.where(known, picked, 0.0), axis=1)
+    return np.asarray(np.divide(summed, total, out=np.full_like(summed, np.nan), where=total > 0))
 
 
 def _width(sensor_xyz: Floats) -> float:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Bools, Floats, Ints, frozen
-from .errors import InputError
+from ..arrays import Bools, Floats, Ints, frozen
+from ..errors import InputError
 
 OUTLIER = 4.0
 """A sensor whose residual is this many times the median's is no part of the noise."""
@@ -35,7 +35,6 @@ class Noise:
         where a polarity is wrong; NaN where nothing is predicted.
     explained : (n_sensor, n_test) float
         What the other sensors predict each reading to be.
-    source : {"given", "estimated"}
     """
 
     sigma: Floats
@@ -43,7 +42,6 @@ class Noise:
     outlier: Bools
     gain: Floats
     explained: Floats
-    source: str = "estimated"
 
     def __post_init__(self) -> None:
         for name in ("sigma", "outlier", "gain", "explained"):
@@ -63,7 +61,7 @@ def given_noise(test_shapes: Floats, relative: float) -> Noise:
     rms = np.sqrt(np.mean(test_shapes**2, axis=0))
     n, m = test_shapes.shape
     nothing = np.full((n, m), np.nan)
-    return Noise(relative * rms, relative, np.zeros(n, bool), np.full(n, np.nan), nothing, "given")
+    return Noise(relative * rms, relative, np.zeros(n, bool), np.full(n, np.nan), nothing)
 
 
 def estimate_noise(
@@ -123,9 +121,7 @@ def estimate_noise(
     gain = np.divide(
         np.sum(scaled * predicted, axis=1), power, out=np.full(n, np.nan), where=power > 1e-6 * m
     )
-    return Noise(
-        sigma * rms, float(np.quantile(sigma, 0.25)), ~sound, gain, predicted * rms, "estimated"
-    )
+    return Noise(sigma * rms, float(np.quantile(sigma, 0.25)), ~sound, gain, predicted * rms)
 
 
 def _basis(

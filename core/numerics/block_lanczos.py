@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats
-from .errors import InputError
+from ..arrays import Floats
+from ..errors import InputError
 
 _EXHAUSTED = 1e-13
 """Directions this much smaller than the largest eigenvalue of the operator are rounding."""

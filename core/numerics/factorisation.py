@@ -14,9 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from .arrays import Floats, Ints, Numbers, require_finite
-from .errors import CheckError, InputError
-from .ordering import nodal_order
+from ..arrays import Floats, Ints, Numbers, require_finite
+from ..errors import CheckError, InputError
+from .fill_reducing_ordering import nodal_order
 from .pardiso import NotDefinite, Pardiso, library
 
 Backend = Literal["pardiso", "superlu"]

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from .arrays import Ints
+from ..arrays import Ints
 
 
 def nodal_order(a: sp.csr_matrix, groups: Ints | None = None) -> Ints:

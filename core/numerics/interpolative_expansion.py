@@ -18,8 +18,8 @@ import numpy as np
 import scipy.linalg
 from numpy.polynomial import chebyshev
 
-from .arrays import Floats
-from .errors import CheckError
+from ..arrays import Floats
+from ..errors import CheckError
 
 Sample = Callable[[Floats], Floats]
 """Features (n_point, n_feature) at points (n_point, k)."""

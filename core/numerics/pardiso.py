@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Numbers
-from .errors import CheckError, InputError
+from ..arrays import Floats, Numbers
+from ..errors import CheckError, InputError
 
 _ANALYSE, _FACTORISE, _SOLVE, _FORWARD, _RELEASE = 11, 22, 33, 331, -1
 
@@ -53,7 +53,7 @@ def _candidates() -> Iterator[Path]:
     except importlib.metadata.PackageNotFoundError:
         files = []
     for file in files:
-        if file.name.lstrip("lib").startswith("mkl_rt.") and ".lib" not in file.name:
+        if file.name.removeprefix("lib").startswith("mkl_rt.") and ".lib" not in file.name:
             yield Path(str(file.locate())).resolve()
     for folder in ("lib", "Library/bin"):
         yield from sorted(Path(sys.prefix, folder).glob("*mkl_rt*"))

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints
+from ..arrays import Floats, Ints
 
 
 def shared(data: Sequence[Floats], pattern: sp.csr_matrix) -> list[sp.csr_matrix]:

@@ -10,11 +10,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from .arrays import Floats, Ints, Numbers
-from .eigen import Eigensolution
-from .errors import InputError
-from .model import Model
-from .shape_derivatives import REPEATED, ShapeDerivatives
+from ..arrays import Floats, Ints, Numbers
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution
+from ..errors import InputError
+from .eigenvector_derivatives import REPEATED, ShapeDerivatives
 
 
 class Spectral(Protocol):
@@ -101,7 +101,8 @@ def sensitivities(
         eigenvalues, ascending, of the cluster's derivative matrix (Mills-Curran 1988; Dailey
         1989): the slopes of the branches that leave the common value, which in general belong
         to a different rotation of the modes for each parameter. For combinations they are the
-        quotients t^T G t / t^T t of that matrix G, see `cluster_derivatives`.
+        quotients t^T G t / t^T t of that matrix,
+        G_i = Phi^T K' Phi - (Phi^T M' Phi Lambda + Lambda Phi^T M' Phi) / 2.
 
     Raises
     ------
@@ -172,36 +173,6 @@ def differentiate(
             seen = seen.reshape(-1, len(cluster), len(changes))
             shapes[:, columns] = np.einsum("sai,ac->sci", seen, t)
     return Sensitivities(solution.eigenvalues @ T**2 / size, slopes, shapes)
-
-
-def cluster_derivatives(
-    model: Model,
-    p: Floats,
-    solution: Eigensolution,
-    cluster: Sequence[int] | Ints,
-    parameters: Sequence[int],
-) -> Floats:
-    """Differentiate the eigenvalues of a cluster as a symmetric matrix.
-
-    Parameters
-    ----------
-    model, p, solution, parameters
-        As in `sensitivities`.
-    cluster : (n,) int
-        Positions in `solution`.
-
-    Returns
-    -------
-    (n_parameter, n, n) float
-        G_i = Phi^T K' Phi - (Phi^T M' Phi Lambda + Lambda Phi^T M' Phi) / 2: the derivative of
-        Lambda projected onto the moving mass-orthonormal subspace. The diagonal of R^T G_i R
-        belongs to the rotated modes Phi R; with equal eigenvalues the eigenvalues of G_i are the
-        slopes of the branches.
-    """
-    _check(model, solution, parameters, None)
-    coefficients(cluster, len(solution.eigenvalues))
-    changes = [(model.dK(i, p), model.dM(i, p)) for i in parameters]
-    return _derivative_matrices(changes, solution, np.asarray(cluster))
 
 
 def clusters(T: Floats, solution: Spectral) -> Iterator[Ints]:

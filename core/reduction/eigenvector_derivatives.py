@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints
-from .eigen import Eigensolution
-from .errors import InputError
-from .factor import Factorisation, factorise
-from .model import Model
-from .pencil import Pencil
+from ..arrays import Floats, Ints
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution
+from ..eigen.pencil import Pencil
+from ..errors import InputError
+from ..numerics.factorisation import Factorisation, factorise
 
 _ITERATIONS = 80
 _OWN_FACTOR = 8

@@ -9,15 +9,20 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Floats
-from .eigen import Eigensolution, solve
-from .model import Model
-from .reduced import ReducedModel, ReducedModes, build_reduced
-from .sensitivity import Sensitivities, Spectral, sensitivities
+from ..arrays import Floats
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution, solve
+from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
+from .reduced_model import ReducedModel, ReducedModes, build_reduced
 
 
 class Order(Protocol):
     """Modes and their derivatives at any factors, seen by the sensors of a test."""
+
+    @property
+    def model(self) -> Model:
+        """What is solved, in full or reduced."""
+        ...
 
     @property
     def sensors(self) -> sp.csr_matrix | Floats:
@@ -63,6 +68,11 @@ class ReducedOrder:
     reduced: ReducedModel
     sensors: Floats
     n_modes: int
+
+    @property
+    def model(self) -> Model:
+        """The full model that is reduced."""
+        return self.reduced.model
 
     def solve(self, p: Floats) -> ReducedModes:
         """Find the modes within the basis."""

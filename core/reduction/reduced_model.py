@@ -10,36 +10,17 @@ import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 
-from .arrays import Floats, Ints
-from .eigen import Eigensolution, solve
-from .errors import InputError
-from .factor import factorise
-from .model import Model, Term
-from .pencil import Pencil
-from .reduced_basis import further, projected, static_answers
-from .sensitivity import Sensitivities, coefficients, differentiate
-from .shape_derivatives import modal_part
-
-
-@dataclass(frozen=True, eq=False)
-class LowRank:
-    """A change U diag(s) U^T of a reduced matrix.
-
-    Parameters
-    ----------
-    vectors : (n_basis, k) float
-        U projected on the basis, see `ReducedModel.project`.
-    sizes : (k,) float
-        s.
-    """
-
-    vectors: Floats
-    sizes: Floats
-
-    @property
-    def matrix(self) -> Floats:
-        """The change, (n_basis, n_basis)."""
-        return np.asarray((self.vectors * self.sizes) @ self.vectors.T)
+from ..arrays import Floats, Ints
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution, solve
+from ..eigen.pencil import Pencil
+from ..errors import InputError
+from ..noun import Noun
+from ..numerics.factorisation import factorise
+from .eigenpair_derivatives import Sensitivities, coefficients, differentiate
+from .eigenvector_derivatives import modal_part
+from .reduced_sum import ReducedSum, reduced_sum
+from .ritz_basis import static_answers
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +60,7 @@ class ReducedModes:
 
 
 @dataclass(frozen=True, eq=False)
-class ReducedModel:
+class ReducedModel(Noun):
     """K(p) and M(p) of a model on a fixed basis Q.
 
     Parameters
@@ -90,8 +71,8 @@ class ReducedModel:
         Where the basis was made.
     Q : (n_free, n_basis) float
         Orthonormal with respect to K - sigma M at `p0`.
-    stiffness, mass : (n_term, n_basis, n_basis) float
-        Q^T K_t Q of each term of the model.
+    stiffness, mass : ReducedSum
+        Q^T K Q and Q^T M Q at any parameter values.
     solution : Eigensolution
         Of the full model at `p0`, with its factor.
     """
@@ -99,8 +80,8 @@ class ReducedModel:
     model: Model
     p0: Floats
     Q: Floats
-    stiffness: Floats
-    mass: Floats
+    stiffness: ReducedSum
+    mass: ReducedSum
     solution: Eigensolution = field(repr=False)
 
     @property
@@ -110,19 +91,19 @@ class ReducedModel:
 
     def K(self, p: Floats) -> Floats:
         """Return the reduced stiffness at `p`, (n_basis, n_basis)."""
-        return _weighted(self.model.stiffness, self.stiffness, p)
+        return self.stiffness.at(p)
 
     def M(self, p: Floats) -> Floats:
         """Return the reduced mass at `p`, (n_basis, n_basis)."""
-        return _weighted(self.model.mass, self.mass, p)
+        return self.mass.at(p)
 
     def dK(self, parameter: int, p: Floats) -> Floats:
         """Return the derivative of the reduced stiffness, (n_basis, n_basis)."""
-        return _weighted(self.model.stiffness, self.stiffness, p, parameter)
+        return np.asarray(self.stiffness.slopes(p, [parameter])[0])
 
     def dM(self, parameter: int, p: Floats) -> Floats:
         """Return the derivative of the reduced mass, (n_basis, n_basis)."""
-        return _weighted(self.model.mass, self.mass, p, parameter)
+        return np.asarray(self.mass.slopes(p, [parameter])[0])
 
     def project(self, vectors: sp.spmatrix | Floats) -> Floats:
         """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).
@@ -132,13 +113,7 @@ class ReducedModel:
         """
         return np.asarray((vectors.T @ self.Q).T)
 
-    def solve(
-        self,
-        p: Floats,
-        n_modes: int | None = None,
-        stiffness: LowRank | None = None,
-        mass: LowRank | None = None,
-    ) -> ReducedModes:
+    def solve(self, p: Floats, n_modes: int | None = None) -> ReducedModes:
         """Find modes at the parameter values `p`.
 
         Parameters
@@ -146,19 +121,13 @@ class ReducedModel:
         p : (n_parameter,) float
         n_modes : int, optional
             Default: as many as the full solution at `p0` has.
-        stiffness, mass : LowRank, optional
-            Added to K and M: what the model lacks.
 
         Raises
         ------
         InputError
-            Where K - sigma M is not positive definite: a negative change that is too large.
+            Where K - sigma M is not positive definite: factors that make no structure.
         """
         K, M = self.K(p), self.M(p)
-        if stiffness is not None:
-            K = K + stiffness.matrix
-        if mass is not None:
-            M = M + mass.matrix
         n = self.size
         wanted = min(n, len(self.solution.eigenvalues) if n_modes is None else n_modes)
         sigma = self.solution.sigma
@@ -213,31 +182,6 @@ class ReducedModel:
         change_of = partial(_within_basis, everything, changes)
         return differentiate(T, by_position, everything, changes, sensors, change_of)
 
-    def error_estimate(self, p: Floats, modes: ReducedModes) -> tuple[Floats, Floats]:
-        """Estimate what the basis lacks at `p`, from the residuals of the full model.
-
-        The residual r = (K - lambda M) Q q is answered by the factor at `p0`, e = A0^-1 r.
-
-        Returns
-        -------
-        eigenvalue : (n_mode,) float
-            r^T e relative to lambda - sigma: about the relative error of the eigenvalue, which
-            is always too high.
-        shape : (n_mode,) float
-            ||e||_M: about the norm of the missing part of the mass-normalised shape. An
-            estimate, not a bound: modes close to each other miss more.
-        """
-        factor = self.solution.factor
-        if factor is None:
-            raise InputError("the reduced model was built without the factor of the full one")
-        pencil = Pencil.of(self.model, p)
-        X = self.vectors(modes)
-        r = pencil.K @ X - (pencil.M @ X) * modes.eigenvalues
-        e = factor.solve(r)
-        energy = np.maximum(np.einsum("ij,ij->j", r, e), 0.0)
-        size = np.sqrt(np.maximum(np.einsum("ij,ij->j", e, pencil.M @ e), 0.0))
-        return energy / (modes.eigenvalues - self.solution.sigma), size
-
     def _finite(self, modes: ReducedModes) -> ReducedModes:
         """Leave out the vectors of the basis without mass."""
         span = modes.eigenvalues - self.solution.sigma
@@ -249,7 +193,6 @@ def build_reduced(
     p0: Floats,
     targets: Sequence[int] | Ints,
     parameters: Sequence[int],
-    extra_vectors: Floats | None = None,
     *,
     solution: Eigensolution | None = None,
     more_modes: int = 12,
@@ -267,8 +210,6 @@ def build_reduced(
         Modes, from 0, that must be good.
     parameters : sequence of int
         Positions in ``model.parameters`` that will move.
-    extra_vectors : (n_free, k) float, optional
-        Further shapes, for instance static answers A^-1 f to the forces of suspected effects.
     solution : Eigensolution, optional
         At `p0` with ``keep_factor``; made here otherwise.
     more_modes : int
@@ -310,27 +251,14 @@ def build_reduced(
             ),
         ]
     )
-    if extra_vectors is not None:
-        Q = np.hstack([Q, further(pencil.K - solution.sigma * pencil.M, Q, extra_vectors)])
     return ReducedModel(
         model,
         np.array(p0, np.float64),
         Q,
-        projected(model.stiffness, Q),
-        projected(model.mass, Q),
+        reduced_sum(model.stiffness, Q),
+        reduced_sum(model.mass, Q),
         solution,
     )
-
-
-def _weighted(
-    terms: Sequence[Term], matrices: Floats, p: Floats, parameter: int | None = None
-) -> Floats:
-    """Sum of the matrices with their coefficients at p, or the derivatives of these."""
-    c = [
-        t.coefficient(p) if parameter is None else t.coefficient_derivative(p, parameter)
-        for t in terms
-    ]
-    return np.asarray(np.tensordot(np.array(c), matrices, 1))
 
 
 def _within_basis(

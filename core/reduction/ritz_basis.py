@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.sparse as sp
 
-from .arrays import Floats, Ints
-from .eigen import Eigensolution
-from .errors import InputError
-from .factor import Factorisation
-from .model import Model, Term
+from ..arrays import Floats, Ints
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution
+from ..numerics.factorisation import Factorisation
 
 _DEPENDENT = 1e-10
 """Energy beside the largest below which a direction is dependent on the others."""
@@ -78,31 +76,3 @@ def static_answers(
     best = best[value[best] > max(least, _DEPENDENT * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
     return np.asarray(S @ W - solution.vectors @ (modal @ W))
-
-
-def further(A: sp.csr_matrix, Q: Floats, Y: Floats) -> Floats:
-    """Return what Y, (n, m), adds to the A-orthonormal Q, itself A-orthonormal, (n, k <= m)."""
-    if Y.shape[0] != Q.shape[0]:
-        raise InputError(f"extra vectors have {Y.shape[0]} rows for {Q.shape[0]} dofs")
-    size = np.einsum("ij,ij->j", Y, A @ Y)
-    Y = Y / np.sqrt(np.where(size > 0.0, size, 1.0))
-    for _ in range(2):
-        Y = Y - Q @ (Q.T @ (A @ Y))
-        value, W = np.linalg.eigh(Y.T @ (A @ Y))
-        kept = value > _DEPENDENT
-        Y = Y @ (W[:, kept] / np.sqrt(value[kept]))
-    return Y
-
-
-def projected(terms: Sequence[Term], Q: Floats) -> Floats:
-    """Return Q^T A_t Q of each term A_t, (n_term, n_basis, n_basis)."""
-    out = np.zeros((len(terms), Q.shape[1], Q.shape[1]))
-    for k, term in enumerate(terms):
-        half = sp.triu(term.matrix, 1) + 0.5 * sp.diags(term.matrix.diagonal())
-        half = half.tocoo()
-        rows, at = np.unique(np.concatenate([half.row, half.col]), return_inverse=True)
-        part = sp.csr_matrix((half.data, at.reshape(2, -1)), shape=(len(rows), len(rows)))
-        q = np.ascontiguousarray(Q[rows])
-        product = q.T @ (part @ q)
-        out[k] = product + product.T
-    return out

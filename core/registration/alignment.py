@@ -6,20 +6,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Floats
-from .errors import InputError
-from .frame_choice import choose
-from .frame_score import scorer_of
-from .geometry import Geometry
-from .measured import measured_directions
-from .modes import Modes
-from .observation import default_tolerance
-from .placement import place
+from ..arrays import Floats
+from ..data.geometry import Geometry
+from ..data.length_units import length_factor
+from ..data.modes import Modes
+from ..errors import InputError
+from ..sensors.closest_point import place
+from ..sensors.outer_surface import Surface, surface_of
+from ..sensors.rigid_transform import Transform
+from ..sensors.sensor_map import default_tolerance
+from .pose_score import scorer_of
+from .pose_selection import choose
 from .poses import Poses
-from .rigid_fit import cloud_of, polish, rms_of, search
-from .surface import Surface, surface_of
-from .transform import Transform
-from .units import length_factor
+from .surface_registration import cloud_of, polish, rms_of, search
 
 ON_MODEL = 0.9
 """Share of the test nodes that must lie on the model for the frames to agree as they are."""
@@ -105,7 +104,8 @@ def align(
     modes : Modes, optional
         Of the analysis; without them and `test_modes`, symmetric geometry stays undecided.
     test_modes : Modes, optional
-        Only the nodes it measured are laid on the model.
+        On the directions that were measured (see `measured_directions`); only their nodes are
+        laid on the model.
     tolerance : float, optional
         Distance from the model, deck length unit, at which a test node still lies on it.
         Default: `observation.default_tolerance`.
@@ -120,8 +120,6 @@ def align(
     scale = 1.0
     if geometry.length_unit and test_geometry.length_unit:
         scale = length_factor(test_geometry.length_unit, geometry.length_unit)
-    if test_modes is not None:
-        test_modes = measured_directions(test_modes)[0]
     points = scale * _measured_points(test_geometry, test_modes)
     scorer = None
     if modes is not None and test_modes is not None and len(modes) and len(test_modes):

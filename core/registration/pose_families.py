@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Bools, Floats
+from ..arrays import Bools, Floats
+from ..sensors.outer_surface import Surface
 from .poses import Poses, centre_and_radius, displaced, jacobian, motion_between
-from .rigid_fit import Cloud, polish, rms_of
-from .surface import Surface
+from .surface_registration import Cloud, polish, rms_of
 
 STEP = 0.02
 """Share of the model's size by which a test must be able to move to count as free."""

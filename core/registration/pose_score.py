@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Ints, Numbers
-from .dofs import Dofs
-from .geometry import Geometry
-from .modes import Modes
-from .observation import Grids, grids_of
-from .placement import place
+from ..arrays import Floats, Ints, Numbers
+from ..data.dofs import Dofs
+from ..data.geometry import Geometry
+from ..data.modes import Modes
+from ..sensors.closest_point import place
+from ..sensors.sensor_map import Grids, grids_of
 from .poses import Poses
 
 BAND = 0.3

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .arrays import Floats
-from .frame_score import Scorer
+from ..arrays import Floats
+from .pose_families import STEP, Family, family_of, members, sampled, step_of
+from .pose_score import Scorer
 from .poses import Poses, motion_between
-from .rigid_fit import Cloud, farthest_points, polish, rms_of
-from .sliding import STEP, Family, family_of, members, sampled, step_of
+from .surface_registration import Cloud, farthest_points, polish, rms_of
 
 _POINTS = 48
 _FAMILIES = 12

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .arrays import Floats, Ints
+from ..arrays import Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)

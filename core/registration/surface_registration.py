@@ -8,10 +8,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from .arrays import Floats, Ints
-from .placement import place
+from ..arrays import Floats, Ints
+from ..sensors.closest_point import place
+from ..sensors.outer_surface import LINE, POINT, TRIA, Surface, shape_functions
 from .poses import Poses, centre_and_radius, jacobian, move
-from .surface import LINE, POINT, TRIA, Surface, shape_functions
 
 CAP = 0.03
 """A point farther than this share of the model's size counts as this far: it is off the model."""

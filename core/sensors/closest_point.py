@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Ints
-from .surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
+from ..arrays import Floats, Ints
+from ..noun import Noun
+from .outer_surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class Placement(Noun):
     """The foot of each point on a surface.
 
     Parameters

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Floats, Ints, Numbers
-from .placement import Placement
-from .surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
+from ..arrays import Floats, Ints, Numbers
+from ..noun import Noun
+from .closest_point import Placement
+from .outer_surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
 
 
 @dataclass(frozen=True, eq=False)
-class Interpolation:
+class Interpolation(Noun):
     """Linear maps from corner motions to the motion of the points.
 
     With u_i, theta_i the displacement and rotation of corner i, the point moves by

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .arrays import Bools, Floats, Ints, Numbers
-from .dofs import Dofs
-from .modes import Modes
+from ..arrays import Bools, Floats, Ints, Numbers
+from ..data.dofs import Dofs
+from ..data.modes import Modes
 
 THRESHOLD = 1e-4
 """Motion below this fraction of a node's largest is rounding, not measurement.

@@ -7,31 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .arrays import Bools, Floats, Ints, Numbers
-from .errors import InputError
-from .geometry import Geometry
+from ..arrays import Bools, Floats, Ints, Numbers
+from ..data.geometry import Geometry
+from ..data.shapes import SHAPES
+from ..errors import InputError
+from ..noun import Noun
 
 POINT, LINE, TRIA, QUAD = 1, 2, 3, 4
 """Shape of a facet, equal to its number of corners."""
 
-_FACES: dict[str, tuple[tuple[int, ...], ...]] = {
-    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
-    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
-    "penta": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-    "hexa": (
-        (0, 3, 2, 1),
-        (4, 5, 6, 7),
-        (0, 1, 5, 4),
-        (1, 2, 6, 5),
-        (2, 3, 7, 6),
-        (3, 0, 4, 7),
-    ),
-}
 _BITS = 21
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(Noun):
     """Facets of a geometry with the trees that find them.
 
     Parameters
@@ -127,7 +116,7 @@ def surface_of(
     for name, kind in (("quad", QUAD), ("tria", TRIA), ("line", LINE), ("point", POINT)):
         if name in geometry.elements:
             parts.append((geometry.elements[name].reshape(-1, kind), kind, False))
-    solids = [(k, v) for k, v in geometry.elements.items() if k in _FACES and len(v)]
+    solids = [(k, v) for k, v in geometry.elements.items() if SHAPES[k].faces and len(v)]
     parts += [(faces, faces.shape[1], True) for faces in _outer_faces(solids, len(xyz))]
     if alone is not None:
         drawn = np.zeros(len(xyz), bool)
@@ -219,7 +208,7 @@ def _outer_faces(solids: list[tuple[str, Ints]], n_grid: int) -> list[Ints]:
     found: list[Ints] = []
     keys: list[Numbers] = []
     for name, elements in solids:
-        for face in _FACES[name]:
+        for face in SHAPES[name].faces:
             corners = elements[:, list(face)]
             found.append(corners)
             keys.append(_face_key(corners, n_grid))

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from .arrays import Floats, frozen, require_finite, require_shape
-from .errors import InputError
+from ..arrays import Floats, frozen, require_finite, require_shape
+from ..errors import InputError
+from ..noun import Noun
 
 
 @dataclass(frozen=True, eq=False)
-class Transform:
+class Transform(Noun):
     """A rigid move with a change of unit: x_analysis = rotation @ (scale * x_test) + translation.
 
     Parameters
@@ -57,23 +57,6 @@ class Transform:
     def turn(self, axes: Floats) -> Floats:
         """Turn directions (n, 3) into the analysis frame."""
         return np.asarray(axes @ self.rotation.T)
-
-    @property
-    def is_identity(self) -> bool:
-        """Whether nothing moves (a change of unit apart)."""
-        return bool(np.array_equal(self.rotation, np.eye(3)) and not self.translation.any())
-
-    @property
-    def angle_deg(self) -> float:
-        """Angle of the rotation, 0..180 degrees."""
-        return float(np.degrees(Rotation.from_matrix(self.rotation).magnitude()))
-
-    @property
-    def axis(self) -> Floats:
-        """Axis of the rotation, (3,), zero where there is none."""
-        turn = Rotation.from_matrix(self.rotation).as_rotvec()
-        length = np.linalg.norm(turn)
-        return np.asarray(turn / length if length > 0 else turn)
 
 
 IDENTITY = Transform(np.eye(3), np.zeros(3))

@@ -7,14 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from .arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
-from .dofs import Dofs
-from .errors import InputError
-from .geometry import Geometry
-from .interpolation import interpolate
-from .placement import Placement, place
-from .surface import Surface, surface_of
-from .transform import IDENTITY, Transform
+from ..arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
+from ..data.dofs import Dofs
+from ..data.geometry import Geometry
+from ..errors import InputError
+from ..noun import Noun
+from .closest_point import Placement, place
+from .facet_interpolation import interpolate
+from .outer_surface import Surface, surface_of
+from .rigid_transform import IDENTITY, Transform
 
 FEWEST_ON_MODEL = 0.2
 """A test with a smaller share of its sensors on the model is refused."""
@@ -22,7 +23,7 @@ _NAMED = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Observation:
+class Observation(Noun):
     """The sensor map C: sensor displacements = C @ analysis shapes.
 
     Parameters

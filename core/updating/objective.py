@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.optimize import lsq_linear
 
-from .arrays import Floats, Numbers, frozen
-from .correlate import Correlation, Criteria, Pair, correlate
-from .correlation import realised
-from .orders import Order
-from .parameter import Parameter
-from .residuals import Residuals, Weights, eigenvalue_residuals, shape_residuals
-from .sensitivity import Spectral
+from ..arrays import Floats, frozen
+from ..correlation.mac import realised
+from ..correlation.mode_pairing import Correlation, Criteria, correlate
+from ..data.parameter import Parameter
+from ..reduction.eigenpair_derivatives import Spectral
+from ..reduction.full_or_reduced import Order
+from .residuals import Linearisation, Residual, Seen, Slopes, Target, Weights
 
 _UNIDENTIFIABLE = 1e-4
 _UNSURE = 0.5
@@ -25,37 +24,13 @@ _KEPT = 0.75
 
 
 @dataclass(frozen=True, eq=False)
-class Target:
-    """The test at its sensors: what the update aims at.
-
-    Parameters
-    ----------
-    frequencies_hz : (n_test,) float
-    shapes : (n_sensor, n_test) float or complex
-    sensors : (n_sensor, n_free) sparse
-        Sensor displacements from the free degrees of freedom of the model.
-    modes : tuple of int, optional
-        Test modes that the update may use; default all.
-    frequency_std, shape_std : (n_test,) float, optional
-        Standard errors of the test's frequencies, relative, and lengths of those of its shapes,
-        over the shapes'; they add to the standard deviations of the weights.
-    """
-
-    frequencies_hz: Floats
-    shapes: Numbers
-    sensors: sp.csr_matrix
-    modes: tuple[int, ...] | None = None
-    frequency_std: Floats | None = None
-    shape_std: Floats | None = None
-
-
-@dataclass(frozen=True, eq=False)
 class State:
-    """The model at one parameter point, correlated."""
+    """The model at one parameter point, correlated; `seen` holds the pairs that count."""
 
     factors: Floats
     solution: Spectral
     correlation: Correlation
+    seen: Seen
     objective: float
 
 
@@ -76,47 +51,54 @@ class Objective:
             np.array([q.upper for q in self.parameters]),
         )
 
-    def at(self, order: Order, p: Floats, residuals: str) -> State:
+    def at(self, order: Order, p: Floats, residuals: Sequence[Residual]) -> State:
         """Solve and correlate at the factors `p`."""
         solution = order.solve(p)
+        shapes = np.asarray(order.sensors @ solution.vectors)
         found = correlate(
             np.sqrt(np.maximum(solution.eigenvalues, 0.0)) / (2.0 * np.pi),
-            np.asarray(order.sensors @ solution.vectors),
+            shapes,
             self.target.frequencies_hz,
             self.target.shapes,
             self.criteria,
             solution.rigid_body_modes,
         )
-        return State(frozen(p), solution, found, self.value(found, residuals))
-
-    def used(self, c: Correlation) -> list[Pair]:
-        """Pairs that count."""
         allowed = self.target.modes
-        return [q for q in c.pairs if allowed is None or q.test in allowed]
+        pairs = tuple(q for q in found.pairs if allowed is None or q.test in allowed)
+        T = self._turned(found, [q.analysis for q in pairs])
+        test = self._test_shapes(found)[:, [q.test for q in pairs]]
+        quotients = solution.eigenvalues @ T**2 / np.sum(T**2, axis=0)
+        seen = Seen(order.model, frozen(p), pairs, quotients, shapes @ T, test)
+        return State(seen.factors, solution, found, seen, self.value(seen, residuals))
 
-    def value(self, c: Correlation, residuals: str) -> float:
-        """Equation (2) without W_p, at a correlation."""
+    def value(self, seen: Seen, residuals: Sequence[Residual]) -> float:
+        """Equation (2) without W_p."""
         count = len(self.target.frequencies_hz if self.target.modes is None else self.target.modes)
-        return self._cost(self.used(c), count, residuals)
+        return self._cost(seen, count, residuals)
 
-    def closer(self, trial: State, state: State, residuals: str) -> bool:
+    def closer(self, trial: State, state: State, residuals: Sequence[Residual]) -> bool:
         """Whether a step is one: by all test modes, or by most of the pairs, which are kept.
 
-        Where shapes alone count, a pair that is lost is what the step did.
+        Where nothing counts but what pairs are told by, a pair that is lost is what the step did.
         """
         if trial.objective < state.objective:
             return True
-        if residuals == "shapes":
+        if all(r.tells_pairs for r in residuals):
             return False
-        old = {q.test: q for q in self.used(state.correlation)}
-        new = {q.test: q for q in self.used(trial.correlation)}
+        old = {q.test: k for k, q in enumerate(state.seen.pairs)}
+        new = {q.test: k for k, q in enumerate(trial.seen.pairs)}
         common = sorted(old.keys() & new.keys())
         if len(common) < _KEPT * len(old):
             return False
-        cost = [self._cost([s[k] for k in common], len(common), residuals) for s in (new, old)]
+        cost = [
+            self._cost(s.seen.take([at[k] for k in common]), len(common), residuals)
+            for s, at in ((trial, new), (state, old))
+        ]
         return cost[0] < (1.0 - _LEAST_GAIN) * cost[1]
 
-    def step(self, order: Order, state: State, active: Sequence[int], residuals: str) -> Floats:
+    def step(
+        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
+    ) -> Floats:
         """Return the bounded step of equations (3) and (4), (n_parameter,)."""
         lin = self.linearise(order, state, active, residuals)
         free = list(active)
@@ -138,36 +120,29 @@ class Objective:
         return full
 
     def linearise(
-        self, order: Order, state: State, active: Sequence[int], residuals: str
-    ) -> Residuals:
+        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
+    ) -> Linearisation:
         """Return the weighted residuals of the pairs and their derivatives."""
-        pairs = self.used(state.correlation)
-        T = self._turned(state.correlation, pairs)
-        with_shapes = residuals != "frequencies"
-        values, slopes, shapes = order.sensitivities(state.factors, state.solution, T, active,
-                                                     with_shapes)  # fmt: skip
-        parts = []
-        if residuals != "shapes":
-            parts.append(eigenvalue_residuals(pairs, values, slopes, self.sigmas(pairs)[0]))
-        if shapes is not None:
-            test = self._test_shapes(state.correlation)[:, [q.test for q in pairs]]
-            analysis = np.asarray(order.sensors @ (state.solution.vectors @ T))
-            parts.append(shape_residuals(analysis, shapes, test, self.sigmas(pairs)[1]))
-        return Residuals(
+        T = self._turned(state.correlation, [q.analysis for q in state.seen.pairs])
+        found = order.sensitivities(
+            state.factors, state.solution, T, active, any(r.needs_shapes for r in residuals)
+        )
+        slopes = Slopes(tuple(active), found.slopes, found.shapes)
+        parts = [r.linearised(state.seen, slopes, self.sigma(r, state.seen)) for r in residuals]
+        return Linearisation(
             np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
         )
 
     def standard_error(
-        self, order: Order, state: State, active: Sequence[int], residuals: str
+        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
     ) -> tuple[Floats, tuple[str, ...]]:
         """Return the standard errors of the factors, NaN where the test says nothing, and that."""
         error = np.full(len(self.parameters), np.nan)
-        if not self.used(state.correlation):
+        if not state.seen.pairs:
             return error, ()
         lin = self.linearise(order, state, active, residuals)
         _, s, vt = np.linalg.svd(lin.gradient, full_matrices=False)
-        kinds = 2 if residuals == "both" else 1
-        data = kinds * len(self.used(state.correlation))
+        data = sum(len(r.squared(state.seen)) for r in residuals)
         scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
         sound = s > _UNIDENTIFIABLE * s[0] if s.size and s[0] > 0.0 else np.zeros(len(s), bool)
         said = vt[sound] ** 2 / s[sound, None] ** 2
@@ -192,27 +167,18 @@ class Objective:
             )
         return error, tuple(doubtful)
 
-    def sigmas(self, pairs: Sequence[Pair]) -> tuple[Floats, Floats]:
-        """Return standard deviations of the residuals of each pair: the weights' and the test's."""
-        test = [q.test for q in pairs]
-        w, t = self.weights, self.target
-        none = np.zeros(len(self.target.frequencies_hz))
-        return (
-            np.hypot(w.frequency, (none if t.frequency_std is None else t.frequency_std)[test]),
-            np.hypot(w.shape, (none if t.shape_std is None else t.shape_std)[test]),
-        )
+    def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
+        """Return the standard deviation of a residual, of each pair where the test has its own."""
+        stated, own = self.weights.sigma(residual), residual.error(self.target)
+        return stated if own is None else np.hypot(stated, own[[q.test for q in seen.pairs]])
 
-    def _cost(self, pairs: Sequence[Pair], count: int, residuals: str) -> float:
+    def _cost(self, seen: Seen, count: int, residuals: Sequence[Residual]) -> float:
         """Equation (2) over pairs, with what is due for each of `count` that has none."""
-        lam = np.array([(q.analysis_hz / q.test_hz) ** 2 - 1.0 for q in pairs])
-        off = np.array([1.0 - q.mac for q in pairs])
-        w, missing = self.weights, count - len(pairs)
-        sigma_f, sigma_s = self.sigmas(pairs)
-        frequency = np.sum((lam / (2.0 * sigma_f)) ** 2)
-        frequency += missing * (self.criteria.frequency_tolerance / w.frequency) ** 2
-        shape = np.sum(off / sigma_s**2) + missing * (1.0 - self.criteria.mac_min) / w.shape**2
-        parts = {"frequencies": (frequency,), "shapes": (shape,), "both": (frequency, shape)}
-        return float(sum(parts[residuals]))
+        missing, total = count - len(seen.pairs), 0.0
+        for r in residuals:
+            total += float(np.sum(r.squared(seen) / self.sigma(r, seen) ** 2))
+            total += missing * r.unpaired(self.criteria) / self.weights.sigma(r) ** 2
+        return total
 
     def _test_shapes(self, c: Correlation) -> Floats:
         """Real test shapes as the pairs see them: turned where the test is the side to turn."""
@@ -222,7 +188,6 @@ class Objective:
         size = np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
         return np.asarray((shapes / size) @ c.transformation)
 
-    def _turned(self, c: Correlation, pairs: Sequence[Pair]) -> Floats:
-        n = c.mac.shape[1]
-        T = c.transformation if self.criteria.rotate == "analysis" else np.eye(n)
-        return np.asarray(T[:, [q.analysis for q in pairs]])
+    def _turned(self, c: Correlation, modes: list[int]) -> Floats:
+        T = c.transformation if self.criteria.rotate == "analysis" else np.eye(c.mac.shape[1])
+        return np.asarray(T[:, modes])

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from .arrays import Floats, Numbers, frozen
-from .correlate import Criteria
-from .eigen import Eigensolution
-from .errors import InputError
-from .model import Model
-from .objective import Objective, State, Target
-from .orders import FullOrder, Order, reduce_around
-from .residuals import KINDS, Weights
+from ..arrays import frozen
+from ..correlation.mode_pairing import Criteria
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution
+from ..errors import InputError
+from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
+from .objective import Objective, State
+from .residuals import Target, Weights
+from .stages import Iteration, Reason, Stage, Stop, Updated
 
-__all__ = ["Iteration", "Stage", "State", "Target", "Updated", "update"]
+__all__ = ["Iteration", "Reason", "Stage", "State", "Stop", "Target", "Updated", "update"]
 
 _REACH = 2.0
 """A reduced model is left where a factor is this many times, or this part of, that of its basis."""
@@ -29,61 +30,7 @@ _SAME = 1e-6
 """Reduced objectives this close to the full one where the walk ends are not told apart from it."""
 
 _HALVINGS = 5
-_NO_STEP = "no step lowers the objective further"
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One step of a strategy: which parameters move on which residuals.
-
-    Parameters
-    ----------
-    parameters : tuple of int
-        Positions in ``Model.parameters``.
-    residuals : {"frequencies", "shapes", "both"}
-    max_iterations : int
-    """
-
-    parameters: tuple[int, ...]
-    residuals: str = "both"
-    max_iterations: int = 10
-
-    def __post_init__(self) -> None:
-        if self.residuals not in KINDS:
-            raise InputError(f"residuals is '{self.residuals}'; give one of {', '.join(KINDS)}")
-        if not self.parameters:
-            raise InputError("a stage of the update names no parameter")
-
-
-@dataclass(frozen=True, eq=False)
-class Iteration:
-    """One entry of the history; `deviations_percent` by test mode (NaN where unpaired)."""
-
-    iteration: int
-    stage: int
-    objective: float
-    factors: Floats
-    deviations_percent: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class Updated:
-    """The outcome of an update.
-
-    `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
-    `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
-    the iteration ended.
-    """
-
-    factors: Floats
-    standard_error: Floats
-    at_bound: Numbers
-    before: State
-    after: State
-    history: tuple[Iteration, ...]
-    eigensolutions: int
-    stopped: str
-    warnings: tuple[str, ...]
+_NO_STEP = Stop(Reason.NO_STEP, "no step lowers the objective further")
 
 
 def update(
@@ -141,7 +88,7 @@ def update(
             raise InputError(f"a stage refers to parameter {max(s.parameters)} of {known}")
     full = FullOrder(model, target.sensors, n_modes)
     objective = Objective(model.parameters, target, criteria, weights)
-    before = objective.at(full, np.array(model.deck_point), stages[0].residuals)
+    before = objective.at(full, np.array(model.deck_point), stages[0].minimised)
     if not before.correlation.pairs:
         raise InputError(
             "no test mode pairs with the model within the MAC limit "
@@ -155,11 +102,11 @@ def update(
         progress(history[-1])
 
     note(0, before)
-    state, solves, stopped = before, 1, "no stage"
+    state, solves, stopped = before, 1, Stop(Reason.NO_STAGE, "no stage")
     near: Order | None = None
     before = _without_factor(before)
     for number, stage in enumerate(stages):
-        state = replace(state, objective=objective.value(state.correlation, stage.residuals))
+        state = replace(state, objective=objective.value(state.seen, stage.minimised))
         state, near, used, stopped = _work_off(
             objective, full, state, stage, tolerance, partial(note, number)
         )
@@ -168,7 +115,7 @@ def update(
     if near is None or active != sorted(stages[-1].parameters):
         assert isinstance(state.solution, Eigensolution)
         near = reduce_around(full, state.factors, state.solution, active)
-    last = stages[-1].residuals
+    last = stages[-1].minimised
     there = objective.at(near, state.factors, last)
     error, doubtful = objective.standard_error(near, there, active, last)
     lower, upper = objective.bounds
@@ -195,7 +142,7 @@ def _work_off(
     stage: Stage,
     tolerance: float,
     note: Callable[[State], None],
-) -> tuple[State, Order | None, int, str]:
+) -> tuple[State, Order | None, int, Stop]:
     """Work off a stage.
 
     Returns
@@ -206,34 +153,35 @@ def _work_off(
         Reduced model that was last used.
     solves : int
         Full solves that it took.
-    reason : str
-        Why it ended.
+    stop : Stop
     """
     solves, left = 0, stage.max_iterations
     near: Order | None = None
     while left:
         assert isinstance(state.solution, Eigensolution)
         near = reduce_around(full, state.factors, state.solution, stage.parameters)
-        trail, reason = _walk(objective, near, state, stage, left, tolerance)
+        trail, stop = _walk(objective, near, state, stage, left, tolerance)
         if not trail:
-            return state, near, solves, reason
-        arrived = objective.at(full, trail[-1].factors, stage.residuals)
+            assert stop is not None
+            return state, near, solves, stop
+        arrived = objective.at(full, trail[-1].factors, stage.minimised)
         solves += 1
-        if not objective.closer(arrived, state, stage.residuals):
+        if not objective.closer(arrived, state, stage.minimised):
             found, used = _descend(objective, full, state, stage)
             solves += used
             if found is None:
                 return state, near, solves, _NO_STEP
-            trail, reason, arrived = [found], "", found
+            trail, stop, arrived = [found], None, found
         for s in trail[:-1]:
             if abs(s.objective - arrived.objective) > _SAME * arrived.objective:
                 note(s)
         note(arrived)
         left -= len(trail)
         state = arrived
-        if reason and _agree(trail[-1], arrived, _AGREE * tolerance):
-            return state, near, solves, reason
-    return state, near, solves, f"{stage.max_iterations} iterations"
+        if stop and _agree(trail[-1], arrived, _AGREE * tolerance):
+            return state, near, solves, stop
+    most = Stop(Reason.MOST_ITERATIONS, f"{stage.max_iterations} iterations")
+    return state, near, solves, most
 
 
 def _walk(
@@ -243,9 +191,9 @@ def _walk(
     stage: Stage,
     most: int,
     tolerance: float,
-) -> tuple[list[State], str]:
-    """Iterate on a reduced model; return the states and why it ended, empty if it should go on."""
-    state = objective.at(near, start.factors, stage.residuals)
+) -> tuple[list[State], Stop | None]:
+    """Iterate on a reduced model; return the states and why it ended, None if it should go on."""
+    state = objective.at(near, start.factors, stage.minimised)
     trail: list[State] = []
     while len(trail) < most:
         trial, _ = _descend(objective, near, state, stage)
@@ -255,10 +203,10 @@ def _walk(
         state = trial
         trail.append(trial)
         if moved < tolerance:
-            return trail, f"factors moved less than {tolerance:g}"
+            return trail, Stop(Reason.SETTLED, f"factors moved less than {tolerance:g}")
         if np.max(np.abs(np.log(state.factors / start.factors))) > np.log(_REACH):
             break
-    return trail, ""
+    return trail, None
 
 
 def _descend(
@@ -266,11 +214,11 @@ def _descend(
 ) -> tuple[State | None, int]:
     """Take the step, halved until it is one; return where it leads and how many were tried."""
     lower, upper = objective.bounds
-    step = objective.step(order, state, stage.parameters, stage.residuals)
+    step = objective.step(order, state, stage.parameters, stage.minimised)
     for halving in range(_HALVINGS):
         p = np.clip(state.factors + step / 2**halving, lower, upper)
-        trial = objective.at(order, p, stage.residuals)
-        if objective.closer(trial, state, stage.residuals):
+        trial = objective.at(order, p, stage.minimised)
+        if objective.closer(trial, state, stage.minimised):
             return trial, halving + 1
     return None, _HALVINGS
 
@@ -307,8 +255,8 @@ def _lost_pairs(before: State, after: State) -> tuple[str, ...]:
     return (f"test {modes} paired with the model as given, not with the updated one",)
 
 
-def _unfinished(stopped: str, iterations: int) -> tuple[str, ...]:
-    if stopped.endswith("iterations"):
+def _unfinished(stopped: Stop, iterations: int) -> tuple[str, ...]:
+    if stopped.reason is Reason.MOST_ITERATIONS:
         return (f"the update had not settled after {stopped}; allow more (max_iterations)",)
     if not iterations:
         return ("no step of the parameters brings the model closer to the test; nothing changed",)

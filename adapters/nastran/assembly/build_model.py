@@ -8,27 +8,27 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ...core.arrays import Floats, Ints
-from ...core.assembly import ElementBlock, Evaluate, Matrices
-from ...core.assembly_parameters import parametric_terms
-from ...core.condensation import static_condensation
-from ...core.constraints import Reduction, reduction, unsupported
-from ...core.dofs import Dofs
-from ...core.errors import CheckError, InputError
-from ...core.geometry import Geometry
-from ...core.model import Model, Term
-from ...core.parameter import Parameter
-from ...core.sparse_sum import select, weighted_sum
-from .analysis_set import read_analysis_set
-from .bounds import admissible
-from .constraints import read_constraints
-from .direct import direct_matrices
-from .families import FAMILIES, Context, Group, Settings
-from .grids import Points, read_points
-from .nonstructural import read_nonstructural
-from .parameters import ParameterSpec
-from .read import Deck
-from .support import refuse_unsupported
+from ....core.arrays import Bools, Floats, Ints, Matrices
+from ....core.assembly.affine_terms import parametric_terms
+from ....core.assembly.element_assembly import ElementBlock, Evaluate
+from ....core.assembly.guyan import static_condensation
+from ....core.assembly.multipoint_constraints import Reduction, reduction, unsupported
+from ....core.data.dofs import Dofs
+from ....core.data.geometry import Geometry
+from ....core.data.parameter import Parameter
+from ....core.data.parametric_model import Model, Term
+from ....core.errors import CheckError, InputError, Place
+from ....core.noun import Noun
+from ....core.numerics.shared_pattern_sum import select, weighted_sum
+from ..cards import FAMILIES, Context, Group, Settings
+from ..deck.read_deck import Deck
+from ..fields.parameter_references import ParameterSpec
+from ..properties.analysis_set import read_analysis_set
+from ..properties.deck_constraints import read_constraints
+from ..properties.dmig_input import direct_matrices
+from ..properties.grids import Points, read_points
+from ..properties.nonstructural import read_nonstructural
+from .parameter_bounds import admissible
 from .variation import Variation, read_variation
 
 Pair = tuple[tuple[Term, ...], tuple[Term, ...]]
@@ -39,7 +39,7 @@ _EPZERO = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class Structure(Noun):
     """The elements of a deck over the g-set, before constraints.
 
     Parameters
@@ -69,7 +69,7 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
         A card that carries stiffness, mass or constraint and is not supported; numbers that refer
         to nothing; elements without shape.
     """
-    refuse_unsupported(deck)
+    _refuse(deck)
     points = read_points(deck.bulk)
     settings = Settings(
         k6rot=deck.param("K6ROT", 100.0),
@@ -78,11 +78,20 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     )
     nonstructural = read_nonstructural(deck, points)
     context = Context(variation.bulk, points, settings, nonstructural)
-    groups = tuple(g for family in FAMILIES.values() for g in family(context))
+    groups = tuple(g for f in FAMILIES if f.groups for g in f.groups(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(element_block(g, points, variation, wtmass) for g in groups)
     notes = (*context.notes, *_unused_masses(deck), *_shared_numbers(deck, groups))
     return Structure(points, groups, blocks, notes)
+
+
+def _refuse(deck: Deck) -> None:
+    """Raise `InputError` for what carries stiffness, mass or constraint and is not supported."""
+    if deck.refused:
+        first, more = deck.refused[0], len(deck.refused) - 1
+        raise first.reworded(
+            f"{first} (and {more} more that are not supported)" if more else f"{first}"
+        )
 
 
 def _shared_numbers(deck: Deck, groups: Sequence[Group]) -> tuple[str, ...]:
@@ -90,7 +99,7 @@ def _shared_numbers(deck: Deck, groups: Sequence[Group]) -> tuple[str, ...]:
     owner: dict[int, str] = {}
     shared = []
     for group in groups:
-        if group.shape:
+        if group.element.shape:
             new = dict.fromkeys(group.ids.tolist(), group.card)
             shared += [i for i in owner.keys() & new.keys() if owner[i] != new[i]]
             owner |= new
@@ -134,16 +143,41 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
     InputError
         What the deck or the parameters lack: card, file and line.
     """
+    return assemble(deck, parameters).model
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """A model and what it was assembled of, before constraints.
+
+    Parameters
+    ----------
+    model : Model
+    structure : Structure
+    stiffness : tuple of Term
+        Over the g-set.
+    fixed : (n_dof,) bool
+        What single-point constraints fix.
+    """
+
+    model: Model
+    structure: Structure
+    stiffness: tuple[Term, ...]
+    fixed: Bools
+
+
+def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
+    """Assemble a deck and keep its parts; see `build_model`."""
     variation = read_variation(deck, parameters)
     structure = read_structure(deck, variation)
     points = structure.points
     constraints = read_constraints(deck, points)
     variation, narrowed = admissible(variation, parameters, structure.groups, structure.blocks)
-    terms = _terms(deck, structure, variation)
+    whole = _terms(deck, structure, variation)
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
-    terms, reduced, warnings, idle = _remove_singular(deck, points, terms, reduced)
+    terms, reduced, warnings, idle = _remove_singular(deck, points, whole, reduced)
     terms, expansion, kept, more = _condense(deck, points, terms, reduced)
-    return Model(
+    model = Model(
         geometry=_geometry(deck, structure),
         dofs=_dofs(points),
         expansion=(to_basic(points) @ expansion).tocsr(),
@@ -154,6 +188,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         warnings=(*structure.notes, *constraints.notes, *narrowed, *warnings, *more),
         idle=idle,
     )
+    return Assembly(model, structure, whole[0], constraints.fixed)
 
 
 def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
@@ -185,7 +220,7 @@ def element_block(
     of_source = np.array([distinct.index(s) for s in sets], dtype=np.int64)
     return ElementBlock(
         places=group.places,
-        width=group.width,
+        width=group.element.freedoms,
         evaluate=_evaluation(group, points, variation, wtmass),
         depends=distinct,
         depends_of=of_source[group.source_of],
@@ -194,11 +229,8 @@ def element_block(
 
 
 def _evaluation(group: Group, points: Points, variation: Variation, wtmass: float) -> Evaluate:
-    per_grid = {6: 1, 3: 2}.get(group.width)
-    rotated = None
-    if per_grid is not None:
-        grid = group.places // per_grid
-        rotated = points.rotated[grid].any(axis=1)
+    at_grids = group.element.freedoms > 1
+    rotated = points.rotated[group.nodes].any(axis=1) if at_grids else None
 
     def evaluate(rows: Ints, p: Floats, wanted: tuple[bool, bool]) -> Matrices:
         try:
@@ -206,18 +238,17 @@ def _evaluation(group: Group, points: Points, variation: Variation, wtmass: floa
         except InputError as error:
             moved = variation.describe(p)
             advice = "; give narrower bounds, such as '[0.9, 1.1]'" if moved else ""
-            raise InputError(f"{moved}{error}{advice}") from None
+            raise error.reworded(f"{moved}{error}{advice}") from None
         for X in (K, M):
             if X is not None and not np.isfinite(X).all():
                 bad = int(group.ids[rows[np.flatnonzero(~np.isfinite(X).all(axis=(1, 2)))[0]]])
-                raise InputError(
-                    f"{variation.bulk.place(group.card, bad)}: its matrix is not finite; check its "
-                    "shape, its property and its material"
+                raise variation.bulk.place(group.card, bad).error(
+                    "its matrix is not finite; check its shape, its property and its material"
                 )
         M = M * wtmass if M is not None and wtmass != 1.0 else M
         if rotated is not None and rotated[rows].any():
             turned = np.flatnonzero(rotated[rows])
-            R = points.directions[group.places[rows[turned]] // (per_grid or 1)]
+            R = points.directions[group.nodes[rows[turned]]]
             K, M = (None if X is None else _turn(X, turned, R) for X in (K, M))
         return K, M
 
@@ -260,7 +291,7 @@ def _remove_singular(
     terms = _each(terms, reduced.apply)
     K, M = (_total(part) for part in terms)
     if not K.nnz:
-        raise InputError(f"{deck.path}: the deck has no element that carries stiffness")
+        raise Place(deck.path).error("the deck has no element that carries stiffness")
     triple = np.where(reduced.kept < 6 * len(points.ids), reduced.kept // 3, -1)
     automatic = deck.params.get("AUTOSPC", "YES") != "NO"
     smallest = deck.param("EPZERO", _EPZERO)
@@ -286,11 +317,11 @@ def _condense(
         return terms, reduced.expansion, reduced.kept, ()
     kept = np.flatnonzero(chosen[reduced.kept])
     if not len(kept):
-        raise InputError(f"{deck.path}: ASET and OMIT leave no free degree of freedom")
+        raise Place(deck.path).error("ASET and OMIT leave no free degree of freedom")
     try:
         T = static_condensation(_total(terms[0]), kept)
     except InputError as error:
-        raise InputError(f"{deck.path}: ASET and OMIT: {error}") from None
+        raise Place(deck.path).error(f"ASET and OMIT: {error}") from None
     terms = _each(terms, lambda matrices: [sp.csr_matrix(T.T @ (A @ T)) for A in matrices])
     warning = (
         f"{len(reduced.kept) - len(kept)} degrees of freedom were condensed statically to the "
@@ -366,9 +397,9 @@ def _geometry(deck: Deck, structure: Structure) -> Geometry:
     corners: dict[str, list[Ints]] = {}
     ids: dict[str, list[Ints]] = {}
     for group in structure.groups:
-        if group.shape:
-            corners.setdefault(group.shape, []).append(group.corners)
-            ids.setdefault(group.shape, []).append(group.ids)
+        if shape := group.element.shape:
+            corners.setdefault(shape.name, []).append(group.corners)
+            ids.setdefault(shape.name, []).append(group.ids)
     return Geometry(
         structure.points.ids,
         structure.points.xyz,

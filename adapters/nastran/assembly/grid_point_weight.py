@@ -6,15 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.assembly import Members, Recipe, assemble
-from .build import read_structure
-from .read import Deck
+from ....core.arrays import Floats
+from ....core.assembly.element_assembly import Members, Recipe, assemble
+from ....core.noun import Noun
+from ..deck.read_deck import Deck
+from .build_model import read_structure
 from .variation import read_variation
 
 
 @dataclass(frozen=True, eq=False)
-class Weight:
+class Weight(Noun):
     """Rigid-body mass of a whole deck, constrained grids included.
 
     Parameters

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...core.arrays import Ints
-from ...core.assembly import ElementBlock
-from ...core.errors import InputError
-from .families.common import Group
-from .parameters import DEFAULT_BOUNDS, ParameterSpec
+from ....core.arrays import Ints
+from ....core.assembly.element_assembly import ElementBlock
+from ....core.errors import InputError
+from ..cards.element_group import Group
+from ..fields.parameter_references import DEFAULT_BOUNDS, ParameterSpec
 from .variation import Variation
 
 _BISECTIONS = 12

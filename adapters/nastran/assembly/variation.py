@@ -11,14 +11,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.errors import InputError
-from ...core.parameter import Parameter
-from .cards import Bulk, Card, CardReader, Fields, fields_of, to_float
-from .fields import STRIDES, after, field_position
-from .parameters import FieldRef, ParameterSpec
-from .read import Deck
-from .thermal import Thermal, read_thermal
+from ....core.arrays import Floats
+from ....core.data.parameter import Parameter
+from ....core.errors import InputError
+from ..deck.bulk import Bulk, fields_of
+from ..deck.card_definition import Fields
+from ..deck.movable_values import after
+from ..deck.read_deck import Deck
+from ..fields.layouts import field_position
+from ..fields.parameter_references import FieldRef, ParameterSpec
+from ..properties.thermal import Thermal, read_thermal
+from ..text.real_numbers import parse_real
 
 Key = tuple[str, int]
 
@@ -80,17 +83,15 @@ class Variation:
         return f"parameter{plural} {', '.join(moved)}: " if moved else ""
 
     def _make(self, p: Floats) -> Bulk:
-        reader = CardReader(self.bulk.files)
-        changed: dict[Key, Card] = {}
+        changed: dict[Key, Fields] = {}
         for key, moves in self.moves.items():
             factors = {m.index: float(p[m.parameter]) for m in moves}
             if all(f == 1.0 for f in factors.values()):
                 continue
-            raw = self.bulk.numbered[key[0]][key[1]]
-            fields = list(fields_of(raw.lines))
+            fields = self.bulk.fields(*key)
             for m in moves:
                 fields[m.index] = repr(m.value * factors[m.index])
-            changed[key] = reader.read(raw, self.thermal.fields(self.bulk, key, fields))
+            changed[key] = self.thermal.fields(self.bulk, key, fields)
         return self.bulk.replaced(changed)
 
 
@@ -153,7 +154,7 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
         there = f"; the deck has {ref.card} {_list(known)}" if known else ""
         raise InputError(f"parameter {name!r}: there is no {ref.card} {ref.id} in the deck{there}")
     fields = fields_of(raw.lines)
-    shift = STRIDES.get(ref.card, 0) * raw.part
+    shift = bulk.definitions[ref.card].several * raw.part
 
     def read(position: int) -> str:
         return str(_at(fields, _index(position)) or "").upper()
@@ -161,22 +162,22 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     position = field_position(ref.card, ref.field, read)
     place = bulk.place(ref.card, ref.id)
     if position is None:
-        raise InputError(f"parameter {name!r}: {place} has no value {ref.field}")
+        raise place.about(f"parameter {name!r}: {place} has no value {ref.field}")
     index = _index(after(position, shift))
     text = _at(fields, index)
     if text is None:
-        raise InputError(
+        raise place.about(
             f"parameter {name!r}: {ref.field} is blank on {place}, so there is no value to move: "
             "give it one, or move the values it follows from"
         )
     try:
-        value = to_float(text)
+        value = parse_real(text)
     except ValueError:
-        raise InputError(
+        raise place.about(
             f"parameter {name!r}: {ref.field} on {place} is {text!r}, no number"
         ) from None
     if value == 0.0:
-        raise InputError(
+        raise place.about(
             f"parameter {name!r}: {ref.field} is zero on {place}, and a factor cannot move it"
         )
     return index, value

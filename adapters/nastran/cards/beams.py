@@ -6,18 +6,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints
-from ....core.assembly import Matrices
-from ....core.elements.bar import offset_transform
+from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements.beam import BeamSections, beam_mass, beam_stiffness
-from ....core.errors import InputError
-from ..cards import Bulk, Card
-from ..materials import isotropic
-from ..sections import section
-from .common import Context, Group, Key, distinct_properties, element_sources
-from .lines import line_axes
+from ....core.errors import Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..properties.cross_sections import section
+from ..properties.materials import isotropic
+from . import beam_properties
+from .element_group import Context, Group, Key
+from .line_elements import Lines, line_groups
 
-BEAM_PROPERTIES = ("PBEAM", "PBEAML")
+_CBEAM = (
+    "EID:i! PID:i=EID GA,GB>nodes:i! X1,X2,X3>x:ir OFFT:x=GGG / PA:i PB:i "
+    "W1A,W2A,W3A>wa:r=0. W1B,W2B,W3B>wb:r=0. / SA:i=0 SB:i=0"
+)
+
+CARDS = (
+    Card("CBEAM", _CBEAM, "eid", blanks_from="BEAMOR", elements="beam", properties="PBEAM PBEAML"),
+    Card("BEAMOR", "- PID:i - - X1,X2,X3>x:ir OFFT:x"),
+    *beam_properties.CARDS,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,49 +67,40 @@ class _Beam:
 
 def beams(context: Context) -> list[Group]:
     """Make the groups of CBEAM."""
-    cards = list(context.bulk.table("CBEAM").values())
-    if not cards:
-        return []
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    ends = context.points.rows([c.nodes for c in cards], "CBEAM", ids)
-    pids = np.array([c.pid for c in cards])
-    keys, of = distinct_properties(context.bulk, BEAM_PROPERTIES, "CBEAM", ids, pids)
-    lines = line_axes(context, "CBEAM", cards, ids, ends)
-    _note_warping(context, cards, keys)
 
-    def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
-        used, position = np.unique(of[rows], return_inverse=True)
-        found = [_constants(context, bulk, keys[k]) for k in used]
+    def make(
+        bulk: Bulk,
+        keys: list[Key],
+        position: Ints,
+        at: Lines,
+        extra: Floats | float,
+        wanted: tuple[bool, bool],
+    ) -> Matrices:
+        found = [_constants(bulk, key) for key in keys]
         sections = _sections(found, position)
-        xa, xb, v = lines.xa[rows], lines.xb[rows], lines.v[rows]
 
         def each(name: str) -> Floats:
             return np.array([getattr(b, name) for b in found])[position]
 
-        neutral, shear, pins = each("neutral"), each("shear"), lines.pins[rows]
+        neutral, shear, ends = each("neutral"), each("shear"), (at.xa, at.xb, at.v)
         K = M = None
         if wanted[0]:
             K = beam_stiffness(
-                xa, xb, v, each("E"), each("G"), sections, shear[:, 0], shear[:, 1],
-                neutral[:, 0], neutral[:, 1], pins[:, :6], pins[:, 6:],
+                *ends, each("E"), each("G"), sections, shear[:, 0], shear[:, 1],
+                neutral[:, 0], neutral[:, 1], at.pins[:, :6], at.pins[:, 6:],
             )  # fmt: skip
         if wanted[1]:
-            nsm, at = each("nsm"), each("nsm_at")
-            nsm = nsm + np.reshape(context.extra_mass(bulk, ids[rows]), (-1, 1))
+            nsm, beside = each("nsm") + np.reshape(extra, (-1, 1)), each("nsm_at")
             M = beam_mass(
-                xa, xb, v, each("rho"), sections, context.settings.coupled, neutral[:, 0],
-                neutral[:, 1], nsm, at[:, 0], at[:, 1], each("nsi"),
+                *ends, each("rho"), sections, context.settings.coupled, neutral[:, 0],
+                neutral[:, 1], nsm, beside[:, 0], beside[:, 1], each("nsi"),
             )  # fmt: skip
-        if lines.offset:
-            T = offset_transform(lines.wa[rows], lines.wb[rows])
-            K, M = (None if X is None else T.swapaxes(1, 2) @ X @ T for X in (K, M))
         return K, M
 
-    of_property = [
-        frozenset([key, ("MAT1", int(context.bulk.table(key[0])[key[1]].mid))]) for key in keys
-    ]
-    sources, source_of = element_sources(context, ids, of_property, of)
-    return [Group("CBEAM", ids, ends, 6, matrices, sources, source_of, "line", ends)]
+    groups = line_groups(context, "CBEAM", make)
+    if groups:
+        _note_warping(context)
+    return groups
 
 
 def _sections(found: list[_Beam], position: Ints) -> BeamSections:
@@ -117,41 +117,40 @@ def _sections(found: list[_Beam], position: Ints) -> BeamSections:
     return BeamSections(stations[position], A, I1, I2, I12, J)
 
 
-def _constants(context: Context, bulk: Bulk, key: Key) -> _Beam:
-    place = context.bulk.place(*key)
+def _constants(bulk: Bulk, key: Key) -> _Beam:
+    place = bulk.place(*key)
     card = bulk.table(key[0])[key[1]]
     E, G, _, rho = isotropic(bulk, card.mid, place)
     make = _pbeam if key[0] == "PBEAM" else _pbeaml
     return make(card, place, E, G, rho)
 
 
-def _pbeam(card: Card, place: str, E: float, G: float, rho: float) -> _Beam:
-    stations = np.array(card.xxb, dtype=np.float64)
-    values = np.array([card.A, card.i1, card.i2, card.i12, card.j], dtype=np.float64)
-    nsm = np.array(card.nsm, dtype=np.float64)
+def _pbeam(card: Values, place: Place, E: float, G: float, rho: float) -> _Beam:
+    stations = np.array(card.x)
+    values = np.array([card.a, card.i1, card.i2, card.i12, card.j])
+    nsm = np.array(card.nsm)
     A, I1, I2, I12, _ = values
     if not ((A >= 0.0) & (I1 > 0.0) & (I2 > 0.0) & (I12**2 < I1 * I2)).all():
-        raise InputError(f"{place}: its area and inertias are not those of a real section")
+        raise place.error("its area and inertias are not those of a real section")
     stations, values, nsm = _to_end(stations, values, nsm)
     return _Beam(
         E, G, rho, stations, values,
-        np.array([card.k1 or 0.0, card.k2 or 0.0]),
-        np.array([[card.n1a, card.n2a], [card.n1b, card.n2b]]),
+        np.array([card.k1, card.k2]),
+        np.reshape(card.n, (2, 2)),
         nsm[[0, -1]],
-        np.array([[card.m1a, card.m2a], [card.m1b, card.m2b]]),
-        np.array([card.nsia, card.nsib]),
+        np.reshape(card.m, (2, 2)),
+        np.array(card.nsi),
     )  # fmt: skip
 
 
-def _pbeaml(card: Card, place: str, E: float, G: float, rho: float) -> _Beam:
-    shape = str(card.beam_type).upper()
-    stations = np.array(card.xxb, dtype=np.float64)
-    found = [section(shape, list(np.atleast_1d(d)), place) for d in card.dim]
+def _pbeaml(card: Values, place: Place, E: float, G: float, rho: float) -> _Beam:
+    stations = np.array(card.x)
+    found = [section(card.type, d, place) for d in card.dim]
     order = np.argsort(stations, kind="stable")
     stations = stations[order]
     found = [found[k] for k in order]
     values = np.array([[s.A, s.I1, s.I2, s.I12, s.J] for s in found]).T
-    nsm = np.array([n or 0.0 for n in card.nsm], dtype=np.float64)[order]
+    nsm = np.array(card.nsm)[order]
     first, last = found[0], found[-1]
     stations, values, nsm = _to_end(stations, values, nsm)
     return _Beam(
@@ -173,16 +172,14 @@ def _to_end(stations: Floats, values: Floats, nsm: Floats) -> tuple[Floats, Floa
     return stations, values, nsm
 
 
-def _note_warping(context: Context, cards: list[Card], keys: list[Key]) -> None:
+def _note_warping(context: Context) -> None:
     """Say that warping is left out."""
     bulk = context.bulk
+    cards, properties = bulk.table("CBEAM").values(), bulk.table("PBEAM")
     warped = [bulk.place("CBEAM", c.eid) for c in cards if c.sa or c.sb]
-    tables = ((key, bulk.table(key[0])[key[1]]) for key in keys)
-    warped += [
-        bulk.place(*key)
-        for key, card in tables
-        if key[0] == "PBEAM" and (card.cwa or card.cwb) and not warped
-    ]
+    if not warped:
+        used = sorted({c.pid for c in cards} & properties.keys())
+        warped = [bulk.place("PBEAM", pid) for pid in used if any(properties[pid].cw)]
     if warped:
         more = f" and {len(warped) - 1} more" if warped[1:] else ""
         context.notes.append(f"{warped[0]}{more}: warping of the cross section is left out")

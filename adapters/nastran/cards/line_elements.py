@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints
-from ....core.errors import InputError
-from ..cards import Card
-from .common import Context
+from ....core.arrays import Floats, Ints, Matrices
+from ....core.elements.bar import BAR, offset_transform
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Values
+from .element_group import (
+    Context,
+    Group,
+    Key,
+    check_shape,
+    distinct_properties,
+    element_sources,
+    with_material,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +49,46 @@ class Lines:
     pins: Any
     offset: bool
 
+    def take(self, rows: Ints) -> Lines:
+        """Return the geometry of some of them."""
+        xa, xb, v, wa, wb, pins = (
+            part[rows] for part in (self.xa, self.xb, self.v, self.wa, self.wb, self.pins)
+        )
+        return Lines(xa, xb, v, wa, wb, pins, self.offset)
 
-def line_axes(context: Context, name: str, cards: Sequence[Card], ids: Ints, ends: Ints) -> Lines:
+
+Make = Callable[[Bulk, list[Key], Ints, Lines, Floats | float, tuple[bool, bool]], Matrices]
+"""Stiffness and mass between the ends, from the properties used, which of them each element has,
+its geometry, and the mass per length that NSM cards add."""
+
+
+def line_groups(context: Context, name: str, make: Make) -> list[Group]:
+    """Make the group of an element between two ends that may stand off their grids."""
+    cards = list(context.bulk.table(name).values())
+    element = context.bulk.definitions[name].element
+    if not cards or element is None:
+        return []
+    ids = np.array([c.eid for c in cards], dtype=np.int64)
+    ends = context.points.rows([c.nodes for c in cards], name, ids)
+    keys, of = distinct_properties(context.bulk, name, ids, np.array([c.pid for c in cards]))
+    lines = line_axes(context, name, cards, ids, ends)
+
+    def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
+        used, position = np.unique(of[rows], return_inverse=True)
+        extra = context.extra_mass(bulk, ids[rows])
+        at = lines.take(rows)
+        K, M = make(bulk, [keys[k] for k in used], position, at, extra, wanted)
+        if lines.offset:
+            T = offset_transform(at.wa, at.wb)
+            K, M = (None if X is None else T.swapaxes(1, 2) @ X @ T for X in (K, M))
+        return K, M
+
+    of_property = [with_material(context.bulk, key) for key in keys]
+    sources, source_of = element_sources(context, ids, of_property, of)
+    return [Group(name, ids, element, ends, matrices, sources, source_of)]
+
+
+def line_axes(context: Context, name: str, cards: Sequence[Values], ids: Ints, ends: Ints) -> Lines:
     """Read the geometry of CBAR or CBEAM cards.
 
     Raises
@@ -64,26 +111,26 @@ def line_axes(context: Context, name: str, cards: Sequence[Card], ids: Ints, end
     return lines
 
 
-def _offt(context: Context, name: str, card: Card) -> tuple[str, str, str]:
-    offt = str(card.offt or "GGG").upper()
+def _offt(context: Context, name: str, card: Values) -> tuple[str, str, str]:
+    offt = str(card.offt)
     if len(offt) != 3 or offt[0] not in "GB" or any(c not in "GOEB" for c in offt[1:]):
-        raise InputError(
-            f"{context.bulk.place(name, card.eid)}: OFFT {offt!r} is not one of GGG, BGG, GGO, ..."
+        raise context.bulk.place(name, card.eid).error(
+            f"OFFT {offt!r} is not one of GGG, BGG, GGO, ..."
         )
     return offt[0], offt[1], offt[2]
 
 
 def _orientation(
-    context: Context, name: str, cards: Sequence[Card], ids: Ints, ends: Ints, offt: Any
+    context: Context, name: str, cards: Sequence[Values], ids: Ints, ends: Ints, offt: Any
 ) -> Floats:
     """Vector to the plane 1 side: towards G0, or given in the displacement system of end A."""
     points = context.points
-    v = np.array([(0.0, 0.0, 0.0) if c.g0 else c.x for c in cards], dtype=np.float64)
+    by_grid = np.flatnonzero([type(c.x[0]) is int for c in cards])
+    v = np.array([[x or 0.0 for x in c.x] for c in cards])
     turned = np.flatnonzero((offt[:, 0] == "G") & points.rotated[ends[:, 0]])
     v[turned] = np.einsum("nki,nk->ni", points.directions[ends[turned, 0]], v[turned])
-    by_grid = np.flatnonzero([bool(c.g0) for c in cards])
     if len(by_grid):
-        g0 = points.rows([cards[k].g0 for k in by_grid], name, ids[by_grid])
+        g0 = points.rows([cards[k].x[0] for k in by_grid], name, ids[by_grid])
         v[by_grid] = points.xyz[g0] - points.xyz[ends[by_grid, 0]]
     return v
 
@@ -105,17 +152,14 @@ def _offset(directions: Floats, along: Floats, w: Floats, kind: Any) -> Floats:
     return np.asarray(out)
 
 
-def _pins(context: Context, name: str, cards: Sequence[Card]) -> Any:
+def _pins(context: Context, name: str, cards: Sequence[Values]) -> Any:
     pins = np.zeros((len(cards), 12), dtype=bool)
     for k, card in enumerate(cards):
         for first, text in ((0, card.pa), (6, card.pb)):
-            for digit in str(text or "").strip():
-                if digit == "0":
-                    continue
+            for digit in str(text or ""):
                 if digit not in "123456":
-                    raise InputError(
-                        f"{context.bulk.place(name, card.eid)}: the pin flags {text} are not "
-                        "numbers from 1 to 6"
+                    raise context.bulk.place(name, card.eid).error(
+                        f"the pin flags {text} are not numbers from 1 to 6"
                     )
                 pins[k, first + int(digit) - 1] = True
     return pins
@@ -123,17 +167,13 @@ def _pins(context: Context, name: str, cards: Sequence[Card]) -> Any:
 
 def _check(context: Context, name: str, ids: Ints, lines: Lines) -> None:
     x = lines.xb - lines.xa
+    check_shape(context, name, BAR, ids, np.stack([lines.xa, lines.xb], axis=1))
     length = np.linalg.norm(x, axis=1)
-    size = np.ptp(context.points.xyz, axis=0).max(initial=0.0)
-    short = length <= 1e-12 * size
-    if short.any():
-        bad = int(ids[np.flatnonzero(short)[0]])
-        raise InputError(f"{context.bulk.place(name, bad)} has no length: its ends coincide")
     across = np.linalg.norm(np.cross(x, lines.v), axis=1)
     along = across <= 1e-9 * length * np.linalg.norm(lines.v, axis=1)
     if along.any():
         bad = int(ids[np.flatnonzero(along)[0]])
-        raise InputError(
-            f"{context.bulk.place(name, bad)}: its orientation vector is zero or runs along the "
+        raise context.bulk.place(name, bad).error(
+            "its orientation vector is zero or runs along the "
             "element: give another X1, X2, X3 or G0"
         )

@@ -2,108 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ....core import elements
-from ....core.arrays import Floats, Ints
-from ....core.assembly import Matrices
-from ....core.elements import ShellSection
-from ....core.errors import InputError
-from ..cards import Bulk, Card
-from ..laminates import Layup, layup
-from .common import Context, Group, Key, distinct_properties, element_sources
-from .middle_nodes import by_pattern, kept_nodes, nodes_of, spread
-from .normals import shell_normals
+from ....core.arrays import Floats, Ints, Matrices
+from ....core.elements import Element
+from ....core.elements.normals import corner_normals, grid_normals
+from ....core.elements.section import ShellSection, rotate_section
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..properties import laminates
+from ..properties.laminates import Layup, layup
+from .element_group import Context, Group, Key, element_sources
+from .placed_elements import Placed, placed
 
-SHELL_PROPERTIES = ("PSHELL", "PCOMP", "PCOMPG")
+_HEAD = "EID:i! PID:i=EID"
+_PLACE = "THETA:ir=0. ZOFFS:r=0."
+_QUAD4 = f"{_HEAD} G1,G2,G3,G4>nodes:i! {_PLACE} - TFLAG:i=0 T1,T2,T3,T4>t:r"
+_TRIA3 = f"{_HEAD} G1,G2,G3>nodes:i! {_PLACE} - - TFLAG:i=0 T1,T2,T3>t:r"
+
+_QUAD8 = f"{_HEAD} G1,G2,G3,G4>nodes:i! G5,G6,G7,G8>nodes:i T1,T2,T3,T4>t:r {_PLACE} TFLAG:i=0"
+_TRIA6 = f"{_HEAD} G1,G2,G3>nodes:i! G4,G5,G6>nodes:i {_PLACE} T1,T2,T3>t:r TFLAG:i=0"
+_ELEMENTS = (
+    ("CQUAD4", _QUAD4, "quad4"),
+    ("CTRIA3", _TRIA3, "tria3"),
+    ("CQUADR", _QUAD4, "quadr"),
+    ("CTRIAR", _TRIA3, "triar"),
+    ("CQUAD8", _QUAD8, "quad8"),
+    ("CTRIA6", _TRIA6, "tria6"),
+)
+
+CARDS = (
+    *(
+        Card(name, layout, "eid", elements=element, properties="PSHELL PCOMP PCOMPG")
+        for name, layout, element in _ELEMENTS
+    ),
+    *laminates.CARDS,
+)
 
 _WARPED = 0.05
 """Height of a quad's corners over their mean plane beside its diagonal, from which it is said."""
 
-
-Stiffness = Callable[[Floats, ShellSection, float, Floats, Floats | None], Floats]
-"""Positions, section, K6ROT, offset, grid normals."""
-
-
-@dataclass(frozen=True, eq=False)
-class Kernel:
-    """What tells one shell from another.
-
-    Parameters
-    ----------
-    shape : str
-        For drawing.
-    corners : int
-        Number of corner nodes.
-    edges : (m, 2) int
-        Ends of the edge of each middle node.
-    axes : callable
-        Element axes from positions.
-    stiffness : callable
-        See `Stiffness`.
-    mass : callable
-        From positions, mass per area and whether it is coupled.
-    from_side : bool
-        Whether THETA counts from the side 1-2; otherwise from the element's x axis.
-    """
-
-    shape: str
-    corners: int
-    edges: Ints
-    axes: Callable[[Floats], Floats]
-    stiffness: Stiffness
-    mass: Callable[[Floats, Floats, bool], Floats]
-    from_side: bool = True
-
-    @property
-    def curved(self) -> bool:
-        """Whether it has middle nodes and normals of its own."""
-        return len(self.edges) > 0
-
-
-def _quadr(
-    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
-) -> Floats:
-    return elements.quadr_stiffness(xyz, section, offset, normals)
-
-
-def _triar(
-    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, normals: Floats | None
-) -> Floats:
-    return elements.triar_stiffness(xyz, section, offset, normals)
-
-
-def _quad8(
-    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, _normals: Floats | None
-) -> Floats:
-    return elements.quad8_stiffness(xyz, section, offset)
-
-
-def _tria6(
-    xyz: Floats, section: ShellSection, _k6rot: float, offset: Floats, _normals: Floats | None
-) -> Floats:
-    return elements.tria6_stiffness(xyz, section, offset)
-
-
-_NO_EDGES = np.zeros((0, 2), dtype=np.int64)
-_QUAD = ("quad", 4, _NO_EDGES, elements.quad4_axes)
-_TRIA = ("tria", 3, _NO_EDGES, elements.tria3_axes)
-
-KERNELS: dict[str, Kernel] = {
-    "CQUAD4": Kernel(*_QUAD, elements.quad4_stiffness, elements.quad4_mass),
-    "CTRIA3": Kernel(*_TRIA, elements.tria3_stiffness, elements.tria3_mass),
-    "CQUADR": Kernel(*_QUAD, _quadr, elements.quad4_mass),
-    "CTRIAR": Kernel(*_TRIA, _triar, elements.tria3_mass),
-    "CQUAD8": Kernel(
-        "quad", 4, elements.QUAD8_EDGES, elements.quad8_axes, _quad8, elements.quad8_mass, False
-    ),
-    "CTRIA6": Kernel(
-        "tria", 3, elements.TRIA6_EDGES, elements.tria6_axes, _tria6, elements.tria6_mass
-    ),
-}
+_FROM_AXES = ("CQUAD8",)
+"""Whose THETA counts from the element's x axis; from side 1-2 on the others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,80 +79,53 @@ class _Elements:
     spread: Floats | None
 
 
-@dataclass(frozen=True, eq=False)
-class _Placed:
-    """Elements of one shape and where they stand."""
-
-    name: str
-    kernel: Kernel
-    cards: list[Card]
-    ids: Ints
-    nodes: Ints
-    xyz: Floats
-    axes: Floats
-    spread: Floats | None
-
-    @property
-    def corners(self) -> Ints:
-        """Grid rows of the corners, (n, m)."""
-        return self.nodes[:, : self.kernel.corners]
-
-
 def shells(context: Context) -> list[Group]:
-    """Make the groups of shells."""
-    found = []
-    for name, kernel in KERNELS.items():
-        cards = list(context.bulk.table(name).values())
-        for present, members in by_pattern(cards, kernel.corners).items():
-            found.append(_place(context, name, kernel, members, present))
-    flat = [f for f in found if not f.kernel.curved]
-    normals = shell_normals(
-        [f.corners for f in flat],
-        [f.axes for f in flat],
-        len(context.points.ids),
-        context.settings.snorm,
-    )
-    of = {id(f): n for f, n in zip(flat, normals, strict=True)}
-    return [_group(context, f, of.get(id(f))) for f in found]
+    """Make the groups of shells: of every card that may have a PSHELL and is laid out alike."""
+    found = list(placed(context, "PSHELL"))
+    for shell in found:
+        _note_warped(context, shell.name, shell.ids, shell.xyz[:, : shell.element.corners])
+    flat = [shell for shell in found if not len(shell.element.edges)]
+    normals = dict(zip(map(id, flat), _normals(context, flat), strict=True))
+    return [_group(context, shell, normals.get(id(shell))) for shell in found]
 
 
-def _place(
-    context: Context, name: str, kernel: Kernel, cards: list[Card], present: tuple[bool, ...]
-) -> _Placed:
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    kept = kept_nodes(present, kernel.corners, kernel.corners + len(kernel.edges))
-    nodes = context.points.rows(nodes_of(cards, kept), name, ids)
-    T = spread(kernel.edges, kept)
-    xyz = context.points.xyz[nodes]
-    xyz = xyz if T is None else T @ xyz
-    check_shape(context, name, ids, xyz[:, : kernel.corners])
-    _note_warped(context, name, ids, xyz[:, : kernel.corners])
-    return _Placed(name, kernel, cards, ids, nodes, xyz, kernel.axes(xyz), T)
+def _normals(context: Context, flat: list[Placed]) -> list[Floats | None]:
+    """Average the normals of all flat shells at their grids (PARAM,SNORM), (n, m, 3) each."""
+    limit = context.settings.snorm
+    if limit <= 0.0 or not flat:
+        return [None] * len(flat)
+    corners = [shell.nodes[:, : shell.element.corners] for shell in flat]
+    every = np.concatenate([c.reshape(-1) for c in corners])
+    normal = [corner_normals(_axes(s), s.element.corners) for s in flat]
+    averaged = grid_normals(every, np.concatenate(normal), len(context.points.ids), limit)
+    return [averaged[c] for c in corners]
 
 
-def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
-    bulk = context.bulk
-    name, kernel, cards, ids = placed.name, placed.kernel, placed.cards, placed.ids
-    keys, of = distinct_properties(
-        bulk, SHELL_PROPERTIES, name, ids, np.array([c.pid for c in cards])
-    )
-    own, share = _thickness(cards, kernel.corners)
+def _axes(shell: Placed) -> Floats:
+    assert shell.element.axes is not None
+    return shell.element.axes(shell.xyz)
+
+
+def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
+    bulk, element, cards, ids = context.bulk, shell.element, shell.cards, shell.ids
+    keys, of = shell.keys, shell.of
+    own, share = _thickness(cards, element.corners)
     any_thickness = [layup(bulk, key, bulk.place(*key), own=1.0, share=0.0) for key in keys]
     turned = np.array([not section.isotropic for section in any_thickness])[of]
     angle = np.zeros(len(ids))
     if turned.any():
-        angle[turned] = material_angle(context, placed, np.flatnonzero(turned))
+        angle[turned] = material_angle(context, shell, np.flatnonzero(turned))
     facts = _Elements(
         ids,
-        placed.xyz,
+        shell.xyz,
         keys,
         of,
         angle,
         own,
         share,
-        np.array([c.zoffset or 0.0 for c in placed.cards], dtype=np.float64),
+        np.array([c.zoffs for c in cards], dtype=np.float64),
         normals,
-        None if placed.spread is None else np.kron(placed.spread, np.eye(6)),
+        shell.whole(),
     )
     of_property = [
         frozenset([key, *section.materials])
@@ -219,16 +134,14 @@ def _group(context: Context, placed: _Placed, normals: Floats | None) -> Group:
     sources, source_of = element_sources(context, ids, of_property, of)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
-        return _matrices(context, kernel, facts, values, rows, wanted)
+        return _matrices(context, element, facts, values, rows, wanted)
 
-    return Group(
-        name, ids, placed.nodes, 6, matrices, sources, source_of, kernel.shape, placed.corners
-    )
+    return Group(shell.name, ids, element, shell.nodes, matrices, sources, source_of)
 
 
 def _matrices(
     context: Context,
-    kernel: Kernel,
+    element: Element,
     facts: _Elements,
     bulk: Bulk,
     rows: Ints,
@@ -240,10 +153,10 @@ def _matrices(
     if wanted[0]:
         normals = None if facts.normals is None else facts.normals[rows]
         offset = facts.offset[rows]
-        K = kernel.stiffness(xyz, section, context.settings.k6rot, offset, normals)
-    if wanted[1]:
+        K = element.stiffness(xyz, section, context.settings.k6rot, offset, normals)
+    if wanted[1] and element.mass:
         density = density + context.extra_mass(bulk, facts.ids[rows])
-        M = kernel.mass(xyz, density, context.settings.coupled)
+        M = element.mass(xyz, density, context.settings.coupled)
     T = facts.spread
     if T is not None:
         K, M = (None if X is None else T.T @ X @ T for X in (K, M))
@@ -273,7 +186,7 @@ def sections_of(
     ).take(position)
     angle = facts.angle[rows]
     if angle.any():
-        section = elements.rotate_section(section, angle)
+        section = rotate_section(section, angle)
     return section, np.array([part.density for part in layups])[position]
 
 
@@ -285,11 +198,11 @@ def _distinct(table: Floats) -> tuple[Floats, Ints]:
     return distinct, position.reshape(-1)
 
 
-def _thickness(cards: list[Card], corners: int) -> tuple[Floats, Floats]:
+def _thickness(cards: list[Values], corners: int) -> tuple[Floats, Floats]:
     """Mean thickness of each element as ``own + share * T``."""
     own, share = np.zeros(len(cards)), np.ones(len(cards))
     for k, card in enumerate(cards):
-        given = [getattr(card, f"T{i}", None) for i in range(1, corners + 1)]
+        given = card.t
         if all(t is None for t in given):
             continue
         if card.tflag:  # relative to the property's thickness
@@ -300,33 +213,31 @@ def _thickness(cards: list[Card], corners: int) -> tuple[Floats, Floats]:
     return own, share
 
 
-def material_angle(context: Context, placed: _Placed, rows: Ints) -> Floats:
+def material_angle(context: Context, shell: Placed, rows: Ints) -> Floats:
     """Angle from the element's x axis to the material's [rad], of the elements `rows`.
 
     THETA counts from side 1-2 (CQUAD8: from the element's x axis); a coordinate system (MCID)
     gives the material's x axis by its own, projected on the element.
     """
-    xyz, axes = placed.xyz[rows], placed.axes[rows]
-    cards = [placed.cards[k] for k in rows]
+    xyz, axes = shell.xyz[rows], _axes(shell)[rows]
+    cards = [shell.cards[k] for k in rows]
     side = xyz[:, 1] - xyz[:, 0]
     x, y, z = axes[:, 0], axes[:, 1], axes[:, 2]
     base = np.zeros(len(rows))
-    if placed.kernel.from_side:
+    if shell.name not in _FROM_AXES:
         base = np.arctan2((side * y).sum(axis=1), (side * x).sum(axis=1))
-    by_system = np.array([isinstance(c.theta_mcid, (int, np.integer)) for c in cards])
-    theta = np.radians(
-        [0.0 if s else float(c.theta_mcid or 0.0) for c, s in zip(cards, by_system, strict=True)]
-    )
+    by_system = np.array([isinstance(c.theta, int) for c in cards])
+    theta = np.radians([0.0 if s else c.theta for c, s in zip(cards, by_system, strict=True)])
     angle: Floats = base + theta
-    centre = xyz[:, : placed.kernel.corners].mean(axis=1)
+    centre = xyz[:, : shell.element.corners].mean(axis=1)
     for k in np.flatnonzero(by_system):
-        place = context.bulk.place(placed.name, cards[k].eid)
-        frame = context.points.frames.get(int(cards[k].theta_mcid), place)
+        place = context.bulk.place(shell.name, cards[k].eid)
+        frame = context.points.frames.get(cards[k].theta, place)
         direction = frame.directions(centre[k : k + 1])[0, 0]
         flat = direction - (direction @ z[k]) * z[k]
         if np.linalg.norm(flat) < 1e-6:
-            raise InputError(
-                f"{place}: the x axis of the material coordinate system is normal to the element"
+            raise place.error(
+                "the x axis of the material coordinate system is normal to the element"
             )
         angle[k] = np.arctan2(flat @ y[k], flat @ x[k])
     return angle
@@ -351,24 +262,3 @@ def _note_warped(context: Context, name: str, ids: Ints, xyz: Floats) -> None:
         f"{context.bulk.place(name, int(ids[worst]))} is warped: its corners stand "
         f"{100.0 * factor[worst]:.0f} % of its diagonal off their mean plane{others}"
     )
-
-
-def check_shape(context: Context, name: str, ids: Ints, xyz: Floats) -> None:
-    """Raise `InputError` for an element without area or with a corner turned inside out."""
-    if xyz.shape[1] == 3:
-        smallest = elements.tria3_area(xyz)
-        scale = np.square(np.linalg.norm(xyz[:, 1] - xyz[:, 0], axis=1))
-    else:
-        d1, d2 = xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1]
-        scale = np.linalg.norm(d1, axis=1) * np.linalg.norm(d2, axis=1)
-        flat = np.linalg.norm(np.cross(d1, d2), axis=1) <= 1e-9 * scale
-        smallest = np.zeros(len(xyz))
-        smallest[~flat] = elements.quad4_corner_jacobians(xyz[~flat]).min(axis=1)
-    bad = ~(smallest > 1e-6 * scale)
-    if bad.any():
-        number = int(ids[np.flatnonzero(bad)[0]])
-        more = f" (and {int(bad.sum()) - 1} more elements)" if bad.sum() > 1 else ""
-        raise InputError(
-            f"{context.bulk.place(name, number)} has no area or a corner turned inside out{more}: "
-            "check the order and the positions of its grids"
-        )

@@ -3,52 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from ....core.arrays import Ints
-from ....core.assembly import Matrices
-from ..cards import Bulk, Card
-from .common import Context, Group, Key, numbered, property_of
+from ....core.arrays import Ints, Matrices
+from ....core.elements.lumped import SPRING, spring_stiffness
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..deck.movable_values import Moves
+from .element_group import Context, Group, Key, numbered, property_of
 
-_PAIR = np.array([[1.0, -1.0], [-1.0, 1.0]])
+ENDS = "G1>nodes:i=0 C1>components:i=0 G2>nodes:i=0 C2>components:i=0"
+"""Two ends of a scalar element; 0 is the ground."""
 
-_PROPERTY: dict[str, tuple[str, str] | None] = {
-    "CELAS1": ("PELAS", "k"),
-    "CELAS2": None,
-    "CELAS3": ("PELAS", "k"),
-    "CELAS4": None,
-}
+_K = Moves(linear=("K",), concentrated=("K",))
+
+CARDS = (
+    Card("CELAS1", f"EID:i! PID:i=EID {ENDS}", "eid", elements="spring", properties="PELAS"),
+    Card("CELAS2", f"EID:i! K:r! {ENDS} GE:r=0. S:r=0.", "eid", elements="spring", moves=_K),
+    Card(
+        "CELAS3", "EID:i! PID:i=EID S1,S2>scalars:i=0", "eid", elements="spring", properties="PELAS"
+    ),
+    Card("CELAS4", "EID:i! K:r! S1,S2>scalars:i=0", "eid", elements="spring", moves=_K),
+    Card(
+        "PELAS",
+        "PID:i! K:r! GE:r=0. S:r=0.",
+        "pid",
+        several=4,
+        companions="PELAST",
+        moves=replace(_K, also={"K1": "K", "GE1": "GE", "S1": "S"}),
+    ),
+)
 
 
 def springs(context: Context) -> list[Group]:
     """Make the groups of springs between two degrees of freedom or one and the ground."""
-    groups = []
-    for name in _PROPERTY:
-        groups.extend(scalar_groups(context, name, _PROPERTY[name], "k", kind=0))
-    return groups
+    return [g for card in CARDS if card.elements for g in scalar_groups(context, card, "k", 0)]
 
 
-def scalar_groups(
-    context: Context, name: str, via: tuple[str, str] | None, own: str, kind: int
-) -> list[Group]:
+def scalar_groups(context: Context, definition: Card, attribute: str, kind: int) -> list[Group]:
     """Make the groups of scalar elements of one kind of card.
 
     Parameters
     ----------
     context : Context
         The deck.
-    name : str
-        Card name.
-    via : (str, str) or None
-        Property card and its attribute that hold the value; None where the element holds it.
-    own : str
-        Attribute of the element that holds the value.
+    definition : Card
+        Which.
+    attribute : str
+        Of the property, or of the element where it has none, that holds the value.
     kind : {0, 1}
-        Whether the value is a stiffness or a mass.
+        Whether the value is a stiffness (or a damping) or a mass.
     """
+    name = definition.name
     table = context.bulk.table(name)
-    by_size: dict[int, list[tuple[Card, list[int]]]] = {1: [], 2: []}
+    by_size: dict[int, list[tuple[Values, list[int]]]] = {1: [], 2: []}
     for card in table.values():
         dofs = _dofs(context, name, card)
         if len(dofs) == 2 and dofs[0] == dofs[1]:
@@ -60,15 +71,15 @@ def scalar_groups(
         if not members:
             continue
         cards = [m[0] for m in members]
-        keys = [_key(context, name, card, via) for card in cards]
+        keys = [_key(context, definition, card) for card in cards]
         sources, source_of = numbered(frozenset([k]) for k in keys)
         groups.append(
             Group(
                 card=name,
                 ids=np.array([c.eid for c in cards], dtype=np.int64),
-                places=np.array([m[1] for m in members], dtype=np.int64),
-                width=1,
-                matrices=_routine(keys, via[1] if via else own, size, kind),
+                element=SPRING,
+                nodes=np.array([m[1] for m in members], dtype=np.int64),
+                matrices=_routine(keys, attribute, size, kind),
                 sources=sources,
                 source_of=source_of,
             )
@@ -76,24 +87,20 @@ def scalar_groups(
     return groups
 
 
-def _dofs(context: Context, name: str, card: Card) -> list[int]:
+def _dofs(context: Context, name: str, card: Values) -> list[int]:
     """Degrees of freedom of a scalar element, one where the other end is the ground."""
     place = context.bulk.place(name, card.eid)
-    components = (getattr(card, "c1", 0), getattr(card, "c2", 0))
-    return [
-        context.points.dof(int(point), int(component or 0), place)
-        for point, component in zip(card.nodes, components, strict=False)
-        if point
-    ]
+    scalars = getattr(card, "scalars", None)
+    ends = zip(scalars or card.nodes, (0, 0) if scalars else card.components, strict=True)
+    return [context.points.dof(point, component, place) for point, component in ends if point]
 
 
-def _key(context: Context, name: str, card: Card, via: tuple[str, str] | None) -> Key:
-    if via is None:
-        return name, int(card.eid)
-    found = property_of(
-        context.bulk, [via[0]], card.pid, lambda: context.bulk.place(name, card.eid)
-    )
-    return found[0], int(card.pid)
+def _key(context: Context, definition: Card, card: Values) -> Key:
+    if not definition.properties:
+        return definition.name, card.eid
+    names = definition.properties.split()
+    place = partial(context.bulk.place, definition.name, card.eid)
+    return property_of(context.bulk, names, card.pid, place)[0], card.pid
 
 
 def _routine(
@@ -104,8 +111,7 @@ def _routine(
             return None, None
         chosen = (keys[r] for r in rows)
         values = np.array([getattr(bulk.table(n)[i], attribute) or 0.0 for n, i in chosen])
-        pattern = _PAIR if size == 2 else np.ones((1, 1))
-        result = values.astype(np.float64)[:, None, None] * pattern
+        result = spring_stiffness(values.astype(np.float64), size)
         return (result, None) if kind == 0 else (None, result)
 
     return matrices

@@ -1,26 +1,19 @@
-"""Bulk data cards: cut from the lines, read by pyNastran's card classes, found by number."""
+"""Bulk data cards: cut from the lines, read by their definitions, found by number."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
-from io import StringIO
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ...core.errors import InputError
-from .catalogue import READ, SHARED_NUMBERS, Kind
+from ....core.errors import Place
+from ....core.noun import Noun
+from .card_definition import Card, FieldError, Fields, Values
 from .continuations import in_order
-from .lines import Line
-from .raw_fields import Fields as Fields
-from .raw_fields import as_pynastran_reads, not_finite
+from .logical_lines import Line
 from .raw_fields import fields_of as fields_of
-from .raw_fields import to_float as to_float
-
-Card = Any
-"""A card as pyNastran's class holds it, or its raw fields (a list of str or None)."""
 
 
 class Raw(NamedTuple):
@@ -46,13 +39,13 @@ class Raw(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Bulk:
+class Bulk(Noun):
     """The cards of a deck.
 
     Parameters
     ----------
-    files : tuple of Path
-        What `Raw.file` counts.
+    reader : CardReader
+        How they are read.
     tables : mapping
         By card name, then by the card's number: for cards whose number is unique.
     lists : mapping
@@ -63,21 +56,31 @@ class Bulk:
         By card name, then by number: the raw cards of `tables`.
     """
 
-    files: tuple[Path, ...]
-    tables: Mapping[str, Mapping[int, Card]]
-    lists: Mapping[str, list[Card]]
+    reader: CardReader
+    tables: Mapping[str, Mapping[int, Values]]
+    lists: Mapping[str, list[Values]]
     raw: Mapping[str, list[Raw]]
     numbered: Mapping[str, Mapping[int, Raw]]
 
-    def table(self, name: str) -> Mapping[int, Card]:
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What `Raw.file` counts."""
+        return self.reader.files
+
+    @property
+    def definitions(self) -> Mapping[str, Card]:
+        """By card name: what it holds."""
+        return self.reader.definitions
+
+    def table(self, name: str) -> Mapping[int, Values]:
         """Cards of one name by number; empty when the deck has none."""
         return self.tables.get(name, {})
 
-    def listed(self, name: str) -> list[Card]:
+    def listed(self, name: str) -> list[Values]:
         """Cards of one name whose numbers may repeat, in the deck's order."""
         return self.lists.get(name, [])
 
-    def find(self, names: Iterable[str], number: int) -> tuple[str, Card] | None:
+    def find(self, names: Iterable[str], number: int) -> tuple[str, Values] | None:
         """Return the first of several kinds of cards that has this number, with its name."""
         for name in names:
             card = self.tables.get(name, {}).get(number)
@@ -85,25 +88,36 @@ class Bulk:
                 return name, card
         return None
 
-    def replaced(self, cards: Mapping[tuple[str, int], Card]) -> Bulk:
-        """Return the deck with some numbered cards replaced."""
+    def replaced(self, fields: Mapping[tuple[str, int], Fields]) -> Bulk:
+        """Return the deck with other fields on some numbered cards."""
         tables = dict(self.tables)
-        for name in {name for name, _ in cards}:
-            tables[name] = {**tables[name], **{k: c for (n, k), c in cards.items() if n == name}}
+        for name in {name for name, _ in fields}:
+            changed = {
+                number: self.reader.read(self.numbered[name][number], new)
+                for (n, number), new in fields.items()
+                if n == name
+            }
+            tables[name] = {**tables[name], **changed}
         return replace(self, tables=tables)
 
-    def place(self, name: str, number: int) -> str:
+    def fields(self, name: str, number: int) -> Fields:
+        """Return the text of a card's fields, as the deck gives them."""
+        return fields_of(self.numbered[name][number].lines)
+
+    def place(self, name: str, number: int) -> Place:
         """``CBAR 12 (models/wing.bdf line 40)``, for messages."""
         raw = self.numbered.get(name, {}).get(number)
-        return f"{name} {number}" if raw is None else f"{name} {number} ({self.at(raw)})"
+        card = f"{name} {number}"
+        return Place(card=card) if raw is None else Place(self.files[raw.file], raw.line, card)
 
-    def place_listed(self, name: str, index: int) -> str:
+    def place_listed(self, name: str, index: int) -> Place:
         """``SPC1 (wing.bdf line 40)``, for messages about cards without a number of their own."""
-        return f"{name} ({self.at(self.raw[name][index])})"
+        raw = self.raw[name][index]
+        return Place(self.files[raw.file], raw.line, name)
 
-    def at(self, raw: Raw) -> str:
+    def at(self, raw: Raw) -> Place:
         """``models/wing.bdf line 40``, the path as it was given."""
-        return f"{self.files[raw.file]} line {raw.line}"
+        return self.reader.at(raw)
 
 
 _NAME = re.compile(r"[A-Z][A-Z0-9_/]*")
@@ -126,10 +140,16 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
         text = line.text.split("$", 1)[0].rstrip() if "$" in line.text else line.text.rstrip()
         if not text:
             continue
+        name = text[:8].rstrip()
+        if name.isalnum() and name.isupper() and text[:1].isalpha() and name.isascii():
+            if current is not None:  # fixed fields from column 1, as most lines are
+                yield current
+            current = Raw(name, [text], line.file, line.number)
+            continue
         if text[0] in "+* ,\t" and not _indented(text):
             if current is None:
-                at = f"{files[line.file]} line {line.number}"
-                raise InputError(f"{at}: a continuation without its card")
+                at = Place(files[line.file], line.number)
+                raise at.error("a continuation without its card")
             current.lines.append(text)
             continue
         if current is not None:
@@ -138,7 +158,7 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
         name = _SEPARATOR.split(text[:10], maxsplit=1)[0][:8].upper().rstrip("*")
         if not _NAME.fullmatch(name):
             what = "replication, which is not supported" if "=" in name else "not a card's name"
-            raise InputError(f"{files[line.file]} line {line.number}: {name!r} is {what}")
+            raise Place(files[line.file], line.number).error(f"{name!r} is {what}")
         current = Raw(name, [text], line.file, line.number)
     if current is not None:
         yield current
@@ -159,200 +179,157 @@ def _from_first_column(text: str) -> str:
     return text[:8].strip().ljust(8) + text[8:]
 
 
+@dataclass(frozen=True, eq=False)
 class CardReader:
-    """Turns raw cards into pyNastran's card objects; errors become one sentence with the place."""
+    """Turns raw cards into values; errors become one sentence with the place.
 
-    def __init__(self, files: tuple[Path, ...]) -> None:
-        from pyNastran.bdf import bdf
-        from pyNastran.bdf.bdf_interface.bdf_card import BDFCard
+    Parameters
+    ----------
+    files : tuple of Path
+        What `Raw.file` counts.
+    definitions : mapping
+        By card name.
+    defaults : mapping
+        Fields of the cards that stand for blank ones, by their name (GRDSET, BAROR, BEAMOR).
+    """
 
-        self._classes = bdf
-        self._card = BDFCard
-        self._files = files
-        self._defaults: dict[str, Card] = {}
+    files: tuple[Path, ...]
+    definitions: Mapping[str, Card]
+    defaults: Mapping[str, Fields]
 
-    def set_default(self, name: str, card: Card) -> None:
-        """Keep the BAROR or BEAMOR that later CBAR or CBEAM cards take their blanks from."""
-        self._defaults[name] = card
+    def at(self, raw: Raw) -> Place:
+        """``models/wing.bdf line 40``, the path as it was given."""
+        return Place(self.files[raw.file], raw.line)
 
-    def read(self, raw: Raw, fields: Fields | None = None) -> Card:
-        """Return the card object of one (part of a) raw card.
+    def read(self, raw: Raw, fields: Fields) -> Values:
+        """Return the values of one (part of a) card.
 
         Parameters
         ----------
         raw : Raw
             The card.
-        fields : list of str or None, optional
-            Fields to read instead of its own, for a card with other values.
+        fields : list of str or None
+            Its fields, or others to read in their place.
 
         Raises
         ------
         InputError
             A field that does not hold what it should: file, line, card, field.
         """
-        kind = READ[raw.name]
-        fields = fields_of(raw.lines) if fields is None else fields
-        if not kind.cls:
-            return fields
-        self._check_numbers(raw, fields)
-        card = self._card(as_pynastran_reads(raw.name, fields), has_none=False)
+        card = self.definitions[raw.name]
+        if card.several:
+            first = 1 + raw.part * card.several
+            fields = [raw.name, *fields[first : first + card.several]]
+        if card.blanks_from in self.defaults:
+            fields = _filled(card, fields, self.defaults[card.blanks_from])
         try:
-            return self._make(kind, raw, card)
-        except (
-            SyntaxError, AssertionError, KeyError, ValueError, TypeError, IndexError, RuntimeError,
-            AttributeError, NotImplementedError,
-        ) as error:  # fmt: skip
-            at = f"{self._files[raw.file]} line {raw.line}"
-            number = fields[1] if len(fields) > 1 and fields[1] else ""
-            raise InputError(f"{at}: {raw.name} {number}: {_reason(error)}") from None
-
-    def _check_numbers(self, raw: Raw, fields: Fields) -> None:
-        """Refuse words that Python would read as a number and Nastran would not."""
-        k = not_finite(fields)
-        if k is not None:
-            at = f"{self._files[raw.file]} line {raw.line}"
-            raise InputError(
-                f"{at}: {raw.name} {fields[1]}: field {k + 1} holds {fields[k]!r}, which is not a "
-                "finite number"
-            )
-
-    def _make(self, kind: Kind, raw: Raw, card: Any) -> Card:
-        words = kind.cls.split()
-        if len(words) == 3:  # a solid: corner nodes only, or midside nodes too
-            cls = words[0] if card.nfields <= int(words[2]) else words[1]
-            return getattr(self._classes, cls).add_card(card)
-        cls = getattr(self._classes, kind.cls)
-        if kind.stride:
-            return cls.add_card(card, raw.part)
-        if raw.name == "CBAR":
-            return cls.add_card(card, baror=self._defaults.get("BAROR"))
-        if raw.name == "CBEAM":
-            return cls.add_card(card, beamor=self._defaults.get("BEAMOR"))
-        return cls.add_card(card)
+            return card.read(fields)
+        except FieldError as error:
+            named = f"{raw.name} {fields[1]}" if len(fields) > 1 and fields[1] else raw.name
+            column = error.index + 1 + card.several * raw.part
+            what = f"{error.name} (field {column}) {error.what}" if error.name else error.what
+            raise self.at(raw).error(f"{named}: {what}", named) from None
 
 
-_NO_NUMBER = re.compile(r"(?:invalid literal for int|could not convert string to float).*?'(.*?)'")
+def _filled(card: Card, fields: Fields, default: Fields) -> Fields:
+    """Fields with the blank ones taken from another card; those of one attribute go together."""
+    width = max(len(fields), len(default))
+    out = [*fields, *[None] * (width - len(fields))]
+    given = {f.attribute for f, text in zip(card.fields, out[1:], strict=False) if text is not None}
+    for k, (f, text) in enumerate(zip(card.fields, default[1:], strict=False), start=1):
+        if f.attribute not in given:
+            out[k] = text
+    return out
 
 
-def _reason(error: BaseException) -> str:
-    """Boil a pyNastran message down to one sentence."""
-    if isinstance(error, (KeyError, TypeError, IndexError, AttributeError)):
-        return "the card cannot be read: a field is missing or of the wrong type"
-    text = " ".join(line.strip() for line in str(error).splitlines() if line.strip())
-    if "norm(" in text or "coords are colinear" in text.lower():
-        return "its three points coincide or stand in a line"
-    literal = re.search(
-        r"(?:invalid literal for int|could not convert string to float).*?'(.*?)'", text
-    )
-    if literal:
-        return f"{literal.group(1)!r} stands where a number belongs"
-    text = re.split(r"\s*(?:card\s*=|\bfields?=\[|\['|BDFCard|\[\")", text)[0].strip(" ;:,")
-    return text[:160] or "the card cannot be read"
-
-
-def read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dict[str, list[Raw]]]:
-    """Read all cards that `catalogue.READ` names; return them and the raw others by name.
+def read_bulk(
+    lines: Iterable[Line], files: tuple[Path, ...], definitions: Mapping[str, Card]
+) -> tuple[Bulk, dict[str, list[Raw]]]:
+    """Read all cards that have a layout; return them and the raw others by name.
 
     Raises
     ------
     InputError
         A card that cannot be read; two cards of one kind with the same number.
     """
-    with redirect_stdout(StringIO()):  # pyNastran prints before some of its errors
-        return _read_bulk(lines, files)
-
-
-def _read_bulk(lines: Iterable[Line], files: tuple[Path, ...]) -> tuple[Bulk, dict[str, list[Raw]]]:
-    reader = CardReader(files)
-    tables: dict[str, dict[int, Card]] = {}
-    lists: dict[str, list[Card]] = {}
+    tables: dict[str, dict[int, Values]] = {}
+    lists: dict[str, list[Values]] = {}
     kept: dict[str, list[Raw]] = {}
     numbered: dict[str, dict[int, Raw]] = {}
     others: dict[str, list[Raw]] = {}
     raws = list(cut(in_order(lines), files))
-    for name in ("BAROR", "BEAMOR"):
-        for raw in raws:
-            if raw.name == name:
-                reader.set_default(name, reader.read(raw))
+    wanted = {card.blanks_from for card in definitions.values()}
+    defaults = {raw.name: fields_of(raw.lines) for raw in raws if raw.name in wanted}
+    reader = CardReader(files, definitions, defaults)
     for raw in raws:
-        kind = READ.get(raw.name)
-        if kind is None:
+        card = definitions.get(raw.name)
+        if card is None or card.ignored or card.refused:
             others.setdefault(raw.name, []).append(raw)
             continue
-        _check_length(raw, files)
+        _check_length(raw, reader)
         fields = fields_of(raw.lines)
-        for part in range(_parts(kind, fields)):
+        for part in range(_parts(card, fields)) if card.several else (0,):
             this = raw._replace(part=part) if part else raw
-            card = reader.read(this, fields)
-            if kind.id:
+            values = reader.read(this, fields)
+            if card.number:
                 table = tables.setdefault(raw.name, {})
-                number = _number(kind, card, table, this, files)
                 places = numbered.setdefault(raw.name, {})
+                number = getattr(values, card.number)
                 if number in table:
-                    _check_repeated(places[number], number, this, files)
-                    continue
-                table[number] = card
+                    if card.unique:
+                        _check_repeated(places[number], number, this, reader)
+                        continue
+                    number = -1 - len(table)
+                table[number] = values
                 places[number] = this
             else:
-                lists.setdefault(raw.name, []).append(card)
+                lists.setdefault(raw.name, []).append(values)
             kept.setdefault(raw.name, []).append(this)
-    _check_unique(numbered, files)
-    return Bulk(files, tables, lists, kept, numbered), others
+    _check_spaces(numbered, reader)
+    return Bulk(reader, tables, lists, kept, numbered), others
 
 
-def _check_unique(numbered: Mapping[str, Mapping[int, Raw]], files: tuple[Path, ...]) -> None:
+def _check_spaces(numbered: Mapping[str, Mapping[int, Raw]], reader: CardReader) -> None:
     """Refuse numbers that two kinds of cards share where only one can be meant."""
-    for names in SHARED_NUMBERS:
-        first: dict[int, Raw] = {}
-        for name in names:
-            for number, raw in numbered.get(name, {}).items():
-                other = first.setdefault(number, raw)
-                if other is not raw:
-                    raise InputError(
-                        f"{files[raw.file]} line {raw.line}: {raw.name} {number} has the number "
-                        f"of {other.name} {number} ({files[other.file]} line {other.line}): give "
-                        "one of them another"
-                    )
+    first: dict[tuple[str, int], Raw] = {}
+    for name, cards in numbered.items():
+        space = reader.definitions[name].space
+        for number, raw in cards.items() if space else ():
+            other = first.setdefault((space, number), raw)
+            if other is not raw:
+                raise reader.at(raw).error(
+                    f"{raw.name} {number} has the number of {other.name} {number} "
+                    f"({reader.at(other)}): give one of them another",
+                    f"{raw.name} {number}",
+                )
 
 
-def _check_length(raw: Raw, files: tuple[Path, ...]) -> None:
+def _check_length(raw: Raw, reader: CardReader) -> None:
     """Refuse a line of free fields that holds more than a line can."""
     for k, line in enumerate(raw.lines):
         if line.count(",") < 9:
             continue
         label, *rest = line.split(",")[9:]
         if _NUMBER.fullmatch(label.strip()) or any(f.strip() for f in rest):
-            raise InputError(
-                f"{files[raw.file]} line {raw.line + k}: {raw.name} has more than eight values on "
-                "a line: put what follows the eighth on the next line"
+            raise Place(reader.files[raw.file], raw.line + k).error(
+                f"{raw.name} has more than eight values on a line: put what follows the eighth on "
+                "the next line",
+                raw.name,
             )
 
 
-def _parts(kind: Kind, fields: Fields) -> int:
+def _parts(card: Card, fields: Fields) -> int:
     """How many properties stand on one card."""
-    if not kind.stride:
+    if not card.several:
         return 1
-    starts = range(1, len(fields), kind.stride)
+    starts = range(1, len(fields), card.several)
     return max(sum(1 for start in starts if fields[start] is not None), 1)
 
 
-def _number(
-    kind: Kind, card: Card, table: dict[int, Card], raw: Raw, files: tuple[Path, ...]
-) -> int:
-    """Return the card's number; where numbers may repeat, a negative one from the second on."""
-    if kind.id != "#":
-        return int(getattr(card, kind.id))
-    text = card[1] if len(card) > 1 else None
-    if text is None or not text.isdigit():
-        at = f"{files[raw.file]} line {raw.line}"
-        raise InputError(f"{at}: {raw.name} {text or ''}: its number must be an integer")
-    return int(text) if int(text) not in table else -1 - len(table)
-
-
-def _check_repeated(first: Raw, number: int, raw: Raw, files: tuple[Path, ...]) -> None:
+def _check_repeated(first: Raw, number: int, raw: Raw, reader: CardReader) -> None:
     """Accept a card repeated word for word, as Nastran does."""
     if fields_of(first.lines) != fields_of(raw.lines):
-        raise InputError(
-            f"{files[raw.file]} line {raw.line}: {raw.name} {number} is defined twice, "
-            f"first in {files[first.file]} line {first.line}: keep one of them"
+        raise reader.at(raw).error(
+            f"{raw.name} {number} is defined twice, first in {reader.at(first)}: keep one of them",
+            f"{raw.name} {number}",
         )

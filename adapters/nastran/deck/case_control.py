@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from .lines import Line
+from .logical_lines import Line
 
 _COMMAND = re.compile(
     r"^\s*(?P<key>[A-Za-z]\w*)\s*(?:\((?P<option>[^)]*)\))?\s*(?:=\s*|\s+)(?P<value>\S.*)$"

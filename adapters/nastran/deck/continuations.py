@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .lines import Line
+from .logical_lines import Line
 
 
 def in_order(lines: Iterable[Line]) -> list[Line]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from .cards import Bulk
-from .lines import Line
+from .bulk import Bulk
+from .logical_lines import Line
 
 _NAMES = {
     "m": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
@@ -42,12 +42,12 @@ def find_length_unit(lines: Iterable[Line], bulk: Bulk) -> tuple[str | None, tup
 
 def _declared(bulk: Bulk) -> Iterator[tuple[str, str]]:
     """Where bulk data declares units, and the text that names the length unit."""
-    for fields in bulk.listed("PARAM"):
-        if len(fields) > 2 and str(fields[1]).upper() == "UNITSYS":
-            yield "PARAM UNITSYS", "-".join(str(fields[2]).split("-")[1:])
-    for fields in bulk.listed("DTI"):
-        if len(fields) > 5 and str(fields[1]).upper() == "UNITS":
-            yield "DTI UNITS", str(fields[5])
+    for card in bulk.listed("PARAM"):
+        if card.n == "UNITSYS":
+            yield "PARAM UNITSYS", "-".join(str(card.v1).split("-")[1:])
+    for card in bulk.listed("DTI"):
+        if card.name == "UNITS":
+            yield "DTI UNITS", str(card.length)
 
 
 def _first_unit(text: str) -> str | None:

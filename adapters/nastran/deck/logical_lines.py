@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.errors import InputError
-from .editing.decktext import DeckText, read_deck_text
+from ....core.errors import Place
+from ..text.deck_text import DeckText, read_deck_text
 
 
 class Line(NamedTuple):
@@ -38,7 +38,7 @@ class Sections:
     bulk: tuple[Line, ...]
 
 
-def read_sections(path: Path) -> Sections:
+def read_sections(source: Path | DeckText) -> Sections:
     """Read a deck and all its INCLUDE files, and divide it at CEND, BEGIN BULK and ENDDATA.
 
     A file with neither CEND nor BEGIN BULK is taken as bulk data alone.
@@ -48,7 +48,8 @@ def read_sections(path: Path) -> Sections:
     InputError
         A file that cannot be read, an INCLUDE that names no file or includes itself.
     """
-    deck = read_deck_text(path)
+    deck = source if isinstance(source, DeckText) else read_deck_text(source)
+    path = deck.files[0].path if isinstance(source, DeckText) else source
     lines = list(_lines(deck))
     files = [f.path for f in deck.files]
     marks = {"CEND": -1, "BEGIN": -1}
@@ -59,14 +60,13 @@ def read_sections(path: Path) -> Sections:
         elif head and head[0] == "BEGIN" and marks["BEGIN"] < 0:
             marks["BEGIN"] = k
         if head and head[0] == "BEGIN" and not _is_bulk(head):
-            raise InputError(
-                f"{files[line.file]} line {line.number}: {line.text.strip()!r} starts a part of "
-                "the deck that trueup does not read (superelement or similar): "
-                "give the assembled deck"
+            raise Place(files[line.file], line.number).error(
+                f"{line.text.strip()!r} starts a part of the deck that trueup does not read "
+                "(superelement or similar): give the assembled deck"
             )
     cend, begin = marks["CEND"], marks["BEGIN"]
     if cend >= 0 > begin:
-        raise InputError(f"{path}: there is CEND but no BEGIN BULK: the deck is not complete")
+        raise Place(path).error("there is CEND but no BEGIN BULK: the deck is not complete")
     case_start = cend + 1
     bulk = tuple(lines[begin + 1 :])
     case = lines[case_start:begin] if begin >= 0 else []

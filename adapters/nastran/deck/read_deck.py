@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputError
-from .cards import Bulk, Raw, read_bulk, to_float
-from .casecontrol import CaseControl, read_case_control
-from .catalogue import ELEMENTS_LEFT_OUT, IGNORED, refusal
-from .lines import read_sections
-from .units import find_length_unit
+from ....core.errors import InputError, Place
+from ....core.noun import Noun
+from ..text.deck_text import DeckText, read_deck_text
+from ..text.real_numbers import parse_real
+from .bulk import Bulk, Raw, fields_of, read_bulk
+from .card_definition import Card
+from .case_control import CaseControl, read_case_control
+from .deck_length_unit import find_length_unit
+from .logical_lines import read_sections
+from .pynastran_bridge import bdf_of
+
+_NOT_KNOWN = "this card is not known"
 
 
 @dataclass(frozen=True)
@@ -25,7 +32,7 @@ class EigenRequest:
 
 
 @dataclass(frozen=True, eq=False)
-class Deck:
+class Deck(Noun):
     """A Nastran deck as read, before anything is assembled.
 
     Parameters
@@ -35,7 +42,7 @@ class Deck:
     files : tuple of Path
         The main file and its INCLUDE files, in the order met.
     bulk : Bulk
-        The cards, as pyNastran's card classes hold them; opaque to other rooms.
+        The cards.
     case : CaseControl
         Sets that the normal modes subcase selects.
     params : dict
@@ -62,7 +69,35 @@ class Deck:
     counts: dict[str, int]
     skipped: tuple[dict[str, Any], ...] = ()
     warnings: tuple[str, ...] = ()
-    refused: tuple[str, ...] = field(default=(), repr=False)
+    refused: tuple[InputError, ...] = field(default=(), repr=False)
+    changed: DeckText | None = field(default=None, repr=False)
+
+    @property
+    def text(self) -> DeckText:
+        """All its files, byte for byte: as they are on disk, or as a changed deck was read."""
+        return self.changed or read_deck_text(self.path)
+
+    def __repr__(self) -> str:
+        named = {"grids": "id", "elements": "eid", "properties": "pid"}
+        numbers = {name: card.number for name, card in self.bulk.definitions.items()}
+        held = (
+            f"{sum(n for c, n in self.counts.items() if numbers.get(c) == number):,} {what}"
+            for what, number in named.items()
+        )
+        return f"Deck({self.path.name!r}: {', '.join(held)})"
+
+    def to_pynastran(self) -> Any:
+        """Return pyNastran's `BDF` of this deck, without cross-references.
+
+        Raises
+        ------
+        InputError
+            pyNastran is not installed, or does not read the deck; the deck was changed and is
+            not on disk.
+        """
+        if self.changed:
+            raise Place(self.path).fault("was changed: write the deck and read that")
+        return bdf_of(self.path)
 
     def param(self, name: str, default: float) -> float:
         """Return a PARAM value as a number.
@@ -76,31 +111,34 @@ class Deck:
         if text is None:
             return default
         try:
-            return to_float(text)
+            return parse_real(text)
         except ValueError:
-            raise InputError(
-                f"{self.path}: PARAM {name} is {text!r}, which is not a number"
+            raise Place(self.path).error(
+                f"PARAM {name} is {text!r}, which is not a number"
             ) from None
 
 
-def read_deck(path: str | Path) -> Deck:
+def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) -> Deck:
     """Read a deck with its INCLUDE files.
 
     Parameters
     ----------
-    path : path
+    source : path or DeckText
         The main file; executive and case control may be missing (bulk data alone).
+    definitions : mapping
+        By card name: the cards that are read.
 
     Raises
     ------
     InputError
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
-    path = Path(path)
-    sections = read_sections(path)
-    bulk, others = read_bulk(sections.bulk, sections.files)
+    changed = source if isinstance(source, DeckText) else None
+    path = source.files[0].path if isinstance(source, DeckText) else Path(source)
+    sections = read_sections(changed or path)
+    bulk, others = read_bulk(sections.bulk, sections.files, definitions)
     if not bulk.raw:
-        raise InputError(f"{path}: no bulk data card was found: is this a Nastran deck?")
+        raise Place(path).error("no bulk data card was found: is this a Nastran deck?")
     case, case_warnings = read_case_control(sections.case)
     every_line = (*sections.executive, *sections.case, *sections.bulk)
     unit, unit_warnings = find_length_unit(every_line, bulk)
@@ -120,6 +158,7 @@ def read_deck(path: str | Path) -> Deck:
         skipped=skipped,
         warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections), *unfound),
         refused=refused,
+        changed=changed,
     )
 
 
@@ -135,9 +174,7 @@ def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:
             params[words[1]] = words[2]
         if words[0].startswith("AUTOSPC") and len(words) > 1:
             params["AUTOSPC"] = words[-1]
-    for fields in bulk.listed("PARAM"):
-        if len(fields) > 2:
-            params[str(fields[1]).upper()] = str(fields[2]).upper()
+    params |= {card.n: card.v1 for card in bulk.listed("PARAM") if card.v1 is not None}
     return params
 
 
@@ -152,7 +189,8 @@ def _eigen(bulk: Bulk, case: CaseControl) -> EigenRequest | None:
     name, card = found
     if name == "EIGRL":
         return EigenRequest(card.v1, card.v2, card.nd)
-    return EigenRequest(card.f1, card.f2, card.nd)
+    nd = 3 * card.ne if card.nd is None and card.ne and card.method == "INV" else card.nd
+    return EigenRequest(card.f1, card.f2, nd)
 
 
 def _no_method(path: Path, method: int) -> str:
@@ -176,31 +214,34 @@ def _is_modal(solution: str) -> bool:
 
 def _skipped(
     bulk: Bulk, others: dict[str, list[Raw]]
-) -> tuple[tuple[dict[str, Any], ...], tuple[str, ...], tuple[str, ...]]:
+) -> tuple[tuple[dict[str, Any], ...], tuple[InputError, ...], tuple[str, ...]]:
     skipped, refused, warnings = [], [], []
     for name, raws in others.items():
         first = raws[0]
         file = str(bulk.files[first.file])
-        why = refusal(name)
-        if why:
-            number = _number(first)
-            refused.append(f"{file} line {first.line}: {name}{number}: {why}")
-        elif name not in IGNORED:
-            why = "this card is not known"
-            warnings.append(f"{file} line {first.line}: {name} is not known and was left out")
-        else:
-            why = IGNORED[name]
+        card = bulk.definitions.get(name) or _unknown(name)
+        why = card.refused or card.ignored
         count = f"{len(raws)} cards" if len(raws) > 1 else "1 card"
-        if name in IGNORED and name in ELEMENTS_LEFT_OUT:
+        if card.refused:
+            named = f"{name}{_number(first)}"
+            refused.append(bulk.at(first).error(f"{named}: {why}", named))
+        elif card.ignored == _NOT_KNOWN:
+            warnings.append(f"{file} line {first.line}: {name} is not known and was left out")
+        elif card.warned:
             warnings.append(f"{file} line {first.line}: {name} ({count}) is left out: {why}")
-        skipped.append(
-            {"what": f"{name} ({count}, first in {file})", "line": first.line, "why": why}
-        )
+        where = f", first in {file}" if first.file else ""  # the deck itself goes without saying
+        skipped.append({"what": f"{name} ({count}{where})", "line": first.line, "why": why})
     return tuple(skipped), tuple(refused), tuple(warnings)
 
 
-def _number(raw: Raw) -> str:
-    from .cards import fields_of
+def _unknown(name: str) -> Card:
+    """Refuse a card that nobody knows where its name is that of an element or a constraint."""
+    if name[:1] in ("C", "R") or name[:3] in ("SPC", "MPC"):
+        why = "this card is not known and its name is that of an element or a constraint"
+        return Card(name, refused=why)
+    return Card(name, ignored=_NOT_KNOWN)
 
+
+def _number(raw: Raw) -> str:
     fields = fields_of(raw.lines)
     return f" {fields[1]}" if len(fields) > 1 and fields[1] else ""

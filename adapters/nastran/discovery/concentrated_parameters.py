@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...core.errors import InputError
-from .parameters import FieldRef, ParameterSpec
-from .read import Deck
-from .variation import value_of
+from ....core.errors import InputError
+from ..assembly.variation import value_of
+from ..deck.read_deck import Deck
+from ..fields.layouts import movable
+from ..fields.parameter_references import FieldRef, ParameterSpec
 
-_VALUES = {
-    **dict.fromkeys(("CONM2", "CMASS2", "CMASS4", "PMASS"), ("M",)),
-    **dict.fromkeys(("CELAS2", "CELAS4", "PELAS", "PBUSH1D"), ("K",)),
-    "PBUSH": tuple(f"K{k}" for k in range(1, 7)),
-}
 _BOUNDS = (0.25, 4.0)
 _MOST = 200
 """Values of one card and field that are looked at, the largest."""
@@ -26,8 +22,8 @@ def concentrated_parameters(deck: Deck) -> tuple[ParameterSpec, ...]:
     """Return every concentrated mass and spring stiffness of a deck, each value by itself."""
     return tuple(
         ParameterSpec(str(ref), (ref,), *_BOUNDS)
-        for card, fields in _VALUES.items()
-        for field in fields
+        for card, known in sorted(movable().items(), key=lambda m: "M" not in m[1].concentrated)
+        for field in known.concentrated
         for ref, _ in sorted(_of(deck, card, field), key=lambda v: -v[1])[:_MOST]
     )
 

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from .study import Study
+from ....core.arrays import Floats
+from ....core.discovery.reduction.elements_and_supports import Structure
+from ....core.discovery.screening.parameter_screening import noticeable, shifts, tied
+from ....core.eigen.normal_modes import Eigensolution
+from ..assembly.build_model import read_structure
+from ..assembly.variation import read_variation
+from ..deck.read_deck import Deck
+from ..fields.layouts import movable
+from ..fields.parameter_references import FieldRef, ParameterSpec
+from .concentrated_parameters import SPREAD, alike, concentrated_parameters, joined
 
 _NAMED = 0.4
 """Spread of ln p of a parameter that the user names."""
@@ -20,34 +29,50 @@ class Doubted:
     `spreads` are those of ln p.
     """
 
-    specs: tuple[Any, ...]
+    specs: tuple[ParameterSpec, ...]
     spreads: tuple[float, ...]
     first: int
 
 
-def doubted(study: Study, deck: Any) -> Doubted:
+def doubted(deck: Deck, named: Sequence[ParameterSpec]) -> Doubted:
     """Return every known property that may be wrong; a field that is named has no other."""
-    from ..adapters.nastran import parse_parameter
-    from ..adapters.nastran.concentrated import SPREAD, concentrated_parameters
-    from ..adapters.nastran.structure import known_parameters, used_parameters
-
-    named = [parse_parameter(p) for p in study.parameters]
     taken = {f for s in named for f in s.fields}
-    usual = [
-        (s, w) for s, w in zip(*known_parameters(deck), strict=True) if not taken & {*s.fields}
-    ]
-    every = [s for s in concentrated_parameters(deck) if not taken & {*s.fields}]
-    small = [every[k] for k in used_parameters(deck, every)]
+    usual = list(_usual(deck))
+    every = [*usual, *((s, SPREAD) for s in concentrated_parameters(deck))]
+    free = [k for k, (s, _) in enumerate(every) if not taken & {*s.fields}]
+    used = [free[k] for k in _used(deck, [every[k][0] for k in free])]
     return Doubted(
-        (*named, *(s for s, _ in usual), *small),
-        (*(_NAMED for _ in named), *(w for _, w in usual), *(SPREAD for _ in small)),
-        len(named) + len(usual),
+        (*named, *(every[k][0] for k in used)),
+        (*(_NAMED for _ in named), *(every[k][1] for k in used)),
+        len(named) + sum(k < len(usual) for k in used),
+    )
+
+
+def _usual(deck: Deck) -> Iterator[tuple[ParameterSpec, float]]:
+    """Return what an analyst would doubt first, and how far each may be off (spread of ln p).
+
+    Moduli of materials, thicknesses of shells and bending inertias of bars (both axes together).
+    """
+    for name, doubt in ((n, m.doubt) for n, m in movable().items() if m.doubt):
+        for number, card in sorted(deck.bulk.table(name).items()):
+            held = tuple(f for f in doubt.fields if getattr(card, f.lower()))
+            if held:
+                refs = tuple(FieldRef(name, number, f) for f in held)
+                called = f"{name} {number} {'+'.join(held)}"
+                yield ParameterSpec(called, refs, doubt.lower, doubt.upper), doubt.spread
+
+
+def _used(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
+    """Numbers of the parameters on which at least one element depends."""
+    parts = read_structure(deck, read_variation(deck, specs))
+    return sorted(
+        {k for b in parts.blocks for i in np.unique(b.depends_of) for k in b.depends[int(i)]}
     )
 
 
 def settled(
-    deck: Any, structure: Any, solution: Any, hz: Any, every: Doubted
-) -> tuple[Any, Doubted]:
+    deck: Deck, structure: Structure, solution: Eigensolution, hz: Floats, every: Doubted
+) -> tuple[Structure, Doubted]:
     """Keep of the concentrated properties those that the measured modes notice.
 
     Parameters
@@ -67,9 +92,6 @@ def settled(
         With those that are left.
     left : Doubted
     """
-    from ..adapters.nastran.concentrated import SPREAD, alike, joined
-    from ..core.discovery.noticing import noticeable, shifts, tied
-
     first, small = every.first, every.specs[every.first :]
     if not small:
         return structure, every

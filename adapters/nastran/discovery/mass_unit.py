@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...core.discovery.story import MassUnit
-from ...core.units import METRES
-from .read import Deck
+from ....core.data.length_units import METRES
+from ....core.discovery.effects.sentence_parts import MassUnit
+from ..deck.read_deck import Deck
 
 _KILOGRAMS = {
     "m": (1.0, 1e3),
@@ -28,7 +28,7 @@ def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
     length_unit : {"m", "mm", "in", "ft"} or None
     """
     wtmass = deck.param("WTMASS", 1.0)
-    rho = [float(getattr(c, "rho", 0.0) or 0.0) for c in deck.bulk.table("MAT1").values()]
+    rho = [c.rho for c in deck.bulk.table("MAT1").values()]
     rho = [r * wtmass for r in rho if r > 0.0]
     if length_unit is None or not rho:
         return MassUnit(1.0 / wtmass)

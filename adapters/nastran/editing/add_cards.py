@@ -5,11 +5,11 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from ....core.errors import InputError
-from .decktext import DeckText, Segment
-from .edit import splice
-from .find import find_card
-from .rewrite import Value, format_card
+from ....core.errors import Place
+from ..text.deck_text import DeckText, Segment
+from .find_cards import find_card
+from .rewrite_fields import Value, format_card
+from .set_values import splice
 
 _COMMENT_WIDTH = 76
 
@@ -61,7 +61,9 @@ def add_lines(
 def _segment_for(deck: DeckText, near: tuple[str, int] | None) -> Segment:
     """Return the last stretch of bulk data in the neighbour's file and superelement."""
     if not deck.segments:
-        raise InputError(f"{deck.files[0].path.name} has no bulk data to add cards to")
+        raise Place(deck.files[0].path, shown=deck.files[0].path.name).fault(
+            "has no bulk data to add cards to"
+        )
     file, part = 0, ""
     if near is not None:
         card = find_card(deck, *near)

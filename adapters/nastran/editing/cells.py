@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from .numbers import LARGE, SMALL
+from ..text.real_numbers import LARGE, SMALL
 
 CONTENT_END = 72
-TAG_END = 80
 
 
 class Cell(NamedTuple):

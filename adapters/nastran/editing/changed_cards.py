@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from .decktext import DeckText
-from .diff import changes
-from .source import TextFile
+from ..text.deck_text import DeckText
+from ..text.source_file import TextFile
+from .deck_diff import changes
 
 
 def written_cards(before: DeckText, after: DeckText) -> tuple[str, ...]:

@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 
 from ....core.errors import InputError
-from .decktext import DeckText
-from .source import Bytes, TextFile
-from .write import names_in_tree
+from ..text.deck_text import DeckText
+from ..text.source_file import Bytes, TextFile
+from .write_deck import names_in_tree
 
 _CHUNK = 1 << 22
 _SMALL = 200_000  # products of line counts that difflib handles at once

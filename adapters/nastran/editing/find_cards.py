@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....core.errors import InputError
-from ..fields import STRIDES
+from ..cards import definitions
+from ..text.deck_text import DeckText, Segment
+from ..text.source_file import CONTINUATION, REPLICATION, name_of
 from .cells import CardLine
-from .decktext import DeckText, Segment
-from .source import CONTINUATION, REPLICATION, name_of
 
 MOST_DIGITS = 99_999_999
 
@@ -90,9 +90,8 @@ def card_at(deck: DeckText, segment: Segment, row: int, name: str) -> Card:
     rows = [row]
     for k in range(row + 1, segment.stop):
         if keys[k] == REPLICATION:
-            raise InputError(
-                f"{deck.place(segment.file, k)}: the {name} above is replicated by '='; "
-                "write the cards out"
+            raise deck.place(segment.file, k).error(
+                f"the {name} above is replicated by '='; write the cards out"
             )
         if keys[k] > CONTINUATION:
             break
@@ -114,21 +113,20 @@ def find_card(deck: DeckText, name: str, number: int) -> Card:
     name = name.upper()
     found = [*_matches(deck, name, number)]
     if not found:
-        raise InputError(_missing(deck, name, number))
+        raise InputError(
+            _missing(deck, name, number), file=deck.files[0].path, card=f"{name} {number}"
+        )
     if len(found) > 1:
         places = [
-            deck.place(c.file, c.rows[0]) + (f" ({c.part})" if c.part else "") for c in found[:3]
+            f"{deck.place(c.file, c.rows[0])}" + (f" ({c.part})" if c.part else "")
+            for c in found[:3]
         ]
-        raise InputError(
+        first = found[0]
+        raise replace(deck.place(first.file, first.rows[0]), card=f"{name} {number}").about(
             f"{name} {number} stands {len(found)} times in the deck ({', '.join(places)}): "
             "it is not clear which one is meant, give the copies their own numbers"
         )
     return found[0]
-
-
-def has_card(deck: DeckText, name: str, number: int) -> bool:
-    """Whether the deck has such a card."""
-    return next(_matches(deck, name.upper(), number), None) is not None
 
 
 def names_in(deck: DeckText) -> list[str]:
@@ -177,7 +175,7 @@ def _used(deck: DeckText, kind: re.Pattern[str]) -> set[int]:
         for segment in deck.segments:
             rows, ids = deck.files[segment.file].rows_named(name)
             a, b = np.searchsorted(rows, (segment.first, segment.stop))
-            if name in STRIDES or name in ("SPOINT", "EPOINT"):
+            if _stride(name) or name in ("SPOINT", "EPOINT"):
                 for row in rows[a:b].tolist():
                     used |= _all_ids(card_at(deck, segment, row, name))
             else:
@@ -190,27 +188,31 @@ def _require_written_out(deck: DeckText) -> None:
         keys = deck.files[segment.file].lines.keys[segment.first : segment.stop]
         rows = np.flatnonzero(keys == REPLICATION)
         if len(rows):
-            raise InputError(
-                f"{deck.place(segment.file, segment.first + int(rows[0]))}: cards are replicated "
-                "by '=', so free numbers are not known; write the cards out"
+            raise deck.place(segment.file, segment.first + int(rows[0])).error(
+                "cards are replicated by '=', so free numbers are not known; write the cards out"
             )
+
+
+def _stride(name: str) -> int:
+    """Fields from one property to the next on cards that hold several; 0: they hold one."""
+    card = definitions().get(name)
+    return card.several if card else 0
 
 
 def _all_ids(card: Card) -> set[int]:
     words = [card.text(k) for k in range(card.size)]
-    stride = STRIDES.get(card.name, 1)
-    numbers = {int(w) for w in words[::stride] if w.isdigit()}
+    numbers = {int(w) for w in words[:: _stride(card.name) or 1] if w.isdigit()}
     if "THRU" in words and len(numbers) >= 2:
         numbers |= set(range(min(numbers), max(numbers) + 1))
     return numbers
 
 
 def _matches(deck: DeckText, name: str, number: int) -> Iterator[Card]:
-    stride = STRIDES.get(name)
+    stride = _stride(name)
     for segment in deck.segments:
         rows, ids = deck.files[segment.file].rows_named(name)
         a, b = np.searchsorted(rows, (segment.first, segment.stop))
-        if stride is None:
+        if not stride:
             for row in rows[a:b][ids[a:b] == number].tolist():
                 yield card_at(deck, segment, row, name)
             continue
@@ -226,7 +228,7 @@ def _missing(deck: DeckText, name: str, number: int) -> str:
     numbers: set[int] = set()
     for segment in deck.segments:
         for row, first in deck.rows_in(segment, name):
-            more = _all_ids(card_at(deck, segment, row, name)) if name in STRIDES else {first}
+            more = _all_ids(card_at(deck, segment, row, name)) if _stride(name) else {first}
             numbers |= more
     numbers.discard(-1)
     if not numbers:
@@ -248,8 +250,8 @@ def _require_matching_tags(
         else:
             wrong = _stands_elsewhere(deck, tag)
         if wrong:
-            raise InputError(
-                f"{deck.place(file, rows[k])}: the continuation '+{tag}' does not follow its card; "
+            raise deck.place(file, rows[k]).error(
+                f"the continuation '+{tag}' does not follow its card; "
                 "put the lines of the card in order"
             )
 

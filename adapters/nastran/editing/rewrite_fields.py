@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ....core.errors import InputError
+from ..text.real_numbers import LARGE, SMALL, format_field
 from .cells import CONTENT_END, CardLine
-from .numbers import LARGE, SMALL, format_field
 
 Value = float | int | str | None
 

@@ -6,12 +6,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
 from ....core.errors import InputError
-from ..fields import field_position
-from ..parameters import FieldRef
-from .decktext import DeckText
-from .find import Card, find_card
-from .numbers import parse_real, writable
-from .rewrite import Value, rewrite_card
+from ..fields.layouts import field_position
+from ..fields.parameter_references import FieldRef
+from ..text.deck_text import DeckText
+from ..text.real_numbers import parse_real, writable
+from .find_cards import Card, find_card
+from .rewrite_fields import Value, rewrite_card
 
 
 def read_value(deck: DeckText, ref: FieldRef) -> float | None:
@@ -71,7 +71,7 @@ def edit_cards(deck: DeckText, edits: Iterable[tuple[Card, Mapping[int, Value]]]
             lines = rewrite_card(card.lines, fields)
         except InputError as error:
             place = deck.place(card.file, card.rows[0])
-            raise InputError(f"{place}: {card.name} {card.text(card.shift)}: {error}") from None
+            raise place.error(f"{card.name} {card.text(card.shift)}: {error}") from None
         file = deck.files[card.file]
         for row, old, new in zip(card.rows, card.lines, lines, strict=True):
             if new != (old.data,):
@@ -94,8 +94,8 @@ def splice(data: bytes, pieces: Iterable[tuple[int, int, bytes]]) -> bytes:
 def _index(deck: DeckText, card: Card, ref: FieldRef) -> int:
     position = field_position(ref.card, ref.field, card.read)
     if position is None:
-        raise InputError(
-            f"{deck.place(card.file, card.rows[0])}: this {ref.card} {ref.id} has no {ref.field}"
+        raise deck.place(card.file, card.rows[0]).error(
+            f"this {ref.card} {ref.id} has no {ref.field}"
         )
     return card.index(position)
 
@@ -107,6 +107,6 @@ def _value(deck: DeckText, card: Card, ref: FieldRef, index: int) -> float | Non
     try:
         return parse_real(text)
     except ValueError:
-        raise InputError(
-            f"{deck.place(card.file, card.rows[0])}: {ref} is {text!r}, which is not a number"
+        raise deck.place(card.file, card.rows[0]).error(
+            f"{ref} is {text!r}, which is not a number"
         ) from None

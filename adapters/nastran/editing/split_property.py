@@ -7,27 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....core.errors import InputError
-from ..fields import LAYOUTS, STRIDES, after
-from .add import add_lines
+from ....core.errors import InputError, Place
+from ..cards import definitions, holders
+from ..deck.movable_values import position_of
+from ..text.deck_text import DeckText, Segment
+from ..text.source_file import TextFile
+from .add_cards import add_lines
 from .cells import CardLine
-from .decktext import DeckText, Segment
-from .edit import edit_cards
-from .find import Card, card_at, find_card, free_id, names_in
-from .rewrite import Value, format_card, rewrite_card
-from .source import TextFile
-
-_SHELLS = ("CQUAD4", "CQUAD8", "CQUADR", "CQUAD", "CTRIA3", "CTRIA6", "CTRIAR", "CTRIAX6")
-_SOLIDS = ("CHEXA", "CPENTA", "CTETRA", "CPYRAM")
-_ELEMENTS = {
-    "PBAR": ("CBAR",), "PBARL": ("CBAR",), "PBEAM": ("CBEAM",), "PBEAML": ("CBEAM",),
-    "PBEND": ("CBEND",), "PBUSH": ("CBUSH",), "PBUSH1D": ("CBUSH1D",), "PCOMP": _SHELLS,
-    "PCOMPG": _SHELLS, "PDAMP": ("CDAMP1", "CDAMP3"), "PELAS": ("CELAS1", "CELAS3"),
-    "PMASS": ("CMASS1", "CMASS3"), "PROD": ("CROD",), "PSHEAR": ("CSHEAR",), "PSHELL": _SHELLS,
-    "PSOLID": _SOLIDS, "PTUBE": ("CTUBE",), "PVISC": ("CVISC",),
-}  # fmt: skip
-_DEFAULTS = {"CBAR": "BAROR", "CBEAM": "BEAMOR"}
-_COMPANIONS = {"PELAS": ("PELAST",), "PBUSH": ("PBUSHT",), "PDAMP": ("PDAMPT",)}
+from .find_cards import Card, card_at, find_card, free_id, names_in
+from .rewrite_fields import Value, format_card, rewrite_card
+from .set_values import edit_cards
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +72,9 @@ def split_property(
         another property, non-structural mass given to the property by number.
     """
     card = card.upper()
-    if card not in _ELEMENTS:
-        raise InputError(f"{card} is not a property that can be split: {', '.join(_ELEMENTS)}")
+    if not holders(card):
+        every = {p for c in definitions().values() for p in c.properties.split()}
+        raise InputError(f"{card} is not a property that can be split: {', '.join(sorted(every))}")
     if not elements:
         raise InputError(f"no elements are named that should get a copy of {card} {number}")
     original = find_card(deck, card, number)
@@ -95,7 +85,7 @@ def split_property(
     first = free_id(deck, "material")
     numbers = {m: first + k for k, m in enumerate(dict.fromkeys(materials.values()))}
     lines = _copy(original, new, {k: numbers[m] for k, m in materials.items()})
-    for name in _COMPANIONS.get(card, ()):
+    for name in definitions()[card].companions.split():
         lines += [c for o in _cards(deck, name, number) for c in _copy(o, new, {})]
     for name in [n for n in names_in(deck) if n.startswith("MAT")]:
         for m, copy in numbers.items():
@@ -106,8 +96,8 @@ def split_property(
 
 def _copy(card: Card, number: int, fields: Mapping[int, int]) -> list[bytes]:
     """Return a card's lines with another number, in the format they have."""
-    stride = STRIDES.get(card.name)
-    if stride:
+    known = definitions().get(card.name)
+    if known and (stride := known.several):
         texts: list[Value] = [card.text(card.shift + k) or None for k in range(1, stride)]
         return format_card([card.name, number, *texts])
     edits: dict[int, Value] = {0: number, **fields}
@@ -123,42 +113,34 @@ def _cards(deck: DeckText, name: str, number: int) -> list[Card]:
 
 def _material_fields(card: Card) -> dict[int, int]:
     """Return the materials a property refers to, by data field."""
-    layout = LAYOUTS.get(card.name)
-    positions = {
-        position
-        for name, position in (layout.others.items() if layout else ())
-        if name.startswith("MID")
-    }
-    if card.name == "PSOLID":
-        positions = {3}
-    elif card.name in ("PCOMP", "PCOMPG"):
-        per_ply, at = (4, 12) if card.name == "PCOMP" else (8, 13)
-        plies = range(1 + card.size // per_ply)
-        positions = {after(at, per_ply * k) for k in plies}
-    indices = {card.index(p): card.read(p) for p in sorted(positions)}
-    return {k: int(text) for k, text in indices.items() if text.isdigit() and int(text) > 0}
+    known = definitions()[card.name]
+    fields = {at for name, at in known.others.items() if name.startswith("MID")}
+    for k in [k for k, f in enumerate(known.repeated) if f.name.startswith("MID")]:
+        fields.update(range(len(known.fields) + k, card.size, len(known.repeated)))
+    texts = {card.shift + at: card.read(position_of(at)) for at in sorted(fields)}
+    return {k: int(text) for k, text in texts.items() if text.isdigit() and int(text) > 0}
 
 
 def _members(deck: DeckText, card: str, number: int, elements: frozenset[int]) -> Iterator[Card]:
     """Yield the cards of the elements, each checked to have the property."""
     wanted = np.array(sorted(elements), np.int64)
     missing = set(elements)
-    for name in _ELEMENTS[card]:
+    for name in holders(card):
         for segment in deck.segments:
             for row, element in _rows_of(deck.files[segment.file], segment, name, wanted):
                 member = card_at(deck, segment, row, name)
                 _require_member(deck, member, card, number)
                 if element not in missing:
-                    raise InputError(
-                        f"{deck.place(segment.file, row)}: element {element} stands twice in the "
+                    raise deck.place(segment.file, row).error(
+                        f"element {element} stands twice in the "
                         "deck: it is not clear which one is meant"
                     )
                 missing.discard(element)
                 yield member
     if missing:
-        raise InputError(
-            f"{deck.files[0].path.name} has no element {min(missing)} that could have a "
-            f"{card}: such elements are {', '.join(_ELEMENTS[card])}"
+        raise Place(deck.files[0].path, shown=deck.files[0].path.name).fault(
+            f"has no element {min(missing)} that could have a "
+            f"{card}: such elements are {', '.join(holders(card))}"
         )
 
 
@@ -174,16 +156,14 @@ def _rows_of(
 def _require_member(deck: DeckText, member: Card, card: str, number: int) -> None:
     element = member.text(0)
     place = deck.place(member.file, member.rows[0])
-    default = _DEFAULTS.get(member.name, "")
+    default = definitions()[member.name].blanks_from
     if not member.text(1) and default in names_in(deck) and default:
-        raise InputError(
-            f"{place}: {member.name} {element} takes its property from {default}: write it out"
+        raise place.error(
+            f"{member.name} {element} takes its property from {default}: write it out"
         )
     has = member.text(1) or element
     if has != str(number):
-        raise InputError(
-            f"{place}: {member.name} {element} has property {has}, not {card} {number}"
-        )
+        raise place.error(f"{member.name} {element} has property {has}, not {card} {number}")
 
 
 def _require_no_nsm(deck: DeckText, card: str, number: int) -> None:
@@ -193,8 +173,8 @@ def _require_no_nsm(deck: DeckText, card: str, number: int) -> None:
             for row, _ in deck.rows_in(segment, name):
                 nsm = card_at(deck, segment, row, name)
                 if _covers(nsm, card, number):
-                    raise InputError(
-                        f"{deck.place(segment.file, row)}: {name} gives mass to {card} {number} by "
+                    raise deck.place(segment.file, row).error(
+                        f"{name} gives mass to {card} {number} by "
                         "its number, which a copy would lose; put the mass on the property card"
                     )
 

@@ -8,10 +8,10 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from ....core.errors import InputError
-from .decktext import DeckText
-from .edit import splice
-from .includes import is_anchored
+from ....core.errors import InputError, Place, path_of
+from ..text.deck_text import DeckText
+from ..text.includes import is_anchored
+from .set_values import splice
 
 ELSEWHERE = "included"
 _LINE_WIDTH = 72
@@ -37,9 +37,9 @@ def write_deck(deck: DeckText, out_dir: Path | str) -> Path:
     InputError
         The folder holds files, or cannot be written.
     """
-    out = Path(out_dir).absolute()
+    out = path_of(out_dir, "the folder of the deck").absolute()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise InputError(f"{out} exists already: choose another folder for the deck")
+        raise Place(out).fault("exists already: choose another folder for the deck")
     places = _places(deck)
     contents = {k: _relocated(deck, k, places) for k in places}
     try:
@@ -54,7 +54,7 @@ def write_deck(deck: DeckText, out_dir: Path | str) -> Path:
                 out.rmdir()
             whole.rename(out)
     except OSError as error:
-        raise InputError(f"cannot write the deck to {out}: {error.strerror}") from None
+        raise InputError(f"cannot write the deck to {out}: {error.strerror}", file=out) from None
     return out / places[0]
 
 
@@ -72,7 +72,7 @@ def write_in_place(deck: DeckText) -> tuple[Path, ...]:
     edited = [f for f in deck.files if f.edited]
     for f in edited:
         if not f.path.is_file() or f.path.read_bytes() != f.original:
-            raise InputError(f"{f.path} changed on disk since it was read: nothing is written")
+            raise Place(f.path).fault("changed on disk since it was read: nothing is written")
     fresh: list[Path] = []
     backups: dict[Path, Path] = {}
     done: list[Path] = []

@@ -6,8 +6,8 @@ import math
 import re
 from dataclasses import dataclass
 
-from ...core.errors import InputError
-from .fields import canonical_field
+from ....core.errors import InputError
+from .layouts import canonical_field
 
 DEFAULT_BOUNDS = (0.2, 5.0)
 

@@ -9,11 +9,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Ints, Numbers
-from ....core.errors import InputError
-from ..cards import Fields, cut, fields_of, to_float
-from ..lines import Line
-from .content import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from ....core.errors import InputError, Place
+from ..deck.bulk import cut, fields_of
+from ..deck.card_definition import Fields
+from ..deck.logical_lines import Line
+from ..text.real_numbers import parse_real
 from .dmig_punched import parts, punched_columns
+from .exported_matrix import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
 
 _WIDE = 72
 _LETTERLESS = (b"D", b"E")
@@ -63,10 +65,10 @@ def read_dmig(path: Path | str, names: Iterable[str] | None = None) -> tuple[Nas
     try:
         for number, part in parts(path):
             if b"\0" in part[:4096]:
-                raise InputError(f"{path} is not a text file: a punch file is expected")
+                raise Place(path).fault("is not a text file: a punch file is expected")
             _take_part(part, number, path, found)
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     matrices = (
         matrix_of_entries(name, e) for name, e in found.items() if not wanted or name in wanted
     )
@@ -129,20 +131,19 @@ def _take(
             words = [*card, *[None] * 10]
             name = str(card[1]).upper()
             if name in found and found[name].rows:
-                raise InputError(
-                    f"{path} line {start + 1}: matrix {name} begins a second time: give the file "
-                    "of one run"
+                raise Place(path, start + 1).error(
+                    f"matrix {name} begins a second time: give the file of one run"
                 )
             polar = int(words[6] or 0) > 0
             found[name] = Entries(int(words[3] or 1), int(words[4] or 2), polar)
         else:
             _general(card, found)
     except (ValueError, IndexError):
-        raise InputError(f"{path} line {start + 1}: this DMIG card cannot be read") from None
+        raise Place(path, start + 1).error("this DMIG card cannot be read") from None
     except LookupError:
         name = (card[1] if card else block[0][8:24].decode("latin-1").strip()) or ""
-        raise InputError(
-            f"{path} line {start + 1}: DMIG {name} has a column before its header card"
+        raise Place(path, start + 1).error(
+            f"DMIG {name} has a column before its header card"
         ) from None
 
 
@@ -174,7 +175,7 @@ def _number(field: bytes) -> float:
     try:
         return float(field.replace(b"D", b"E"))
     except ValueError:
-        return to_float(field.decode("latin-1"))
+        return parse_real(field.decode("latin-1"))
 
 
 def _general(card: Fields, found: dict[str, Entries]) -> None:
@@ -190,9 +191,9 @@ def _general(card: Fields, found: dict[str, Entries]) -> None:
                 raise ValueError(card[1])
             continue
         rows.append(8 * int(point) + int(component or 0))
-        value: complex = to_float(real or "0.")
+        value: complex = parse_real(real or "0.")
         if entries.is_complex:
-            value += 1j * to_float(imaginary or "0.")
+            value += 1j * parse_real(imaginary or "0.")
         values.append(value)
     entries.rows.append(np.array(rows, np.int64))
     entries.columns.append(np.full(len(rows), column, np.int64))

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.errors import InputError
-from ..editing.numbers import format_real
-from .content import SYMMETRIC, DofMap, NastranMatrix
+from ..text.real_numbers import format_real
+from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix
 
 _SQUARE, _RECTANGULAR = 1, 9
 _FIELD = 16

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from ....core.arrays import Ints
-from ....core.errors import InputError
-from ..cards import Fields, cut, fields_of
-from ..grids import read_points
-from ..lines import Line
-from ..read import Deck
-from .content import DofMap
+from ....core.errors import InputError, Place
+from ..deck.bulk import cut, fields_of
+from ..deck.card_definition import Fields
+from ..deck.logical_lines import Line
+from ..deck.read_deck import Deck
+from ..properties.grids import read_points
+from .exported_matrix import DofMap
 
 _SETS = ("ASET", "ASET1", "BSET", "BSET1", "CSET", "CSET1", "QSET", "QSET1", "SUPORT")
 
@@ -55,7 +56,7 @@ def map_of_size(maps: dict[str, DofMap], size: int, name: str, where: str) -> Do
 
 
 def _free_set(deck: Deck) -> DofMap | None:
-    from ..build import build_model
+    from ..assembly.build_model import build_model
 
     try:
         labels = build_model(deck).free_labels
@@ -109,11 +110,11 @@ def read_extrn(path: Path | str) -> DofMap:
     try:
         text = path.read_text("latin-1")
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     lines = [Line(t, 0, k + 1) for k, t in enumerate(text.splitlines())]
     starts = [k for k, line in enumerate(lines) if line.text[:5].upper() == "EXTRN"]
     if not starts:
-        raise InputError(f"{path} has no EXTRN card that says what the rows of the matrices are")
+        raise Place(path).fault("has no EXTRN card that says what the rows of the matrices are")
     stop = starts[0] + 1
     while stop < len(lines) and lines[stop].text[:1] in (" ", "+", "*"):
         stop += 1
@@ -121,5 +122,5 @@ def read_extrn(path: Path | str) -> DofMap:
     try:
         keys = np.array(set_keys(card), np.int64)
     except ValueError:
-        raise InputError(f"{path} line {starts[0] + 1}: this EXTRN card cannot be read") from None
+        raise Place(path, starts[0] + 1).error("this EXTRN card cannot be read") from None
     return DofMap.of_keys(keys)

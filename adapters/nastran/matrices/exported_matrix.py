@@ -8,14 +8,15 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Ints, frozen, require_shape
-from ....core.dofs import Dofs
+from ....core.data.dofs import Dofs
+from ....core.noun import Noun
 
 SQUARE, RECTANGULAR, SYMMETRIC = 1, 2, 6
 _COLUMNS = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
-class DofMap:
+class DofMap(Noun):
     """Which points and components the rows or columns of a matrix are.
 
     Parameters
@@ -62,7 +63,7 @@ class DofMap:
 
 
 @dataclass(frozen=True, eq=False)
-class NastranMatrix:
+class NastranMatrix(Noun):
     """One matrix of an export.
 
     Parameters
@@ -125,3 +126,11 @@ def guessed_form(matrix: sp.spmatrix) -> int:
     if matrix.shape[0] != matrix.shape[1]:
         return RECTANGULAR
     return SQUARE if (matrix != matrix.T).nnz else SYMMETRIC
+
+
+RUNS_SCHEMA = "trueup/export-runs/1"
+
+
+def is_runs(head: bytes) -> bool:
+    """Whether the start of a file is that of a ``runs.json`` of export-runs."""
+    return head.lstrip()[:1] == b"{" and f'"{RUNS_SCHEMA}"'.encode() in head

@@ -11,25 +11,25 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.errors import InputError
-from ....core.model import Model, Term
-from ..editing.add import add_cards
-from ..editing.decktext import read_deck_text
-from ..editing.edit import set_values
-from ..editing.numbers import writable
-from ..editing.write import write_deck
-from ..parameters import ParameterSpec, parse_parameter
-from ..read import Deck, read_deck
-from .content import NastranMatrix
-from .design import Design, design_of
+from ....core.data.parametric_model import Model, Term
+from ....core.errors import InputError, Place
+from ..deck.read_deck import Deck
+from ..deck_reader import read_deck
+from ..editing.add_cards import add_cards
+from ..editing.set_values import set_values
+from ..editing.write_deck import write_deck
+from ..fields.parameter_references import ParameterSpec, parse_parameter
+from ..text.deck_text import read_deck_text
+from ..text.real_numbers import writable
 from .dmig import read_dmig
-from .hdf5 import list_hdf5_matrices
-from .model import model_of_matrices, stiffness_and_mass
-from .op2 import list_op2_matrices
+from .exported_matrix import RUNS_SCHEMA, NastranMatrix
+from .hdf5_matrices import list_hdf5_matrices
+from .matrix_model import model_of_matrices, stiffness_and_mass
+from .op2_matrices import list_op2_matrices
 from .op4 import list_op4
-from .read import matrix_file_kind, read_matrices
+from .read_matrices import matrix_file_kind, read_matrices
+from .sample_design import Design, design_of
 
-SCHEMA = "trueup/export-runs/1"
 INDEX = "runs.json"
 _REQUEST = ("PARAM", "EXTOUT", "DMIGPCH")
 _WHY = "trueup: stiffness and mass of the a-set go to the punch file (KAAX, MAAX)"
@@ -81,7 +81,7 @@ def write_runs(path: Path | str, specs: Sequence[ParameterSpec], out: Path | str
         top = write_deck(set_values(text, values), folder)
         runs.append({"deck": top.relative_to(out.absolute()).as_posix(), "factors": point.tolist()})
     index = {
-        "schema": SCHEMA,
+        "schema": RUNS_SCHEMA,
         "deck": str(path),
         "parameters": [_written(spec) for spec in specs],
         "runs": runs,
@@ -115,7 +115,7 @@ def read_runs(folder: Path | str) -> Model:
     design = design_of(deck, specs)
     points = np.array([run["factors"] for run in index["runs"]])
     if points.shape != design.points.shape or not np.allclose(points, design.points, rtol=1e-12):
-        raise InputError(f"{folder / INDEX}: the runs are not those of its parameters; write anew")
+        raise Place(folder / INDEX).error("the runs are not those of its parameters; write anew")
     pairs = [_matrices_of(top, deck) for top in tops]
     stiffness, mass = [p[0] for p in pairs], [p[1] for p in pairs]
     frame = model_of_matrices(stiffness, mass, deck)
@@ -149,9 +149,9 @@ def read_index(folder: Path) -> dict[str, Any]:
     try:
         index = json.loads((folder / INDEX).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise InputError(f"{folder / INDEX} cannot be read: {error}") from None
-    if not isinstance(index, dict) or index.get("schema") != SCHEMA:
-        raise InputError(f"{folder / INDEX} was not written by trueup export-runs")
+        raise Place(folder / INDEX).fault(f"cannot be read: {error}") from None
+    if not isinstance(index, dict) or index.get("schema") != RUNS_SCHEMA:
+        raise Place(folder / INDEX).fault("was not written by trueup export-runs")
     return index
 
 
@@ -165,14 +165,13 @@ def matrices_beside(top: Path) -> list[Path]:
 def _matrices_of(top: Path, deck: Deck) -> tuple[NastranMatrix, NastranMatrix]:
     found = matrices_beside(top)
     if not found:
-        raise InputError(
-            f"{top.parent} has no punch, OP4, OP2 or HDF5 file with a pair of stiffness and mass "
+        raise Place(top.parent).fault(
+            f"has no punch, OP4, OP2 or HDF5 file with a pair of stiffness and mass "
             f"matrices: run Nastran on {top.name} there"
         )
     if len(found) > 1:
-        raise InputError(
-            f"{top.parent} has several files with matrices ({found[0].name}, {found[1].name}): "
-            "keep one"
+        raise Place(top.parent).fault(
+            f"has several files with matrices ({found[0].name}, {found[1].name}): keep one"
         )
     return stiffness_and_mass(read_matrices(found[0], deck))
 

@@ -15,9 +15,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Numbers
-from ....core.errors import InputError
-from ..results.hdf5 import opened
-from .content import SYMMETRIC, DofMap, NastranMatrix, guessed_form, symmetrised
+from ....core.errors import Place
+from ..results.hdf5_modes import opened
+from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form, symmetrised
 
 _MATRICES = "NASTRAN/RESULT/MATRIX/GENERAL"
 _GRIDS = "NASTRAN/INPUT/NODE/GRID"
@@ -64,11 +64,11 @@ def _matrix(tables: Any, row: Any, path: Path, grids: Any) -> NastranMatrix:
     rows, values = np.asarray(data["ROW"], np.int64), _values(data)
     sound = len(pointers) == shape[1] + 1 and len(rows) == count and pointers[0] == 0
     if not sound or (np.diff(pointers) < 0).any() or pointers[-1] != count:
-        raise InputError(f"{path}: the columns of matrix {name} do not agree with its entries")
+        raise Place(path).error(f"the columns of matrix {name} do not agree with its entries")
     if count and rows.max() == shape[0]:  # counted from one
         rows = rows - 1
     if count and not 0 <= rows.min() <= rows.max() < shape[0]:
-        raise InputError(f"{path}: matrix {name} has entries outside of its {shape[0]} rows")
+        raise Place(path).error(f"matrix {name} has entries outside of its {shape[0]} rows")
     matrix = sp.csc_matrix((values, rows, pointers), shape=shape)
     matrix.sum_duplicates()
     matrix.eliminate_zeros()

@@ -8,13 +8,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
-from ....core.dofs import Dofs
+from ....core.data.dofs import Dofs
+from ....core.data.geometry import Geometry
+from ....core.data.parametric_model import Model, Term
 from ....core.errors import InputError
-from ....core.geometry import Geometry
-from ....core.model import Model, Term
-from ..grids import Points, read_points
-from ..read import Deck
-from .content import SYMMETRIC, DofMap, NastranMatrix, guessed_form
+from ..deck.read_deck import Deck
+from ..properties.grids import Points, read_points
+from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form
 
 _NOT_FOUND = np.zeros((0, 3))
 

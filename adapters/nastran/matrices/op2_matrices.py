@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..results.op2records import Op2Block, Op2File
-from .columns import Filler, Strings, gather
-from .content import SYMMETRIC, DofMap, NastranMatrix, symmetrised
-from .op2pool import is_pool, pool_matrices
+from ..results.op2_records import Op2Block, Op2File
+from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from .op2_matpool import is_pool, pool_matrices
+from .packed_columns import Filler, Strings, gather
 
 _GRID = 1
 _RUNS = 1 << 14

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from ....core.errors import InputError
-from .content import NastranMatrix
+from ....core.errors import InputError, Place
+from .exported_matrix import NastranMatrix
 from .op4_ascii import is_ascii_op4, read_ascii
 from .op4_binary import Header, Names, layout_of, read_binary
 
@@ -69,8 +69,8 @@ def _matrices(path: Path, wanted: Names) -> Iterator[NastranMatrix | Header]:
         elif is_ascii_op4(head):
             yield from read_ascii(path, wanted)
         else:
-            raise InputError(
-                f"{path} is not an OP4 file: it starts neither as a binary nor as a formatted one"
+            raise Place(path).fault(
+                "is not an OP4 file: it starts neither as a binary nor as a formatted one"
             )
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None

@@ -13,10 +13,10 @@ from typing import BinaryIO
 import numpy as np
 
 from ....core.arrays import Floats
-from ....core.errors import InputError
-from .columns import Filler, Strings
-from .content import SYMMETRIC, NastranMatrix, symmetrised
+from ....core.errors import InputError, Place
+from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
 from .op4_binary import Header, Names
+from .packed_columns import Filler, Strings
 
 _FORMAT = re.compile(r"(\d+)\s*[EDGF](\d+)\.\d+", re.IGNORECASE)
 _NO_LETTER = re.compile(rb"(?<=[\d.])([+-]\d+)$")
@@ -59,12 +59,12 @@ class _Lines:
         line = self._ahead if self._ahead is not None else self._stream.readline()
         self._ahead = None
         if not line:
-            raise InputError(f"{self.path} is cut short: it ends where {what} is expected")
+            raise Place(self.path).fault(f"is cut short: it ends where {what} is expected")
         self.at += 1
         return line.rstrip(b"\r\n")
 
     def wrong(self, why: str) -> InputError:
-        return InputError(f"{self.path} line {self.at}: {why}")
+        return Place(self.path, self.at).error(f"{why}")
 
     def integers(self, what: str, count: int, width: int) -> list[int]:
         line = self.next(what)
@@ -101,7 +101,7 @@ class _Lines:
         return b"".join([*parts, lines[-1].rstrip(b"\r\n")[:last].ljust(last)])
 
     def _cut_short(self) -> InputError:
-        return InputError(f"{self.path} is cut short: it ends in the values of a matrix")
+        return Place(self.path).fault("is cut short: it ends in the values of a matrix")
 
 
 def _quoted(line: bytes) -> str:
@@ -250,7 +250,6 @@ def _numbers(texts: list[bytes], form: _Print, lines: _Lines) -> Floats:
     try:
         return np.array([float(_NO_LETTER.sub(rb"E\1", f.strip())) for f in fields.tolist()])
     except ValueError:
-        raise InputError(
-            f"{lines.path}: a number before line {lines.at + 1} cannot be read; write the matrix "
-            "again in binary"
+        raise Place(lines.path).error(
+            f"a number before line {lines.at + 1} cannot be read; write the matrix again in binary"
         ) from None

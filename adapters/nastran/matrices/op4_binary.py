@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 
 from ....core.arrays import Ints, Numbers
-from ....core.errors import InputError
-from .columns import Filler, Strings, gather
-from .content import SYMMETRIC, NastranMatrix, symmetrised
+from ....core.errors import InputError, Place
+from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
+from .packed_columns import Filler, Strings, gather
 
 _BIGMAT_FROM = 65536
 _FEW = 64
@@ -96,23 +96,23 @@ class _File:
             raise self.cut_short(at)
         size = self._mark.unpack_from(self.data, at)[0]
         if size < 0:
-            raise InputError(
-                f"{self.path}: a record at byte {at} is split into parts or damaged; write the "
+            raise Place(self.path).error(
+                f"a record at byte {at} is split into parts or damaged; write the "
                 "matrix again in smaller parts"
             )
         end = at + mark + size
         if end + mark > len(self.data):
             raise self.cut_short(at)
         if self._mark.unpack_from(self.data, end)[0] != size:
-            raise InputError(f"{self.path} is damaged: the record at byte {at} does not close")
+            raise Place(self.path).fault(f"is damaged: the record at byte {at} does not close")
         return at + mark, end
 
     def cut_short(self, at: int) -> InputError:
-        return InputError(f"{self.path} is cut short: it ends in the record at byte {at}")
+        return Place(self.path).fault(f"is cut short: it ends in the record at byte {at}")
 
     def damaged_strings(self, header: Header) -> InputError:
-        return InputError(
-            f"{self.path} is damaged: matrix {header.name} ({header.shape[0]} by "
+        return Place(self.path).fault(
+            f"is damaged: matrix {header.name} ({header.shape[0]} by "
             f"{header.shape[1]}) has a string of values that does not fit"
         )
 
@@ -124,8 +124,8 @@ class _File:
     def header(self, start: int, end: int) -> Header:
         word, order = self.layout.word, self.layout.order
         if end - start != 6 * word:
-            raise InputError(
-                f"{self.path} is damaged: a matrix is expected at byte {start}, but the record "
+            raise Place(self.path).fault(
+                f"is damaged: a matrix is expected at byte {start}, but the record "
                 f"has {end - start} bytes"
             )
         four = order + ("4q" if word == 8 else "4i")
@@ -135,11 +135,10 @@ class _File:
             raw = raw[:4] + raw[8:12]
         name = raw.decode("latin-1").strip(" \0").upper()
         if kind not in (1, 2, 3, 4) or ncol < 0:
-            raise InputError(f"{self.path}: matrix {name!r} has a type {kind} that is not known")
+            raise Place(self.path).error(f"matrix {name!r} has a type {kind} that is not known")
         if max(abs(nrow), ncol) > _MOST_ROWS:
-            raise InputError(
-                f"{self.path} is damaged: matrix {name!r} says that it has {abs(nrow)} rows and "
-                f"{ncol} columns"
+            raise Place(self.path).fault(
+                f"is damaged: matrix {name!r} says that it has {abs(nrow)} rows and {ncol} columns"
             )
         return Header(name, (abs(nrow), ncol), form, kind, nrow < 0 or nrow >= _BIGMAT_FROM)
 
@@ -206,8 +205,8 @@ class _Columns:
         while True:
             start, end = file.record(self.at)
             if end - start < head:
-                raise InputError(
-                    f"{file.path} is damaged: no column of {header.name} at byte {self.at}"
+                raise Place(file.path).fault(
+                    f"is damaged: no column of {header.name} at byte {self.at}"
                 )
             column, row, words = file.column(start)
             self.at = end + mark
@@ -215,8 +214,8 @@ class _Columns:
                 return
             stop = start + head + words * word
             if column <= last or row < 0 or words < 0 or stop > end:
-                raise InputError(
-                    f"{file.path} is damaged: matrix {header.name} has no column {column} of "
+                raise Place(file.path).fault(
+                    f"is damaged: matrix {header.name} has no column {column} of "
                     f"{words} words from row {row}"
                 )
             last = column

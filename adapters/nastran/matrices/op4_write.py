@@ -9,8 +9,8 @@ import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
 from ....core.errors import InputError
-from .columns import expand, runs_of
-from .content import NastranMatrix
+from .exported_matrix import NastranMatrix
+from .packed_columns import expand, runs_of
 
 _REAL, _COMPLEX = 2, 4
 _WORD = 4

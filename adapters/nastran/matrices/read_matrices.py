@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from ....core.errors import InputError
-from ..read import Deck
-from .content import DofMap, NastranMatrix
+from ....core.errors import Place
+from ..deck.read_deck import Deck
 from .dmig import read_dmig
-from .dofmaps import deck_maps, map_of_size, read_extrn
-from .hdf5 import read_hdf5_matrices
-from .op2 import read_op2_matrices
+from .dof_maps import deck_maps, map_of_size, read_extrn
+from .exported_matrix import DofMap, NastranMatrix
+from .hdf5_matrices import read_hdf5_matrices
+from .op2_matrices import read_op2_matrices
 from .op4 import is_op4, kind_of, list_op4, read_op4
 from .op4_binary import Header
-from .write import MAP, USE
+from .write_matrices import MAP, USE
 
 _PUNCH_SUFFIXES = (".pch", ".asm")
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -50,18 +50,18 @@ def read_matrices(path: Path | str, deck: Deck | None = None) -> tuple[NastranMa
     if kind in _RESULTS:
         found = _RESULTS[kind](path)
         if not found:
-            raise InputError(f"{path} holds no matrices")
+            raise Place(path).fault("holds no matrices")
         return _mapped(found, path, deck)
     found = read_dmig(path)
     if not found:
-        raise InputError(f"{path} holds no DMIG matrices")
+        raise Place(path).fault("holds no DMIG matrices")
     return found
 
 
 def matrix_file_kind(path: Path) -> str:
     """Return ``op4``, ``op2``, ``hdf5`` or ``punch``."""
     if not path.is_file():
-        raise InputError(f"{path} does not exist or is not a file")
+        raise Place(path).fault("does not exist or is not a file")
     if is_op4(path):
         return "op4"
     with path.open("rb") as stream:
@@ -144,7 +144,7 @@ def describe_matrices(path: Path | str) -> dict[str, Any]:
         if b"\nEXTRN" in path.read_bytes():
             contents.insert(0, _superelement(read_extrn(path)))
         if not contents:
-            raise InputError(f"{path} holds neither DMIG matrices nor an external superelement")
+            raise Place(path).fault("holds neither DMIG matrices nor an external superelement")
     return {"path": str(path), "format": form, "contents": contents, "skipped": []}
 
 

@@ -8,16 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ....core.data.parameter import Parameter
+from ....core.data.parametric_model import Factor, Model, Term
 from ....core.errors import InputError
-from ....core.model import Factor, Model, Term
-from ....core.parameter import Parameter
-from .content import SYMMETRIC, DofMap, NastranMatrix
-from .runs import SCHEMA, matrices_beside, read_index, read_runs
-
-
-def is_runs(head: bytes) -> bool:
-    """Whether the start of a file is that of a ``runs.json`` of export-runs."""
-    return head.lstrip()[:1] == b"{" and f'"{SCHEMA}"'.encode() in head
+from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix
+from .exported_runs import matrices_beside, read_index, read_runs
 
 
 def describe_runs(path: Path | str) -> dict[str, Any]:

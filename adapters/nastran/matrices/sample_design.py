@@ -16,25 +16,17 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Bools, Floats
+from ....core.data.parameter import Parameter
+from ....core.data.parametric_model import Factor
 from ....core.errors import InputError
-from ....core.model import Factor
-from ....core.parameter import Parameter
-from ..cards import Bulk, fields_of
-from ..parameters import FieldRef, ParameterSpec
-from ..read import Deck
-from ..variation import read_variation
+from ..assembly.variation import read_variation
+from ..deck.bulk import Bulk
+from ..deck.read_deck import Deck
+from ..fields.layouts import movable
+from ..fields.parameter_references import FieldRef, ParameterSpec
 
 MOST_RUNS = 200
-_LINEAR = {
-    "MAT1": {"E", "RHO"}, "MAT2": {"RHO"}, "MAT8": {"RHO"}, "MAT9": {"RHO"},
-    "PSHELL": {"NSM"}, "PCOMP": {"NSM"}, "PBAR": {"A", "I1", "I2", "I12", "J", "NSM"},
-    "PBARL": {"NSM"}, "PROD": {"A", "J", "NSM"}, "CONROD": {"A", "J", "NSM"},
-    "PELAS": {"K"}, "CELAS2": {"K"}, "CELAS4": {"K"}, "PBUSH": {f"K{k}" for k in range(1, 7)},
-    "PMASS": {"M"}, "CMASS2": {"M"}, "CMASS4": {"M"}, "CONM2": {"M"},
-}  # fmt: skip
 _CURVED = 4
-_RIGID_SHEAR = 1e7
-"""pyNastran's K1 and K2 of a PBAR where the deck leaves them blank are larger."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,14 +117,13 @@ def _degree(bulk: Bulk, spec: ParameterSpec) -> int:
 
 
 def _is_linear(bulk: Bulk, ref: FieldRef) -> bool:
-    if ref.field not in _LINEAR.get(ref.card, ()):
+    if ref.field not in movable()[ref.card].linear:
         return False
-    card = bulk.table(ref.card).get(ref.id)
+    card: Any = bulk.table(ref.card).get(ref.id)
     if ref.card == "MAT1" and ref.field == "E":  # G follows E where it is blank
-        fields = fields_of(bulk.numbered["MAT1"][ref.id].lines)
-        return len(fields) < 4 or fields[3] is None
+        return card.g is None
     if ref.card == "PBAR" and ref.field != "NSM":
-        return bool(min(card.k1 or 1e8, card.k2 or 1e8) > _RIGID_SHEAR)  # type: ignore[union-attr]
+        return not (card.k1 or card.k2)
     return True
 
 
@@ -156,8 +147,4 @@ def _uses(bulk: Bulk, owner: FieldRef, material: FieldRef) -> bool:
 def _materials(card: Any) -> Iterator[int]:
     for name in ("mid", "mid1", "mid2", "mid3", "mid4"):
         value = getattr(card, name, None)
-        if isinstance(value, int):
-            yield value
-    for value in getattr(card, "mids", None) or ():
-        if isinstance(value, int):
-            yield value
+        yield from value if isinstance(value, tuple) else () if value is None else (value,)

@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.errors import InputError
-from .content import RECTANGULAR, DofMap, NastranMatrix
 from .dmig_write import dmig_text
+from .exported_matrix import RECTANGULAR, DofMap, NastranMatrix
 from .op4_write import op4_binary, op4_formatted
 
 MAP = "DOFMAP"
@@ -88,7 +88,9 @@ def _write(target: Path, parts: Iterator[bytes]) -> None:
     try:
         handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
     except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror or error}") from error
+        raise InputError(
+            f"cannot write {target}: {error.strerror or error}", file=target
+        ) from error
     try:
         with os.fdopen(handle, "wb") as stream:
             for part in parts:
@@ -96,6 +98,8 @@ def _write(target: Path, parts: Iterator[bytes]) -> None:
         Path(name).chmod(0o644)
         os.replace(name, target)
     except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror or error}") from error
+        raise InputError(
+            f"cannot write {target}: {error.strerror or error}", file=target
+        ) from error
     finally:
         Path(name).unlink(missing_ok=True)

@@ -12,7 +12,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from ...core.errors import InputError
+from ....core.errors import Place
+from ..deck.card_definition import Fields, take
 
 
 class Section(NamedTuple):
@@ -38,7 +39,28 @@ Rectangle = tuple[float, float, float, float]
 """Width along z, height along y, centre z, centre y."""
 
 
-def section(shape: str, dimensions: Dims, place: str) -> Section:
+_NOT_MADE = {"DBOX": 10}
+"""Sections that have no constants here, and how many dimensions they have."""
+
+
+def dimension_count(shape: str) -> int:
+    """Return how many dimensions a standard section has; 0 where it is not known."""
+    return SHAPES[shape][0] if shape in SHAPES else _NOT_MADE.get(shape, 0)
+
+
+def dimensions(fields: Fields, at: int, shape: str) -> tuple[float, ...]:
+    """Read DIM1, DIM2, ... of a section from a field on; all that follow where it is not known.
+
+    Raises
+    ------
+    FieldError
+        A dimension that is missing or no number.
+    """
+    count = dimension_count(shape) or max(len(fields) - at, 0)
+    return tuple(take(fields, at + k, f"DIM{k + 1}:r!") for k in range(count))
+
+
+def section(shape: str, dimensions: Dims, place: Place) -> Section:
     """Return the constants of a standard section.
 
     Parameters
@@ -47,7 +69,7 @@ def section(shape: str, dimensions: Dims, place: str) -> Section:
         TYPE of the card.
     dimensions : sequence of float
         DIM1, DIM2, ...
-    place : str
+    place : Place
         The card with file and line, for messages.
 
     Raises
@@ -56,18 +78,18 @@ def section(shape: str, dimensions: Dims, place: str) -> Section:
         An unknown shape, or dimensions that do not fit together.
     """
     if shape not in SHAPES:
-        raise InputError(f"{place}: the section {shape} is not supported")
+        raise place.error(f"the section {shape} is not supported")
     count, make = SHAPES[shape]
     if len(dimensions) < count:
-        raise InputError(f"{place}: the section {shape} needs {count} dimensions")
-    if any(d is None or not d >= 0.0 for d in dimensions[:count]):
-        raise InputError(f"{place}: the dimensions of the section {shape} must be positive")
+        raise place.error(f"the section {shape} needs {count} dimensions")
+    if any(not d >= 0.0 for d in dimensions[:count]):
+        raise place.error(f"the dimensions of the section {shape} must be positive")
     try:
         found = make(*dimensions[:count])
     except ZeroDivisionError:
         found = None
     if found is None or not (found.A > 0.0 and found.I1 > 0.0 and found.I2 > 0.0):
-        raise InputError(f"{place}: the dimensions of the section {shape} do not fit together")
+        raise place.error(f"the dimensions of the section {shape} do not fit together")
     return found
 
 

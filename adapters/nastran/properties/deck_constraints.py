@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 
-from ...core.constraints import Equations
-from ...core.errors import InputError
-from .cards import Card
+from ....core.errors import Place
+from ..deck.card_definition import Card, Values
+from ..deck.read_deck import Deck
 from .grids import Points
-from .read import Deck
-from .rigid import RIGID, Rows
+from .rigid_elements import RIGID, Rows
+
+if TYPE_CHECKING:
+    from ....core.assembly.multipoint_constraints import Equations
+
+_TERM = "G>nodes:i! C>components:c=0"
+
+CARDS = (
+    Card("SPC", f"SID:i! [{_TERM} D>enforced:r=0.]"),
+    Card("SPC1", "SID:i! C>components:c=0 G>nodes:*"),
+    Card("MPC", f"SID:i! [{_TERM} A>coefficients:r=0. {_TERM} A>coefficients:r=0. - -]"),
+    *(Card(name, "SID:i! [S>sets:i]") for name in ("SPCADD", "MPCADD")),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +47,10 @@ class Constraints:
 
 
 class _Set(NamedTuple):
-    """Cards of one kind that a set number selects, with where they stand."""
+    """A card that a set number selects, and where it stands."""
 
-    card: Card
-    place: str
-    range: bool  # with THRU: grids missing in the range are passed over, as in Nastran
+    card: Values
+    place: Place
 
 
 def read_constraints(deck: Deck, points: Points) -> Constraints:
@@ -78,18 +87,16 @@ def _selected(
     kind = names[0]
     wanted = {number: f"{deck.path}: case control asks for {kind} = {number}"}
     for k, card in enumerate(deck.bulk.listed(f"{kind}ADD")):
-        if int(card.conid) == number:
+        if card.sid == number:
             place = deck.bulk.place_listed(f"{kind}ADD", k)
-            wanted.update({int(s): f"{place} adds set {int(s)}" for s in card.sets})
+            wanted.update({s: f"{place} adds set {s}" for s in card.sets})
     added = len(wanted) > 1
     found = {number} if added else set()
     for name in names:
         for k, card in enumerate(deck.bulk.listed(name)):
-            if int(card.conid) in wanted:
-                found.add(int(card.conid))
-                raw = deck.bulk.raw[name][k]
-                thru = any("THRU" in line.upper() for line in raw.lines)
-                yield name, _Set(card, f"{name} ({deck.bulk.at(raw)})", thru)
+            if card.sid in wanted:
+                found.add(card.sid)
+                yield name, _Set(card, deck.bulk.place_listed(name, k))
     notes.extend(
         f"{asked}, but the deck has no {kind} cards of that set: nothing is constrained by it"
         for missing, asked in wanted.items()
@@ -98,32 +105,34 @@ def _selected(
 
 
 def _spc_dofs(name: str, item: _Set, points: Points) -> Iterator[int]:
+    """Degrees of freedom held; grids missing in a range are passed over, as in Nastran."""
     card = item.card
-    components = [card.components] * len(card.nodes) if name == "SPC1" else card.components
-    for grid, digits in zip(card.nodes, components, strict=True):
-        if item.range and not points.exists(int(grid)):
-            continue
-        for component in _components(str(digits or "0")):
-            yield points.dof(int(grid), component, item.place)
-
-
-def _components(digits: str) -> list[int]:
-    return [int(d) for d in digits.strip()]
+    if name == "SPC":
+        pairs = zip(card.nodes, card.components, strict=True)
+    else:
+        pairs = ((grid, card.components) for grid in points.listed(card.nodes))  # type: ignore[assignment]
+    for grid, digits in pairs:
+        for component in digits:
+            yield points.dof(grid, int(component), item.place)
 
 
 def _add_mpc(rows: Rows, item: _Set, points: Points) -> None:
     card = item.card
     dofs = [
-        points.dof(int(grid), int(component or 0), item.place)
+        points.dof(grid, int(component), item.place)
         for grid, component in zip(card.nodes, card.components, strict=True)
     ]
-    coefficients = np.array([float(a) for a in card.coefficients])
+    coefficients = np.array(card.coefficients)
     if coefficients[0] == 0.0:
-        raise InputError(f"{item.place}: the first coefficient of an MPC must not be zero")
+        raise item.place.error("the first coefficient of an MPC must not be zero")
     rows.add(dofs[0], dofs[1:], -coefficients[1:] / coefficients[0], item.place)
 
 
 def _equations(rows: Rows, n_dof: int) -> Equations:
+    import scipy.sparse as sp  # slow to import, and not needed to read a deck
+
+    from ....core.assembly.multipoint_constraints import Equations
+
     matrix = sp.coo_matrix(
         (
             np.array(rows.values, dtype=np.float64),

@@ -6,13 +6,21 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.errors import InputError
-from ...core.frames import BASIC, Frame, frame_of_points
-from .cards import Bulk, Card
+from ....core.arrays import Floats
+from ....core.data.coordinate_systems import BASIC, Frame, frame_of_points
+from ....core.errors import InputError, Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
 
 KIND_OF = {"R": "rectangular", "C": "cylindrical", "S": "spherical"}
-CARDS = ("CORD2R", "CORD2C", "CORD2S", "CORD1R", "CORD1C", "CORD1S")
+_TWO = "CID:i! RID:i=0 A1,A2,A3>points:r=0. B1,B2,B3>points:r=0. C1,C2,C3>points:r=0."
+_ONE = "CID:i! G1,G2,G3>nodes:i!"
+_SPACE = "coordinate system"
+
+CARDS = (
+    *(Card(f"CORD2{kind}", _TWO, "cid", space=_SPACE) for kind in KIND_OF),
+    *(Card(f"CORD1{kind}", _ONE, "cid", several=4, space=_SPACE) for kind in KIND_OF),
+)
 
 
 class Frames:
@@ -30,9 +38,9 @@ class Frames:
         self._bulk = bulk
         self._grid_system = grid_system
         self._known: dict[int, Frame] = {0: BASIC}
-        self._open: list[str] = []
+        self._open: list[Place] = []
 
-    def get(self, number: int, asked_by: str) -> Frame:
+    def get(self, number: int, asked_by: Place) -> Frame:
         """Return coordinate system `number`.
 
         Raises
@@ -42,35 +50,33 @@ class Frames:
         """
         if number in self._known:
             return self._known[number]
-        found = self._bulk.find(CARDS, number)
+        found = self._bulk.find([c.name for c in CARDS], number)
         if found is None:
-            raise InputError(
-                f"{asked_by} refers to coordinate system {number}, which does not exist"
-            )
+            raise asked_by.fault(f"refers to coordinate system {number}, which does not exist")
         name, card = found
         place = self._bulk.place(name, number)
         if place in self._open:
-            raise InputError(f"{place} is defined by itself, through {' and '.join(self._open)}")
+            raise place.fault(f"is defined by itself, through {' and '.join(map(str, self._open))}")
         self._open.append(place)
         points = self._two(card, place) if name[4] == "2" else self._one(card, place)
         try:
             frame = frame_of_points(KIND_OF[name[5]], *points)
         except InputError as error:
-            raise InputError(f"{place}: {error}") from None
+            raise place.error(str(error)) from None
         self._open.pop()
         self._known[number] = frame
         return frame
 
-    def _two(self, card: Card, place: str) -> Floats:
-        parent = self.get(int(card.rid), place)
-        return parent.positions(np.array([card.e1, card.e2, card.e3], dtype=np.float64))
+    def _two(self, card: Values, place: Place) -> Floats:
+        parent = self.get(card.rid, place)
+        return parent.positions(np.reshape(card.points, (3, 3)))
 
-    def _one(self, card: Card, place: str) -> list[Floats]:
+    def _one(self, card: Values, place: Place) -> list[Floats]:
         points = []
-        for grid in (card.g1, card.g2, card.g3):
-            found = self._grid_system(int(grid))
+        for grid in card.nodes:
+            found = self._grid_system(grid)
             if found is None:
-                raise InputError(f"{place} refers to grid {grid}, which does not exist")
+                raise place.fault(f"refers to grid {grid}, which does not exist")
             system, coordinates = found
             points.append(self.get(system, place).positions(coordinates)[0])
         return points

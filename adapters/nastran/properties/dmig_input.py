@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
-import scipy.sparse as sp
-
-from ...core.errors import InputError
-from .cards import Fields, to_float
+from ....core.errors import Place
+from ..deck.card_definition import Card
+from ..deck.read_deck import Deck
 from .grids import Points
-from .read import Deck
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
+
+CARDS = (
+    Card("DMIG", "NAME:x! GJ:i! CJ:i=0 TIN:i=0 [G>nodes:i C>components:i=0 A>values:ir B>b:ir]"),
+)
+"""The header has the column's number 0, its form in CJ."""
 
 _SYMMETRIC = 6
 
@@ -24,6 +30,8 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
     InputError
         A name without DMIG, complex or unsymmetric matrices, points that do not exist.
     """
+    import scipy.sparse as sp  # slow to import, and not needed to read a deck
+
     n = points.n_dof
     totals = []
     for entries in (("k2gg", "CK2", "k2pp", "CK3"), ("m2gg", "CM2", "m2pp", "CM3")):
@@ -38,62 +46,48 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
 
 def _read(deck: Deck, points: Points, name: str, asked_by: str) -> sp.csr_matrix:
     cards = [
-        (fields, deck.bulk.place_listed("DMIG", k))
-        for k, fields in enumerate(deck.bulk.listed("DMIG"))
-        if len(fields) > 2 and str(fields[1]).upper() == name
+        (card, deck.bulk.place_listed("DMIG", k))
+        for k, card in enumerate(deck.bulk.listed("DMIG"))
+        if card.name == name
     ]
-    headers = [(f, p) for f, p in cards if str(f[2]) == "0"]
+    headers = [(card, p) for card, p in cards if card.gj == 0]
     if not headers:
-        raise InputError(
-            f"{deck.path}: case control asks for {asked_by} = {name}, but the deck has no DMIG "
-            f"{name}"
+        raise Place(deck.path).error(
+            f"case control asks for {asked_by} = {name}, but the deck has no DMIG {name}"
         )
     header, place = headers[0]
-    form, kind = (int(str(f)) if f is not None else 0 for f in (*header, None, None)[3:5])
+    form, kind = header.cj, header.tin
     if kind in (3, 4):
-        raise InputError(f"{place}: {name} is complex; only real matrices can be added")
+        raise place.error(f"{name} is complex; only real matrices can be added")
     if form not in (1, 2, _SYMMETRIC):
-        raise InputError(f"{place}: {name} has the form {form}; 1 or 6 (symmetric) is expected")
+        raise place.error(f"{name} has the form {form}; 1 or 6 (symmetric) is expected")
     rows: list[int] = []
     columns: list[int] = []
     values: list[float] = []
-    for fields, at in cards:
-        if str(fields[2]) != "0":
-            _add_column(fields, at, points, rows, columns, values)
+    for card, at in cards:
+        if card.gj != 0:
+            column = points.dof(card.gj, card.cj, at)
+            for grid, component, a in zip(card.nodes, card.components, card.values, strict=True):
+                if grid is None or a is None:
+                    raise at.error("a grid or a value is missing")
+                rows.append(points.dof(grid, component, at))
+                columns.append(column)
+                values.append(a)
+    import scipy.sparse as sp
+
     n = points.n_dof
     matrix = sp.coo_matrix((values, (rows, columns)), shape=(n, n)).tocsr()
     if form == _SYMMETRIC:
         matrix = _symmetrised(matrix)
     elif abs(matrix - matrix.T).max() > 1e-9 * abs(matrix).max():
-        raise InputError(f"{place}: {name} is not symmetric")
+        raise place.error(f"{name} is not symmetric")
     return matrix
-
-
-def _add_column(
-    fields: Fields,
-    place: str,
-    points: Points,
-    rows: list[int],
-    columns: list[int],
-    values: list[float],
-) -> None:
-    """GJ CJ - G1 C1 A1 B1, then G2 C2 A2 B2 from the second line on."""
-    padded: list[Any] = [*fields, *[None] * 8]
-    try:
-        column = points.dof(int(padded[2]), int(padded[3] or 0), place)
-        for start in (5, *range(9, len(fields), 4)):
-            grid, component, a = padded[start : start + 3]
-            if grid is None:
-                continue
-            rows.append(points.dof(int(grid), int(component or 0), place))
-            columns.append(column)
-            values.append(to_float(str(a)))
-    except (TypeError, ValueError):
-        raise InputError(f"{place}: a grid, component or value is missing or wrong") from None
 
 
 def _symmetrised(matrix: sp.csr_matrix) -> sp.csr_matrix:
     """Fill the other triangle, where it was not given too."""
+    import scipy.sparse as sp
+
     diagonal = sp.diags(matrix.diagonal())
     lower, upper = sp.tril(matrix, -1), sp.triu(matrix, 1)
     if lower.nnz and upper.nnz and abs(lower - upper.T).max() <= 1e-12 * abs(matrix).max():

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
-from ...core.errors import InputError
-from .cards import Bulk, fields_of
-from .coords import Frames
+from ....core.arrays import Floats, Ints
+from ....core.errors import Place
+from ....core.noun import Noun
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card
+from .deck_coordinate_systems import Frames
+
+CARDS = (
+    Card(
+        "GRID",
+        "ID:i! CP:i=0 X1,X2,X3>xyz:r=0. CD:i=0 PS:c SEID:i=0",
+        "id",
+        blanks_from="GRDSET",
+    ),
+    Card("GRDSET", "- CP:i=0 - - - CD:i=0 PS:c SEID:i=0"),
+    Card("SPOINT", "ID>nodes:*"),
+)
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class Points(Noun):
     """Grids and scalar points of a deck, and the numbering of their degrees of freedom.
 
     Grid row i has degrees of freedom 6i ... 6i+5 in its displacement system (CD); scalar point k
@@ -79,36 +93,38 @@ class Points:
             owner = int(np.asarray(owners).reshape(-1)[where[0]]) if ids.ndim else int(owners)
             bad = int(ids[tuple(where)])
             what = "is a scalar point" if bad in self.scalar_ids else "does not exist"
-            raise InputError(f"{self.bulk.place(name, owner)} refers to grid {bad}, which {what}")
+            raise self.bulk.place(name, owner).fault(f"refers to grid {bad}, which {what}")
         return np.asarray(found, dtype=np.int64)
 
-    def dof(self, point: int, component: int, place: str) -> int:
+    def dof(self, point: int, component: int, place: Place) -> int:
         """Return the g-set number of one component of a grid (1..6) or scalar point (0 or 1)."""
         k = int(np.searchsorted(self.ids, point))
         if k < len(self.ids) and self.ids[k] == point:
             if not 1 <= component <= 6:
-                raise InputError(f"{place}: component {component} of grid {point} must be 1 to 6")
+                raise place.error(f"component {component} of grid {point} must be 1 to 6")
             return 6 * k + component - 1
         k = int(np.searchsorted(self.scalar_ids, point))
         if k < len(self.scalar_ids) and self.scalar_ids[k] == point:
             if component > 1:
-                raise InputError(f"{place}: scalar point {point} has no component {component}")
+                raise place.error(f"scalar point {point} has no component {component}")
             return 6 * len(self.ids) + k
-        raise InputError(f"{place} refers to grid {point}, which does not exist")
+        raise place.fault(f"refers to grid {point}, which does not exist")
 
-    def exists(self, point: int) -> bool:
-        """Whether there is a grid or scalar point of this number."""
-        for ids in (self.ids, self.scalar_ids):
-            k = int(np.searchsorted(ids, point))
-            if k < len(ids) and ids[k] == point:
-                return True
-        return False
+    def listed(self, parts: Iterable[int | range]) -> Iterator[int]:
+        """Grids and scalar points of a list; those of a range only where they exist."""
+        for part in parts:
+            if isinstance(part, int):
+                yield part
+                continue
+            for ids in (self.ids, self.scalar_ids):
+                within = ids[(ids >= part.start) & (ids < part.stop)]
+                yield from (int(k) for k in within if k in part)
 
-    def row(self, grid: int, place: str) -> int:
+    def row(self, grid: int, place: Place) -> int:
         """Return the row of one grid."""
         k = int(np.searchsorted(self.ids, grid))
         if k == len(self.ids) or self.ids[k] != grid:
-            raise InputError(f"{place} refers to grid {grid}, which does not exist")
+            raise place.fault(f"refers to grid {grid}, which does not exist")
         return k
 
     def label(self, dof: int) -> str:
@@ -131,16 +147,13 @@ def read_points(bulk: Bulk) -> Points:
     cards = [table[k] for k in sorted(table)]
     scalar = _scalar_ids(bulk)
     if not cards and not len(scalar):
-        raise InputError(f"{bulk.files[0]}: the deck has no GRID")
-    ids = np.array([c.nid for c in cards], dtype=np.int64)
+        raise Place(bulk.files[0]).error("the deck has no GRID")
+    ids = np.array([c.id for c in cards], dtype=np.int64)
     both = np.intersect1d(ids, scalar)
     if len(both):
-        raise InputError(f"{bulk.place('GRID', int(both[0]))} is a scalar point (SPOINT) as well")
-    cp, cd, ps = _systems(bulk, cards)
+        raise bulk.place("GRID", int(both[0])).fault("is a scalar point (SPOINT) as well")
+    cp, cd = (np.array([c[k] for c in cards], dtype=np.int64) for k in (1, 3))
     given = np.array([c.xyz for c in cards], dtype=np.float64).reshape(-1, 3)
-    if not np.isfinite(given).all():
-        bad = int(ids[np.argwhere(~np.isfinite(given))[0, 0]])
-        raise InputError(f"{bulk.place('GRID', bad)}: its position is not a finite number")
     index = {int(k): i for i, k in enumerate(ids)}
 
     def grid_system(grid: int) -> tuple[int, Floats] | None:
@@ -151,14 +164,9 @@ def read_points(bulk: Bulk) -> Points:
     xyz = _positions(bulk, ids, given, cp, frames)
     rotated, directions = _directions(bulk, ids, xyz, cd, frames)
     permanent = np.zeros((len(ids), 6), dtype=bool)
-    for i, components in enumerate(ps):
-        if components.strip("123456"):
-            raise InputError(
-                f"{bulk.place('GRID', int(ids[i]))}: the permanent constraints PS are "
-                f"{components!r}; digits from 1 to 6 are expected (on GRDSET where PS is blank)"
-            )
-        if components:
-            permanent[i, [int(c) - 1 for c in components]] = True
+    for i, card in enumerate(cards):
+        if card.ps:
+            permanent[i, [int(c) - 1 for c in card.ps.strip("0")]] = True
     return Points(bulk, ids, xyz, rotated, directions, permanent, scalar, frames)
 
 
@@ -179,7 +187,7 @@ def _directions(bulk: Bulk, ids: Ints, xyz: Floats, cd: Ints, frames: Frames) ->
         rows = np.flatnonzero(cd == system)
         place = bulk.place("GRID", int(ids[rows[0]]))
         if system < 0:
-            raise InputError(f"{place}: fluid points (CD = -1) are not supported")
+            raise place.error("fluid points (CD = -1) are not supported")
         frame = frames.get(int(system), place)
         if not frame.is_basic:
             rotated[rows] = True
@@ -188,42 +196,12 @@ def _directions(bulk: Bulk, ids: Ints, xyz: Floats, cd: Ints, frames: Frames) ->
 
 
 def _scalar_ids(bulk: Bulk) -> Ints:
-    """Scalar points named on SPOINT, or used by CELAS3/4 and CMASS3/4 without one."""
+    """Scalar points named on SPOINT, or used without one by cards with attribute `scalars`."""
     ids: set[int] = set()
     for card in bulk.listed("SPOINT"):
-        ids.update(int(k) for k in card.points)
-    for name in ("CELAS3", "CELAS4", "CMASS3", "CMASS4", "CDAMP3", "CDAMP4"):
-        for card in bulk.table(name).values():
-            ids.update(int(k) for k in card.nodes if k)
+        for part in card.nodes:
+            ids.update(part if isinstance(part, range) else (part,))
+    for name, definition in bulk.definitions.items():
+        if any(f.attribute == "scalars" for f in definition.fields):
+            ids.update(k for card in bulk.table(name).values() for k in card.scalars if k)
     return np.array(sorted(ids), dtype=np.int64)
-
-
-def _systems(bulk: Bulk, cards: list[Any]) -> tuple[Ints, Ints, list[str]]:
-    """CP, CD and PS of each grid, blanks filled from GRDSET."""
-    cp = np.array([c.cp for c in cards], dtype=np.int64)
-    cd = np.array([c.cd for c in cards], dtype=np.int64)
-    ps = [_components(c.ps) for c in cards]
-    defaults = bulk.listed("GRDSET")
-    if not defaults:
-        return cp, cd, ps
-    default = [*defaults[0], *[None] * 9]
-    blank = {
-        int(f[1] or 0): [len(f) <= k or f[k] is None for k in (2, 6, 7)]
-        for f in (fields_of(raw.lines) for raw in bulk.raw["GRID"])
-    }
-    try:
-        default_cp, default_cd = (int(default[k] or 0) for k in (2, 6))
-    except ValueError:
-        raise InputError(f"{bulk.place_listed('GRDSET', 0)}: CP and CD must be integers") from None
-    for i, card in enumerate(cards):
-        no_cp, no_cd, no_ps = blank[int(card.nid)]
-        cp[i] = default_cp if no_cp else cp[i]
-        cd[i] = default_cd if no_cd else cd[i]
-        ps[i] = _components(default[7]) if no_ps else ps[i]
-    return cp, cd, ps
-
-
-def _components(value: Any) -> str:
-    """PS as digits; a zero stands for none."""
-    text = str(value or "").strip()
-    return "" if text == "0" else text

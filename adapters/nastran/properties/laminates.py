@@ -6,10 +6,47 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.errors import InputError
-from .cards import Bulk, Card, fields_of
-from .materials import Plane, plane
+from ....core.arrays import Floats
+from ....core.errors import Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..deck.movable_values import Doubt, Moves
+from .materials import Plane, isotropic, plane
+
+_LAMINATE = "PID:i! Z0:r NSM:r=0. SB:r=0. FT:w TREF:r=0. GE:r=0. LAM:w"
+
+CARDS = (
+    Card(
+        "PSHELL",
+        "PID:i! MID1:i T:r MID2:i 12I/T**3>bending:r=1. MID3:i TS/T>shear:r=.833333 NSM:r=0. / "
+        "Z1:r Z2:r MID4:i",
+        "pid",
+        space="shell property",
+        moves=Moves(
+            also={
+                **dict.fromkeys(("12I/T3", "12I/T^3", "12I/TTT", "12I/T*3", "BK"), "12I/T**3"),
+                "TST": "TS/T",
+                "THICKNESS": "T",
+            },
+            linear=("NSM",),
+            doubt=Doubt(("T",), 0.06, 0.7, 1.4),
+        ),
+    ),
+    Card(
+        "PCOMP",
+        f"{_LAMINATE} [MID:i=^ T:r=^ THETA:r=0. SOUT:w=NO]",
+        "pid",
+        space="shell property",
+        moves=Moves(linear=("NSM",)),
+    ),
+    Card(
+        "PCOMPG",
+        f"{_LAMINATE} [GPLYID:i! MID:i=^ T:r=^ THETA:r=0. SOUT:w=NO - - -]",
+        "pid",
+        space="shell property",
+        moves=Moves(),
+    ),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +82,7 @@ class Layup:
 def layup(
     bulk: Bulk,
     key: tuple[str, int],
-    place: str,
+    place: Place,
     own: float = 0.0,
     share: float = 1.0,
 ) -> Layup:
@@ -57,7 +94,7 @@ def layup(
         Cards.
     key : (str, int)
         Card name and number of the property.
-    place : str
+    place : Place
         The same with file and line, for messages.
     own, share : float
         The thickness is ``own + share * T`` (PSHELL only): corners may have their own.
@@ -73,45 +110,39 @@ def layup(
     return _pcomp(bulk, card, place)
 
 
-def _pshell(bulk: Bulk, card: Card, place: str, own: float, share: float) -> Layup:
-    t = own + share * float(card.t or 0.0)
+def _pshell(bulk: Bulk, card: Values, place: Place, own: float, share: float) -> Layup:
+    t = own + share * (card.t or 0.0)
     if not t > 0.0:
-        raise InputError(f"{place}: the thickness T is {t:g}; it must be positive")
+        raise place.error(f"the thickness T is {t:g}; it must be positive")
     mid1, mid2, mid3, mid4 = (_mid(m) for m in (card.mid1, card.mid2, card.mid3, card.mid4))
     zero = np.zeros((3, 3))
     used: dict[int, Plane] = {}
-    strain = _asks_for_plane_strain(bulk, int(card.pid))
+    strain = mid2 == -1
     mid2 = None if strain else mid2
     for mid in (mid1, mid2, mid3, mid4):
         if mid is not None:
             used[mid] = plane(bulk, mid, place)
     if not used:
-        raise InputError(f"{place} names no material")
+        raise place.fault("names no material")
     if strain and mid1 is not None:
         used[mid1] = _plane_strain(bulk, mid1, used[mid1], place)
     A = used[mid1].Q * t if mid1 is not None else zero
-    inertia = float(card.twelveIt3 if card.twelveIt3 is not None else 1.0) * t**3 / 12.0
+    inertia = card.bending * t**3 / 12.0
     D = used[mid2].Q * inertia if mid2 is not None else zero
     B = used[mid4].Q * t**2 if mid4 is not None else zero
     S = np.diag([np.inf, np.inf])
     if mid3 is not None and mid2 is not None:
-        S = used[mid3].shear * (float(card.tst if card.tst is not None else 0.833333) * t)
+        S = used[mid3].shear * (card.shear * t)
     drilling = float(A[2, 2])  # none without a membrane
     first = used[mid1 if mid1 is not None else next(iter(used))]
-    density = first.rho * t + float(card.nsm or 0.0)
+    density = first.rho * t + card.nsm
     keys = tuple(_key(bulk, mid) for mid in used)
     same = all(m.isotropic for m in used.values())
     return Layup(A, B, D, S, drilling, density, same, keys)
 
 
-def _asks_for_plane_strain(bulk: Bulk, pid: int) -> bool:
-    """Whether MID2 is -1, which pyNastran's class does not keep."""
-    raw = bulk.numbered.get("PSHELL", {}).get(pid)
-    return raw is not None and fields_of(raw.lines)[4:5] == ["-1"]
-
-
 def _mid(value: int | None) -> int | None:
-    return None if value is None or int(value) == 0 else int(value)
+    return value or None
 
 
 def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
@@ -119,24 +150,23 @@ def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
     return (found[0] if found else "MAT1"), mid
 
 
-def _plane_strain(bulk: Bulk, mid: int, material: Plane, place: str) -> Plane:
-    card = bulk.table("MAT1").get(mid)
-    if card is None:
-        raise InputError(f"{place}: plane strain (MID2 -1) needs a MAT1 as MID1")
-    E, nu = float(card.e), float(card.nu)
+def _plane_strain(bulk: Bulk, mid: int, material: Plane, place: Place) -> Plane:
+    if mid not in bulk.table("MAT1"):
+        raise place.error("plane strain (MID2 -1) needs a MAT1 as MID1")
+    E, _, nu, _ = isotropic(bulk, mid, place)
     if not nu < 0.5:
-        raise InputError(f"{place}: plane strain needs a Poisson's ratio below 0.5")
+        raise place.error("plane strain needs a Poisson's ratio below 0.5")
     c = E / ((1.0 + nu) * (1.0 - 2.0 * nu))
     Q = c * np.array([[1.0 - nu, nu, 0.0], [nu, 1.0 - nu, 0.0], [0.0, 0.0, 0.5 - nu]])
     return Plane(Q, material.shear, material.rho, True)
 
 
-def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
+def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     """Classical laminate theory; transverse shear as Nastran finds it for the whole laminate."""
     t, theta, mids = _plies(card, place)
-    lam = str(card.lam or "").upper()
+    lam = card.lam or ""
     if lam not in ("", "BEND", "MEM", "SYM", "SMEAR", "SMCORE"):
-        raise InputError(f"{place}: LAM {lam!r} is not one of SYM, MEM, BEND, SMEAR, SMCORE")
+        raise place.error(f"LAM {lam!r} is not one of SYM, MEM, BEND, SMEAR, SMCORE")
     materials = {mid: plane(bulk, mid, place) for mid in dict.fromkeys(mids)}
     Q = np.array([_turned(materials[m].Q, a) for m, a in zip(mids, theta, strict=True)])
     G = np.array([_turned_shear(materials[m].shear, a) for m, a in zip(mids, theta, strict=True)])
@@ -153,7 +183,7 @@ def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
     if lam == "SMEAR":
         B, D = np.zeros((3, 3)), A * total**2 / 12.0
     elif lam == "SMCORE":
-        raise InputError(f"{place}: LAM SMCORE is not supported")
+        raise place.error("LAM SMCORE is not supported")
     elif lam == "MEM":
         B, D = np.zeros((3, 3)), np.zeros((3, 3))
     elif lam == "BEND":
@@ -161,19 +191,21 @@ def _pcomp(bulk: Bulk, card: Card, place: str) -> Layup:
     small = 1e-12 * np.abs(A).max(initial=0.0) * total
     if np.abs(B).max(initial=0.0) <= small:
         B = np.zeros((3, 3))
-    density = float(rho @ t) + float(card.nsm or 0.0)
+    density = float(rho @ t) + card.nsm
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
     return Layup(A, B, D, S, float(A[2, 2]), density, same, keys)
 
 
-def _plies(card: Card, place: str) -> tuple[Floats, Floats, list[int]]:
-    t = np.array(card.thicknesses, dtype=np.float64)
-    theta = np.radians(np.array([a or 0.0 for a in card.thetas], dtype=np.float64))
-    mids = [int(m) for m in card.mids]
+def _plies(card: Values, place: Place) -> tuple[Floats, Floats, list[int]]:
+    t = np.array(card.t, dtype=np.float64)
+    theta = np.radians(np.array(card.theta, dtype=np.float64))
+    mids = list(card.mid)
+    if None in mids:
+        raise place.error("a ply names no material")
     if not len(t) or not (t > 0.0).all():
-        raise InputError(f"{place}: every ply needs a positive thickness")
-    if str(card.lam or "").upper() == "SYM":  # the plies listed are the lower half
+        raise place.error("every ply needs a positive thickness")
+    if card.lam == "SYM":  # the plies listed are the lower half
         t, theta, mids = (
             np.concatenate([t, t[::-1]]),
             np.concatenate([theta, theta[::-1]]),

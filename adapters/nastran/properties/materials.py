@@ -7,10 +7,58 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.elements.material import isotropic_solid
-from ...core.errors import InputError
-from .cards import Bulk, Card
+from ....core.arrays import Floats
+from ....core.elements.solid import isotropic_solid
+from ....core.errors import Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..deck.movable_values import Doubt, Moves
+
+_RHO = "RHO:r=0."
+
+CARDS = (
+    Card(
+        "MAT1",
+        f"MID:i! E:r G:r NU:r {_RHO} A:r=0. TREF:r=0. GE:r=0. / ST:r=0. SC:r=0. SS:r=0. MCSID:i=0",
+        "mid",
+        space="material",
+        moves=Moves(also={"ALPHA": "A"}, linear=("E", "RHO"), doubt=Doubt(("E",), 0.1, 0.7, 1.4)),
+    ),
+    Card(
+        "MAT2",
+        f"MID:i! G11,G12,G13,G22,G23,G33>g:r=0. {_RHO} / A1:r A2:r A3:r TREF:r=0. GE:r=0. ST:r "
+        "SC:r SS:r / MCSID:i GE11,GE12,GE13,GE22,GE23,GE33>damping:r=0.",
+        "mid",
+        space="material",
+        moves=Moves(linear=("RHO",)),
+    ),
+    Card(
+        "MAT8",
+        f"MID:i! E1:r! E2:r! NU12:r=0. G12:r=0. G1Z:r G2Z:r {_RHO} / A1:r=0. A2:r=0. TREF:r=0. "
+        "XT:r=0. XC:r=XT YT:r=0. YC:r=YT S:r=0. / GE:r=0. F12:r=0. STRN:r=0.",
+        "mid",
+        space="material",
+        moves=Moves(
+            also={
+                "E11": "E1",
+                "E22": "E2",
+                "G13": "G1Z",
+                "G23": "G2Z",
+                "G1,Z": "G1Z",
+                "G2,Z": "G2Z",
+            },
+            linear=("RHO",),
+        ),
+    ),
+    Card(
+        "MAT9",
+        "MID:i! G11,G12,G13,G14,G15,G16,G22,G23,G24,G25,G26,G33,G34,G35,G36,G44,G45,G46,G55,G56,"
+        f"G66>g:r=0. {_RHO} A1,A2,A3,A4,A5,A6>a:r=0. TREF:r=0. GE:r=0.",
+        "mid",
+        space="material",
+        moves=Moves(linear=("RHO",)),
+    ),
+)
 
 SHELL_MATERIALS = ("MAT1", "MAT2", "MAT8")
 
@@ -65,7 +113,7 @@ class Elastic:
     isotropic: bool
 
 
-def isotropic(bulk: Bulk, mid: int | None, asked_by: str) -> Isotropic:
+def isotropic(bulk: Bulk, mid: int | None, asked_by: Place) -> Isotropic:
     """Return the constants of a MAT1.
 
     Raises
@@ -75,28 +123,41 @@ def isotropic(bulk: Bulk, mid: int | None, asked_by: str) -> Isotropic:
     """
     card = None if mid is None else bulk.table("MAT1").get(int(mid))
     if card is None:
-        raise InputError(f"{asked_by} refers to material {mid}, but there is no MAT1 {mid}")
+        raise asked_by.fault(f"refers to material {mid}, but there is no MAT1 {mid}")
     return _constants(bulk, card)
 
 
-def _constants(bulk: Bulk, card: Card) -> Isotropic:
-    E, G, nu = float(card.e or 0.0), float(card.g or 0.0), float(card.nu or 0.0)
-    rho = float(card.rho or 0.0)
+def _constants(bulk: Bulk, card: Values) -> Isotropic:
+    E, G, nu = _derived(bulk, card)
     if E < 0.0 or G < 0.0:
         name, value = ("E", E) if E < 0.0 else ("G", G)
-        raise InputError(
-            f"{bulk.place('MAT1', int(card.mid))}: {name} is {value:g}; a modulus must not be "
-            "negative"
+        raise bulk.place("MAT1", card.mid).error(
+            f"{name} is {value:g}; a modulus must not be negative"
         )
     if not -1.0 < nu <= 0.5:
-        raise InputError(
-            f"{bulk.place('MAT1', int(card.mid))}: Poisson's ratio is {nu:g}; it must lie between "
+        raise bulk.place("MAT1", card.mid).error(
+            f"Poisson's ratio is {nu:g}; it must lie between "
             "-1 and 0.5 (check E and G where NU is blank)"
         )
-    return Isotropic(E, G, nu, rho)
+    return Isotropic(E, G, nu, card.rho)
 
 
-def elastic(bulk: Bulk, mid: int, asked_by: str) -> Elastic:
+def _derived(bulk: Bulk, card: Values) -> tuple[float, float, float]:
+    """E, G, nu, the blank one from the other two (MAT1, remark 3); alone it leaves zeros."""
+    E, G, nu = card.e, card.g, card.nu
+    if E is None and G is None:
+        raise bulk.place("MAT1", card.mid).error("E and G must not both be blank")
+    if nu is None:
+        nu = 0.0 if E is None or G is None else E / (2.0 * G) - 1.0 if G else np.inf
+        return E or 0.0, G or 0.0, nu
+    return (
+        2.0 * (1.0 + nu) * G if E is None else E,
+        E / (2.0 * (1.0 + nu)) if G is None and nu != -1.0 else G or 0.0,
+        nu,
+    )
+
+
+def elastic(bulk: Bulk, mid: int, asked_by: Place) -> Elastic:
     """Return a MAT1 or MAT9 in three dimensions, in its own axes.
 
     Raises
@@ -106,21 +167,20 @@ def elastic(bulk: Bulk, mid: int, asked_by: str) -> Elastic:
     """
     found = bulk.find(("MAT1", "MAT9"), int(mid))
     if found is None:
-        raise InputError(f"{asked_by} refers to material {mid}, but there is no MAT1 or MAT9 {mid}")
+        raise asked_by.fault(f"refers to material {mid}, but there is no MAT1 or MAT9 {mid}")
     name, card = found
     if name == "MAT1":
         E, _, nu, rho = _constants(bulk, card)
         if not nu < 0.5:
-            raise InputError(f"{bulk.place(name, int(mid))}: solids need NU below 0.5")
+            raise bulk.place(name, int(mid)).error("solids need NU below 0.5")
         return Elastic(isotropic_solid(np.array([E]), np.array([nu]))[0], rho, True)
     C = np.zeros((6, 6))
-    for i in range(6):
-        for j in range(i, 6):
-            C[i, j] = C[j, i] = float(getattr(card, f"G{i + 1}{j + 1}") or 0.0)
-    return Elastic(C, float(card.rho or 0.0), False)
+    rows, columns = np.triu_indices(6)
+    C[rows, columns] = C[columns, rows] = card.g
+    return Elastic(C, card.rho, False)
 
 
-def plane(bulk: Bulk, mid: int, asked_by: str) -> Plane:
+def plane(bulk: Bulk, mid: int, asked_by: Place) -> Plane:
     """Return a material in plane stress.
 
     Raises
@@ -130,9 +190,8 @@ def plane(bulk: Bulk, mid: int, asked_by: str) -> Plane:
     """
     found = bulk.find(SHELL_MATERIALS, int(mid))
     if found is None:
-        raise InputError(
-            f"{asked_by} refers to material {mid}, but there is no {' or '.join(SHELL_MATERIALS)} "
-            f"{mid}"
+        raise asked_by.fault(
+            f"refers to material {mid}, but there is no {' or '.join(SHELL_MATERIALS)} {mid}"
         )
     name, card = found
     return {"MAT1": _plane_isotropic, "MAT2": _plane_general, "MAT8": _plane_orthotropic}[name](
@@ -140,34 +199,27 @@ def plane(bulk: Bulk, mid: int, asked_by: str) -> Plane:
     )
 
 
-def _plane_isotropic(bulk: Bulk, card: Card) -> Plane:
+def _plane_isotropic(bulk: Bulk, card: Values) -> Plane:
     E, G, nu, rho = _constants(bulk, card)
     Q = E / (1.0 - nu**2) * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 - 0.5 * nu]])
     return Plane(Q, G * np.eye(2), rho, True)
 
 
-def _plane_general(bulk: Bulk, card: Card) -> Plane:
-    Q = np.array(
-        [
-            [card.G11, card.G12, card.G13],
-            [card.G12, card.G22, card.G23],
-            [card.G13, card.G23, card.G33],
-        ],
-        dtype=np.float64,
-    )
-    return Plane(Q, Q[:2, :2].copy(), float(card.rho or 0.0), False)
+def _plane_general(bulk: Bulk, card: Values) -> Plane:
+    Q = np.zeros((3, 3))
+    rows, columns = np.triu_indices(3)
+    Q[rows, columns] = Q[columns, rows] = card.g
+    return Plane(Q, Q[:2, :2].copy(), card.rho, False)
 
 
-def _plane_orthotropic(bulk: Bulk, card: Card) -> Plane:
-    E1, E2, nu12 = float(card.e11), float(card.e22), float(card.nu12)
+def _plane_orthotropic(bulk: Bulk, card: Values) -> Plane:
+    E1, E2, nu12 = card.e1, card.e2, card.nu12
     nu21 = nu12 * E2 / E1 if E1 else 0.0
     rest = 1.0 - nu12 * nu21
     if not rest > 0.0:
-        raise InputError(
-            f"{bulk.place('MAT8', int(card.mid))}: NU12 {nu12:g} is not possible with E1 and E2"
-        )
+        raise bulk.place("MAT8", card.mid).error(f"NU12 {nu12:g} is not possible with E1 and E2")
     Q = np.zeros((3, 3))
-    Q[0, 0], Q[1, 1], Q[2, 2] = E1 / rest, E2 / rest, float(card.g12 or 0.0)
+    Q[0, 0], Q[1, 1], Q[2, 2] = E1 / rest, E2 / rest, card.g12
     Q[0, 1] = Q[1, 0] = nu12 * E2 / rest
-    shear = np.diag([float(card.g1z or np.inf), float(card.g2z or np.inf)])
-    return Plane(Q, shear, float(card.rho or 0.0), False)
+    shear = np.diag([card.g1z or np.inf, card.g2z or np.inf])
+    return Plane(Q, shear, card.rho, False)

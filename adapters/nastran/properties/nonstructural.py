@@ -8,29 +8,52 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
-from ...core.errors import InputError
-from .cards import Bulk, Fields, to_float
+from ....core.arrays import Floats, Ints
+from ....core.elements import Element
+from ....core.errors import Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Fields, Known, Values, numbers
+from ..deck.movable_values import Moves
+from ..deck.read_deck import Deck
 from .grids import Points
-from .read import Deck
 
 Key = tuple[str, int]
 
-_PER_AREA = ("CQUAD4", "CTRIA3", "CQUAD8", "CTRIA6", "CQUADR", "CTRIAR", "CSHEAR")
-_PER_LENGTH = ("CBAR", "CBEAM", "CROD", "CTUBE", "CONROD")
-_OWNERS = {
-    "PSHELL": _PER_AREA, "PCOMP": _PER_AREA, "PCOMPG": _PER_AREA, "PSHEAR": ("CSHEAR",),
-    "PBAR": ("CBAR",), "PBARL": ("CBAR",), "PBEAM": ("CBEAM",), "PBEAML": ("CBEAM",),
-    "PBCOMP": ("CBEAM",), "PROD": ("CROD",), "PTUBE": ("CTUBE",), "CONROD": ("CONROD",),
-    "ELEMENT": (*_PER_AREA, *_PER_LENGTH),
-}  # fmt: skip
+
+def _list(fields: Fields, _: Known) -> tuple[tuple[int | range, ...] | None]:
+    """Numbers of a list with THRU and BY; None stands for ALL."""
+    every = any(str(f).upper() == "ALL" for f in fields[4:5])
+    return (None if every else numbers(fields, 4),)
+
+
+_VALUE = Moves(also={"VALUE": "VALUE1"})
+
+CARDS = (
+    *(
+        Card(n, "SID:i! TYPE:w! [ID>ids:i! VALUE>values:r=0.]", "sid", unique=False, moves=_VALUE)
+        for n in ("NSM", "NSML")
+    ),
+    *(
+        Card(
+            n,
+            "SID:i! TYPE:w! VALUE>values:r=0.",
+            "sid",
+            unique=False,
+            more=_list,
+            extra="ids",
+            moves=Moves(),
+        )
+        for n in ("NSM1", "NSML1")
+    ),
+    Card("NSMADD", "SID:i! [S>sets:i]", "sid", unique=False),
+)
 
 
 class _Share(NamedTuple):
-    """One value of a card and the elements it goes to."""
+    """One value of a card (`position` None: its only one) and the elements it goes to."""
 
     key: Key
-    field: int
+    position: int | None
     coefficients: dict[int, float]
 
 
@@ -49,8 +72,9 @@ class Nonstructural:
     def at(self, bulk: Bulk, ids: Ints) -> Floats:
         """Mass per area or length added to the elements `ids`, (n,), at the values of `bulk`."""
         total = np.zeros(len(ids))
-        for key, field, coefficients in self.shares:
-            value = to_float(str(bulk.table(key[0])[key[1]][field]))
+        for key, index, coefficients in self.shares:
+            values = bulk.table(key[0])[key[1]].values
+            value = values if index is None else values[index]
             total += value * np.array([coefficients.get(int(i), 0.0) for i in ids])
         return total
 
@@ -70,81 +94,59 @@ def read_nonstructural(deck: Deck, points: Points) -> Nonstructural:
     if deck.case.nsm is None:
         return Nonstructural()
     bulk = deck.bulk
-    numbers = {deck.case.nsm}
-    for fields in bulk.table("NSMADD").values():
-        if int(str(fields[1])) == deck.case.nsm:
-            numbers.update(int(f) for f in fields[2:] if f is not None)
+    wanted = {deck.case.nsm}
+    for card in bulk.table("NSMADD").values():
+        if card.sid == deck.case.nsm:
+            wanted.update(card.sets)
     measure = _Measures(bulk, points)
     shares: list[_Share] = []
     for name in ("NSM", "NSM1", "NSML", "NSML1"):
-        for number, fields in bulk.table(name).items():
-            if int(str(fields[1])) in numbers:
-                place = bulk.place(name, number)
-                try:
-                    shares.extend(_read(name, number, fields, measure, place))
-                except (ValueError, IndexError):
-                    raise InputError(f"{place}: a number or value is missing or wrong") from None
+        for number, card in bulk.table(name).items():
+            if card.sid in wanted:
+                shares.extend(_read(name, number, card, measure, bulk.place(name, number)))
     if not shares:
-        raise InputError(
-            f"{deck.path}: case control asks for NSM = {deck.case.nsm}, but the deck has no such "
+        raise Place(deck.path).error(
+            f"case control asks for NSM = {deck.case.nsm}, but the deck has no such "
             "NSM, NSM1, NSML or NSML1"
         )
     return Nonstructural(tuple(shares))
 
 
 def _read(
-    name: str, number: int, fields: Fields, measure: _Measures, place: str
+    name: str, number: int, card: Values, measure: _Measures, place: Place
 ) -> Iterable[_Share]:
     """Shares of one card; NSM and NSML hold pairs, NSM1 and NSML1 a value and a list."""
-    kind = str(fields[2] or "").upper()
-    if kind not in _OWNERS:
-        raise InputError(f"{place}: {kind or 'blank'} is not a kind of property that has mass")
+    if card.type not in measure.kinds:
+        raise place.error(f"{card.type} is not a kind of property that has mass")
     if name in ("NSM", "NSML"):
-        for k in range(3, len(fields), 2):
-            if fields[k] is not None:
-                ids = [int(str(fields[k]))]
-                yield _share(name, number, k + 1, kind, ids, measure, place)
+        for k, target in enumerate(card.ids):
+            yield _share(name, number, k, card.type, [target], measure, place)
         return
-    every = any(str(f).upper() == "ALL" for f in fields[4:5])
-    ids = None if every else _list(fields[4:])  # type: ignore[assignment]
-    yield _share(name, number, 3, kind, ids, measure, place)
+    ids = card.ids
+    if ids is not None:
+        ids = [n for part in ids for n in (part if isinstance(part, range) else (part,))]
+    yield _share(name, number, None, card.type, ids, measure, place)
 
 
 def _share(
     name: str,
     number: int,
-    index: int,
+    index: int | None,
     kind: str,
     ids: list[int] | None,
     measure: _Measures,
-    place: str,
+    place: Place,
 ) -> _Share:
     found = measure.elements(kind, ids)
     if not found:
-        raise InputError(f"{place}: no element has the {kind} it names")
+        raise place.error(f"no element has the {kind} it names")
     if name in ("NSML", "NSML1"):
         kinds = {by_area for _, by_area in found.values()}
         if len(kinds) > 1:
-            raise InputError(f"{place}: areas and lengths are mixed in one list")
+            raise place.error("areas and lengths are mixed in one list")
         total = sum(size for size, _ in found.values())
         return _Share((name, number), index, dict.fromkeys(found, 1.0 / total))
     return _Share((name, number), index, dict.fromkeys(found, 1.0))
-
-
-def _list(fields: Fields) -> list[int]:
-    """Numbers of a list with THRU and BY."""
-    words = [str(f).upper() for f in fields if f is not None]
-    out: list[int] = []
-    k = 0
-    while k < len(words):
-        if words[k] == "THRU":
-            step = int(words[k + 3]) if words[k + 2 : k + 3] == ["BY"] else 1
-            out.extend(range(out[-1] + step, int(words[k + 1]) + 1, step))
-            k += 4 if step != 1 or words[k + 2 : k + 3] == ["BY"] else 2
-        else:
-            out.append(int(words[k]))
-            k += 1
-    return out
 
 
 class _Measures:
@@ -154,35 +156,41 @@ class _Measures:
         self._bulk = bulk
         self._points = points
         self._known: dict[str, Mapping[int, float]] = {}
+        every = ((name, card.element) for name, card in bulk.definitions.items())
+        self._elements = {name: e for name, e in every if e and e.dimension in (1, 2)}
+
+    @property
+    def kinds(self) -> set[str]:
+        """What an NSM card may name: properties, elements without one, or elements by number."""
+        return {"ELEMENT", *(kind for name in self._elements for kind in self._kinds(name))}
+
+    def _kinds(self, name: str) -> list[str]:
+        return self._bulk.definitions[name].properties.split() or [name]
 
     def elements(self, kind: str, ids: list[int] | None) -> dict[int, tuple[float, bool]]:
         """Elements of a kind of property (ids None: all), with size and whether it is an area."""
         wanted = None if ids is None else set(ids)
         out = {}
-        for name in _OWNERS[kind]:
-            sizes = self._sizes(name)
+        for name, element in self._elements.items():
+            if kind != "ELEMENT" and kind not in self._kinds(name):
+                continue
+            sizes = self._sizes(name, element)
             for eid, card in self._bulk.table(name).items():
-                number = eid if kind in ("ELEMENT", "CONROD") else int(card.pid)
-                mine = kind in ("ELEMENT", "CONROD") or number in self._bulk.table(kind)
+                number = eid if kind in ("ELEMENT", name) else card.pid
+                mine = kind in ("ELEMENT", name) or number in self._bulk.table(kind)
                 if mine and (wanted is None or number in wanted):
-                    out[eid] = (sizes[eid], name in _PER_AREA)
+                    out[eid] = (sizes[eid], element.dimension == 2)
         return out
 
-    def _sizes(self, name: str) -> Mapping[int, float]:
+    def _sizes(self, name: str, element: Element) -> Mapping[int, float]:
         if name not in self._known:
             cards = self._bulk.table(name)
             ids = np.array(list(cards), dtype=np.int64)
-            corners = 2 if name in _PER_LENGTH else (3 if "TRIA" in name else 4)
-            nodes = [_nodes(c)[:corners] for c in cards.values()]
+            nodes = [c.nodes[: element.corners] for c in cards.values()]
             xyz = self._points.xyz[self._points.rows(nodes, name, ids)] if nodes else None
             values = [] if xyz is None else _size(xyz)
             self._known[name] = dict(zip(ids.tolist(), values, strict=True))
         return self._known[name]
-
-
-def _nodes(card: object) -> list[int]:
-    ends = getattr(card, "nodes", None)
-    return list(ends) if ends is not None else [card.ga, card.gb]  # type: ignore[attr-defined]
 
 
 def _size(xyz: Floats) -> list[float]:

@@ -6,11 +6,89 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...core.arrays import Floats
-from ...core.elements.batch import skew
-from ...core.errors import InputError
-from .cards import Card
+from ....core.arrays import Floats
+from ....core.elements.batch import skew
+from ....core.errors import Place
+from ..deck.card_definition import Card, FieldError, Fields, Known, Values, numbers, take
 from .grids import Points
+
+_ENDS = "EID:i! GA>nodes:i! GB>nodes:i!"
+
+
+def _is_real(text: str | None) -> bool:
+    return text is not None and "." in text
+
+
+def _rbe2_grids(fields: Fields, _: Known) -> list[object]:
+    """GM1, GM2, ... (THRU written out), then ALPHA and TREF."""
+    stop = next((k for k in range(4, len(fields)) if _is_real(fields[k])), len(fields))
+    parts = numbers(fields[:stop], 4)
+    if not parts:
+        raise FieldError(4, "GM1", "must be given")
+    every = (n for part in parts for n in (part if isinstance(part, range) else (part,)))
+    return [tuple(every), take(fields, stop, "ALPHA:r=0."), take(fields, stop + 1, "TREF:r=0.")]
+
+
+def _rbe1_grids(fields: Fields, _: Known) -> list[object]:
+    """Independent pairs of grid and components, UM, dependent pairs, ALPHA."""
+    alpha = len(fields) - 1 if _is_real(fields[-1]) else len(fields)
+    words = [str(text).upper() for text in fields]
+    if "UM" not in words:
+        raise FieldError(len(fields), "UM", "is missing before the dependent grids")
+    um = words.index("UM")
+    out: list[object] = []
+    for letter, first, stop in (("N", 2, um), ("M", um + 1, alpha)):
+        out += _pairs(letter, fields[:stop], first)
+    return [*out, take(fields, alpha, "ALPHA:r=0.")]
+
+
+def _pairs(letter: str, fields: Fields, first: int) -> list[tuple[object, ...]]:
+    """Grids and components from a field on; blank pairs are passed over."""
+    given = [k for k in range(first, len(fields), 2) if any(fields[k : k + 2])]
+    return [tuple(take(fields, k, f"G{letter}:i!") for k in given),
+            tuple(take(fields, k + 1, f"C{letter}:c!") for k in given)]  # fmt: skip
+
+
+def _rbe3_grids(fields: Fields, _: Known) -> list[object]:
+    """Weight, components and grids of each group; UM and its pairs; ALPHA."""
+    words = [str(text).upper() for text in fields]
+    end = words.index("ALPHA") if "ALPHA" in words else len(fields)
+    um = words.index("UM") if "UM" in words else end
+    starts = [k for k in range(5, um) if _is_real(fields[k])]
+    groups = []
+    for k, stop in zip(starts, [*starts[1:], um], strict=True):
+        grids = tuple(take(fields, i, "G:i") for i in range(k + 2, stop) if fields[i] is not None)
+        if not grids:
+            raise FieldError(k + 2, "G", "must be given")
+        groups.append((take(fields, k, "WT:r!"), take(fields, k + 1, "C:c!"), grids))
+    if not groups:
+        raise FieldError(5, "WT1", "must be given")
+    alpha = take(fields, end + 1, "ALPHA:r=0.")
+    return [*zip(*groups, strict=True), *_pairs("M", fields[:end], um + 1), alpha]
+
+
+CARDS = (
+    Card("RBE1", "EID:i!", "eid", more=_rbe1_grids, extra="gn cn gm cm alpha", grids="gn gm"),
+    Card(
+        "RBE2",
+        "EID:i! GN:i! CM:c",
+        "eid",
+        more=_rbe2_grids,
+        extra="gm alpha tref",
+        grids="gn gm",
+    ),
+    Card(
+        "RBE3",
+        "EID:i! - REFGRID:i! REFC:c",
+        "eid",
+        more=_rbe3_grids,
+        extra="weights components groups gm cm alpha",
+        grids="refgrid groups",
+    ),
+    Card("RBAR", f"{_ENDS} CNA:c CNB:c CMA:c CMB:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card("RBAR1", f"{_ENDS} CB:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card("RROD", f"{_ENDS} CMA:c CMB:c ALPHA:r=0. TREF:r=0.", "eid"),
+)
 
 
 class Rows:
@@ -25,12 +103,12 @@ class Rows:
     def __init__(self, points: Points) -> None:
         self.points = points
         self.dependent: list[int] = []
-        self.owners: list[str] = []
+        self.owners: list[Place] = []
         self.rows: list[int] = []
         self.columns: list[int] = []
         self.values: list[float] = []
 
-    def add(self, dependent: int, columns: Sequence[int], values: Floats, owner: str) -> None:
+    def add(self, dependent: int, columns: Sequence[int], values: Floats, owner: Place) -> None:
         """Add ``u[dependent] = sum(values * u[columns])``."""
         row = len(self.dependent)
         self.dependent.append(int(dependent))
@@ -50,7 +128,7 @@ class Rows:
         return out
 
 
-def components_of(digits: object, place: str) -> list[int]:
+def components_of(digits: object, place: Place) -> list[int]:
     """Component numbers 1..6 from digits such as 1235.
 
     Raises
@@ -61,21 +139,21 @@ def components_of(digits: object, place: str) -> list[int]:
     text = str(digits or "").strip()
     text = "" if text == "0" else text
     if any(d not in "123456" for d in text):
-        raise InputError(f"{place}: components {text!r} are not digits from 1 to 6")
+        raise place.error(f"components {text!r} are not digits from 1 to 6")
     return sorted(int(d) for d in set(text))
 
 
-def rbe2(rows: Rows, card: Card, place: str) -> None:
+def rbe2(rows: Rows, card: Values, place: Place) -> None:
     """Components CM of the grids GMi follow the rigid motion of GN."""
     points = rows.points
-    centre = points.row(int(card.gn), place)
+    centre = points.row(card.gn, place)
     components = components_of(card.cm, place)
     independent = rows.motion(centre, points.xyz[centre])
     inverse = independent.T  # a rotation of translations and of rotations
-    for grid in card.Gmi:
+    for grid in card.gm:
         row = points.row(int(grid), place)
         if row == centre:
-            raise InputError(f"{place}: grid {grid} is both the independent and a dependent grid")
+            raise place.error(f"grid {grid} is both the independent and a dependent grid")
         T = rows.motion(row, points.xyz[centre]) @ inverse
         for c in components:
             values = T[c - 1]
@@ -83,29 +161,31 @@ def rbe2(rows: Rows, card: Card, place: str) -> None:
             rows.add(6 * row + c - 1, (6 * centre + used).tolist(), values[used], place)
 
 
-def rbar(rows: Rows, card: Card, place: str) -> None:
+def rbar(rows: Rows, card: Values, place: Place) -> None:
     """Two grids on a rigid bar; six components of either are independent."""
-    independent = [(int(card.ga), card.cna), (int(card.gb), card.cnb)]
-    dependent = [(int(card.ga), card.cma), (int(card.gb), card.cmb)]
-    if not any(str(c or "").strip("0") for _, c in dependent):
+    named = (card.cna, card.cnb) if card.cna or card.cnb else ("123456", None)
+    independent = list(zip(card.nodes, named, strict=True))
+    dependent = list(zip(card.nodes, (card.cma, card.cmb), strict=True))
+    if not any((c or "").strip("0") for _, c in dependent):
         free = {grid: set(components_of(c, place)) for grid, c in independent}
         dependent = [
             (grid, "".join(str(k) for k in range(1, 7) if k not in free[grid]))
-            for grid in (int(card.ga), int(card.gb))
+            for grid in card.nodes
         ]
     _rigid_body(rows, independent, dependent, place)
 
 
-def rbar1(rows: Rows, card: Card, place: str) -> None:
+def rbar1(rows: Rows, card: Values, place: Place) -> None:
     """Components CB of GB follow the rigid motion of GA."""
     components = card.cb or "123456"
-    _rigid_body(rows, [(int(card.ga), "123456")], [(int(card.gb), components)], place)
+    a, b = card.nodes
+    _rigid_body(rows, [(a, "123456")], [(b, components)], place)
 
 
-def rbe1(rows: Rows, card: Card, place: str) -> None:
+def rbe1(rows: Rows, card: Values, place: Place) -> None:
     """Several grids on a rigid body; six components of them are independent."""
-    independent = list(zip(card.Gni, card.Cni, strict=True))
-    dependent = list(zip(card.Gmi, card.Cmi, strict=True))
+    independent = list(zip(card.gn, card.cn, strict=True))
+    dependent = list(zip(card.gm, card.cm, strict=True))
     _rigid_body(rows, independent, dependent, place)
 
 
@@ -113,34 +193,32 @@ def _rigid_body(
     rows: Rows,
     independent: Sequence[tuple[int, object]],
     dependent: Sequence[tuple[int, object]],
-    place: str,
+    place: Place,
 ) -> None:
     """Dependent components from the rigid motion that six independent components determine."""
     points = rows.points
     origin = points.xyz[points.row(int(independent[0][0]), place)]
     base, columns = _motions(rows, independent, origin, place)
     if len(columns) != 6:
-        raise InputError(f"{place}: {len(columns)} components are independent; there must be six")
+        raise place.error(f"{len(columns)} components are independent; there must be six")
     scale = _lengths(rows, [*independent, *dependent], origin, place)
     balance = np.array([1.0, 1.0, 1.0, scale, scale, scale])
     unit = np.where(np.array(columns) % 6 < 3, 1.0, scale)
     if np.linalg.cond(base * unit[:, None] / balance) > 1e10:
-        raise InputError(
-            f"{place}: its independent components do not determine the motion of a rigid body"
-        )
+        raise place.error("its independent components do not determine the motion of a rigid body")
     values, targets = _motions(rows, dependent, origin, place)
     solved = np.linalg.solve((base / balance).T, (values / balance).T).T
     for dof, row in zip(targets, solved, strict=True):
         if dof in columns:
-            raise InputError(
-                f"{place}: {points.label(dof)} (grid:component) is both independent and dependent"
+            raise place.error(
+                f"{points.label(dof)} (grid:component) is both independent and dependent"
             )
         used = np.flatnonzero(np.abs(row) > 1e-13 * max(1.0, float(np.abs(row).max())))
         rows.add(dof, [columns[k] for k in used], row[used], place)
 
 
 def _motions(
-    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: str
+    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: Place
 ) -> tuple[Floats, list[int]]:
     """Rows (m, 6) of displacements by rigid motion about `origin`, and their dofs."""
     values, dofs = [], []
@@ -154,7 +232,7 @@ def _motions(
 
 
 def _lengths(
-    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: str
+    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: Place
 ) -> float:
     """Return the largest distance from `origin`, 1 where all coincide."""
     at = [rows.points.xyz[rows.points.row(int(grid), place)] for grid, _ in members]
@@ -162,31 +240,29 @@ def _lengths(
     return largest if largest > 0.0 else 1.0
 
 
-def rrod(rows: Rows, card: Card, place: str) -> None:
+def rrod(rows: Rows, card: Values, place: Place) -> None:
     """Keep the distance of two grids; one component of one of them is dependent."""
     points = rows.points
-    a, b = (points.row(int(grid), place) for grid in card.nodes)
+    a, b = (points.row(grid, place) for grid in card.nodes)
     along = points.xyz[b] - points.xyz[a]
     length = float(np.linalg.norm(along))
     if length == 0.0:
-        raise InputError(f"{place} has no length: its ends coincide")
+        raise place.fault("has no length: its ends coincide")
     x = along / length
     coefficients = np.concatenate([-points.directions[a] @ x, points.directions[b] @ x])
     dofs = [6 * a, 6 * a + 1, 6 * a + 2, 6 * b, 6 * b + 1, 6 * b + 2]
     chosen = [c - 1 for c in components_of(card.cma, place)]
     chosen += [c + 2 for c in components_of(card.cmb, place)]
     if len(chosen) != 1 or chosen[0] > 5:
-        raise InputError(f"{place}: one translation must be dependent, CMA or CMB")
+        raise place.error("one translation must be dependent, CMA or CMB")
     pivot = coefficients[chosen[0]]
     if abs(pivot) < 1e-3:
-        raise InputError(
-            f"{place}: the dependent component is (nearly) normal to the rod: give another"
-        )
+        raise place.error("the dependent component is (nearly) normal to the rod: give another")
     others = [k for k in range(6) if k != chosen[0] and abs(coefficients[k]) > 1e-14]
     rows.add(dofs[chosen[0]], [dofs[k] for k in others], -coefficients[others] / pivot, place)
 
 
-def rbe3(rows: Rows, card: Card, place: str) -> None:
+def rbe3(rows: Rows, card: Values, place: Place) -> None:
     """Move the reference grid as the weighted mean of others.
 
     The motion of the reference grid is the rigid motion that fits the others' displacements best,
@@ -195,11 +271,11 @@ def rbe3(rows: Rows, card: Card, place: str) -> None:
     components are made dependent by the same equations.
     """
     points = rows.points
-    reference = points.row(int(card.refgrid), place)
+    reference = points.row(card.refgrid, place)
     origin = points.xyz[reference]
     members = [
-        (int(grid), digits, float(weight))
-        for weight, digits, grids in zip(card.weights, card.comps, card.Gijs, strict=True)
+        (grid, digits, weight)
+        for weight, digits, grids in zip(card.weights, card.components, card.groups, strict=True)
         for grid in grids
     ]
     S, columns = _motions(rows, [(g, c) for g, c, _ in members], origin, place)
@@ -219,13 +295,13 @@ def rbe3(rows: Rows, card: Card, place: str) -> None:
     own[:3, :3] = own[3:, 3:] = points.directions[reference]
     wanted = (own / balance)[[c - 1 for c in components]]
     if lost.size and np.abs(wanted * balance.max() @ lost).max() > 1e-6 * balance.max():
-        raise InputError(
-            f"{place}: the grids it averages do not determine all components {card.refc} of the "
+        raise place.error(
+            f"the grids it averages do not determine all components {card.refc} of the "
             "reference grid: average more components or fewer in a line"
         )
     G = wanted @ np.linalg.pinv(normal, rcond=1e-10, hermitian=True) @ (A.T * weights)
     targets = [6 * reference + c - 1 for c in components]
-    moved = list(zip(card.Gmi or [], card.Cmi or [], strict=True))
+    moved = list(zip(card.gm, card.cm, strict=True))
     if not moved:
         for dof, row in zip(targets, G, strict=True):
             _add_trimmed(rows, dof, columns, row, place)
@@ -239,34 +315,34 @@ def _rbe3_um(
     targets: list[int],
     columns: list[int],
     G: Floats,
-    place: str,
+    place: Place,
 ) -> None:
     """Solve the equations ``u[targets] = G u[columns]`` for the components under UM."""
     _, dependent = _motions(rows, moved, np.zeros(3), place)
     every = [*targets, *columns]
     if len(dependent) != len(targets):
-        raise InputError(
-            f"{place}: UM names {len(dependent)} components; there must be as many as in REFC, "
+        raise place.error(
+            f"UM names {len(dependent)} components; there must be as many as in REFC, "
             f"{len(targets)}"
         )
     if any(d not in every for d in dependent):
-        raise InputError(f"{place}: UM names a component that the element does not use")
+        raise place.error("UM names a component that the element does not use")
     equations = np.hstack([np.eye(len(targets)), -G])
     position = [every.index(d) for d in dependent]
     rest = [k for k in range(len(every)) if k not in position]
     if np.linalg.cond(equations[:, position]) > 1e12:
-        raise InputError(f"{place}: the components under UM cannot be the dependent ones")
+        raise place.error("the components under UM cannot be the dependent ones")
     solved = -np.linalg.solve(equations[:, position], equations[:, rest])
     for dof, row in zip(dependent, solved, strict=True):
         _add_trimmed(rows, dof, [every[k] for k in rest], row, place)
 
 
-def _add_trimmed(rows: Rows, dof: int, columns: list[int], row: Floats, place: str) -> None:
+def _add_trimmed(rows: Rows, dof: int, columns: list[int], row: Floats, place: Place) -> None:
     used = np.flatnonzero(np.abs(row) > 1e-14 * max(1.0, float(np.abs(row).max())))
     rows.add(dof, [columns[k] for k in used], row[used], place)
 
 
-RIGID: dict[str, Callable[[Rows, Card, str], None]] = {
+RIGID: dict[str, Callable[[Rows, Values, Place], None]] = {
     "RBE2": rbe2,
     "RBAR": rbar,
     "RBAR1": rbar1,

@@ -2,19 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ...core.errors import InputError
-from .cards import Bulk, Card, CardReader, Fields, fields_of, to_float
-from .read import Deck
+from ....core.errors import InputError, Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, FieldError, Fields, Known, Values, take
+from ..deck.read_deck import Deck
+from ..text.real_numbers import parse_real
 
 Key = tuple[str, int]
 
-_TABLES = ("TABLEM1", "TABLEM2", "TABLEM3", "TABLEM4")
-_MATERIALS = {"MATT1": "MAT1", "MATT2": "MAT2", "MATT8": "MAT8", "MATT9": "MAT9"}
+_MATERIALS = {
+    "MATT1": "E,G,NU,RHO,A,-,GE,ST,SC,SS",
+    "MATT2": "G11,G12,G13,G22,G23,G33,RHO,A1,A2,A3,-,GE,ST,SC,SS",
+    "MATT8": "E1,E2,NU12,G12,G1Z,G2Z,RHO,A1,A2,-,XT,XC,YT,YC,S,GE,F12",
+    "MATT9": "G11,G12,G13,G14,G15,G16,G22,G23,G24,G25,G26,G33,G34,G35,G36,G44,G45,G46,G55,G56,G66,"
+    "RHO,A1,A2,A3,A4,A5,A6,-,GE",
+}
+"""Cards that name a table for each field of the material of the same number."""
+
+
+def _points(fields: Fields, _: Known) -> tuple[tuple[float, ...], ...]:
+    """X and y of a table; pairs with SKIP are left out."""
+    pairs = [(k, fields[k : k + 2]) for k in range(9, _end(fields), 2)]
+    kept = [k for k, pair in pairs if "SKIP" not in [str(text).upper() for text in pair]]
+    x, y = ([take(fields, k + i, f"{name}:r!") for k in kept] for i, name in enumerate("xy"))
+    if not x:
+        raise FieldError(9, "x", "must be given")
+    return tuple(x), tuple(y)
+
+
+def _coefficients(fields: Fields, _: Known) -> tuple[tuple[float, ...]]:
+    return (tuple(take(fields, k, "A:r=0.") for k in range(9, _end(fields))),)
+
+
+def _end(fields: Fields) -> int:
+    words = [str(text).upper() for text in fields]
+    if "ENDT" not in words:
+        raise FieldError(len(fields), "ENDT", "is missing at the end of the table")
+    return words.index("ENDT")
+
+
+def _table(number: int, layout: str, more: Callable[[Fields, Known], Any], extra: str) -> Card:
+    layout = f"TID:i! {layout}"
+    return Card(f"TABLEM{number}", layout, "tid", more=more, extra=extra)
+
+
+_TABLES = (
+    _table(1, "XAXIS:w=LINEAR YAXIS:w=LINEAR", _points, "x y"),
+    _table(2, "X1:r=0. EXTRAP:i=0", _points, "x y"),
+    _table(3, "X1:r! X2:r! EXTRAP:i=0", _points, "x y"),
+    _table(4, "X1:r! X2:r! X3:r! X4:r!", _coefficients, "a"),
+)
+
+CARDS = (
+    *(Card(name, f"MID:i! {row}>tables:i=0", "mid") for name, row in _MATERIALS.items()),
+    *_TABLES,
+    Card("TEMP", "SID:i! [G>nodes:i! T:r!]"),
+    Card("TEMPD", "[SID:i! T:r!]"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,19 +90,14 @@ class Thermal:
             text = out[index] if index < len(out) else None
             if not absolute and text is None:
                 continue
-            value = factor if absolute else factor * to_float(str(text))
+            value = factor if absolute else factor * parse_real(str(text))
             out.extend([None] * (index + 1 - len(out)))
             out[index] = repr(value)
         return out
 
     def applied(self, bulk: Bulk) -> Bulk:
         """Return the deck's cards with all materials at the temperature."""
-        reader = CardReader(bulk.files)
-        changed: dict[Key, Card] = {}
-        for key in self.tables:
-            raw = bulk.numbered[key[0]][key[1]]
-            changed[key] = reader.read(raw, self.fields(bulk, key, fields_of(raw.lines)))
-        return bulk.replaced(changed) if changed else bulk
+        return bulk.replaced({k: self.fields(bulk, k, bulk.fields(*k)) for k in self.tables})
 
 
 def read_thermal(deck: Deck) -> Thermal:
@@ -66,15 +111,14 @@ def read_thermal(deck: Deck) -> Thermal:
     bulk = deck.bulk
     number = deck.case.temperature
     tables: dict[Key, dict[int, int]] = {}
-    for name, target in _MATERIALS.items():
+    for name in _MATERIALS:
+        target = f"MAT{name[4:]}"
+        fields = bulk.definitions[name].fields
+        places = [k for k, field in enumerate(fields, 1) if field.attribute == "tables"]
         for mid, card in bulk.table(name).items():
             if mid not in bulk.table(target):
-                raise InputError(f"{bulk.place(name, mid)} has no {target} {mid} beside it")
-            columns = {
-                index: int(text)
-                for index, text in enumerate(card[2:], start=2)
-                if text is not None and text.isdigit() and int(text) > 0
-            }
+                raise bulk.place(name, mid).fault(f"has no {target} {mid} beside it")
+            columns = {k: table for k, table in zip(places, card.tables, strict=True) if table > 0}
             if columns:
                 tables[target, mid] = columns
     if number is None or not tables:
@@ -86,21 +130,21 @@ def _uniform(deck: Deck, number: int) -> float:
     """Return the one temperature of a set: TEMP of the grids, TEMPD of those without."""
     own = {
         grid: (value, place)
-        for fields, place in _placed(deck, "TEMP")
-        for sid, grid, value in _grid_entries(fields, place)
-        if sid == number
+        for card, place in _placed(deck, "TEMP")
+        for grid, value in zip(card.nodes, card.t, strict=True)
+        if card.sid == number
     }
     default = [
         (value, place)
-        for fields, place in _placed(deck, "TEMPD")
-        for sid, value in _entries(fields, place)
+        for card, place in _placed(deck, "TEMPD")
+        for sid, value in zip(card.sid, card.t, strict=True)
         if sid == number
     ]
     covered = own and all(grid in own for grid in deck.bulk.table("GRID"))
     values = dict([*own.values(), *([] if covered else default)])
     if not values:
-        raise InputError(
-            f"{deck.path}: case control asks for the temperature set {number}, but the deck has "
+        raise Place(deck.path).error(
+            f"case control asks for the temperature set {number}, but the deck has "
             "no TEMP or TEMPD of that set"
         )
     if len(values) > 1:
@@ -109,49 +153,28 @@ def _uniform(deck: Deck, number: int) -> float:
             f"materials depend on temperature and the initial temperatures differ ({shown}): only "
             "one temperature for all grids is supported"
         )
-    return next(iter(values))
+    return float(next(iter(values)))
 
 
-def _placed(deck: Deck, name: str) -> Iterator[tuple[Fields, str]]:
-    for k, fields in enumerate(deck.bulk.listed(name)):
-        yield fields, deck.bulk.place_listed(name, k)
-
-
-def _grid_entries(fields: Fields, place: str) -> list[tuple[int, int, float]]:
-    """(set, grid, temperature) of a TEMP card."""
-    try:
-        sid = int(str(fields[1]))
-        pairs = zip(fields[2::2], fields[3::2], strict=False)
-        return [(sid, int(str(g)), to_float(str(t))) for g, t in pairs if g is not None]
-    except (IndexError, ValueError):
-        raise InputError(f"{place}: a set, a grid or a temperature is not a number") from None
-
-
-def _entries(fields: Fields, place: str) -> list[tuple[int, float]]:
-    """(set, temperature) pairs of a TEMPD card."""
-    try:
-        pairs = zip(fields[1::2], fields[2::2], strict=False)
-        return [(int(str(a)), to_float(str(b))) for a, b in pairs if a is not None]
-    except (IndexError, ValueError):
-        raise InputError(f"{place}: a set or a temperature is not a number") from None
+def _placed(deck: Deck, name: str) -> Iterator[tuple[Values, Place]]:
+    for k, card in enumerate(deck.bulk.listed(name)):
+        yield card, deck.bulk.place_listed(name, k)
 
 
 def _value(bulk: Bulk, table: int, x: float, asked_by: Key) -> tuple[float, bool]:
     """Value of a TABLEMi, and whether it replaces the field (TABLEM1) or multiplies it."""
-    found = bulk.find(_TABLES, table)
+    found = bulk.find([card.name for card in _TABLES], table)
     if found is None:
-        name = next(n for n, t in _MATERIALS.items() if t == asked_by[0])
-        raise InputError(
-            f"{bulk.place(name, asked_by[1])} refers to table {table}, but there is no TABLEM1, "
-            f"TABLEM2, TABLEM3 or TABLEM4 {table}"
+        raise bulk.place(f"MATT{asked_by[0][3:]}", asked_by[1]).fault(
+            f"refers to table {table}, but there is no TABLEM1, TABLEM2, TABLEM3 or TABLEM4 {table}"
         )
     name, card = found
     return _EVALUATE[name](card, x), name == "TABLEM1"
 
 
-def _interpolate(card: Card, x: float) -> float:
+def _interpolate(card: Values, x: float) -> float:
     """Linear between points and beyond the ends."""
-    xs, ys = np.array(card.x, dtype=np.float64), np.array(card.y, dtype=np.float64)
+    xs, ys = np.array(card.x), np.array(card.y)
     if len(xs) == 1:
         return float(ys[0])
     k = int(np.clip(np.searchsorted(xs, x) - 1, 0, len(xs) - 2))
@@ -160,15 +183,14 @@ def _interpolate(card: Card, x: float) -> float:
     return float(ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k]))
 
 
-def _polynomial(card: Card, x: float) -> float:
-    x = min(max(x, float(card.x3)), float(card.x4))
-    t = (x - float(card.x1)) / float(card.x2)
+def _polynomial(card: Values, x: float) -> float:
+    t = (min(max(x, card.x3), card.x4) - card.x1) / card.x2
     return float(sum(a * t**i for i, a in enumerate(card.a)))
 
 
-_EVALUATE: dict[str, Callable[[Card, float], float]] = {
+_EVALUATE: Mapping[str, Callable[[Values, float], float]] = {
     "TABLEM1": _interpolate,
-    "TABLEM2": lambda card, x: _interpolate(card, x - float(card.x1)),
-    "TABLEM3": lambda card, x: _interpolate(card, (x - float(card.x1)) / float(card.x2)),
+    "TABLEM2": lambda card, x: _interpolate(card, x - card.x1),
+    "TABLEM3": lambda card, x: _interpolate(card, (x - card.x1) / card.x2),
     "TABLEM4": _polynomial,
 }

@@ -7,10 +7,10 @@ import math
 import re
 from pathlib import Path
 
-from ....core.errors import InputError
-from ..cards import to_float
-from .table import ModeTable
-from .vectors import Vector, tables_of
+from ....core.errors import InputError, Place
+from ..text.real_numbers import parse_real
+from .eigenvector_table import ModeTable
+from .gather_vectors import Vector, tables_of
 
 _VALUE = re.compile(r"\bEIGENVALUE =\s*([-+.\dE]+)")
 _TITLE = re.compile(r"R E A L\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
@@ -26,7 +26,8 @@ _SUMMARY_ROW = re.compile(r"^\s+(\d+)\s+(\d+)" + r"\s+([-+.\dE]+)" * 5 + r"\s*$"
 
 def is_f06(text: str) -> bool:
     """Whether the start of a file is that of Nastran's printed output."""
-    return "N A S T R A N" in text or "EXECUTIVE   CONTROL   ECHO" in text.upper()
+    capitals = text.upper()
+    return "N A S T R A N" in capitals or "EXECUTIVE   CONTROL   ECHO" in capitals
 
 
 def read_f06_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
@@ -48,7 +49,7 @@ def read_f06_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     try:
         lines = path.read_text("latin-1").splitlines()
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     printed = _Printed(path)
     for k, line in enumerate(lines):
         printed.take(line, k)
@@ -79,7 +80,7 @@ class _Printed:
         try:
             self._take(line, k)
         except ValueError:
-            raise InputError(f"{self.path} line {k + 1}: a number cannot be read") from None
+            raise Place(self.path, k + 1).error("a number cannot be read") from None
 
     def _take(self, line: str, k: int) -> None:
         self._take_head(line)
@@ -98,7 +99,7 @@ class _Printed:
             else:
                 _add_row(self.reading, line, k, self.path)
         elif self.in_summary and (found := _SUMMARY_ROW.match(line)):
-            self.masses[int(found[1])] = to_float(found[6])
+            self.masses[int(found[1])] = parse_real(found[6])
 
     def _take_head(self, line: str) -> None:
         if found := _SUBCASE.search(line[60:]):
@@ -108,15 +109,15 @@ class _Printed:
         if _SUMMARY.search(line):
             self.in_summary, self.names["real eigenvalues"] = True, None
         elif found := _ROOT.search(line):
-            self.value = complex(to_float(found[1]), to_float(found[2]))
+            self.value = complex(parse_real(found[1]), parse_real(found[2]))
         elif found := _VALUE.search(line):
-            self.value = to_float(found[1])
+            self.value = parse_real(found[1])
 
 
 def _add_second(vector: Vector, text: str, polar: bool) -> None:
     """Put the imaginary parts, or the phases, of a point beside what its first line gave."""
     point, scalar, first = vector.rows[-1]
-    second = [to_float(v) for v in text.split()]
+    second = [parse_real(v) for v in text.split()]
     if len(second) != len(first):
         raise ValueError(text)
     if polar:
@@ -133,13 +134,13 @@ def _add_row(vector: Vector, line: str, k: int, path: Path) -> None:
     if not found:
         return
     try:
-        values = tuple(complex(to_float(v)) for v in found[3].split())
+        values = tuple(complex(parse_real(v)) for v in found[3].split())
     except ValueError:
-        raise InputError(f"{path} line {k + 1}: a row of an eigenvector cannot be read") from None
+        raise Place(path, k + 1).error("a row of an eigenvector cannot be read") from None
     point = int(found[1])
     if found[2] == "S":  # scalar points in a row are numbered one after another
         vector.rows += [(point + n, True, (v,)) for n, v in enumerate(values)]
     elif len(values) != 6:
-        raise InputError(f"{path} line {k + 1}: a grid has six components, not {len(values)}")
+        raise Place(path, k + 1).error(f"a grid has six components, not {len(values)}")
     else:
         vector.rows.append((point, False, values))

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints, Numbers
-from ....core.errors import InputError
-from .table import ModeTable
+from ....core.errors import Place
+from .eigenvector_table import ModeTable
 
 Row = tuple[int, bool, tuple[complex, ...]]
 """A point, whether it is scalar, and its components."""
@@ -42,8 +42,8 @@ def tables_of(
         group = groups.setdefault((v.subcase, v.superelement), {})
         if v.number in group:  # a vector that goes on over a page, or a second eigensolution
             if group[v.number].eigenvalue != v.eigenvalue:
-                raise InputError(
-                    f"{path} holds mode {v.number} of subcase {v.subcase} twice, with different "
+                raise Place(path).fault(
+                    f"holds mode {v.number} of subcase {v.subcase} twice, with different "
                     "eigenvalues: give the file of one run"
                 )
             group[v.number].rows += v.rows
@@ -67,8 +67,8 @@ def _table(
     columns = [_column(v, path) for v in vectors]
     points, scalar, _ = columns[0]
     if any(not np.array_equal(points, p) for p, _, _ in columns):
-        raise InputError(
-            f"{path}: the eigenvectors of subcase {subcase} list different points: it is cut "
+        raise Place(path).error(
+            f"the eigenvectors of subcase {subcase} list different points: it is cut "
             "short, or lines are missing"
         )
     numbers = np.array([v.number for v in vectors], np.int64)
@@ -94,8 +94,8 @@ def _column(v: Vector, path: Path) -> tuple[Ints, Bools, Numbers]:
     points = np.array([r[0] for r in v.rows], np.int64)
     unique, counts = np.unique(points, return_counts=True)
     if len(unique) < len(points):
-        raise InputError(
-            f"{path} lists point {unique[counts > 1][0]} twice in mode {v.number}: give the file "
+        raise Place(path).fault(
+            f"lists point {unique[counts > 1][0]} twice in mode {v.number}: give the file "
             "of one run"
         )
     values = np.zeros((len(points), 6), np.complex128)

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
-from ....core.errors import InputError
-from .table import ModeHead, ModeTable, room
+from ....core.errors import InputError, Place
+from .eigenvector_table import ModeHead, ModeTable, room
 
 _DOMAINS = "NASTRAN/RESULT/DOMAINS"
 _REAL = "NASTRAN/RESULT/NODAL/EIGENVECTOR"
@@ -59,16 +59,16 @@ def opened(path: Path) -> Iterator[Any]:
     try:
         with h5py.File(path, "r") as file:
             if "NASTRAN" not in file:
-                raise InputError(f"{path} is HDF5, but not a result file of Nastran")
+                raise Place(path).fault("is HDF5, but not a result file of Nastran")
             yield file
     except OSError as error:
         reason = error.strerror if error.errno else "it is not HDF5, or is cut short"
-        raise InputError(f"cannot read {path}: {reason}") from None
+        raise InputError(f"cannot read {path}: {reason}", file=path) from None
     except (
         KeyError, ValueError, IndexError, RuntimeError, TypeError, AttributeError, MemoryError,
     ) as error:  # fmt: skip
         reason = " ".join(str(error).strip("'").split())[:120]
-        raise InputError(f"{path} is not laid out as Nastran's HDF5 results: {reason}") from None
+        raise Place(path).fault(f"is not laid out as Nastran's HDF5 results: {reason}") from None
 
 
 def grids_with_own_systems(path: Path) -> Ints:
@@ -103,7 +103,7 @@ def _groups(
     if name not in file:
         return
     if _DOMAINS not in file:
-        raise InputError(f"{path}: the table of domains is missing, the modes cannot be told apart")
+        raise Place(path).error("the table of domains is missing, the modes cannot be told apart")
     domains = file[_DOMAINS][()]
     used = domains[np.isin(domains["ANALYSIS"], (_MODES, _COMPLEX_MODES))]
     if modes is not None:
@@ -144,14 +144,14 @@ def _places(file: Any, name: str, path: Path) -> dict[int, slice]:
         stops = starts + np.asarray(index["LENGTH"], np.int64)
         domains = np.asarray(index["DOMAIN_ID"], np.int64)
         if (starts < 0).any() or (stops > len(file[name])).any():
-            raise InputError(f"{path}: the index of the eigenvectors points outside of them")
+            raise Place(path).error("the index of the eigenvectors points outside of them")
     else:
         of_row = np.asarray(file[name].fields("DOMAIN_ID")[()], np.int64)
         starts = np.flatnonzero(np.diff(of_row, prepend=np.nan))
         stops = np.append(starts, len(of_row))[1:]
         domains = of_row[starts]
         if len(np.unique(domains)) < len(domains):
-            raise InputError(f"{path}: the rows of one eigenvector do not stand together")
+            raise Place(path).error("the rows of one eigenvector do not stand together")
     return {
         int(d): slice(int(a), int(b))
         for d, a, b in zip(domains, starts, stops, strict=True)
@@ -167,7 +167,7 @@ def _table(file: Any, group: _Group, path: Path) -> ModeTable:
     for k, rows in enumerate(group.rows):
         block = vectors[rows]
         if len(block) != len(head.points) or not np.array_equal(block["ID"], head.points):
-            raise InputError(f"{path}: the eigenvectors of one subcase list different grids")
+            raise Place(path).error("the eigenvectors of one subcase list different grids")
         column = values[:, k].reshape(-1, 6)
         for c, component in enumerate(_COMPONENTS):
             if group.name == _COMPLEX:

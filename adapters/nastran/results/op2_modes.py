@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
-from ....core.errors import InputError
-from .op2records import Op2Block, Op2File, Op2Record
-from .table import ModeHead, ModeTable, room
+from ....core.errors import InputError, Place
+from .eigenvector_table import ModeHead, ModeTable, room
+from .op2_records import Op2Block, Op2File, Op2Record
 
 _GRID, _SCALAR = 1, 2
 _REAL, _COMPLEX = 2, 9  # analysis codes of normal and of complex modes
@@ -126,20 +127,21 @@ def unread_op2_blocks(path: Path) -> dict[str, str]:
 
 
 def _groups(file: Op2File) -> list[list[_Vector]]:
-    """Return the eigenvectors by subcase and superelement, from the blocks that suit best."""
+    """Return the eigenvectors by subcase and superelement, from the blocks that suit best.
+
+    A mode number that comes again starts a group of its own: the next speed of a rotor, the next
+    design cycle.
+    """
     vectors = [v for b in file.blocks if _VECTORS.match(b.name) for v in _vectors(file, b)]
     best = min((v.rank for v in vectors), default=0)
-    groups: dict[tuple[int, int, bool], list[_Vector]] = {}
+    times: Counter[tuple[int, int, bool, int]] = Counter()
+    groups: dict[tuple[int, int, bool, int], list[_Vector]] = {}
     for v in vectors:
-        if v.rank != best:
-            continue
-        group = groups.setdefault((v.subcase, v.superelement, v.is_complex), [])
-        if any(v.number == other.number for other in group):
-            raise InputError(
-                f"{file.path} holds mode {v.number} of subcase {v.subcase} twice (design cycles "
-                "or restarts): give the file of one run"
-            )
-        group.append(v)
+        if v.rank == best:
+            key = (v.subcase, v.superelement, v.is_complex)
+            again = times[*key, v.number]
+            times[*key, v.number] += 1
+            groups.setdefault((*key, again), []).append(v)
     return [groups[k] for k in sorted(groups)]
 
 
@@ -238,8 +240,8 @@ def _table(file: Op2File, group: Sequence[_Vector], head: ModeHead) -> ModeTable
 
 
 def _other_points(file: Op2File) -> InputError:
-    return InputError(
-        f"{file.path}: the eigenvectors of one subcase list different points: the file is damaged"
+    return Place(file.path).error(
+        "the eigenvectors of one subcase list different points: the file is damaged"
     )
 
 

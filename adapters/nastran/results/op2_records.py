@@ -19,7 +19,7 @@ from types import TracebackType
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
-from ....core.errors import InputError
+from ....core.errors import InputError, Place
 
 _STARTS = {b"\4\0\0\0": ("<", 4), b"\0\0\0\4": (">", 4), b"\10\0\0\0": ("<", 8),
            b"\0\0\0\10": (">", 8)}  # fmt: skip
@@ -58,11 +58,6 @@ class Op2Block:
     n_column: int = 0
 
 
-def is_op2_start(head: bytes) -> bool:
-    """Whether a file starts with a marker of an OP2 file."""
-    return head[:_MARK] in _STARTS
-
-
 class Op2File:
     """An open OP2 file with its data blocks; a context manager that closes it.
 
@@ -78,12 +73,10 @@ class Op2File:
             with path.open("rb") as stream:
                 start = _STARTS.get(stream.read(_MARK))
                 if start is None:
-                    raise InputError(
-                        f"{path} is not an OP2 file: a binary Nastran file is expected"
-                    )
+                    raise Place(path).fault("is not an OP2 file: a binary Nastran file is expected")
                 self._data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+            raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
         self.order, self.word = start
         self._size = len(self._data)
         self._run = struct.Struct(self.order + ("5i" if self.word == 4 else "iqiiq"))
@@ -153,7 +146,7 @@ class Op2File:
 
     def damaged(self, at: int, why: str) -> InputError:
         """Return the error for something that is wrong at a byte."""
-        return InputError(f"{self.path} cannot be read as OP2: {why} (byte {at})")
+        return Place(self.path).fault(f"cannot be read as OP2: {why} (byte {at})")
 
     def _record(self, at: int) -> Span:
         """Return where the content of the Fortran record at a byte starts and stops."""
@@ -170,7 +163,7 @@ class Op2File:
         return at + _MARK, stop
 
     def _cut_short(self, at: int) -> InputError:
-        return InputError(f"{self.path} is cut short: it ends in the record at byte {at}")
+        return Place(self.path).fault(f"is cut short: it ends in the record at byte {at}")
 
     def _marker(self, at: int) -> tuple[int, int]:
         """Return the marker at a byte, and where the next record starts."""

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from ....core.errors import InputError
-from ..cards import to_float
-from .table import ModeTable
-from .vectors import Row, Vector, tables_of
+from ....core.errors import InputError, Place
+from ..text.real_numbers import parse_real
+from .eigenvector_table import ModeTable
+from .gather_vectors import Row, Vector, tables_of
 
 _EIGENVALUE = re.compile(
     r"\$(?:COMPLEX\s+)?EIGENVALUE\s*=\s*(?:\(?\s*)([-+.\dEeDd]+)(?:[\s,]+([-+.\dEeDd]+))?\s*\)?\s+"
@@ -41,7 +41,7 @@ def read_punch_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     try:
         lines = path.read_text("latin-1").splitlines()
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     vectors: list[Vector] = []
     names: dict[str, None] = {}
     for head, at, body in _blocks(lines):
@@ -51,9 +51,7 @@ def read_punch_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
         if f"${kind}" not in _KINDS or match is None:
             continue
         if any(line.startswith("$MAGNITUDE") for line in head):
-            raise InputError(
-                f"{path} line {at}: magnitudes and phases are not read: punch REAL or IMAG"
-            )
+            raise Place(path, at).error("magnitudes and phases are not read: punch REAL or IMAG")
         vectors.append(_vector(head, match, body, at, path))
     return tables_of(vectors, path), tuple(names)
 
@@ -89,15 +87,13 @@ def _integer(head: list[str], start: str) -> int:
 
 def _vector(head: list[str], match: re.Match[str], body: list[str], at: int, path: Path) -> Vector:
     is_complex = match[2] is not None or any(x.startswith("$REAL-IMAG") for x in head)
-    value: complex = to_float(match[1])
+    value: complex = parse_real(match[1])
     if is_complex:
-        value = complex(value, to_float(match[2] or "0"))
+        value = complex(value, parse_real(match[2] or "0"))
     try:
         rows = list(_rows(body, is_complex))
     except (ValueError, IndexError):
-        raise InputError(
-            f"{path} line {at}: the eigenvector that starts here cannot be read"
-        ) from None
+        raise Place(path, at).error("the eigenvector that starts here cannot be read") from None
     return Vector(
         _integer(head, "$SUBCASE"), _integer(head, "$SUPERELEMENT"), int(match[3]), value, rows
     )
@@ -117,7 +113,7 @@ def _rows(body: list[str], is_complex: bool) -> Iterator[Row]:
             k += 1
         if kind not in ("G", "S"):
             continue
-        values = [to_float(f.strip()) for f in fields if f.strip()]
+        values = [parse_real(f.strip()) for f in fields if f.strip()]
         scalar = kind == "S"
         if is_complex:
             half = len(values) // 2

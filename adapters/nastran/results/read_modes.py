@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ....core.arrays import Ints, Numbers
-from ....core.dofs import Dofs
-from ....core.errors import InputError
-from ....core.modes import Modes
-from ..grids import Points, read_points
-from ..read import Deck
-from . import hdf5, op2
-from .f06 import is_f06, read_f06_tables
-from .hdf5 import read_hdf5_heads, read_hdf5_tables
-from .op2 import read_op2_heads, read_op2_tables
-from .punch import is_punched_result, read_punch_tables
-from .table import ModeHead, ModeTable
+from ....core.data.dofs import Dofs
+from ....core.data.modes import Modes
+from ....core.errors import InputError, Place
+from ..deck.pynastran_bridge import file_of
+from ..deck.read_deck import Deck
+from ..properties.grids import Points, read_points
+from . import hdf5_modes, op2_modes
+from .eigenvector_table import ModeHead, ModeTable
+from .f06_modes import is_f06, read_f06_tables
+from .hdf5_modes import read_hdf5_heads, read_hdf5_tables
+from .op2_modes import read_op2_heads, read_op2_tables
+from .punch_modes import is_punched_result, read_punch_tables
 
 Reader = Callable[[Path], tuple[list[ModeTable], tuple[str, ...]]]
 
@@ -45,7 +47,7 @@ _SAME = 1e-5  # relative difference of eigenvalues that superelements share
 
 
 def read_modes(
-    path: Path | str,
+    path: Path | str | Any,
     deck: Deck | None = None,
     subcase: int | None = None,
     modes: Collection[int] | None = None,
@@ -61,7 +63,7 @@ def read_modes(
 
     Parameters
     ----------
-    path : path
+    path : path or pyNastran OP2
         The file; its kind is told by its contents.
     deck : Deck, optional
         The deck of the run: gives the displacement systems (CD), by which the shapes are turned
@@ -82,21 +84,20 @@ def read_modes(
         No modes in the file, several subcases to choose from, grids that the deck lacks, a file
         that tells of displacement systems but no deck.
     """
-    path = Path(path)
+    path = Path(file_of(path))
     kind = kind_of_results(path)
     tables, names = _tables(path, kind, modes)
     if not tables:
         held = ", ".join(names[:8]) or "nothing"
-        raise InputError(
-            f"{path} holds no eigenvectors (it holds {held}): ask Nastran for DISPLACEMENT in "
+        raise Place(path).fault(
+            f"holds no eigenvectors (it holds {held}): ask Nastran for DISPLACEMENT in "
             "a SOL 103 run"
         )
     if deck is None and kind in _OWN_SYSTEMS and not all(t.basic for t in tables):
         turned = _OWN_SYSTEMS[kind](path)
         if len(turned):
-            raise InputError(
-                f"{path}: grid {turned[0]} has a displacement system of its own: name the deck as "
-                "well"
+            raise Place(path).error(
+                f"grid {turned[0]} has a displacement system of its own: name the deck as well"
             )
     chosen = _of_subcase(tables, deck, subcase, path)
     table = _joined([_without_conjugates(t) for t in chosen], path)
@@ -104,8 +105,8 @@ def read_modes(
 
 
 _OWN_SYSTEMS: dict[str, Callable[[Path], Ints]] = {
-    HDF5: hdf5.grids_with_own_systems,
-    OP2: op2.grids_with_own_systems,
+    HDF5: hdf5_modes.grids_with_own_systems,
+    OP2: op2_modes.grids_with_own_systems,
 }
 
 
@@ -124,7 +125,7 @@ def _tables(
             tables = [t.take(r, k) for t, r, k in zip(tables, rows, kept, strict=True) if len(k)]
     if modes is not None and not tables:
         asked = ", ".join(map(str, sorted(modes)))
-        raise InputError(f"{path} has none of the modes {asked}")
+        raise Place(path).fault(f"has none of the modes {asked}")
     return tables, names
 
 
@@ -140,13 +141,13 @@ def kind_of_results(path: Path) -> str:
         with path.open("rb") as stream:
             head = stream.read(_HEAD)
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from None
+        raise InputError(f"cannot read {path}: {error.strerror}", file=path) from None
     if head.startswith(_HDF5_SIGNATURE):
         return HDF5
     text = "" if b"\0" in head else head.decode("latin-1")
     if is_punched_result(text):
         return PUNCH
-    return F06 if is_f06(text) else OP2
+    return F06 if is_f06(text) or (text and path.suffix.lower() == ".f06") else OP2
 
 
 def _of_subcase(
@@ -155,11 +156,11 @@ def _of_subcase(
     there = sorted({t.subcase for t in tables})
     listed = ", ".join(map(str, there))
     if subcase is not None and subcase not in there:
-        raise InputError(f"{path} has no modes of subcase {subcase}: it has those of {listed}")
+        raise Place(path).fault(f"has no modes of subcase {subcase}: it has those of {listed}")
     if subcase is None and deck is not None and deck.case.subcase in there:
         subcase = deck.case.subcase
     if subcase is None and len(there) > 1:
-        raise InputError(f"{path} holds modes of subcases {listed}: say which one is meant")
+        raise Place(path).fault(f"holds modes of subcases {listed}: say which one is meant")
     chosen = [t for t in tables if t.subcase == (there[0] if subcase is None else subcase)]
     real = [t for t in chosen if not t.is_complex]
     return real or chosen
@@ -180,13 +181,13 @@ def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
     parts = [first]
     for table in tables[1:]:
         if table.superelement == first.superelement:
-            raise InputError(
-                f"{path} holds modes of subcase {table.subcase} several times (design cycles or "
-                "restarts): give the file of one run"
+            raise Place(path).fault(
+                f"holds modes of subcase {table.subcase} several times (design cycles, "
+                "restarts, speeds of a rotor): give the file of one run"
             )
         if not _shares_modes(first, table):
-            raise InputError(
-                f"{path}: superelements {first.superelement} and {table.superelement} hold "
+            raise Place(path).error(
+                f"superelements {first.superelement} and {table.superelement} hold "
                 "different modes: give the modes of the assembled structure"
             )
         new = np.array([p not in known for p in table.points.tolist()], bool)
@@ -245,8 +246,8 @@ def _modes(table: ModeTable, points: Points | None, path: Path) -> Modes:
 def _require_same_points(table: ModeTable, points: Points, path: Path) -> None:
     unknown = ~np.isin(table.points, np.concatenate([points.ids, points.scalar_ids]))
     if unknown.any():
-        raise InputError(
-            f"{path} holds point {table.points[unknown][0]}, which the deck does not have: "
+        raise Place(path).fault(
+            f"holds point {table.points[unknown][0]}, which the deck does not have: "
             "it is not a run of this deck"
         )
 

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....core.errors import InputError
-from ..parameters import FieldRef
+from ....core.errors import InputError, Place
+from ....core.noun import Noun
 from .includes import locate_include, parse_include
-from .source import TextFile, key_of
+from .source_file import TextFile, key_of
 
 _MARKS = {name: key_of(name) for name in ("CEND", "BEGIN", "ENDDATA", "INCLUDE")}
 
@@ -46,7 +46,7 @@ class Stretch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class DeckText:
+class DeckText(Noun):
     """The text of a deck and of all files it includes.
 
     Parameters
@@ -62,12 +62,10 @@ class DeckText:
 
     @cached_property
     def _walked(self) -> _Walk:
-        def follow(parent: int, written: str, where: str) -> int:
+        def follow(parent: int, written: str, where: Place) -> int:
             child = self.children.get((parent, written))
             if child is None:
-                raise InputError(
-                    f"{where}: INCLUDE {written!r} was not there when the deck was read"
-                )
+                raise where.error(f"INCLUDE {written!r} was not there when the deck was read")
             return child
 
         walk = _Walk(lambda k: self.files[k], follow)
@@ -89,15 +87,10 @@ class DeckText:
         """The INCLUDE statements in the order met."""
         return tuple(self._walked.includes)
 
-    def value(self, ref: FieldRef) -> float | None:
-        """Return a value of the deck, None where its field is blank (`edit.read_value`)."""
-        from .edit import read_value
-
-        return read_value(self, ref)
-
-    def place(self, file: int, row: int) -> str:
+    def place(self, file: int, row: int) -> Place:
         """``wing.bdf line 40``, for messages."""
-        return f"{self.files[file].path.name} line {row + 1}"
+        path = self.files[file].path
+        return Place(path, row + 1, shown=path.name)
 
     def with_file_data(self, changes: Mapping[int, bytes]) -> DeckText:
         """Return the deck with other text in some of its files."""
@@ -131,17 +124,17 @@ def read_deck_text(path: Path | str) -> DeckText:
         itself.
     """
     top = Path(path).absolute()
-    files: list[TextFile] = [_load(top, "")]
+    files: list[TextFile] = [_load(top)]
     by_path = {top.resolve(): 0}
     children: dict[tuple[int, str], int] = {}
 
-    def follow(parent: int, written: str, where: str) -> int:
+    def follow(parent: int, written: str, where: Place) -> int:
         if (parent, written) not in children:
             found = locate_include(written, files[parent].path, top, where)
             real = found.resolve()
             if real not in by_path:
                 by_path[real] = len(files)
-                files.append(_load(found, f"{where}: "))
+                files.append(_load(found, where))
             children[parent, written] = by_path[real]
         return children[parent, written]
 
@@ -150,13 +143,14 @@ def read_deck_text(path: Path | str) -> DeckText:
     return DeckText(tuple(files), children)
 
 
-def _load(path: Path, asked: str) -> TextFile:
+def _load(path: Path, asked: Place | None = None) -> TextFile:
+    by = "" if asked is None else f"{asked}: "
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise InputError(f"{asked}cannot read {path}: {error.strerror}") from None
+        raise InputError(f"{by}cannot read {path}: {error.strerror}", file=path) from None
     if b"\0" in data[:4096]:
-        raise InputError(f"{asked}{path} is not a text file: a Nastran deck is expected")
+        raise InputError(f"{by}{path} is not a text file: a Nastran deck is expected", file=path)
     return TextFile(path, data, data)
 
 
@@ -164,7 +158,7 @@ class _Walk:
     """Goes through a deck as Nastran does, and notes the bulk data and the INCLUDE statements."""
 
     def __init__(
-        self, file: Callable[[int], TextFile], follow: Callable[[int, str, str], int]
+        self, file: Callable[[int], TextFile], follow: Callable[[int, str, Place], int]
     ) -> None:
         self._file = file
         self._follow = follow
@@ -222,7 +216,7 @@ class _Walk:
 
     def _include(self, k: int, row: int, done: int, parents: tuple[int, ...]) -> int:
         file = self._file(k)
-        where = f"{file.path} line {row + 1}"
+        where = Place(file.path, row + 1)
         stop = min(row + 60, len(file.lines))
         texts = [file.line(r).decode("latin-1") for r in range(row, stop)]
         if file.encoding == "utf-8":
@@ -230,7 +224,7 @@ class _Walk:
         written, used = parse_include(texts, where)
         child = self._follow(k, written, where)
         if child in parents:
-            raise InputError(f"{where}: INCLUDE {written!r} includes itself")
+            raise where.error(f"INCLUDE {written!r} includes itself")
         self._take(k, done, row)
         self.includes.append(Include(k, row, used, written, child))
         self.through(child, parents)

@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from ....core.errors import InputError
+from ....core.errors import Place
 
 _QUOTED = re.compile(r"""(['"])(?P<path>.*?)\1""", re.DOTALL)
 _LOGICAL = re.compile(r"(?P<symbol>[A-Za-z_]\w+):(?P<rest>.*)", re.DOTALL)
@@ -14,14 +14,14 @@ _WINDOWS_VARIABLE = re.compile(r"%(\w+)%")
 _MOST_LINES = 50
 
 
-def parse_include(lines: list[str], where: str) -> tuple[str, int]:
+def parse_include(lines: list[str], where: Place) -> tuple[str, int]:
     """Return the path that an INCLUDE names as it is written, and how many lines it takes.
 
     Parameters
     ----------
     lines : list of str
         The line that starts with INCLUDE and those after it.
-    where : str
+    where : Place
         File and line, for messages.
 
     Raises
@@ -34,7 +34,7 @@ def parse_include(lines: list[str], where: str) -> tuple[str, int]:
     if body[:1] in ("'", '"') and body:
         while not _QUOTED.match(body):
             if used >= len(lines) or used > _MOST_LINES:
-                raise InputError(f"{where}: the quote after INCLUDE is never closed")
+                raise where.error("the quote after INCLUDE is never closed")
             body += lines[used].strip()
             used += 1
         match = _QUOTED.match(body)
@@ -42,16 +42,16 @@ def parse_include(lines: list[str], where: str) -> tuple[str, int]:
     else:
         name = body.split("$", 1)[0].strip()
     if not name:
-        raise InputError(f"{where}: INCLUDE names no file")
+        raise where.error("INCLUDE names no file")
     return name, used
 
 
 def is_anchored(name: str) -> bool:
     """Whether an INCLUDE names its file by an absolute path or a symbol, not a relative one."""
-    return os.path.isabs(_expand(name, "")) if not _LOGICAL.fullmatch(name) else True
+    return os.path.isabs(_expand(name, Place())) if not _LOGICAL.fullmatch(name) else True
 
 
-def locate_include(name: str, parent: Path, top: Path, where: str) -> Path:
+def locate_include(name: str, parent: Path, top: Path, where: Place) -> Path:
     """Find the file an INCLUDE names: beside the including file, else beside the top deck.
 
     Environment variables are put in for ``SYMBOL:``, ``$NAME`` and ``%NAME%``; backslashes
@@ -71,17 +71,17 @@ def locate_include(name: str, parent: Path, top: Path, where: str) -> Path:
         if same is not None:
             return same
     looked = " and ".join(str(p) for p in dict.fromkeys(places))
-    raise InputError(f"{where}: the INCLUDE file {name!r} does not exist (looked for {looked})")
+    raise where.error(f"the INCLUDE file {name!r} does not exist (looked for {looked})")
 
 
-def _expand(name: str, where: str) -> str:
+def _expand(name: str, where: Place) -> str:
     written = name
     match = _LOGICAL.fullmatch(name)
     if match:
         folder = os.environ.get(match["symbol"])
         if folder is None:
-            raise InputError(
-                f"{where}: INCLUDE {written!r} uses the symbol {match['symbol']!r}, which is not "
+            raise where.error(
+                f"INCLUDE {written!r} uses the symbol {match['symbol']!r}, which is not "
                 "set: set the environment variable of that name to its folder"
             )
         name = f"{folder}/{match['rest']}"

@@ -21,11 +21,17 @@ def parse_real(text: str) -> float:
     ValueError
         The text is no number.
     """
-    match = _REAL.fullmatch(text.strip())
-    if not match:
+    try:
+        value = float(text)
+    except ValueError:
+        match = _REAL.fullmatch(text.strip())
+        if not match:
+            raise ValueError(f"{text!r} is not a number") from None
+        mantissa, signed, unsigned = match.groups()
+        value = float(f"{mantissa}e{signed or unsigned or 0}")
+    if not math.isfinite(value) or "_" in text:
         raise ValueError(f"{text!r} is not a number")
-    mantissa, signed, unsigned = match.groups()
-    return float(f"{mantissa}e{signed or unsigned or 0}")
+    return value
 
 
 def format_exact(value: float, width: int) -> str | None:

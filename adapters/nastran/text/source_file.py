@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....core.arrays import Ints
+from ....core.noun import Noun
 
 Keys = npt.NDArray[np.uint64]
 Bytes = npt.NDArray[np.uint8]
@@ -61,7 +62,7 @@ class LineIndex:
 
 
 @dataclass(frozen=True, eq=False)
-class TextFile:
+class TextFile(Noun):
     """One file of a deck.
 
     Parameters

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..tables.table import Cell, Table
 from .markup import esc, tag
-from .tables import Cell, Table
 
 
 def html_table(table: Table) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .formats import general
-from .markup import short, svg_text, tag
+from ..html.markup import short, svg_text, tag
+from ..tables.number_formats import general
 
 
 def ticks(low: float, high: float, about: int = 5) -> list[float]:

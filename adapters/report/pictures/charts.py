@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from ..html.markup import esc, short, svg_text, tag
+from ..tables.number_formats import general
 from .axes import Plot, decades, spread, ticks
 from .colour import STEPS
-from .formats import general
-from .markup import esc, short, svg_text, tag
 
 _NAMED = 10  # lines that are all named at their ends; more get a key above
 
 
 @dataclass(frozen=True)
 class Series:
-    """A named line; None where there is no value."""
+    """A named line; None where there is no value. `brief` names it where there is little room."""
 
     name: str
     values: tuple[float | None, ...]
+    brief: str = ""
 
 
 def lines(
@@ -96,7 +97,7 @@ def lines(
             tag(
                 "span",
                 tag("i", style=f"background:{colours[k]}"),
-                esc(_brief(s.name)),
+                esc(s.brief or s.name),
                 class_="key",
             )
             for k, s in enumerate(drawn)
@@ -161,10 +162,6 @@ def _colour(k: int, count: int, ordered: bool) -> str:
     if not ordered:
         return f"var(--s{k % 8})"
     return f"var(--c{round(6 + (STEPS - 7) * (k / (count - 1) if count > 1 else 1.0))})"
-
-
-def _brief(name: str) -> str:
-    return name.split(" · ")[0]
 
 
 def _shortened(name: str) -> str:

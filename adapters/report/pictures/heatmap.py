@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ...core.arrays import Floats
+from ....core.arrays import Floats
+from ....core.results.correlation import MacTable
+from ..html.markup import esc, short, svg_text, tag
+from ..tables.number_formats import hz
 from .colour import STEPS
-from .formats import hz
-from .markup import esc, short, svg_text, tag
-from .reading import MacMatrix
 
 _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 _LEFT, _BOTTOM, _PAD = 84, 88, 8
 
 
 def heatmap(
-    matrix: MacMatrix,
+    matrix: MacTable,
     title: str,
     *,
-    test_hz: Mapping[int, float],
-    analysis_hz: Mapping[int, float],
+    test_hz: Floats,
+    analysis_hz: Floats,
     pairs: Iterable[tuple[int, int]] = (),
     clusters: Iterable[tuple[Sequence[int], Sequence[int]]] = (),
     width: int = 1040,
@@ -31,11 +31,11 @@ def heatmap(
 
     Parameters
     ----------
-    matrix : MacMatrix
+    matrix : MacTable
     title : str
         Caption, plain text.
-    test_hz, analysis_hz : mapping of int to float
-        Frequencies by mode number, for the labels; may lack modes.
+    test_hz, analysis_hz : (n_test,) and (n_analysis,) float
+        Frequencies of all modes, for the labels.
     pairs : iterable of (test, analysis)
         Cells to be ringed.
     clusters : iterable of (test modes, analysis modes)
@@ -107,7 +107,7 @@ def legend(what: str = "MAC %") -> str:
 
 
 def _position(
-    matrix: MacMatrix, test: Sequence[int], analysis: Sequence[int]
+    matrix: MacTable, test: Sequence[int], analysis: Sequence[int]
 ) -> list[tuple[int, int]]:
     return [
         (matrix.test.index(t), matrix.analysis.index(a))
@@ -146,23 +146,17 @@ def _numbers(values: Floats, cell: int) -> str:
     return "".join(tag("g", text, class_=name) for name, text in drawn.items() if text)
 
 
-def _labels(
-    matrix: MacMatrix, test_hz: Mapping[int, float], analysis_hz: Mapping[int, float], cell: int
-) -> list[str]:
+def _labels(matrix: MacTable, test_hz: Floats, analysis_hz: Floats, cell: int) -> list[str]:
     rows, cols = len(matrix.test), len(matrix.analysis)
     every = 1 if cell >= 11 else 2
     left = "".join(
         svg_text(-6, (k + 0.5) * cell + 3.5, n, text_anchor="end", class_="n")
-        + (
-            svg_text(-26, (k + 0.5) * cell + 3.5, hz(test_hz[n]), text_anchor="end")
-            if n in test_hz
-            else ""
-        )
+        + svg_text(-26, (k + 0.5) * cell + 3.5, hz(test_hz[n - 1]), text_anchor="end")
         for k, n in enumerate(matrix.test)
         if k % every == 0
     )
     below = "".join(
-        _upright((k + 0.5) * cell + 3.5, rows * cell, n, analysis_hz.get(n))
+        _upright((k + 0.5) * cell + 3.5, rows * cell, n, analysis_hz[n - 1])
         for k, n in enumerate(matrix.analysis)
         if k % every == 0
     )
@@ -180,11 +174,10 @@ def _labels(
     ]  # fmt: skip
 
 
-def _upright(x: float, y: float, mode: int, frequency: float | None) -> str:
-    value = "" if frequency is None else f"{hz(frequency)} "
+def _upright(x: float, y: float, mode: int, frequency: float) -> str:
     name = tag("tspan", str(mode), class_="n")
     turn = f"translate({short(x)} {y + 6}) rotate(-90)"
-    return tag("text", value, name, text_anchor="end", transform=turn)
+    return tag("text", f"{hz(frequency)} ", name, text_anchor="end", transform=turn)
 
 
 def _outline(cells: Sequence[tuple[int, int]], cell: int) -> str:
@@ -199,8 +192,8 @@ def _outline(cells: Sequence[tuple[int, int]], cell: int) -> str:
     return d
 
 
-def _mode_label(mode: int, frequency_of: Mapping[int, float]) -> str:
-    return f"{mode} ({hz(frequency_of[mode])} Hz)" if mode in frequency_of else str(mode)
+def _mode_label(mode: int, frequencies: Floats) -> str:
+    return f"{mode} ({hz(frequencies[mode - 1])} Hz)"
 
 
 def _packed(values: Floats) -> str:
@@ -213,7 +206,7 @@ def _packed(values: Floats) -> str:
     )
 
 
-def _description(matrix: MacMatrix, title: str) -> str:
+def _description(matrix: MacTable, title: str) -> str:
     high = int(np.count_nonzero(np.nan_to_num(matrix.values) >= 0.7))
     return (
         f"{title}: MAC of {len(matrix.test)} test modes with {len(matrix.analysis)} analysis"
@@ -221,7 +214,7 @@ def _description(matrix: MacMatrix, title: str) -> str:
     )
 
 
-def _values_table(matrix: MacMatrix) -> str:
+def _values_table(matrix: MacTable) -> str:
     head = "<th>test \\ analysis</th>" + "".join(f"<th>{n}</th>" for n in matrix.analysis)
     rows = "".join(
         f"<tr><th>{n}</th>{_row(values.tolist())}</tr>"

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.arrays import Bools, Floats, Ints
-from ...core.geometry import Geometry
+from ....core.arrays import Bools, Floats, Ints
+from ....core.data.geometry import Geometry
+from ..html.markup import esc, short, svg_text, tag
 from .colour import STEPS
-from .markup import esc, short, svg_text, tag
-from .surface import (
+from .seen_surface import (
     Surface,
     View,
     coarsened,

@@ -6,21 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.arrays import Bools, Floats, Ints
-from ...core.geometry import Geometry
-
-_SOLID_FACES = {
-    "tetra": ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
-    "pyramid": ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
-    "penta": ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-    "hexa": (
-        (0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7),
-    ),
-}  # fmt: skip
+from ....core.arrays import Bools, Floats, Ints
+from ....core.data.geometry import Geometry
+from ....core.data.shapes import SHAPES
+from ....core.noun import Noun
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(Noun):
     """A mesh to draw.
 
     `xyz` (n, 3); `faces` (n_face, 4) rows of `xyz`, a triangle repeats its last corner;
@@ -46,9 +39,9 @@ def surface(geometry: Geometry) -> Surface:
     shells = [_four(tables[k][:, :n]) for k, n in (("tria", 3), ("quad", 4)) if k in tables]
     solids = [
         _four(tables[k][:, list(corners)])
-        for k, faces in _SOLID_FACES.items()
+        for k, shape in SHAPES.items()
         if k in tables
-        for corners in faces
+        for corners in shape.faces
     ]
     skin = _met_once(np.vstack(solids)) if solids else np.zeros((0, 4), np.int64)
     lines = tables.get("line", np.zeros((0, 2), np.int64))[:, :2]

@@ -1,10 +1,12 @@
-"""The unified diff of the deck, changed fields picked out."""
+"""What changed in the deck: its unified diff, changed fields picked out."""
 
 from __future__ import annotations
 
 from difflib import SequenceMatcher
 
-from .markup import esc, tag
+from ....core.results.correlation import RunTables
+from ..html.markup import esc, tag
+from .section import ReportedRun, Section
 
 _MOST_LINES = 600
 
@@ -79,3 +81,10 @@ def _fields(a: str, b: str) -> list[tuple[str, int, int, int, int]]:
         return out
     codes = SequenceMatcher(None, a, b, autojunk=False).get_opcodes()
     return [(kind, i, j, m, n) for kind, i, j, m, n in codes]
+
+
+def _render(run: ReportedRun[RunTables]) -> str:
+    return deck_diff(run.diff) if run.diff.strip() else ""
+
+
+DECK_CHANGES = Section("Changes to the deck", "deck", RunTables, render=_render)

@@ -7,22 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...core.arrays import Numbers
-from . import reading
-from .formats import fixed, hz, percent
-from .markup import esc, tag
-from .overlay import Overlay
-from .reading import Result
-from .scene import still
-from .section import Section
+from ....core.arrays import Numbers
+from ....core.results.correlation import PairRow, RunTables
+from ..html.markup import esc, tag
+from ..pictures.scene import still
+from ..tables.number_formats import fixed, hz, percent
+from .section import ReportedRun, Section
 
 _AMPLITUDE = 0.07  # of the structure's size
 
 
-def shapes(overlay: Overlay | None) -> Section | None:
-    """Return the paired shapes as a section; a still of the first where scripts do not run."""
+def _render(run: ReportedRun[RunTables]) -> str:
+    overlay = run.shapes
     if overlay is None:
-        return None
+        return ""
     mesh, labels = overlay.mesh, [_label(p) for p in overlay.pairs]
     moved = mesh.xyz + _AMPLITUDE * mesh.size * overlay.shapes[0]
     picture = still(
@@ -37,7 +35,7 @@ def shapes(overlay: Overlay | None) -> Section | None:
         tag("div", picture, class_="stage"),
         class_="viewer",
         data_labels="|".join(labels),
-        data_brief="|".join(f"{p.get('test')} · {hz(p.get('test_hz'))}" for p in overlay.pairs),
+        data_brief="|".join(f"{p.test} · {hz(p.test_hz)}" for p in overlay.pairs),
         data_amplitude=2.0 * _AMPLITUDE,
         data_xyz=_packed((mesh.xyz - middle) / unit, np.int16),
         data_shapes=_packed(overlay.shapes, np.int8),
@@ -55,16 +53,15 @@ def shapes(overlay: Overlay | None) -> Section | None:
             ("measured", "where the test puts it, to the same scale"),
         )
     )
-    return Section("Shapes of the pairs", "shapes", figure + tag("p", keys, class_="note"))
+    return figure + tag("p", keys, class_="note")
 
 
-def _label(pair: Result) -> str:
-    deviation = reading.number(pair.get("deviation_percent"))
-    told = f"test {pair.get('test')} ({hz(pair.get('test_hz'))} Hz)"
-    told += f" and analysis {pair.get('analysis')} ({hz(pair.get('analysis_hz'))} Hz)"
-    if deviation is not None:
-        told += f", {fixed(deviation, 1)} %"
-    return told + f", MAC {percent(pair.get('mac'))} %"
+def _label(pair: PairRow) -> str:
+    return (
+        f"test {pair.test} ({hz(pair.test_hz)} Hz) and analysis {pair.analysis} "
+        f"({hz(pair.analysis_hz)} Hz), {fixed(pair.deviation_percent, 1)} %, "
+        f"MAC {percent(pair.mac)} %"
+    )
 
 
 def _packed(values: Numbers, kind: type[np.int16] | type[np.int8]) -> str:
@@ -76,3 +73,6 @@ def _packed(values: Numbers, kind: type[np.int16] | type[np.int8]) -> str:
 def _raw(values: Numbers, kind: type[np.generic]) -> str:
     order = np.dtype(kind).newbyteorder("<")
     return esc(base64.b64encode(np.ascontiguousarray(values, order).tobytes()).decode())
+
+
+MOVING_SHAPES = Section("Shapes of the pairs", "shapes", RunTables, render=_render)

@@ -1,55 +1,53 @@
-"""Numbers as an engineer writes them; a missing one is a dash."""
+"""Numbers as an engineer writes them; a missing one (None or not finite) is a dash."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-
-from .reading import number
 
 MISSING = "–"
 
 
-def fixed(value: object, digits: int) -> str:
-    """Return the number with so many decimals; a dash when there is none."""
-    v = number(value)
-    return MISSING if v is None else f"{v:.{digits}f}".replace("-", "−")
+def _known(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
 
 
-def signed(value: object, digits: int) -> str:
+def fixed(value: float | None, digits: int) -> str:
+    """Return the number with so many decimals."""
+    return f"{value:.{digits}f}".replace("-", "−") if _known(value) else MISSING
+
+
+def signed(value: float | None, digits: int) -> str:
     """Return the number with its sign; zero carries none."""
-    v = number(value)
-    if v is None:
+    if not _known(value):
         return MISSING
-    text = f"{v:+.{digits}f}"
+    text = f"{value:+.{digits}f}"
     return (text if float(text) else text[1:]).replace("-", "−")
 
 
-def hz(value: object) -> str:
+def hz(value: float | None) -> str:
     """Return a frequency, two decimals where it is ordinary; a rigid-body mode's is 0.000."""
-    v = number(value)
-    if v is None:
+    if value is None or not math.isfinite(value):
         return MISSING
-    size = abs(v)
+    size = abs(value)
     for least, digits in ((1000.0, 1), (1.0, 2), (0.1, 4), (0.001, 5)):
         if size >= least:
-            return f"{v:.{digits}f}"
+            return f"{value:.{digits}f}"
     return "0.000"
 
 
-def percent(value: object, digits: int = 0) -> str:
+def percent(value: float | None, digits: int = 0) -> str:
     """Return a fraction 0..1 as a percentage without its sign."""
-    v = number(value)
-    return MISSING if v is None else fixed(100.0 * v, digits)
+    return MISSING if value is None else fixed(100.0 * value, digits)
 
 
-def general(value: object, digits: int = 4) -> str:
+def general(value: float | None, digits: int = 4) -> str:
     """Return a value of unknown size with so many significant figures."""
-    v = number(value)
-    if v is None:
-        return MISSING if value is None or isinstance(value, float) else str(value)
-    text = f"{v:.{digits}g}"
-    if "e" in text and 1.0 <= abs(v) < 1e6:
-        text = f"{v:.0f}"
+    if value is None or not math.isfinite(value):
+        return MISSING
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1.0 <= abs(value) < 1e6:
+        text = f"{value:.0f}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa}e{int(exponent)}"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints, Numbers, frozen
-from ...core.dofs import Dofs
-from ...core.errors import InputError
+from ....core.arrays import Floats, Ints, Numbers, frozen
+from ....core.data.dofs import Dofs
+from ....core.errors import InputError
 
 
 def node_vectors(dofs: Dofs, values: Numbers) -> tuple[Ints, Numbers]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 
-from .fields import text
+from ..text.number_fields import text
 
 Dof = tuple[int, int]
 """Node and signed direction: 1, 2, 3 translations, 4, 5, 6 rotations, 0 not known."""

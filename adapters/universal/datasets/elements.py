@@ -1,19 +1,21 @@
-"""What is drawn between nodes: elements (dataset 2412) and trace lines (82)."""
+"""Dataset 2412: elements."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ...core.arrays import Ints
-from ...core.geometry import Geometry
-from .container import Section
-from .content import Skipped, Trace
-from .fields import integers
-from .frames import NodeFrames, some
-from .source import Source
+from ....core.data.geometry import Geometry
+from ..container import Section
+from ..open_file import Source
+from ..text.number_fields import integers
+from ..text.printing import dataset
+from ..universal_content import Skipped, UniversalContent
+from .dataset_kind import DatasetKind, Gathered, Outgoing
+from .section_lines import filled
 
 _BEAMS = (11, 21, 22, 23, 24, 31, 32)
 _LINES = (*_BEAMS, 121, 136, 137, 141, 151, 171)
@@ -36,6 +38,19 @@ _SOLIDS = {
     20: ("hexa", (0, 2, 4, 6, 12, 14, 16, 18)),
 }
 
+# Descriptor and corner order by shape; a pyramid is a brick whose upper face is one node.
+_DESCRIPTORS = {
+    "point": (161, (0,)),
+    "line": (11, (0, 1)),
+    "tria": (91, (0, 1, 2)),
+    "quad": (94, (0, 1, 2, 3)),
+    "tetra": (111, (0, 1, 2, 3)),
+    "pyramid": (115, (0, 1, 2, 3, 4, 4, 4, 4)),
+    "penta": (112, (0, 1, 2, 3, 4, 5)),
+    "hexa": (115, (0, 1, 2, 3, 4, 5, 6, 7)),
+}
+_COLOR = 7
+
 
 @dataclass(frozen=True)
 class Element:
@@ -46,12 +61,10 @@ class Element:
     nodes: tuple[int, ...]
 
 
-def read_2412(source: Source, section: Section, skipped: list[Skipped]) -> list[Element]:
-    """Read dataset 2412; elements of no shape that can be drawn are listed in `skipped`."""
-    lines = source.lines(section)
-    while lines and not lines[-1].strip(b" \t\x00"):
-        lines.pop()
-    found, other, at = [], dict[tuple[int, int], int](), 0
+def _read(source: Source, section: Section, into: Gathered) -> int:
+    """Read dataset 2412; elements of no shape that can be drawn are listed as skipped."""
+    lines = filled(source, section)
+    found, other, at = list[Element](), dict[tuple[int, int], int](), 0
     while at < len(lines):
         head = integers(lines[at])
         line, at = section.line + 1 + at, at + 1
@@ -76,8 +89,9 @@ def read_2412(source: Source, section: Section, skipped: list[Skipped]) -> list[
             found.append(element)
     for (descriptor, n), count in other.items():
         what = f"dataset 2412: {count} element(s) of descriptor {descriptor} with {n} nodes"
-        skipped.append(Skipped(what, section.line, "no shape to draw them by", source.name))
-    return found
+        into.skipped.append(Skipped(what, section.line, "no shape to draw them by", source.name))
+    into.add(*found)
+    return len(found)
 
 
 def _element(number: int, descriptor: int, nodes: Sequence[int]) -> Element | None:
@@ -96,54 +110,37 @@ def _element(number: int, descriptor: int, nodes: Sequence[int]) -> Element | No
     return Element(shape, number, chosen)
 
 
-def drawn_geometry(
-    nodes: NodeFrames,
-    elements: Sequence[Element],
-    traces: Sequence[Trace],
-    length_unit: str | None,
-    warnings: list[str],
-) -> Geometry | None:
-    """Nodes with elements and trace lines between them; None where no node is given."""
-    if not len(nodes.ids):
-        return None
-    plain = Geometry(nodes.ids, nodes.xyz, length_unit)
-    corners: dict[str, list[Ints]] = {}
-    numbers: dict[str, list[Ints]] = {}
-    for shape in dict.fromkeys(e.shape for e in elements):
-        same = [e for e in elements if e.shape == shape]
-        rows = plain.index_of(np.array([e.nodes for e in same]).ravel()).reshape(len(same), -1)
-        whole = (rows >= 0).all(axis=1)
-        number = np.array([e.number for e in same])
-        if not whole.all():
-            warnings.append(
-                f"{shape} element(s) {some(number[~whole])} use nodes that do not exist and are "
-                "left out"
-            )
-        corners[shape], numbers[shape] = [rows[whole]], [number[whole]]
-    for trace in traces:
-        segments = _segments(trace, plain, warnings)
-        corners.setdefault("line", []).append(segments)
-        numbers.setdefault("line", []).append(np.full(len(segments), trace.number))
-    tables = {shape: np.concatenate(part) for shape, part in corners.items()}
-    labels = {shape: np.concatenate(part) for shape, part in numbers.items()}
-    kept = [shape for shape, table in tables.items() if len(table)]
-    return Geometry(
-        nodes.ids,
-        nodes.xyz,
-        length_unit,
-        {shape: tables[shape] for shape in kept},
-        {shape: labels[shape] for shape in kept},
-    )
+def _tell(content: UniversalContent) -> dict[str, Any]:
+    elements = content.geometry.elements if content.geometry is not None else {}
+    return {"elements": {k: len(v) for k, v in elements.items()}} if elements else {}
 
 
-def _segments(trace: Trace, geometry: Geometry, warnings: list[str]) -> Ints:
-    """Rows of the two ends of each drawn segment, (n, 2)."""
-    rows = np.where(trace.nodes == 0, -2, geometry.index_of(trace.nodes))
-    missing = trace.nodes[rows == -1]
-    if len(missing):
-        warnings.append(
-            f"trace line {trace.number} passes node(s) {some(missing)}, which do not exist; "
-            "those segments are left out"
-        )
-    ends = np.column_stack([rows[:-1], rows[1:]])
-    return np.asarray(ends[(ends >= 0).all(axis=1) & (ends[:, 0] != ends[:, 1])])
+def are_elements(geometry: Geometry) -> bool:
+    """Whether the lines are bars of a mesh (each its own number) rather than trace lines."""
+    numbers = geometry.element_ids.get("line")
+    others = any(shape not in ("line", "point") for shape in geometry.elements)
+    return others and numbers is not None and len(np.unique(numbers)) == len(numbers)
+
+
+def _write(out: Outgoing) -> Iterator[bytes]:
+    if out.geometry is None:
+        return
+    drawn = out.geometry.elements
+    bars = are_elements(out.geometry)
+    printed = [_printed(out.geometry, shape) for shape in drawn if shape != "line" or bars]
+    if any(printed):
+        yield dataset(2412, *printed)
+
+
+def _printed(geometry: Geometry, shape: str) -> bytes:
+    corners = geometry.elements[shape]
+    descriptor, order = _DESCRIPTORS[shape]
+    numbers = geometry.element_ids.get(shape, np.arange(1, len(corners) + 1))
+    n = len(order)
+    beam = f"{0:10d}{1:10d}{1:10d}\n" if shape == "line" else ""
+    line = f"%10d{descriptor:10d}{1:10d}{1:10d}{_COLOR:10d}{n:10d}\n{beam}" + "%10d" * n + "\n"
+    table = np.column_stack([numbers, geometry.ids[corners[:, list(order)]]])
+    return (line * len(corners) % tuple(table.ravel().tolist())).encode("ascii")
+
+
+ELEMENTS = DatasetKind(2412, "elements", _read, _tell, _write)

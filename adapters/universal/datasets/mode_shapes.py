@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints, Numbers
-from .container import Section
-from .content import Skipped
-from .fields import NotANumber, floats, integers, node_numbers, text
-from .source import Source
+from ....core.arrays import Ints, Numbers
+from ....core.data.modes import Modes
+from ..container import Section
+from ..open_file import Source
+from ..text.number_fields import NotANumber, floats, integers, text
+from ..text.printing import dataset, text_line, tight
+from ..universal_content import Skipped, UniversalContent
+from .axis_components import node_vectors
+from .dataset_kind import DatasetKind, Gathered, Outgoing
+from .node_values import node_values
 
 _ANALYSES = {
     0: "unknown",
@@ -159,102 +165,10 @@ def _shape(
     if not wanted():
         return None
     width = head.n_value * (2 if head.data_type in (5, 6) else 1)
-    nodes, values = _values(source, section, source.lines(section), head.n_line, width)
+    nodes, values = node_values(source, section, source.lines(section), head.n_line, width)
     if head.data_type in (5, 6):
         values = np.ascontiguousarray(values).view(np.complex128)
     return Shape(*modal, nodes, values, head.ids, section.line, source.name)
-
-
-def _values(
-    source: Source, section: Section, lines: list[bytes], first: int, width: int
-) -> tuple[Ints, Floats]:
-    """Node numbers (n,) and their values (n, width); each node takes the same number of lines."""
-    while len(lines) > first and not lines[-1].strip(b" \t\x00"):
-        lines.pop()
-    body = lines[first:]
-    if not body:
-        return np.zeros(0, np.int64), np.zeros((0, width))
-    line = section.line + 1 + first
-    try:
-        rows = _rows(body, width)
-    except NotANumber as error:
-        raise source.error(
-            line + error.row, f"dataset {section.number}: {error.text!r} is not a number"
-        ) from None
-    stride = 1 + (rows or 1)
-    if rows is None or len(body) % stride:
-        raise source.error(
-            line + (len(body) // stride) * stride,
-            f"dataset {section.number}: a node needs its number and {width} values on "
-            "line(s) of their own; the file is cut off or damaged, export it again",
-        )
-    try:
-        nodes = node_numbers(body[0::stride])
-    except NotANumber as error:
-        raise source.error(
-            line + error.row * stride,
-            f"dataset {section.number}: a node number is expected, found {error.text!r}",
-        ) from None
-    data = [text_line for k, text_line in enumerate(body) if k % stride]
-    try:
-        values = floats(data)
-    except NotANumber as error:
-        at = error.row // rows * stride + 1 + error.row % rows
-        raise source.error(
-            line + at,
-            f"dataset {section.number}: {error.text!r} is not a number; remove node "
-            f"{nodes[error.row // rows]} from the test or export the file again",
-        ) from None
-    if len(values) != width * len(nodes):
-        k = _first_short(data, rows, width)
-        raise source.error(
-            line + 1 + k * stride,
-            f"dataset {section.number}: node {nodes[k]} does not have {width} values; "
-            "export the file again",
-        )
-    values = values.reshape(-1, width)
-    _check(source, section, nodes, values, line + 1, stride)
-    return nodes, values
-
-
-def _rows(body: Sequence[bytes], width: int) -> int | None:
-    """How many lines the values of one node take; None if the first node shows it is damaged."""
-    have = 0
-    for rows, line in enumerate(body[1:], 1):
-        try:
-            have += len(floats([line]))
-        except NotANumber as error:
-            raise NotANumber(rows, error.text) from None
-        if have >= width:
-            return rows if have == width else None
-    return None
-
-
-def _check(
-    source: Source, section: Section, nodes: Ints, values: Floats, line: int, stride: int
-) -> None:
-    """Refuse values that are not finite and nodes given twice."""
-    wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
-    if len(wrong):
-        k = int(wrong[0])
-        raise source.error(
-            line + k * stride,
-            f"dataset {section.number}: the shape is not a finite number at node {nodes[k]}; "
-            "remove that node from the test or export it again",
-        )
-    unique, counts = np.unique(nodes, return_counts=True)
-    if len(unique) < len(nodes):
-        raise source.error(
-            section.line, f"dataset {section.number} gives node {unique[counts > 1][0]} twice"
-        )
-
-
-def _first_short(data: Sequence[bytes], rows: int, width: int) -> int:
-    """Which node is the first with a wrong number of values."""
-    for k in range(len(data) // rows):
-        if len(floats(data[k * rows : (k + 1) * rows])) != width:
-            return k
-    return 0
 
 
 def _integers(source: Source, section: Section, lines: list[bytes], row: int, n: int) -> list[int]:
@@ -281,3 +195,91 @@ def _header_floats(
 
 def _skip(source: Source, section: Section, why: str) -> Skipped:
     return Skipped(f"dataset {section.number}", section.line, why, source.name)
+
+
+def _adding(
+    read: Callable[[Source, Section, Callable[[], bool]], Shape | Skipped | None],
+) -> Callable[[Source, Section, Gathered], int]:
+    def added(source: Source, section: Section, into: Gathered) -> int:
+        shape = read(source, section, into.next_shape_is_wanted)
+        if isinstance(shape, Skipped):
+            into.skipped.append(shape)
+        elif shape is not None:
+            into.add(shape)
+            return len(shape.nodes)
+        return 0
+
+    return added
+
+
+def _tell(content: UniversalContent) -> dict[str, Any]:
+    m = content.modes
+    if m is None:
+        return {}
+    return {
+        "modes": {
+            "number": len(m),
+            "kind": "complex" if m.is_complex else "real",
+            "nodes": len(set(m.dofs.node.tolist())),
+            "values_per_node": int(m.dofs.component.max()),
+            "frequencies_hz": m.frequencies_hz.tolist(),
+        }
+    }
+
+
+def _write(out: Outgoing) -> Iterator[bytes]:
+    """Print each mode as a dataset 55.
+
+    Complex modes are written by their eigenvalue (analysis type 3), or as type 2 with complex
+    data where modal masses are known, which type 3 has no place for.
+    """
+    modes, systems = out.modes, out.systems
+    if modes is None:
+        return
+    nodes, vectors = node_vectors(modes.dofs, modes.shapes)
+    for row, node in enumerate(nodes.tolist()):
+        if node in systems:
+            for half in range(vectors.shape[1] // 3):
+                part = slice(3 * half, 3 * half + 3)
+                vectors[row, part] = systems[node] @ vectors[row, part]
+    width = vectors.shape[1]
+    n_value = width * (2 if modes.is_complex else 1)
+    lines = "".join("%13.5E" * min(6, n_value - k) + "\n" for k in range(0, n_value, 6))
+    form = "".join(f"{node:10d}\n{lines}" for node in nodes.tolist())
+    for k in range(len(modes)):
+        values = np.ascontiguousarray(vectors[:, :, k])
+        if modes.is_complex:
+            values = values.view(np.float64)
+        kind, head = _modal_lines(modes, k)
+        ids = (modes.source or "NONE", "NONE", "NONE", f"mode {k + 1}",
+               f"{modes.frequencies_hz[k]:.6f} Hz")  # fmt: skip
+        yield dataset(
+            55,
+            *(text_line(said) for said in ids),
+            b"%10d%10d%10d%10d%10d%10d\n"
+            % (1, kind, 2 if width == 3 else 3, 8, 5 if modes.is_complex else 2, width),
+            *head,
+            (form % tuple(values.ravel().tolist())).encode("ascii"),
+        )
+
+
+def _modal_lines(modes: Modes, k: int) -> tuple[int, tuple[bytes, bytes]]:
+    """Analysis type and records 7 and 8 of a mode."""
+    frequency, damping = float(modes.frequencies_hz[k]), float(modes.damping[k])
+    mass = float(modes.generalized_mass[k])
+    known = [0.0 if math.isnan(v) else v for v in (damping, mass)]
+    if modes.is_complex and math.isnan(mass) and abs(known[0]) < 1.0:
+        omega = 2.0 * math.pi * frequency
+        pole = (-known[0] * omega, omega * math.sqrt(1.0 - known[0] ** 2))
+        reals = (*pole, 0.0, 0.0, 0.0, 0.0)
+        return 3, (_printed(2, 6, 1, k + 1), b"".join(map(tight, reals)) + b"\n")
+    reals4 = (frequency, known[1], known[0], 0.0)
+    return 2, (_printed(2, 4, 1, k + 1), b"".join(map(tight, reals4)) + b"\n")
+
+
+def _printed(*numbers: int) -> bytes:
+    return b"".join(b"%10d" % n for n in numbers) + b"\n"
+
+
+SHAPES_55 = DatasetKind(55, "data at nodes", _adding(read_55), _tell, _write, vital=True)
+SHAPES_2414 = DatasetKind(2414, "analysis data", _adding(read_2414), vital=True)

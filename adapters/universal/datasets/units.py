@@ -1,32 +1,41 @@
-"""Datasets 151 (header) and 164 (units)."""
+"""Dataset 164: units."""
 
 from __future__ import annotations
 
-from ...core.units import METRES
-from .container import Section
-from .content import Header, Units
-from .fields import NotANumber, floats, integers, text
-from .source import Source
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ....core.data.length_units import METRES
+from ..container import Section
+from ..open_file import Source
+from ..text.number_fields import NotANumber, floats, integers, text
+from ..text.printing import dataset, name_field
+from ..universal_content import Units, UniversalContent
+from .dataset_kind import DatasetKind, Gathered, Outgoing
 
 # What the codes of dataset 164 mean for lengths.
 _CODES = {1: "m", 2: "ft", 3: "m", 4: "ft", 5: "mm", 6: "cm", 7: "in", 8: "mm", 10: "mm"}
 
 
-def read_header(source: Source, section: Section) -> Header:
-    """Read dataset 151."""
-    lines = [text(line) for line in source.lines(section)] + [""] * 7
-    program = " ".join(lines[5].split())
-    return Header(lines[0], lines[1], program, " ".join(lines[3].split()[:2]))
+UNITS = {
+    "m": Units(1, "SI: Meter (newton)", 1.0, length_unit="m"),
+    "mm": Units(10, "MN: mm (newton)", 1000.0, length_unit="mm"),
+    "in": Units(7, "IN: Inch (pound f)", 1 / 0.0254, 0.2248089430997105, 1.8, 459.67, "in"),
+    "ft": Units(2, "BG: Foot (pound f)", 1 / 0.3048, 0.2248089430997105, 1.8, 459.67, "ft"),
+}
 
 
-def read_model_header(source: Source, section: Section) -> Header:
-    """Read dataset 2400: entity name and part number of the model."""
-    lines = [text(line) for line in source.lines(section)] + [""] * 6
-    return Header(lines[1], lines[2], "", " ".join(lines[4].split()[:2]))
+@dataclass(frozen=True)
+class DeclaredUnits:
+    """Units with the file and line that declare them."""
+
+    units: Units
+    path: str
+    line: int
 
 
-def read_units(source: Source, section: Section, warnings: list[str]) -> Units:
-    """Read dataset 164."""
+def _read(source: Source, section: Section, into: Gathered) -> int:
     lines = source.lines(section)
     code = integers(lines[0][:10]) if lines else []
     try:
@@ -47,27 +56,22 @@ def read_units(source: Source, section: Section, warnings: list[str]) -> Units:
     where = f"{source.name} line {section.line}: dataset 164"
     declared = _CODES.get(code[0])
     if declared and unit != declared and _unit(1.0 / length) == declared:
-        warnings.append(
+        into.warnings.append(
             f"{where} gives the length factor upside down ({length:g} with code {code[0]}); "
             f"lengths are taken in {declared}, as the code says"
         )
         length, unit = 1.0 / length, declared
     elif declared and declared != unit:
-        warnings.append(
+        into.warnings.append(
             f"{where} declares {declared} by its code {code[0]} but the length factor {length:g}; "
             "the factor is used"
         )
     elif unit is None:
-        warnings.append(f"{where}: the length factor {length:g} is no unit known here")
-    return Units(
-        code[0],
-        text(lines[0][10:30]),
-        length,
-        float(force),
-        float(temperature),
-        float(offset),
-        unit if unit in METRES else None,
-    )
+        into.warnings.append(f"{where}: the length factor {length:g} is no unit known here")
+    rest = float(force), float(temperature), float(offset)
+    units = Units(code[0], text(lines[0][10:30]), length, *rest, unit if unit in METRES else None)
+    into.add(DeclaredUnits(units, source.name, section.line))
+    return 1
 
 
 def _unit(factor: float) -> str | None:
@@ -76,3 +80,25 @@ def _unit(factor: float) -> str | None:
         if abs(factor * metres - 1.0) < 2e-3:
             return unit
     return None
+
+
+def _tell(content: UniversalContent) -> dict[str, Any]:
+    return {"length_unit": content.length_unit}
+
+
+def _write(out: Outgoing) -> Iterator[bytes]:
+    units = out.units
+    if units is None:
+        return
+    factors = (
+        units.length_factor,
+        units.force_factor,
+        units.temperature_factor,
+        units.temperature_offset,
+    )
+    printed = [(b"%25.17E" % f).replace(b"E", b"D") for f in factors]
+    head = b"%10d" % units.code + name_field(units.name, 20) + b"%10d\n" % 2
+    yield dataset(164, head, b"".join(printed[:3]) + b"\n", printed[3] + b"\n")
+
+
+UNITS_164 = DatasetKind(164, "units", _read, _tell, _write, vital=True)

@@ -1,71 +1,115 @@
-"""Print frequency responses (datasets 58 and 58b)."""
+"""Print frequency responses and other functions (datasets 58 and 58b)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
-from ...core.arrays import Floats, Numbers
-from ...core.dofs import Dofs
-from ...core.errors import InputError
-from ...core.frfs import Frfs
-from .digits import print_lines
-from .layout58 import records
-from .printing import DELIMITER, text_line, tight
+from ....core.arrays import Floats, Numbers
+from ....core.data.dofs import Dofs
+from ....core.errors import InputError
+from ..text.layout58 import records
+from ..text.print_columns import print_lines
+from ..text.printing import DELIMITER, text_line, tight
+from .dataset_kind import Outgoing
+from .function_names import KINDS, QUANTITIES
 
-_QUANTITIES = {"displacement": (8, 1, "NONE"), "velocity": (11, 1, "NONE"),
-               "acceleration": (12, 1, "NONE")}  # fmt: skip
 _LETTERS = ("X", "Y", "Z", "RX", "RY", "RZ")
 
 
-def frf_datasets(
-    frfs: Frfs, systems: Mapping[int, Floats], binary: bool, single: bool
+def frf_datasets(out: Outgoing) -> Iterator[bytes]:
+    """Print each measured combination; nodes in `systems` have displacement axes of their own.
+
+    Raises
+    ------
+    InputError
+        Values that are not finite: the format cannot say so.
+    """
+    if out.frfs is None:
+        return
+    frfs, spaced = out.frfs, spacing(out.frfs.frequencies_hz)
+    responses, references = (_directions(d, out.systems) for d in (frfs.responses, frfs.references))
+    axes = _axis_line(18, 0, 0, "Frequency", "Hz")
+    axes += _axis_line(_number(QUANTITIES, frfs.quantity, 0), 1, 0, "NONE", "NONE")
+    axes += _axis_line(13, 0, 1, "NONE", "NONE") + _axis_line(0, 0, 0, "NONE", "NONE")
+    for (i, response), (j, reference) in product(enumerate(responses), enumerate(references)):
+        values = frfs.values[i, j]
+        if np.isnan(values).all():
+            continue
+        name = f"{_name(*response)}/{_name(*reference)}"
+        if not np.isfinite(values).all():
+            raise InputError(
+                f"response {name.replace('/', ' to ')} holds values that are not finite numbers; "
+                "a universal file cannot say so"
+            )
+        yield from _printed(
+            out, (name,), 4, response, reference, axes, frfs.frequencies_hz, values, spaced
+        )
+
+
+def function_datasets(out: Outgoing) -> Iterator[bytes]:
+    """Print each function; its numbers are those of the file it came from.
+
+    Raises
+    ------
+    InputError
+        Values that are not finite: the format cannot say so.
+    """
+    for f in out.functions:
+        if not (np.isfinite(f.abscissa).all() and np.isfinite(f.values).all()):
+            raise InputError(
+                f"the {f.kind} of node {f.response[0]} holds values that are not finite numbers; "
+                "a universal file cannot say so"
+            )
+        words = (f.kind, f.over, f.quantity, f.per)
+        names = (KINDS, QUANTITIES, QUANTITIES, QUANTITIES)
+        kind, over, quantity, per = map(_number, names, words, f.codes)
+        axes = _axis_line(over, 0, 0, "NONE", f.abscissa_unit)
+        axes += _axis_line(quantity, 0, 0, "NONE", f.ordinate_unit)
+        axes += _axis_line(per, 0, 0, "NONE", "NONE") + _axis_line(0, 0, 0, "NONE", "NONE")
+        yield from _printed(
+            out, f.ids, kind, f.response, f.reference, axes, f.abscissa, f.values,
+            spacing(f.abscissa),
+        )  # fmt: skip
+
+
+def _printed(
+    out: Outgoing,
+    ids: Sequence[str],
+    function: int,
+    response: tuple[int, int],
+    reference: tuple[int, int],
+    axes: bytes,
+    x: Floats,
+    values: Numbers,
+    spaced: tuple[float, float, bool],
 ) -> Iterator[bytes]:
-    """Print each measured combination; nodes in `systems` have displacement axes of their own."""
-    x = frfs.frequencies_hz
-    start, step, even = spacing(x)
-    kind = 5 if single else 6
-    responses = _directions(frfs.responses, systems)
-    references = _directions(frfs.references, systems)
-    form = b"%10d%10d%10d" % (kind, len(x), int(even))
-    form += (tight(start) + tight(step) if even else tight(0.0) * 2) + tight(0.0) + b"\n"
-    quantity = _QUANTITIES[frfs.quantity]
-    axes = axis_line(18, 0, 0, "Frequency", "Hz") + axis_line(
-        *quantity[:1], 1, 0, "NONE", quantity[2]
-    )
-    axes += axis_line(13, 0, 1, "NONE", "NONE") + axis_line(0, 0, 0, "NONE", "NONE")
+    start, step, even = spaced
+    kind = (2 if out.single else 4) + (np.iscomplexobj(values) and (3 if out.single else 2))
     number = b"    58"
-    if binary:
+    if out.binary:
         size = len(x) * sum(records(kind, even)[0])
         number += b"b%6d%6d%12d%12d%6d%6d%12d%12d" % (1, 2, 11, size, 0, 0, 0, 0)
-    for i, response in enumerate(responses):
-        for j, reference in enumerate(references):
-            values = frfs.values[i, j]
-            if np.isnan(values).all():
-                continue
-            if not np.isfinite(values).all():
-                raise InputError(
-                    f"response {_name(*response)} to {_name(*reference)} holds values that are "
-                    "not finite numbers; a universal file cannot say so"
-                )
-            names = f"{_name(*response)}/{_name(*reference)}"
-            yield DELIMITER + number + b"\n"
-            yield b"".join(text_line(t) for t in (names, "NONE", "NONE", "NONE", "NONE"))
-            yield b"%5d%10d%5d%10d %10s%10d%4d %10s%10d%4d\n" % (
-                4, 0, 1, 0, b"NONE", *response, b"NONE", *reference,
-            )  # fmt: skip
-            yield form + axes
-            yield from numbers(x, values, even, single, binary)
-            yield DELIMITER
-
-
-def numbers(x: Floats, values: Numbers, even: bool, single: bool, binary: bool) -> Iterator[bytes]:
-    """Print or pack the numbers of a function, real or complex."""
-    if binary:
-        yield _packed(x, values, even, single)
+    yield DELIMITER + number + b"\n"
+    yield b"".join(text_line(t) for t in (*ids, *["NONE"] * 5)[:5])
+    yield b"%5d%10d%5d%10d %10s%10d%4d %10s%10d%4d\n" % (
+        function, 0, 1, 0, b"NONE", *response, b"NONE", *reference,
+    )  # fmt: skip
+    form = b"%10d%10d%10d" % (kind, len(x), int(even))
+    yield form + (tight(start) + tight(step) if even else tight(0.0) * 2) + tight(0.0) + b"\n"
+    yield axes
+    if out.binary:
+        yield _packed(x, values, even, out.single)
     else:
-        yield from _printed(x, values, even, single)
+        yield from _text(x, values, even, out.single)
+    yield DELIMITER
+
+
+def _number(names: Mapping[int, str], said: str, code: int) -> int:
+    """Return the number of a name, `code` where it has none."""
+    return next((number for number, name in names.items() if name == said), code)
 
 
 def spacing(x: Floats) -> tuple[float, float, bool]:
@@ -93,7 +137,7 @@ def _name(node: int, direction: int) -> str:
     return f"{node}:{'-' if direction < 0 else '+'}{_LETTERS[abs(direction) - 1]}"
 
 
-def axis_line(kind: int, length: int, force: int, label: str, unit: str) -> bytes:
+def _axis_line(kind: int, length: int, force: int, label: str, unit: str) -> bytes:
     """Return a record that describes an axis: quantity, exponents, label and unit."""
     name, said = (w.encode("latin-1", "replace")[:20] for w in (label, unit))
     return b"%10d%5d%5d%5d %-20s %-20s\n" % (kind, length, force, 0, name, said)
@@ -111,7 +155,7 @@ def _packed(x: Floats, values: Numbers, even: bool, single: bool) -> bytes:
     return table.tobytes()
 
 
-def _printed(x: Floats, values: Numbers, even: bool, single: bool) -> Iterator[bytes]:
+def _text(x: Floats, values: Numbers, even: bool, single: bool) -> Iterator[bytes]:
     parts = np.ascontiguousarray(values).view(np.float64)
     if even:
         yield from print_lines(parts, 13, 5, 6) if single else print_lines(parts, 20, 12, 4)

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...core.dofs import Dofs
-from ...core.errors import InputError
-from ...core.modes import Modes
-from .content import Skipped, Units
-from .frames import NodeFrames, some
-from .shapes import Shape
+from ....core.data.dofs import Dofs
+from ....core.data.modes import Modes
+from ....core.errors import InputError
+from ..datasets.mode_shapes import Shape
+from ..datasets.units import DeclaredUnits
+from ..universal_content import Skipped, Units
+from .node_frames import NodeFrames, some
 
 
 def join_modes(shapes: list[Shape], frames: NodeFrames, warnings: list[str]) -> Modes | None:
@@ -64,21 +65,18 @@ def join_modes(shapes: list[Shape], frames: NodeFrames, warnings: list[str]) -> 
     )
 
 
-def agreed_units(units: Sequence[tuple[Units, str, int]], skipped: list[Skipped]) -> Units | None:
-    """Return the units on which all files agree; each comes with the file and line it stands at.
-
-    The first that differ from them go to `skipped`.
-    """
-    if not units:
+def agreed_units(declared: Sequence[DeclaredUnits], skipped: list[Skipped]) -> Units | None:
+    """Return the units on which all files agree; the first that differ go to `skipped`."""
+    if not declared:
         return None
-    first, where, line = units[0]
-    for other, path, at in units[1:]:
-        if abs(other.length_factor / first.length_factor - 1.0) > 1e-6:
+    first = declared[0]
+    for other in declared[1:]:
+        factors = first.units.length_factor, other.units.length_factor
+        if abs(factors[1] / factors[0] - 1.0) > 1e-6:
             why = (
-                f"dataset 164 at {where} line {line} declares different length units (factors "
-                f"{first.length_factor:g} and {other.length_factor:g}); export all files in one "
-                "unit"
+                f"dataset 164 at {first.path} line {first.line} declares different length units "
+                f"(factors {factors[0]:g} and {factors[1]:g}); export all files in one unit"
             )
-            skipped.append(Skipped("dataset 164 (units)", at, why, path, "test"))
+            skipped.append(Skipped("dataset 164 (units)", other.line, why, other.path, "test"))
             break
-    return first
+    return first.units

@@ -8,31 +8,19 @@ from itertools import product
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints, Numbers
-from ...core.dofs import Dofs
-from ...core.errors import InputError
-from ...core.frfs import Frfs
-from .content import Function, Skipped
-from .fields import NotANumber
-from .functions import QUANTITIES, Head58, check_size, read_values
+from ....core.arrays import Floats, Ints, Numbers
+from ....core.data.dofs import Dofs
+from ....core.data.frfs import Frfs
+from ....core.errors import InputError
+from ..datasets.function_names import QUANTITIES
+from ..datasets.function_values import check_size, read_values
+from ..datasets.functions import Head58, Record
+from ..text.number_fields import NotANumber
+from ..universal_content import Function, Skipped
 from .response_units import DERIVATIVE, MOTION, factors, highest_quantity, quantity_of
-from .source import Source
 
 Frames = Callable[[Ints], Floats]
 _FREQUENCY, _FORCE = 18, (13, 9)
-
-
-@dataclass(frozen=True, eq=False)
-class Record:
-    """The header of a function with the file it stands in."""
-
-    source: Source
-    head: Head58
-
-    @property
-    def where(self) -> str:
-        """File and line of the dataset."""
-        return f"{self.source.name} line {self.head.section.line}"
 
 
 @dataclass
@@ -305,4 +293,5 @@ def _function(record: Record, x: Floats, y: Numbers) -> Function:
         h.ids,
         h.section.line,
         record.source.name,
+        (h.function, *(a.quantity for a in (h.abscissa, h.ordinate, h.denominator))),
     )

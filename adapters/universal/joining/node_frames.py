@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
-from .content import Skipped
-from .nodes import NodeTable
-from .systems import BASIC, CoordinateSystem
+from ....core.arrays import Floats, Ints
+from ..datasets.nodes import NodeTable
+from ..systems import BASIC, CoordinateSystem
+from ..universal_content import Skipped
 
 _TURNED = 1e-6  # difference of direction cosines from which axes are not the same
 

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ...core.units import METRES
-from .functions import Head58
+from ....core.data.length_units import METRES
+from ..datasets.functions import Head58
 
 MOTION = {8: "displacement", 11: "velocity", 12: "acceleration"}
 DERIVATIVE = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -87,15 +87,6 @@ def factors(
 def _motion(unit: str) -> tuple[str, float] | None:
     """Quantity and size in metres of a unit such as ``mm/s^2`` or ``g/N``."""
     return _MOTION_UNITS.get(_plain(_PER_FORCE.sub("", unit)))
-
-
-@lru_cache(maxsize=64)
-def _force(unit: str, quotient: str) -> float:
-    """Size in newton of a force, named by itself or at the end of a quotient."""
-    per = _PER_FORCE.search(quotient)
-    if _plain(unit) in _FORCE_UNITS:
-        return _FORCE_UNITS[_plain(unit)]
-    return _FORCE_UNITS[per[1].lower()] if per else 1.0
 
 
 def _plain(unit: str) -> str:

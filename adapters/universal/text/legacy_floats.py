@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ...core.arrays import Floats
+from ....core.arrays import Floats
 
 VAX, IEEE, IBM = 1, 2, 3
 

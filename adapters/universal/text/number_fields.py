@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
+from ....core.arrays import Floats, Ints
 
 _TO_E = bytes.maketrans(b"Dd", b"EE")
 _NUMBER = rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d{2,3}(?![\d.]))?"

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from ...core.arrays import Floats, Ints
+from ....core.arrays import Floats, Ints
 
 _LARGEST = 99  # three-digit exponents take another column: they are printed one by one
 _POWERS = np.array([float(f"1e{k}") for k in range(-120, 121)])  # correctly rounded

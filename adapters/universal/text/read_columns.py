@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ...core.arrays import Floats
-from .fields import numbers_of
+from ....core.arrays import Floats
+from .number_fields import numbers_of
 
 Read = Callable[[int, int], bytes]
 Bytes = npt.NDArray[np.uint8]

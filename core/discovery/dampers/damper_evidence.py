@@ -6,17 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Numbers
-from ..correlation import principal
-from .dampers import DamperFound, DampingEvidence, find_damper
-from .damping import Oriented, complex_modes, oriented
-from .evidence import Evidence
-from .kinds.local_damper import PEAKS, Dashpots, dashpots
-from .problem import Fit, Problem
-from .request import Request
-
-_SHIFTED, _TURNED = 0.004, 0.1
-"""Relative changes of a frequency and of a shape that a search for other effects would see."""
+from ...arrays import Floats, Ints, Numbers
+from ...correlation.mac import principal
+from ..effects.local_damper import PEAKS, dashpots
+from ..effects.structure_points import Axes
+from ..likelihood.complex_modes import Oriented, complex_modes, oriented
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.mode_likelihood import Evidence
+from ..likelihood.request import Request
+from .damper_numbers import DAMPERS
+from .damper_search import DamperFound, DampingEvidence, find_damper
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +25,7 @@ class Weighed:
     Parameters
     ----------
     found : DamperFound
-    places : Dashpots
+    places : Axes
     modes : Oriented
     u : (n_place, n) float
         Motion of the places in the coordinates of `modes`.
@@ -37,7 +36,7 @@ class Weighed:
     """
 
     found: DamperFound
-    places: Dashpots
+    places: Axes
     modes: Oriented
     u: Floats
     motion: Floats
@@ -108,5 +107,5 @@ def moved(w: Weighed) -> Ints:
     poles, Q = complex_modes(omega, D)
     shift = np.abs(np.abs(poles[:n]) / omega[:n] - 1.0)
     turned = np.linalg.norm(Q.real[:, :n] - np.eye(len(omega))[:, :n], axis=0)
-    still = (shift < _SHIFTED) & (turned < _TURNED)
+    still = (shift < DAMPERS.shifted) & (turned < DAMPERS.turned)
     return np.flatnonzero(~still)

@@ -14,27 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Bools, Floats, Ints
-from .damping import Oriented, added, imaginary, predicted
-from .ratios import Levels, expected_level, levels_for, log_likelihood, marginal
+from ...arrays import Bools, Floats, Ints
+from ..likelihood.complex_modes import Oriented, added, imaginary, predicted
+from .damper_numbers import DAMPERS
+from .damping_ratios import Levels, expected_level, levels_for, log_likelihood, marginal
 
 Gain = Callable[[Ints, Floats], Floats]
 """How much likelier (ln) dashpots at some places (n,), of sizes (n, t), make the shapes, (n, t)."""
-
-_FEWEST = 5
-_RARE = 3.5
-"""ln of how many times rarer a dashpot is beforehand than none."""
-_SHAPE_ERROR = 0.08
-"""Error of a shape anywhere, over its rms."""
-_STILL = 1e-3
-"""A place where no mode gets this part of the most damping that a place can give is still."""
-_SCREENED, _EXACT, _HOPELESS = 200, 24, 12.0
-_WORTH = 0.01
-_CHUNK = 4
-_SPREAD = 0.6
-_COMPLEXITY, _OWN_SHARE, _FREEDOM = 0.03, 0.2, 3.0
-"""Imaginary part of a shape without a dashpot over its rms, the part of a predicted one that is
-wrong, and how firmly both are known (degrees of freedom)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,31 +102,31 @@ def find_damper(
         None where fewer than five ratios are known.
     """
     chosen = np.flatnonzero(e.known)
-    if len(chosen) < _FEWEST or not len(u):
+    if len(chosen) < DAMPERS.fewest or not len(u):
         return None
     w = _weighing(e, modes, u, sensors, known, trials, chosen)
     peak = w.gives.max(axis=1)
-    live = np.flatnonzero(peak > _STILL * peak.max())
+    live = np.flatnonzero(peak > DAMPERS.still * peak.max())
     if not len(live):
         return None
     first = w.scores(live, _coarse(w)).max(axis=1)
-    best = np.argsort(-first, kind="stable")[:_SCREENED]
-    rows = live[best[first[best] > first.max() - _HOPELESS]]
+    best = np.argsort(-first, kind="stable")[: DAMPERS.screened]
+    rows = live[best[first[best] > first.max() - DAMPERS.behind]]
     score = w.scores(rows, w.grid)
-    for i in np.argsort(-logsumexp(score, axis=1), kind="stable")[:_EXACT]:
-        for k in np.flatnonzero(score[i] > score[i].max() + np.log(_WORTH)):
+    for i in np.argsort(-logsumexp(score, axis=1), kind="stable")[: DAMPERS.exact]:
+        for k in np.flatnonzero(score[i] > score[i].max() + np.log(DAMPERS.worth)):
             score[i, k] += w.correction(modes, known, u[rows[i]], int(rows[i]), int(k))
     place = logsumexp(score, axis=1) - np.log(len(trials))
     order = np.argsort(-place, kind="stable")
     rows, score, place = rows[order], score[order], place[order]
-    odds = float(logsumexp(place)) - np.log(len(live)) - _RARE
+    odds = float(logsumexp(place)) - np.log(len(live)) - DAMPERS.rare
     within = np.exp(score - logsumexp(score, axis=1)[:, None])
     log_c = np.log(w.sizes[rows])
     mean = np.sum(within * log_c, axis=1)
     step = float(np.ptp(trials)) / max(len(trials) - 1, 1)
     deviation = np.sqrt(np.sum(within * (log_c - mean[:, None]) ** 2, axis=1) + step**2 / 12.0)
     return DamperFound(
-        1.0 / (1.0 + np.exp(-np.clip(odds, -60.0, 60.0))),
+        1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most))),
         2.0 * odds,
         rows,
         np.exp(place - logsumexp(place)),
@@ -182,12 +168,12 @@ class _Weighing:
     def scores(self, rows: Ints, grid: Levels) -> Floats:
         """Return ln of how much likelier each size makes the data, (n, n_trial)."""
         out = np.empty((len(rows), self.sizes.shape[1]))
-        for start in range(0, len(rows), _CHUNK):
-            some = rows[start : start + _CHUNK]
+        for start in range(0, len(rows), DAMPERS.at_once):
+            some = rows[start : start + DAMPERS.at_once]
             c = self.sizes[some][:, :, None]
             part = self.own + c * self.gives[some][:, None, :]
             error = c * self.wrong[some][:, None, :]
-            out[start : start + _CHUNK] = marginal(self.measured, grid, part, error)
+            out[start : start + DAMPERS.at_once] = marginal(self.measured, grid, part, error)
         return out - self.null + self.shapes(rows, self.sizes[rows])
 
     def level(self, row: int | None, c: float) -> Floats:
@@ -227,10 +213,10 @@ def _weighing(
 ) -> _Weighing:
     z, omega = e.measured[chosen], modes.omega[chosen]
     own = np.diag(known)[chosen] / (2.0 * omega)
-    grid = levels_for(np.maximum(z - own, 0.2 * z), omega)
+    grid = levels_for(np.maximum(z - own, DAMPERS.least_left * z), omega)
     v = u[:, chosen]
     gives = added(v, omega)
-    delta = _SHAPE_ERROR * np.sqrt(np.mean(v**2, axis=0))
+    delta = DAMPERS.shape_error * np.sqrt(np.mean(v**2, axis=0))
     wrong = (2.0 * np.abs(v) * delta + delta**2) / (2.0 * omega)
     peak = np.maximum(gives.max(axis=1), np.finfo(float).tiny)
     sizes = np.exp(trials) / peak[:, None]
@@ -241,7 +227,7 @@ def _weighing(
 
 def _coarse(w: _Weighing) -> Levels:
     """Few levels for a first look: of middling spread, the course that suits no dashpot best."""
-    away = np.abs(w.grid.spreads - _SPREAD)
+    away = np.abs(w.grid.spreads - DAMPERS.middling)
     some = w.grid.take(np.flatnonzero(away == away.min()))
     alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own).sum(axis=-1)
     best = some.course[int(np.argmax(alone + some.log_prior))]
@@ -269,12 +255,13 @@ def _of_shapes(e: DampingEvidence, modes: Oriented, u: Floats, sensors: Floats) 
     def none(rows: Ints, sizes: Floats) -> Floats:
         return np.zeros(sizes.shape)
 
-    if Y is None or not np.abs(Y).max() > 1e-3 * np.abs(sensors).max():
+    if Y is None or not np.abs(Y).max() > DAMPERS.complex_least * np.abs(sensors).max():
         return none
     n, count = len(Y), modes.count
     rms = np.mean(sensors[:, :count] ** 2, axis=0)
     total = np.mean(Y**2, axis=0)
-    ground = _FREEDOM * _COMPLEXITY**2 * rms
+    free = DAMPERS.freedom
+    ground = free * DAMPERS.complexity**2 * rms
     each = min(float(n), e.independent)
     cross = Y.T @ sensors
 
@@ -284,9 +271,9 @@ def _of_shapes(e: DampingEvidence, modes: Oriented, u: Floats, sensors: Floats) 
         b = np.einsum("pjk,pjk->pj", turned @ gram, turned)[:, None, :] / n
         c = sizes[:, :, None]
         left = np.maximum(total - 2.0 * c * a + c**2 * b, 0.0)
-        floor = ground + _FREEDOM * (_OWN_SHARE * c) ** 2 * b
+        floor = ground + free * (DAMPERS.own_share * c) ** 2 * b
         ratio = (floor + each * left) / (ground + each * total)
-        ln = -0.5 * (_FREEDOM + each) * np.log(ratio) + 0.5 * _FREEDOM * np.log(floor / ground)
+        ln = -0.5 * (free + each) * np.log(ratio) + 0.5 * free * np.log(floor / ground)
         return np.asarray(ln.sum(axis=-1))
 
     return gain

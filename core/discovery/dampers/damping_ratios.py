@@ -13,26 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Floats, Ints
-
-_COURSES = {
-    (0.0, 1.0): 0.6,
-    (-0.5, 1.0): 0.1,
-    (0.5, 1.0): 0.1,
-    (1.0, 0.0): 0.03,
-    (1.0, 0.2): 0.03,
-    (1.0, 0.5): 0.04,
-    (1.0, 0.8): 0.04,
-    (1.0, 1.0): 0.06,
-}
-"""How the level may go with frequency, a share s of x^e and the rest of 1/x^e by (e, s), and how
-likely each is: constant, in between, and Rayleigh damping."""
-_SPREADS = (0.2, 0.35, 0.6, 1.0)
-_LEVELS = 18
-_TAILS = 5.0
-"""Degrees of freedom of the t distribution of ln ζ."""
-_MEASURED = 0.03
-"""Error of ln ζ as measured, at least."""
+from ...arrays import Floats, Ints
+from .damper_numbers import DAMPERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,16 +47,16 @@ class Levels:
 
 def levels_for(measured: Floats, omega: Floats) -> Levels:
     """Return the grid of levels for measured ratios, (n_mode,), all positive."""
-    size = np.geomspace(0.5 * measured.min(), measured.max(), _LEVELS)
+    size = np.geomspace(DAMPERS.lowest_level * measured.min(), measured.max(), DAMPERS.levels)
     x = omega / np.exp(np.mean(np.log(omega)))
-    course = np.array([share * x**e + (1.0 - share) * x**-e for e, share in _COURSES])
+    course = np.array([share * x**e + (1.0 - share) * x**-e for e, share, _ in DAMPERS.courses])
     course = course / np.exp(np.mean(np.log(course), axis=1, keepdims=True))
-    number = (len(size), len(course), len(_SPREADS))
+    number = (len(size), len(course), len(DAMPERS.spreads))
     levels = np.broadcast_to(
         (size[:, None, None] * course)[:, :, None, :], (*number, len(x))
     ).reshape(-1, len(x))
-    weight = np.broadcast_to(np.array(list(_COURSES.values()))[None, :, None], number).ravel()
-    spreads = np.broadcast_to(np.array(_SPREADS), number).ravel()
+    weight = np.broadcast_to(np.array(DAMPERS.courses)[None, :, 2, None], number).ravel()
+    spreads = np.broadcast_to(np.array(DAMPERS.spreads), number).ravel()
     which = np.broadcast_to(np.arange(len(course))[None, :, None], number).ravel()
     return Levels(levels, spreads, np.log(weight / weight.sum()), which)
 
@@ -98,9 +80,10 @@ def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) 
     a, da = part[..., None, :], error[..., None, :]
     mean = grid.levels + a
     v = (grid.spreads[:, None] * grid.levels) ** 2 + da**2
-    v = v / mean**2 + _MEASURED**2
+    v = v / mean**2 + DAMPERS.measured**2
     r2 = (np.log(measured) - np.log(mean)) ** 2
-    return np.asarray(-0.5 * (_TAILS + 1.0) * np.log1p(r2 / (_TAILS * v)) - 0.5 * np.log(v))
+    nu = DAMPERS.tails
+    return np.asarray(-0.5 * (nu + 1.0) * np.log1p(r2 / (nu * v)) - 0.5 * np.log(v))
 
 
 def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:

@@ -7,16 +7,9 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
 from ...arrays import Bools, Floats, Ints
-from ..structure import Members, Structure, shelled
-from .patches import Patch
-
-_STRAIGHT = 0.98
-_MOST = 400
-"""Stretches of all bars at most."""
-_SLENDER = 0.5
-"""Length, beside the size of the structure, of a bar whose stretches are scanned first."""
-_FIRST = (0.08, 0.25)
-"""Length of those that are, beside the size of the structure."""
+from ..reduction.elements_and_supports import Members, Structure, shelled
+from .effect_numbers import EFFECTS
+from .element_patches import Patch
 
 
 def bars_of(structure: Structure, size: float) -> list[Patch]:
@@ -33,7 +26,7 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
     """
     own = _bars(structure)
     least = 1
-    while sum(len(_stretches(len(rows), least)) for _, rows in own) > _MOST:
+    while sum(len(_stretches(len(rows), least)) for _, rows in own) > EFFECTS.bar_stretches:
         least += 1
     out = []
     for number, rows in own:
@@ -41,11 +34,12 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
         xyz = structure.centroids(m)
         length = _lengths(structure, m, rows)
         whole = float(length.sum())
-        out.append(Patch(number, np.sort(rows), xyz[rows].mean(axis=0), whole, True))
+        out.append(Patch(number, np.sort(rows), xyz[rows].mean(axis=0), True))
         for a, b in _stretches(len(rows), least):
             part, extent = rows[a:b], float(length[a:b].sum())
-            first = whole > _SLENDER * size and _FIRST[0] * size <= extent <= _FIRST[1] * size
-            out.append(Patch(number, np.sort(part), xyz[part].mean(axis=0), extent, first))
+            low, high = (size * share for share in EFFECTS.bar_first)
+            first = whole > EFFECTS.bar_long * size and low <= extent <= high
+            out.append(Patch(number, np.sort(part), xyz[part].mean(axis=0), first))
     return out
 
 
@@ -55,7 +49,7 @@ def bare_bars(structure: Structure) -> list[tuple[int, Ints]]:
     return [
         (number, np.flatnonzero(~on_shell[m.corners[:, :2]].all(axis=1)))
         for number, m in enumerate(structure.members)
-        if m.shape == "line" and m.block.width == 6
+        if m.element.dimension == 1 and m.element.freedoms == 6
     ]
 
 
@@ -64,7 +58,7 @@ def _bars(structure: Structure) -> list[tuple[int, Ints]]:
     g = structure.model.geometry
     count = np.zeros(len(g.ids), np.int64)
     for m in structure.members:
-        if m.shape == "line":
+        if m.element.dimension == 1:
             np.add.at(count, m.corners[:, :2].ravel(), 1)
     through = (count == 2) & ~shelled(structure)
     return [
@@ -108,7 +102,7 @@ def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
     along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
     for k in pairs:
         a, b = int(order[k] // 2), int(order[k + 1] // 2)
-        if abs(float(along[a] @ along[b])) > _STRAIGHT:
+        if abs(float(along[a] @ along[b])) > EFFECTS.bar_straight:
             rows.append(a)
             columns.append(b)
     graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))

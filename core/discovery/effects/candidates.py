@@ -9,9 +9,13 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
-from .basis import Basis
-from .laws import Law, Rows
+from ...arrays import Floats, Ints
+from ..reduction.search_basis import Basis
+from .effect_kind import EffectKind
+from .effect_laws import Law, Rows
+
+Ends = tuple[int, int, int]
+"""Number of an edge, and of the places on it where a stretch begins and ends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +24,7 @@ class Candidates:
 
     Parameters
     ----------
-    kind : str
-        One of the fixed words of the interface.
+    kind : EffectKind
     xyz : (n, 3) float
         Where, deck units.
     law : Law
@@ -30,7 +33,7 @@ class Candidates:
     root : (n · q, n_free) sparse
         A of place i is the sum of the outer products of its q rows.
     rows_each : int
-        q.
+        q; 0 where the matrix is that of elements, and nothing that a basis lacks matters.
     where : tuple of dict
         ``grids`` or ``elements`` of each place, ``components`` where the kind has them.
     typical, spread : (t,) float
@@ -39,9 +42,13 @@ class Candidates:
         What is a step of each θ where a search moves it.
     lower, upper : (t,) float
         Bounds of θ.
+    loads, turns : sparse, optional
+        `root` is ``turns @ loads``, where few loads make the rows of many places.
+    ends : tuple of Ends
+        Of each place, where they are stretches of edges.
     """
 
-    kind: str
+    kind: EffectKind
     xyz: Floats
     law: Law
     trials: Floats
@@ -53,10 +60,17 @@ class Candidates:
     steps: Floats = field(default_factory=lambda: np.ones(1))
     lower: Floats = field(default_factory=lambda: np.full(1, -np.inf))
     upper: Floats = field(default_factory=lambda: np.full(1, np.inf))
-    extra: dict[str, Any] = field(default_factory=dict)
+    loads: sp.csr_matrix | None = None
+    turns: sp.csr_matrix | None = None
+    ends: tuple[Ends, ...] = ()
 
     def __len__(self) -> int:
         return len(self.xyz)
+
+    @property
+    def first(self) -> Ints:
+        """Places that a first scan may look at."""
+        return np.arange(len(self))
 
     def surprise(self, theta: Floats) -> Floats:
         """Return −2 ln of the prior density of θ (n, t), up to a constant, (n,)."""
@@ -80,11 +94,6 @@ class Candidates:
         """Return the rows of `root` on the basis, (n, q, r)."""
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
-
-    @property
-    def needs_flexibility(self) -> bool:
-        """Whether the law depends on what a basis lacks."""
-        return self.rows_each > 0 and self.law.needs_flexibility
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""

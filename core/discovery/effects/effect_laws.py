@@ -7,12 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-
-_RIGID = 1e-4
-"""ω² m times the flexibility that an attached mass has at least."""
-_LEAST_LEFT = 1e-7
-"""Stiffness that freed coordinates keep at least, beside the stiffest of their own."""
+from ...arrays import Floats, Ints
+from .effect_numbers import EFFECTS
 
 
 class Rows(Protocol):
@@ -39,11 +35,6 @@ class Law(Protocol):
         """Return their derivatives by each θ, (n, t, q or 1)."""
         ...
 
-    @property
-    def needs_flexibility(self) -> bool:
-        """Whether it depends on what a basis lacks."""
-        ...
-
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the law of some rows alone on a basis.
 
@@ -53,8 +44,8 @@ class Law(Protocol):
         missing : (n, q) float or None
             Flexibility of each row that the basis does not have. What is released or attached on
             a basis that is too stiff by it would do too little.
-        log_p : (≥ n_parameter,) float
-            Where the parameters stand.
+        log_p : (n_parameter,) float
+            Where the known parameters stand.
         top : float
             An eigenvalue above those of interest.
         """
@@ -78,7 +69,6 @@ class MassLaw(_Mass):
     """A mass m = e^θ adds m·A to M."""
 
     on: str = "M"
-    needs_flexibility: bool = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the mass on the spring that the basis lacks."""
@@ -97,7 +87,6 @@ class AttachedLaw(_Mass):
     missing: Rows
     top: float
     on: str = "A"
-    needs_flexibility: bool = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the mass on the spring that this basis lacks."""
@@ -105,7 +94,7 @@ class AttachedLaw(_Mass):
 
     def own(self, theta: Floats) -> tuple[Floats, Floats]:
         """Return the flexibility of its spring on any basis (n, 1), and its slopes (n, t)."""
-        rigid = _RIGID / (np.exp(theta) * self.top)
+        rigid = EFFECTS.rigid / (np.exp(theta) * self.top)
         return rigid, -rigid
 
     def springs(self, theta: Floats, rows: Ints) -> Floats:
@@ -150,7 +139,6 @@ class FactorLaw:
     """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
 
     on: str = "K"
-    needs_flexibility: bool = False
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the law as it is."""
@@ -174,7 +162,6 @@ class SpringLaw:
 
     missing: Rows
     on: str = "K"
-    needs_flexibility: bool = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the spring in line with what the basis lacks."""
@@ -208,7 +195,6 @@ class ReleaseLaw:
     log_p: Floats
     free: int = 0
     on: str = "K"
-    needs_flexibility: bool = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the release as it is, parameters where they stand."""
@@ -216,7 +202,7 @@ class ReleaseLaw:
             self,
             own=self.own[rows],
             elasticity=self.elasticity[rows],
-            log_p=log_p[: len(self.log_p)],
+            log_p=log_p,
         )
 
     def coupled(self, rows: Ints, lost: Floats, log_p: Floats) -> tuple[ReleaseLaw, Floats]:
@@ -227,7 +213,7 @@ class ReleaseLaw:
         rows : (n,) int
         lost : (n, q, q) float
             Flexibility among the coordinates of each that the basis does not have.
-        log_p : (> n_parameter,) float
+        log_p : (n_parameter,) float
 
         Returns
         -------
@@ -238,11 +224,11 @@ class ReleaseLaw:
         own, q = self.own[rows], self.own.shape[1]
         left = -lost
         left[:, np.arange(q), np.arange(q)] += own
-        least = _LEAST_LEFT * own.max(axis=1, keepdims=True)
+        least = EFFECTS.least_left * own.max(axis=1, keepdims=True)
         d, W = directions(left, self.free)
         weight = W**2 * own[:, None, :]
         elasticity = weight @ self.elasticity[rows] / weight.sum(axis=2, keepdims=True)
-        law = ReleaseLaw(np.maximum(d, least), elasticity, log_p[: len(self.log_p)], self.free)
+        law = ReleaseLaw(np.maximum(d, least), elasticity, log_p, self.free)
         return law, W
 
     def factor(self, rows: Ints) -> Floats:

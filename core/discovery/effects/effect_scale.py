@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Floats
+from .effect_numbers import EFFECTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +31,11 @@ class Scale:
     omega2: float
     band_hz: tuple[float, float]
 
-    def masses(self, count: int = 4) -> Floats:
+    def masses(self, count: int = EFFECTS.trials) -> Floats:
         """Trial masses, ln, (count, 1)."""
-        return np.asarray(np.log(self.mass * np.geomspace(0.01, 0.09, count)))[:, None]
+        return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
 
-    def springs(self, count: int = 4) -> Floats:
+    def springs(self, count: int = EFFECTS.trials) -> Floats:
         """Trial stiffnesses, ln, (count, 1)."""
-        return np.asarray(np.log(self.mass * self.omega2 * np.geomspace(3e-3, 0.5, count)))[:, None]
+        stiffness = self.mass * self.omega2 * np.geomspace(*EFFECTS.spring_trials, count)
+        return np.asarray(np.log(stiffness))[:, None]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,22 +13,12 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..basis import Basis
-from ..candidates import Candidates
-from ..laws import MassLaw, Rows
-from ..structure import Members, Structure, thinned
-
-_LEFT = 1e-5
-"""Share of the trace of a patch's matrix that a row of its root is worth at least."""
-_ROUNDING = 1e-12
-"""Share of the largest eigenvalue of an element matrix below which one is zero."""
-_RADII = (0.045, 0.056, 0.07, 0.088, 0.11, 0.14, 0.175, 0.22)
-"""Radii of the patches, beside the size of the structure; every third is scanned first."""
-_SPACING = 0.35
-_MOST = 400
-_LONG, _SHORT = 1.25, 0.63
-"""Half sides of an elongated patch beside the radius of the round one of the same area."""
-_REACH = 1.6
+from ..reduction.elements_and_supports import Members, Structure, thinned
+from ..reduction.search_basis import Basis
+from .candidates import Candidates
+from .effect_kind import EffectKind
+from .effect_laws import Law, MassLaw, Rows
+from .effect_numbers import EFFECTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,41 +28,43 @@ class Patch:
     member: int
     rows: Ints
     xyz: Floats
-    radius: float
     first: bool
 
 
-def patches_of(structure: Structure, size: float, radii: tuple[float, ...] = _RADII) -> list[Patch]:
+def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> list[Patch]:
     """Patches of shell elements of several sizes all over the structure."""
     out = []
     for number, m in enumerate(structure.members):
-        if m.shape not in {"quad", "tria"} or not len(m.ids):
+        if m.element.dimension != 2 or not len(m.ids):
             continue
         xyz = structure.centroids(m)
         tree = cKDTree(xyz)
-        wide = np.flatnonzero(np.ptp(xyz, axis=0) > 0.1 * size)
-        sides = [np.where(np.arange(3) == k, _LONG, _SHORT) for k in wide] if len(wide) > 1 else []
+        wide = np.flatnonzero(np.ptp(xyz, axis=0) > EFFECTS.patch_wide * size)
+        wide = wide if len(wide) > 1 else wide[:0]
+        sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in wide]
         centres = np.concatenate([xyz, structure.model.geometry.xyz[np.unique(m.corners)]])
         for k, r in enumerate(radii):
-            coarse = set(_centres(xyz, 3.2 * _SPACING * r * size)) if k % 3 == 1 else set()
-            for c in sorted({*_centres(centres, _SPACING * r * size), *coarse}):
-                reach = np.array(tree.query_ball_point(centres[c], _REACH * r * size), np.int64)
+            apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
+            wider = EFFECTS.patch_first * apart * r * size
+            coarse = set(_centres(xyz, wider)) if k % 3 == 1 else set()
+            for c in sorted({*_centres(centres, apart * r * size), *coarse}):
+                reach = np.array(tree.query_ball_point(centres[c], within), np.int64)
                 away = np.abs(xyz[reach] - centres[c]) / (r * size)
                 inside = [np.linalg.norm(away, axis=1) <= 1.0]
                 inside += [np.all(away <= s, axis=1) for s in sides]
                 for shape, which in enumerate(inside):
                     rows = np.sort(reach[which])
-                    if 0 < len(rows) < 0.5 * len(xyz):
+                    if 0 < len(rows) < EFFECTS.patch_largest * len(xyz):
                         first = shape == 0 and c in coarse
                         middle = xyz[rows].mean(axis=0)
-                        out.append(Patch(number, rows, middle, r * size, first))
+                        out.append(Patch(number, rows, middle, first))
     return _distinct(out)
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:
     chosen = thinned(xyz, spacing)
-    while len(chosen) > _MOST:
-        spacing *= 1.05 * np.sqrt(len(chosen) / _MOST)
+    while len(chosen) > EFFECTS.patch_centres:
+        spacing *= EFFECTS.patch_thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
         chosen = thinned(xyz, spacing)
     return chosen
 
@@ -94,8 +86,7 @@ class PatchRows:
 
     def __init__(self, candidates: PatchCandidates, basis: Basis) -> None:
         self._candidates = candidates
-        structure: Structure = candidates.extra["structure"]
-        self._motion = np.asarray(structure.displacement @ basis.vectors)
+        self._motion = np.asarray(candidates.structure.displacement @ basis.vectors)
         self._members: dict[int, tuple[Floats, Floats]] = {}
         self._kept: dict[int, Floats] = {}
 
@@ -117,7 +108,7 @@ class PatchRows:
 
     def _one(self, i: int) -> Floats:
         if i not in self._kept:
-            patch: Patch = self._candidates.extra["patches"][i]
+            patch = self._candidates.patches[i]
             W, mass = self._member(patch.member)
             w = W[patch.rows].reshape(-1, W.shape[2])
             scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.of_unit_mass else 1.0
@@ -127,12 +118,12 @@ class PatchRows:
     def _member(self, number: int) -> tuple[Floats, Floats]:
         """Roots of the matrices of the elements of one card times their motion; their masses."""
         if number not in self._members:
-            structure: Structure = self._candidates.extra["structure"]
-            member = structure.members[number]
+            member = self._candidates.structure.members[number]
             every = np.arange(len(member.ids))
             X = self._candidates.matrices(member, every)
             values, vectors = np.linalg.eigh(X)
-            rank = int(np.max(np.sum(values > _ROUNDING * values[:, -1:], axis=1), initial=1))
+            counts = values > EFFECTS.patch_rounding * values[:, -1:]
+            rank = int(np.max(np.sum(counts, axis=1), initial=1))
             R = vectors[:, :, -rank:] * np.sqrt(np.maximum(values[:, None, -rank:], 0.0))
             W = np.matmul(R.transpose(0, 2, 1), self._motion[member.coordinates(every)])
             self._members[number] = W, masses(X)
@@ -141,35 +132,38 @@ class PatchRows:
 
 def root_of(A: Floats) -> Floats:
     """Return rows U (q, r) with UᵀU = A (r, r), positive semidefinite, up to a tiny trace."""
-    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=_LEFT * float(np.trace(A)), lower=1)
+    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=EFFECTS.patch_left * float(np.trace(A)), lower=1)
     root = np.zeros((rank, len(A)))
     root[:, pivots - 1] = np.tril(L)[:, :rank].T
     return root
 
 
-@dataclass(frozen=True, eq=False)
+Described = Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PatchCandidates(Candidates):
     """Candidates whose matrix is the stiffness or the mass of a patch of elements.
 
     `described` says where patches are.
     """
 
-    described: Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]] = field(
-        default=lambda structure, patches: where_of(structure, patches)
-    )
+    structure: Structure
+    patches: tuple[Patch, ...]
+    described: Described
+
+    @property
+    def first(self) -> Ints:
+        """Patches marked for a first scan."""
+        return np.flatnonzero([p.first for p in self.patches])
 
     def with_patches(self, patches: Sequence[Patch]) -> PatchCandidates:
         """Return the candidates with further patches after those they have."""
-        structure: Structure = self.extra["structure"]
-        extra = {**self.extra, "patches": [*self.extra["patches"], *patches]}
-        if "areas" in extra:
-            areas = [area_of(structure, p) for p in patches]
-            extra["areas"] = np.concatenate([extra["areas"], areas])
         return replace(
             self,
             xyz=np.concatenate([self.xyz, [p.xyz for p in patches]]),
-            where=(*self.where, *self.described(structure, patches)),
-            extra=extra,
+            where=(*self.where, *self.described(self.structure, patches)),
+            patches=(*self.patches, *patches),
         )
 
     def extended(self, known: Rows) -> PatchRows:
@@ -183,24 +177,22 @@ class PatchCandidates(Candidates):
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""
-        structure: Structure = self.extra["structure"]
-        patch = self.extra["patches"][row]
-        member = structure.members[patch.member]
+        patch = self.patches[row]
+        member = self.structure.members[patch.member]
         at = member.coordinates(patch.rows)
         X = self.matrices(member, patch.rows)
         X = X / masses(X).sum() if self.of_unit_mass else X
         m = at.shape[1]
-        n = structure.displacement.shape[0]
+        D = self.structure.displacement
+        n = D.shape[0]
         A = sp.csr_matrix(
             (X.ravel(), (np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel())), (n, n)
         )
-        D = structure.displacement
         return (D.T @ A @ D).tocsr()
 
     def matrices(self, member: Members, rows: Ints) -> Floats:
         """Return the matrices of some elements that the effect changes, (n, m, m)."""
-        structure: Structure = self.extra["structure"]
-        K, M = member.matrices(rows, np.ones(len(structure.model.parameters)))
+        K, M = member.matrices(rows, np.ones(len(self.structure.model.parameters)))
         X = K if self.law.on == "K" else M
         assert X is not None
         return X
@@ -225,6 +217,45 @@ def area_of(structure: Structure, patch: Patch) -> float:
     return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
 
 
-def where_of(structure: Structure, patches: Sequence[Patch]) -> tuple[dict[str, list[int]], ...]:
+def where_of(structure: Structure, patches: Sequence[Patch]) -> tuple[dict[str, Any], ...]:
     """Element numbers of each patch."""
     return tuple({"elements": structure.members[p.member].ids[p.rows].tolist()} for p in patches)
+
+
+def on_patches(
+    kind: EffectKind,
+    structure: Structure,
+    patches: Sequence[Patch],
+    law: Law,
+    trials: Floats,
+    prior: tuple[Floats, Floats],
+    described: Described = where_of,
+) -> tuple[PatchCandidates, ...]:
+    """Return a kind of effect on patches, none where there are no patches.
+
+    Parameters
+    ----------
+    kind, structure, patches, law, trials
+        See `Candidates`.
+    prior : (1,) float, (1,) float
+        `typical` and `spread`.
+    described : callable
+        Says where patches are: their elements, by default.
+    """
+    if not patches:
+        return ()
+    made = PatchCandidates(
+        kind=kind,
+        xyz=np.array([p.xyz for p in patches]),
+        law=law,
+        trials=trials,
+        root=sp.csr_matrix((0, structure.model.n_free)),
+        rows_each=0,
+        where=described(structure, patches),
+        typical=prior[0],
+        spread=prior[1],
+        structure=structure,
+        patches=tuple(patches),
+        described=described,
+    )
+    return (made,)

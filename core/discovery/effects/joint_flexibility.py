@@ -6,18 +6,17 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates
-from ..laws import ReleaseLaw
-from ..structure import Members, Structure, shelled
-from .scale import Scale
+from ..reduction.elements_and_supports import Members, Structure, shelled
+from .candidates import Candidates
+from .effect_kind import STIFFNESS, EffectKind
+from .effect_laws import ReleaseLaw
+from .effect_numbers import EFFECTS
+from .effect_scale import Scale
 
-_KINK = 0.98
-_STEP = 0.01
 
-
-def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give each beam end that meets others a finite rotational stiffness, all axes alike."""
-    beams = [m for m in structure.members if m.shape == "line" and m.block.width == 6]
+    beams = [m for m in structure.members if m.element.dimension == 1 and m.element.freedoms == 6]
     ends = _joints(structure, beams)
     roots, own, xyz, where, elastic = [], [], [], [], []
     p = np.ones(len(structure.model.parameters))
@@ -31,7 +30,7 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         Q = np.take_along_axis(K, turning[:, None, :], axis=2)
         D = np.take_along_axis(Q, turning[:, :, None], axis=1)
         d, R = np.linalg.eigh(D)
-        stiff = d[:, 0] > 1e-9 * d[:, -1]
+        stiff = d[:, 0] > EFFECTS.joint_stiff * d[:, -1]
         if not stiff.any():
             continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
@@ -55,15 +54,15 @@ def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     stiffness = np.concatenate(own)
     typical = float(np.median(np.log(stiffness)))
     made = Candidates(
-        kind="joint_flexibility",
+        kind=KIND,
         xyz=np.concatenate(xyz),
         law=ReleaseLaw(stiffness, np.concatenate(elastic), np.zeros(len(p))),
-        trials=(typical + np.log([0.003, 0.03, 0.3, 3.0]))[:, None],
+        trials=(typical + np.log(EFFECTS.joint_trials))[:, None],
         root=sp.vstack(roots).tocsr(),
         rows_each=3,
         where=tuple(where),
-        typical=np.array([typical - 1.0]),
-        spread=np.array([2.5]),
+        typical=np.array([typical - EFFECTS.joint_softer]),
+        spread=np.array([EFFECTS.spring_spread]),
     )
     return (made,)
 
@@ -73,13 +72,13 @@ def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: 
     out = np.zeros((*d.shape, len(p)))
     for k in range(len(p)):
         moved = p.copy()
-        moved[k] += _STEP
+        moved[k] += EFFECTS.joint_step
         K, _ = m.matrices(rows, moved)
         assert K is not None
         Q = np.take_along_axis(K, turning[:, None, :], axis=2)
         D = np.take_along_axis(Q, turning[:, :, None], axis=1)
         new = np.einsum("nia,nij,nja->na", R, D, R)
-        out[:, :, k] = np.log(new / d) / np.log1p(_STEP)
+        out[:, :, k] = np.log(new / d) / np.log1p(EFFECTS.joint_step)
     return out
 
 
@@ -89,7 +88,7 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
     count = np.zeros(n, np.int64)
     along: list[list[Floats]] = [[] for _ in range(n)]
     for m in structure.members:
-        if m.shape == "line":
+        if m.element.dimension == 1:
             np.add.at(count, m.corners.ravel(), 1)
     for m in beams:
         x = structure.model.geometry.xyz[m.corners]
@@ -100,7 +99,7 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
             along[b].append(-direction)
     kinked = np.array(
         [
-            c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -_KINK
+            c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -EFFECTS.joint_straight
             for c, d in zip(count, along, strict=True)
         ]
     )
@@ -117,3 +116,13 @@ def _rows(Q: Floats, at: Ints, structure: Structure) -> sp.csr_matrix:
         (Q.transpose(0, 2, 1).ravel(), (rows, columns)), (n * k, structure.displacement.shape[0])
     )
     return (F @ structure.displacement).tocsr()
+
+
+KIND = EffectKind(
+    name="joint_flexibility",
+    label="flexible joint",
+    sentence="The joint gives {region} with a rotational stiffness of about {stiffness:.3g} (deck "
+    "units): it",
+    magnitudes=(STIFFNESS,),
+    places=_places,
+)

@@ -6,53 +6,24 @@ afterwards, see `dampers`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats
-from ..story import odds
-from ..structure import Structure
-from .point_mass import translations
+from ..reduction.elements_and_supports import Structure
+from .effect_kind import EffectKind, Magnitude
+from .effect_numbers import EFFECTS
+from .sentence_parts import odds
+from .structure_points import Axes, along_axes
 
-PEAKS = np.geomspace(0.004, 0.3, 14)
+PEAKS = np.geomspace(EFFECTS.damper_least, EFFECTS.damper_most, EFFECTS.damper_sizes)
 """Sizes tried at every place: the ratio that the mode which feels a dashpot most gets from it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Dashpots:
-    """All places and directions of a dashpot.
-
-    Parameters
-    ----------
-    xyz : (n, 3) float
-        Where, deck units.
-    root : (n, n_free) sparse
-        Row u of each: D changes by c·uuᵀ.
-    where : tuple of dict
-        ``grids`` and ``components`` of each.
-    """
-
-    xyz: Floats
-    root: sp.csr_matrix
-    where: tuple[dict[str, Any], ...]
-
-
-def dashpots(structure: Structure) -> Dashpots:
-    """Dashpots along each basic axis at every grid that moves."""
+def dashpots(structure: Structure) -> Axes:
+    """Return each basic axis along which a grid moves: D of a dashpot there changes by c·uuᵀ."""
     g = structure.model.geometry
-    root = translations(structure, sp.identity(len(g.ids), format="csr"))
-    live = np.flatnonzero(np.diff(root.indptr) > 0)
-    return Dashpots(
-        g.xyz[live // 3],
-        root[live],
-        tuple(
-            {"grids": [int(g.ids[i])], "components": [int(c)]}
-            for i, c in zip(live // 3, live % 3 + 1, strict=True)
-        ),
-    )
+    every = sp.identity(len(g.ids), format="csr")
+    return along_axes(structure, every, g.xyz, g.ids[:, None].tolist())
 
 
 def sentence(
@@ -73,9 +44,19 @@ def sentence(
         How many times less likely it is that there is none.
     """
     which = f"mode{'s' if len(modes) > 1 else ''} {', '.join(map(str, modes))}"
+    along = "".join(map(str, components))
+    missing = KIND.sentence.format(damping=damping, components=along, region=region)
     return (
-        f"A dashpot to ground of about {damping:.3g} (force per velocity, deck units) in "
-        f"direction {''.join(map(str, components))} is missing {region}: it explains the measured "
-        f"damping of {which} (95 %: {interval[0]:.3g} to {interval[1]:.3g}); no dashpot at all is "
-        f"{odds(times)}."
+        f"{missing} explains the measured damping of {which} "
+        f"(95 %: {interval[0]:.3g} to {interval[1]:.3g}); no dashpot at all is {odds(times)}."
     )
+
+
+KIND = EffectKind(
+    name="local_damper",
+    label="local damper",
+    sentence="A dashpot to ground of about {damping:.3g} (force per velocity, deck units) in "
+    "direction {components} is missing {region}: it",
+    magnitudes=(Magnitude("damping", EFFECTS.damper_error),),
+    in_modes=False,
+)

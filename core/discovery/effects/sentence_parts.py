@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-_ALIKE = 1.1
-"""Likelihoods whose ratio is nearer to 1 say nothing."""
-_MOST = 1e6
-_RUNS = 4
-"""More stretches of modes than these are not listed."""
+from .effect_numbers import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -27,11 +23,13 @@ class MassUnit:
     card: float = 1.0
     kilograms: float | None = None
 
+    def figure(self, mass: float) -> str:
+        """Return the number of a mass of cards, in kilograms where they are known."""
+        return f"{mass if self.kilograms is None else mass / self.card * self.kilograms:.3g}"
+
     def said(self, mass: float) -> str:
-        """Return a mass of cards in kilograms where they are known."""
-        if self.kilograms is None:
-            return f"{mass:.3g} (deck units)"
-        return f"{mass / self.card * self.kilograms:.3g} kg"
+        """Return the same with its unit."""
+        return f"{self.figure(mass)} {'(deck units)' if self.kilograms is None else 'kg'}"
 
 
 def odds(ratio: float, other: str = "") -> str:
@@ -44,15 +42,15 @@ def odds(ratio: float, other: str = "") -> str:
     other : str
         What was found, where it has to be said.
     """
-    if _ALIKE > ratio > 1.0 / _ALIKE:
+    if EFFECTS.alike > ratio > 1.0 / EFFECTS.alike:
         return "about as likely" + (other and f" as {other}")
     less = ratio > 1.0
-    count = _count(ratio if less else 1.0 / max(ratio, 1.0 / _MOST))
+    count = _count(ratio if less else 1.0 / max(ratio, 1.0 / EFFECTS.odds_most))
     return f"{count} times {'less' if less else 'more'} likely" + (other and f" than {other}")
 
 
 def _count(ratio: float) -> str:
-    if ratio >= _MOST:
+    if ratio >= EFFECTS.odds_most:
         return "more than a million"
     return f"{ratio:.2g}" if ratio < 100.0 else f"{float(f'{ratio:.2g}'):,.0f}"
 
@@ -68,7 +66,7 @@ def mode_ranges(modes: Sequence[int]) -> str:
             runs[-1].append(m)
         else:
             runs.append([m])
-    if len(runs) > _RUNS:
+    if len(runs) > EFFECTS.mode_runs:
         return f"{len(modes)} test modes"
     words = []
     for run in runs:

@@ -10,14 +10,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from ...arrays import Bools, Floats, Ints
-from ..structure import Structure, Supports
-
-_ALIKE = 0.98
-"""Cosine of the angle by which an edge, or the shells on it, may turn from side to side."""
-_ENDS = 18
-"""Places along an edge where a stretch may begin or end, at most about so many."""
-_SHORTEST = 0.03
-"""Length of a stretch at least, beside the size of the structure."""
+from ..reduction.elements_and_supports import Structure, Supports
+from .effect_numbers import EFFECTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +37,11 @@ class Edge:
         The numbers of these places come first.
         """
         n = len(self.grids)
-        ends = np.unique(np.linspace(0, n - 1, min(n, _ENDS)).round().astype(int))
+        ends = np.unique(np.linspace(0, n - 1, min(n, EFFECTS.edge_ends)).round().astype(int))
         length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.xyz, axis=0), axis=1))]
         for a, first in enumerate(ends):
             for b, last in enumerate(ends):
-                if length[last] - length[first] > _SHORTEST * size:
+                if length[last] - length[first] > EFFECTS.edge_shortest * size:
                     yield a, b, slice(first, last + 1)
 
 
@@ -74,7 +68,7 @@ def _sides(structure: Structure, held: Bools) -> tuple[Ints, Floats, Floats]:
     xyz = structure.model.geometry.xyz
     ends, normals = [np.zeros((0, 2), np.int64)], [np.zeros((0, 3))]
     for m in structure.members:
-        if m.shape not in {"quad", "tria"}:
+        if m.element.dimension != 2:
             continue
         corners = m.corners[~held[m.corners].all(axis=1)]
         x = xyz[corners]
@@ -102,8 +96,8 @@ def _continued(ends: Ints, along: Floats, normal: Floats) -> list[Ints]:
     for group in np.split(order // 2, np.flatnonzero(np.diff(grids)) + 1):
         for k, a in enumerate(group):
             for b in group[k + 1 :]:
-                straight = abs(float(along[a] @ along[b])) > _ALIKE
-                if straight and abs(float(normal[a] @ normal[b])) > _ALIKE:
+                straight = abs(float(along[a] @ along[b])) > EFFECTS.edge_straight
+                if straight and abs(float(normal[a] @ normal[b])) > EFFECTS.edge_straight:
                     first.append(a)
                     last.append(b)
     graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))

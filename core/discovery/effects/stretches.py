@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from .candidates import Candidates, Catalogue, Suspect
-
-Ends = tuple[int, int, int]
-"""Number of an edge, and of the places on it where a stretch begins and ends."""
+from .candidates import Candidates, Catalogue, Ends, Suspect
 
 
 def beside(catalogue: Catalogue, suspect: Suspect) -> list[Suspect]:
@@ -15,10 +12,9 @@ def beside(catalogue: Catalogue, suspect: Suspect) -> list[Suspect]:
     have followed: one more grid that turns freely changes every mode.
     """
     own = catalogue[suspect.kind]
-    ends = _ends(own)
-    if not ends:
+    if not own.ends:
         return []
-    edge, first, last = ends[suspect.row]
+    edge, first, last = own.ends[suspect.row]
     rows = _rows(own)
     moved = [(edge, first + a, last + b) for a, b in ((-1, 0), (1, 0), (0, -1), (0, 1))]
     moved += [(edge, first + a, last + a) for a in (-1, 1)]
@@ -30,10 +26,5 @@ def beside(catalogue: Catalogue, suspect: Suspect) -> list[Suspect]:
     return out
 
 
-def _ends(c: Candidates) -> list[Ends]:
-    ends: list[Ends] = c.extra.get("ends", [])
-    return ends
-
-
 def _rows(c: Candidates) -> dict[Ends, int]:
-    return {e: row for row, e in enumerate(_ends(c))}
+    return {e: row for row, e in enumerate(c.ends)}

@@ -1,66 +1,15 @@
-"""An attached mass: equipment, a bracket, ballast, a sensor's own mass."""
+"""Points of a structure at which an effect may sit, and how they move."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates
-from ..laws import MassLaw
-from ..structure import Structure
-from .bars import bare_bars
-from .patches import Patch, PatchCandidates, patches_of
-from .scale import Scale
-
-_FEET = (0.024, 0.034, 0.048)
-"""Radii of the footprint of a mass, beside the size of the structure."""
-_SHELLS = ("quad", "tria")
-
-
-def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
-    """Masses at points, and masses on small patches of shells.
-
-    Points are grids and the middles of shells, their edges and bars. Equipment has a footprint,
-    and a thin shell gives under a point far more than under a foot, so small patches count as well.
-    """
-    points, xyz, grids = points_of(structure)
-    at_points = Candidates(
-        kind="point_mass",
-        xyz=xyz,
-        law=MassLaw(),
-        trials=scale.masses(),
-        root=translations(structure, points),
-        rows_each=3,
-        where=tuple({"grids": g} for g in grids),
-        typical=np.array([np.log(0.03 * scale.mass)]),
-        spread=np.array([1.5]),
-    )
-    feet = patches_of(structure, scale.size, _FEET)
-    if not feet:
-        return (at_points,)
-    on_feet = PatchCandidates(
-        kind="point_mass",
-        xyz=np.array([p.xyz for p in feet]),
-        law=MassLaw(),
-        trials=scale.masses(),
-        root=sp.csr_matrix((0, structure.model.n_free)),
-        rows_each=0,
-        where=_grids(structure, feet),
-        described=_grids,
-        typical=np.array([np.log(0.03 * scale.mass)]),
-        spread=np.array([1.5]),
-        extra={"structure": structure, "patches": feet},
-    )
-    return (at_points, on_feet)
-
-
-def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, list[int]], ...]:
-    ids = structure.model.geometry.ids
-    corners = [structure.members[p.member].corners[p.rows] for p in feet]
-    return tuple({"grids": ids[np.unique(c)].tolist()} for c in corners)
+from ..reduction.elements_and_supports import Structure
+from .bar_members import bare_bars
 
 
 def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:
@@ -75,14 +24,13 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[in
     carries[rows[moving & (rows >= 0)]] = True
     used = np.zeros(len(g.ids), bool)
     for m in structure.members:
-        if m.shape:
-            used[m.corners.ravel()] = True
+        used[m.corners.ravel()] = True
     own = np.flatnonzero(carries & used)
     weights = [
         sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
     ]
     for m in structure.members:
-        if m.shape in _SHELLS:
+        if m.element.dimension == 2:
             weights.append(_means(m.corners, len(g.ids)))
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)
@@ -117,3 +65,34 @@ def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
     stacked = sp.vstack([points @ S for S in pick]).tocsr()
     order = np.arange(3 * points.shape[0]).reshape(3, -1).T.ravel()
     return (stacked[order] @ model.expansion).tocsr()
+
+
+class Axes(NamedTuple):
+    """Axes of points along which they move.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float
+        Where, deck units.
+    root : (n, n_free) sparse
+        Row u of each: its motion.
+    where : tuple of dict
+        ``grids`` and ``components`` of each.
+    """
+
+    xyz: Floats
+    root: sp.csr_matrix
+    where: tuple[dict[str, Any], ...]
+
+
+def along_axes(
+    structure: Structure, points: sp.csr_matrix, xyz: Floats, grids: list[list[int]]
+) -> Axes:
+    """Return the basic axes along which points move that `points_of` returned."""
+    root = translations(structure, points)
+    live = np.flatnonzero(np.diff(root.indptr) > 0)
+    at = live // 3
+    where = tuple(
+        {"grids": grids[i], "components": [int(c)]} for i, c in zip(at, live % 3 + 1, strict=True)
+    )
+    return Axes(xyz[at], root[live], where)

@@ -10,22 +10,15 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..candidates import Candidates
-from ..laws import ReleaseLaw, directions
-from ..stretching import Ends
-from ..structure import Structure, Supports, thinned
-from .edges import Edge, edges_of
-from .scale import Scale
+from ..reduction.elements_and_supports import Structure, Supports, thinned
+from .candidates import Candidates, Ends
+from .effect_kind import STIFFNESS, EffectKind
+from .effect_laws import ReleaseLaw, directions
+from .effect_numbers import EFFECTS
+from .effect_scale import Scale
+from .shell_edges import Edge, edges_of
 
-_STRETCHES = (0.06, 0.12, 0.2)
-"""Half lengths of groups of supports off the edges of shells, beside the size."""
 _TOGETHER = ((4, 5, 6), (1, 2, 3))
-_STRAIGHT = 1e-9
-_AT_ONCE = 100
-_SOFTER = 2.5
-"""Of ln k: how much softer a support that turns is than what it holds."""
-_ALONG = 0.95
-"""Cosine between a direction of a support and that of an edge, for them to count as one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +38,7 @@ class _Place:
         return np.concatenate([self.free, self.sprung])
 
 
-def candidates(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give supports a finite stiffness.
 
     Every fixed direction of a support alone, all its rotations or translations alike, and one
@@ -85,8 +78,8 @@ def _groups(s: Supports, own: Ints, size: float) -> Iterator[_Place]:
         return
     tree = cKDTree(s.xyz[own])
     seen = set()
-    for half in _STRETCHES:
-        for i in thinned(s.xyz[own], 0.35 * half * size):
+    for half in EFFECTS.support_halves:
+        for i in thinned(s.xyz[own], EFFECTS.support_spacing * half * size):
             rows = own[sorted(tree.query_ball_point(s.xyz[own[i]], half * size))]
             if len(rows) > 1 and rows.tobytes() not in seen:
                 seen.add(rows.tobytes())
@@ -128,7 +121,7 @@ def _rows(s: Supports, e: Edge, component: int) -> Ints:
 
 def _near(s: Supports, rows: Ints, direction: Floats) -> Ints:
     """Whether the axes of rows lie along a direction at each of them, (n,) bool."""
-    return np.asarray(abs(np.sum(s.axis[rows] * direction, axis=1)) > _ALONG)
+    return np.asarray(abs(np.sum(s.axis[rows] * direction, axis=1)) > EFFECTS.support_along)
 
 
 def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates | None:
@@ -151,7 +144,7 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
         grids = np.unique(s.grid[rows])
         (d,), (W,) = directions(C[None], len(p.free))
-        d = np.maximum(d, _STRAIGHT * d[-1])
+        d = np.maximum(d, EFFECTS.support_least * d[-1])
         own[i, at] = d * len(grids)
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))
@@ -164,23 +157,21 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
             }
         )
     typical = float(np.median(np.log(own[:, free])))
-    moves = s.component[places[0].sprung[0]] < 4
+    moves = s.component[places[0].sprung[0]] <= 3
     together = sum(turns[1:], turns[0])
     return Candidates(
-        kind="support_flexibility",
+        kind=KIND,
         xyz=np.array(xyz),
         law=ReleaseLaw(own, elastic, np.zeros(len(s.slopes)), free),
-        trials=(typical + np.log([0.001, 0.006, 0.04, 0.25, 2.0]))[:, None],
+        trials=(typical + np.log(EFFECTS.support_trials))[:, None],
         root=(together @ s.root).tocsr(),
         rows_each=most,
         where=tuple(where),
-        typical=np.array([np.log(carrying) if moves else typical - _SOFTER]),
-        spread=np.array([2.5]),
-        extra={
-            "loads": s.root,
-            "turns": together,
-            **({} if places[0].ends is None else {"ends": [p.ends for p in places]}),
-        },
+        typical=np.array([np.log(carrying) if moves else typical - EFFECTS.support_softer]),
+        spread=np.array([EFFECTS.spring_spread]),
+        loads=s.root,
+        turns=together,
+        ends=tuple(p.ends for p in places if p.ends is not None),
     )
 
 
@@ -188,8 +179,8 @@ def _with_stiffness(
     s: Supports, places: Sequence[_Place]
 ) -> Iterator[tuple[_Place, Floats, Floats]]:
     """Return places with the stiffness among their rows and its slopes, (q, q) and (p, q, q)."""
-    for start in range(0, len(places), _AT_ONCE):
-        some = places[start : start + _AT_ONCE]
+    for start in range(0, len(places), EFFECTS.support_at_once):
+        some = places[start : start + EFFECTS.support_at_once]
         own = np.unique(np.concatenate([p.rows for p in some]))
         both = np.array([A[own][:, own].toarray() for A in (s.coupling, *s.slopes)])
         for p in some:
@@ -206,3 +197,13 @@ def _block(W: Floats, at: Ints, rows: Ints, shape: tuple[int, int]) -> sp.csr_ma
     """Put W at the rows `at` and the columns `rows`."""
     where = (np.repeat(at, len(rows)), np.tile(rows, len(at)))
     return sp.csr_matrix((W.ravel(), where), shape)
+
+
+KIND = EffectKind(
+    name="support_flexibility",
+    label="flexible support",
+    sentence="The support gives {region}, direction {components}, with a stiffness of about "
+    "{stiffness:.3g} (deck units): it",
+    magnitudes=(STIFFNESS,),
+    places=_places,
+)

@@ -19,13 +19,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..arrays import Floats, Ints, Numbers
-from .evidence import Evidence, matched, mixing, mode_costs, targets
-
-_ABOVE = 1.5
-"""Modes of the model count up to this many times the highest measured frequency."""
-_NEAR = 0.02
-"""Relative size of gaps between eigenvalues below which modes turn freely, see `mixing`."""
+from ...arrays import Floats, Ints, Numbers
+from .likelihood_numbers import LIKELIHOOD
+from .mode_likelihood import Evidence, matched, mixing, mode_costs, targets
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,9 +64,9 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
     n = min(columns, len(eigenvalues))
     S = sensors[:, :n]
     _, match = matched(mode_costs(e, eigenvalues[:n], e.shapes.T @ S, S.T @ S))
-    near = mixing(eigenvalues, _NEAR)
+    near = mixing(eigenvalues, LIKELIHOOD.turning)
     own = np.stack([_combined(e, j, sensors, near[k], int(k)) for j, k in enumerate(match)], axis=1)
-    top = (_ABOVE * float(targets(e).max()) ** 0.5) ** 2
+    top = (LIKELIHOOD.above * float(targets(e).max()) ** 0.5) ** 2
     rest = np.setdiff1d(np.flatnonzero(eigenvalues < top), match)
     B = np.hstack([own, np.eye(len(eigenvalues))[:, rest]])
     U, _, Vt = np.linalg.svd(B, full_matrices=False)
@@ -150,7 +146,7 @@ def predicted(omega: Floats, D: Floats, level: Floats) -> Floats:
     level : (n,) float
         Ratios without them.
     """
-    elastic = np.flatnonzero(omega > 1e-3 * omega.max())
+    elastic = np.flatnonzero(omega > LIKELIHOOD.elastic * omega.max())
     own = D[np.ix_(elastic, elastic)] + np.diag(2.0 * level[elastic] * omega[elastic])
     out = np.full(len(omega), np.nan)
     out[elastic] = ratios(complex_modes(omega[elastic], own)[0])
@@ -203,7 +199,7 @@ def imaginary(u: Floats, modes: Oriented, sensors: Floats) -> tuple[Floats, Floa
     """
     lam = modes.omega**2
     gap = lam[None, :] - lam[: modes.count, None]
-    size = _NEAR * np.maximum(lam[None, :], lam[: modes.count, None])
+    size = LIKELIHOOD.turning * np.maximum(lam[None, :], lam[: modes.count, None])
     inverse = gap / (gap**2 + size**2)
     turned = -(modes.omega[: modes.count] * u[:, : modes.count])[:, :, None] * (
         u[:, None, :] * inverse

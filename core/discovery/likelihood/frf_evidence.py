@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Numbers
-from ..comparison import Placed
-from ..dofs import Dofs
-from ..errors import InputError
-from ..frfs import Frfs
-from ..geometry import Geometry
-from ..observation import observe
-from .damping import oriented
-from .findings import Discovery, ResponseGap
-from .fitting import evaluate, misfit
-from .problem import Fit, Problem
+from ...arrays import Floats, Numbers
+from ...correlation.comparison import Placed
+from ...data.dofs import Dofs
+from ...data.frfs import Frfs
+from ...data.geometry import Geometry
+from ...errors import InputError
+from ...sensors.sensor_map import observe
+from ..findings import Discovery, ResponseGap
+from .complex_modes import oriented
+from .frf_likelihood import Heard, Responses, State, frac, heard, lacking, ratios_of, synthesised
+from .hypothesis import Fit, Problem
+from .map_fit import evaluate, misfit
 from .request import Request
-from .responses import Heard, Responses, State, frac, heard, lacking, ratios_of, synthesised
 
 
 def place_responses(
@@ -71,14 +71,14 @@ def place_responses(
         frfs.frequencies_hz,
         at.sensors.take(rows),
         by.sensors.take(columns),
-        frfs.values[np.ix_(rows, columns)] * placed.alignment.scale,
+        frfs.values[np.ix_(rows, columns)] * placed.length_factor,
         frfs.quantity,
         frfs.source,
     )
     return Responses(kept, at.matrix[rows], by.matrix[columns]), ()
 
 
-def hearing(request: Request, problem: Problem, log_p: Floats) -> Problem:
+def hearing(request: Request, problem: Problem, nuisance: Floats) -> Problem:
     """Return the problem with the responses as evidence.
 
     Parameters
@@ -86,7 +86,7 @@ def hearing(request: Request, problem: Problem, log_p: Floats) -> Problem:
     request : Request
         Its responses at sensors that its placed test still has count.
     problem : Problem
-    log_p : (n_parameter + 1,) float
+    nuisance : (n_parameter + 1,) float
         Of the known parameters fitted alone: what that leaves shows how lines go along.
     """
     if request.responses is None:
@@ -103,7 +103,7 @@ def hearing(request: Request, problem: Problem, log_p: Floats) -> Problem:
         problem.basis.vectors,
         request.solution.factor,
     )
-    state = turned_state(problem, evaluate(problem, log_p, ()), measured)
+    state = turned_state(problem, evaluate(problem, nuisance, ()), measured)
     return replace(problem, heard=heard(r, hz, measured, rest, state))
 
 
@@ -111,7 +111,7 @@ def misfit_of_responses(problem: Problem, f: Fit) -> float:
     """Return −2 ln of how likely the responses are by a hypothesis; 0 where there are none."""
     if problem.heard is None:
         return 0.0
-    fit = evaluate(problem, f.log_p, f.suspects)
+    fit = evaluate(problem, f.nuisance, f.suspects)
     return problem.heard.misfit(turned_state(problem, fit, problem.heard.ratios))
 
 
@@ -134,13 +134,13 @@ def turned_state(problem: Problem, f: Fit, measured: Floats) -> State:
     return State(omega, ratios, problem.basis.motion @ (V @ turn))
 
 
-def with_responses(problem: Problem, log_p: Floats, best: Fit, said: Discovery) -> Discovery:
+def with_responses(problem: Problem, nuisance: Floats, best: Fit, said: Discovery) -> Discovery:
     """Add how well the responses are met before and after.
 
     Parameters
     ----------
     problem : Problem
-    log_p : (n_parameter + 1,) float
+    nuisance : (n_parameter + 1,) float
         Of the known parameters fitted alone.
     best : Fit
         What was accepted, on the basis of the problem.
@@ -150,8 +150,8 @@ def with_responses(problem: Problem, log_p: Floats, best: Fit, said: Discovery) 
     if h is None:
         return said
     fits = (
-        evaluate(problem, np.zeros_like(log_p), ()),
-        evaluate(problem, log_p, ()),
+        evaluate(problem, np.zeros_like(nuisance), ()),
+        evaluate(problem, nuisance, ()),
         best,
     )
     states = [state_of(problem, f, h.ratios) for f in fits]

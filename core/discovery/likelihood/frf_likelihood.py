@@ -20,17 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints, Numbers
-from ..factor import Factorisation, factorise
-from ..frfs import Frfs
-from ..identification.synthesis import derivative_order
-
-_MOST_LINES, _MOST_FUNCTIONS = 240, 60
-_FAR = float(np.log(4.0))
-"""Log ratio of magnitudes beyond which more of it counts no more."""
-_RATIO = 0.01
-_LEAST = 0.02
-"""Log magnitudes are not known better than this."""
+from ...arrays import Floats, Ints, Numbers
+from ...data.frfs import Frfs
+from ...identification.survey.modal_synthesis import derivative_order
+from ...numerics.factorisation import Factorisation, factorise
+from .likelihood_numbers import LIKELIHOOD
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +79,7 @@ class State:
 def ratios_of(measured: Floats, match: Ints, count: int) -> Floats:
     """Return ratios of all modes: as measured where matched, else the geometric mean, (count,)."""
     known = np.isfinite(measured) & (measured > 0.0)
-    usual = float(np.exp(np.mean(np.log(measured[known])))) if known.any() else _RATIO
+    usual = float(np.exp(np.mean(np.log(measured[known])))) if known.any() else LIKELIHOOD.ratio
     out = np.full(count, usual)
     out[match[known]] = measured[known]
     return out
@@ -140,7 +134,8 @@ def log_ratios(measured: Numbers, model: Numbers) -> Floats:
     good = np.isfinite(measured) & (np.abs(measured) > 0.0) & (np.abs(model) > 0.0)
     e = np.log(np.where(good, np.abs(model), 1.0) / np.where(good, np.abs(measured), 1.0))
     e = np.where(good, e, np.nan)
-    return np.asarray(np.clip(e - np.nanmedian(e), -_FAR, _FAR)) if good.any() else e
+    far = np.log(LIKELIHOOD.far)
+    return np.asarray(np.clip(e - np.nanmedian(e), -far, far)) if good.any() else e
 
 
 def independent_lines(e: Floats) -> float:
@@ -197,7 +192,7 @@ class Heard:
         The variance is unknown and the functions of one structure repeat each other, so only
         the independent lines count.
         """
-        return self.independent * float(np.log(self.rms(s) ** 2 + _LEAST**2))
+        return self.independent * float(np.log(self.rms(s) ** 2 + LIKELIHOOD.least_error**2))
 
     def rms(self, s: State) -> float:
         """Return the rms log ratio of magnitudes."""
@@ -220,11 +215,12 @@ def heard(
         A hypothesis that fits about as well as others will.
     """
     f = responses.frfs.frequencies_hz
-    inside = np.flatnonzero((f > 0.7 * hz.min()) & (f < 1.05 * hz.max()))
+    low, high = LIKELIHOOD.band_below * hz.min(), LIKELIHOOD.band_above * hz.max()
+    inside = np.flatnonzero((f > low) & (f < high))
     inside = inside if len(inside) else np.arange(len(f))
-    lines = inside[np.unique(np.linspace(0, len(inside) - 1, _MOST_LINES).astype(int))]
+    lines = inside[np.unique(np.linspace(0, len(inside) - 1, LIKELIHOOD.lines).astype(int))]
     n = len(responses.frfs.responses)
-    rows = np.unique(np.linspace(0, n - 1, _MOST_FUNCTIONS).astype(int))
+    rows = np.unique(np.linspace(0, n - 1, LIKELIHOOD.functions).astype(int))
     model = synthesised(responses, reference, rest, inside, rows)
     e = log_ratios(responses.frfs.values[rows][:, :, inside], model)
     return Heard(responses, ratios, rest, lines, rows, independent_lines(e))

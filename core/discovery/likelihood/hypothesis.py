@@ -7,23 +7,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from .basis import Basis
-from .candidates import Catalogue, Suspect
-from .evidence import Evidence
-from .laws import Law, ReleaseLaw, Rows
-from .responses import Heard
-
-_SOFT, _TO_COME = 3.0, 5.0
-"""How many times the noise counts where wide valleys are wanted."""
+from ...arrays import Floats, Ints
+from ..effects.candidates import Catalogue, Suspect
+from ..effects.effect_laws import Law, ReleaseLaw, Rows
+from ..reduction.search_basis import Basis
+from .frf_likelihood import Heard
+from .likelihood_numbers import LIKELIHOOD
+from .mode_likelihood import Evidence
 
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Normal prior of ln p, mean 0 and `spread`, within bounds; each (n_parameter + 1,).
+    """Normal prior of the nuisance parameters, mean 0 and `spread`, within bounds.
 
-    The last entry is that of the mesh error (θ of `mesh_error`), not a parameter of the model
-    and not a logarithm.
+    Each (n_parameter + 1,): ln p of the known parameters, then the mesh error; see `Fit`.
     """
 
     spread: Floats
@@ -89,13 +86,14 @@ class Problem:
         """Return the problem with all of the test as evidence."""
         return replace(self, evidence=self.whole, sensors=self.everywhere)
 
-    def part(self, kind: int, rows: Ints, log_p: Floats) -> tuple[Floats, Law]:
-        """Return rows (n, q, r) of some candidates on the basis, and their law at `log_p`."""
+    def part(self, kind: int, rows: Ints, nuisance: Floats) -> tuple[Floats, Law]:
+        """Return rows (n, q, r) of some candidates on the basis, and their law at `nuisance`."""
+        log_p, _ = taken_apart(nuisance)
         c, U = self.catalogue[kind], self.factors[kind][rows]
         known = self.missing[kind] if self.missing else None
         missing = None if known is None else known[rows]
         held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
-        if self.rest is not None and c.needs_flexibility and not held.all():
+        if self.rest is not None and c.rows_each and not held.all():
             lost = _flexibility(U @ self.rest, isinstance(c.law, ReleaseLaw))
             lost[held] = 0.0
             missing = lost if missing is None else missing + lost
@@ -103,7 +101,7 @@ class Problem:
             law, W = c.law.coupled(rows, missing, log_p)
             U = np.matmul(W, U)
             return U if self.turn is None else U @ self.turn, law
-        top = 2.0 * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
+        top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
         plain = c.law.on_basis(rows, missing, log_p, top)
         return U if self.turn is None else U @ self.turn, plain
 
@@ -119,17 +117,18 @@ def _flexibility(F: Floats, shared: bool) -> Floats:
 class Fit:
     """A hypothesis with its best parameters and magnitudes.
 
-    `objective` = misfit + prior; `log_p` (n_parameter,); `information` (n_unknown, n_unknown) is
-    the Gauss-Newton Hessian of half the objective, prior included, active parameters first;
-    `unseen` is the misfit of what was held out from the fit, `surplus` the number of modes in the
-    measured band that the test does not have, `in_deck` the ln p (n_parameter,)
-    that a deck with these effects needs, where no correction of its mesh helps; all where they
-    were asked for.
+    `objective` = misfit + prior; `nuisance` (n_parameter + 1,) holds ln p of the known parameters
+    and, last and no logarithm, the mesh error (see `discretisation_error`); `information`
+    (n_unknown, n_unknown) is the Gauss-Newton Hessian of half the objective, prior included, active
+    nuisance parameters first; `unseen` is the misfit of what was held out from the fit, `surplus`
+    the number of modes in the measured band that the test does not have, `in_deck` the ln p
+    (n_parameter,) that a deck with these effects needs, where no correction of its mesh helps; all
+    where they were asked for.
     """
 
     objective: float
     misfit: float
-    log_p: Floats
+    nuisance: Floats
     suspects: tuple[Suspect, ...]
     match: Ints
     eigenvalues: Floats
@@ -140,6 +139,16 @@ class Fit:
     surplus: float | None = None
     in_deck: Floats | None = None
 
+    @property
+    def log_p(self) -> Floats:
+        """Return ln p of the known parameters, (n_parameter,)."""
+        return taken_apart(self.nuisance)[0]
+
+
+def taken_apart(nuisance: Floats) -> tuple[Floats, float]:
+    """Return ln p of the known parameters (n_parameter,) and the mesh error."""
+    return nuisance[:-1], float(nuisance[-1])
+
 
 def softened(problem: Problem) -> Problem:
     """Return the problem with more noise: wider valleys, seen from places and sizes further off.
@@ -147,8 +156,6 @@ def softened(problem: Problem) -> Problem:
     The known parameters have yet to follow, so that modes further apart turn within their subspace.
     """
     e = problem.evidence
-    n = e.noise
-    wide = replace(
-        n, frequency=_SOFT * n.frequency, shape=_SOFT * n.shape, mixing=_TO_COME * n.mixing
-    )
+    n, s, m = e.noise, LIKELIHOOD.soft, LIKELIHOOD.soft_mixing
+    wide = replace(n, frequency=s * n.frequency, shape=s * n.shape, mixing=m * n.mixing)
     return replace(problem, evidence=replace(e, noise=wide))

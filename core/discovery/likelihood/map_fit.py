@@ -8,32 +8,26 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from ..arrays import Floats, Ints
-from .basis import ReducedSum
-from .candidates import Suspect, changed, magnitudes
-from .evidence import joint_macs, matched, mode_costs, targets
-from .laws import AttachedLaw, ReleaseLaw
-from .problem import Fit, Problem
+from ...arrays import Floats, Ints
+from ...reduction.reduced_sum import ReducedSum
+from ..effects.candidates import Suspect, changed, magnitudes
+from ..effects.effect_laws import AttachedLaw, ReleaseLaw
+from .hypothesis import Fit, Problem, taken_apart
+from .likelihood_numbers import LIKELIHOOD
+from .mode_likelihood import joint_macs, matched, mode_costs, targets
 
-_DEGENERATE = 2e-3
-_EDGE = 0.04
-"""Of ln λ: how far within the measured band a mode counts in full as one too many."""
-_LEAST_DAMPING = 1e-10
-_REACH = 0.8
-"""Largest move of a parameter (of ln p) or a magnitude (in steps of its kind) at once."""
-_FEW = 0.25
-"""Share of the eigenpairs below which finding these alone takes less time than finding all."""
 _FIRST = np.zeros(1, np.int64)
 
 
 def _matrices(
-    problem: Problem, log_p: Floats, suspects: Sequence[Suspect]
+    problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]
 ) -> tuple[Floats, Floats]:
+    log_p, mesh_error = taken_apart(nuisance)
     p = np.exp(log_p)
-    K, M = problem.basis.K(p), problem.basis.M(p) - log_p[-1] * problem.mesh
+    K, M = problem.basis.K(p), problem.basis.M(p) - mesh_error * problem.mesh
     own = []
     for s in suspects:
-        rows, law = problem.part(s.kind, np.array([s.row]), log_p)
+        rows, law = problem.part(s.kind, np.array([s.row]), nuisance)
         U, theta = rows[0], np.array([s.theta])
         c = law.value(theta, _FIRST)[0]
         if isinstance(law, AttachedLaw):
@@ -52,16 +46,16 @@ def _matrices(
 
 
 def solve(
-    problem: Problem, log_p: Floats, suspects: Sequence[Suspect], modes: int | None = None
+    problem: Problem, nuisance: Floats, suspects: Sequence[Suspect], modes: int | None = None
 ) -> tuple[Floats, Floats]:
     """Return the lowest eigenvalues and vectors on the basis.
 
     Attached masses have rows of their own after those of the basis, in the order of the
     suspects, times √m.
     """
-    K, M = _matrices(problem, log_p, suspects)
+    K, M = _matrices(problem, nuisance, suspects)
     n = min(modes or problem.modes, len(K))
-    if n < _FEW * len(K):
+    if n < LIKELIHOOD.few_modes * len(K):
         values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
         return values, vectors
     values, vectors = la.eigh(K, M, driver="gvd", check_finite=False)
@@ -87,21 +81,21 @@ def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
     return mode_costs(problem.evidence, values[:n], cross, gram)
 
 
-def _prior(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> float:
-    total = float(np.sum((log_p / problem.prior.spread) ** 2))
+def _prior(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> float:
+    total = float(np.sum((nuisance / problem.prior.spread) ** 2))
     return total + sum(
         float(problem.catalogue[s.kind].surprise(np.array([s.theta]))[0]) for s in suspects
     )
 
 
-def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fit:
+def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:
     """Return a hypothesis as it stands, nothing fitted."""
-    values, vectors = solve(problem, log_p, suspects)
+    values, vectors = solve(problem, nuisance, suspects)
     bad, match = misfit(problem, values, vectors)
     return Fit(
-        bad + _prior(problem, log_p, suspects),
+        bad + _prior(problem, nuisance, suspects),
         bad,
-        log_p,
+        nuisance,
         tuple(suspects),
         match,
         values,
@@ -113,7 +107,7 @@ def evaluate(problem: Problem, log_p: Floats, suspects: Sequence[Suspect]) -> Fi
 
 def on_whole_test(problem: Problem, state: Fit) -> Fit:
     """Return a fit that knows what it leaves of the modes and sensors held out from it."""
-    values, vectors = solve(problem, state.log_p, state.suspects)
+    values, vectors = solve(problem, state.nuisance, state.suspects)
     all_of_it, match = misfit(problem.entire(), values, vectors)
     seen, _ = misfit(problem, values, vectors)
     return replace(
@@ -126,51 +120,51 @@ def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
 
     One near either end counts in part: a slightly other model would have it outside.
     """
-    alone = np.maximum(np.delete(values, match), 1e-9 * aim.min())
-    inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / _EDGE
+    alone = np.maximum(np.delete(values, match), LIKELIHOOD.nil * aim.min())
+    inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / LIKELIHOOD.edge
     return float(np.sum(np.clip(inside, 0.0, 1.0)))
 
 
 def fit(
     problem: Problem,
-    log_p: Floats,
+    nuisance: Floats,
     suspects: Sequence[Suspect],
     active: Sequence[int],
-    iterations: int = 8,
-    tolerance: float = 0.05,
+    iterations: int = LIKELIHOOD.steps,
+    tolerance: float = LIKELIHOOD.tolerance,
 ) -> Fit:
-    """Minimise misfit plus prior over ln p and θ by Gauss-Newton with Levenberg's damping.
+    """Minimise misfit plus prior over nuisance parameters and θ: Gauss-Newton, Levenberg's damping.
 
     Parameters
     ----------
     problem : Problem
-    log_p : (n_parameter,) float
-        Start.
+    nuisance : (n_parameter + 1,) float
+        Start; see `Fit`.
     suspects : sequence of Suspect
         Start of the magnitudes; places stay.
     active : sequence of int
-        Parameters that move.
+        Entries of `nuisance` that move.
     iterations : int
     tolerance : float
         Smallest fall of the objective that counts, and that is looked for.
     """
-    now = evaluate(problem, np.array(log_p), suspects)
+    now = evaluate(problem, np.array(nuisance), suspects)
     damping = 0.0
     steps = [problem.catalogue[s.kind].steps for s in suspects]
-    reach = _REACH * np.concatenate([np.ones(len(active)), *steps])
+    reach = LIKELIHOOD.reach * np.concatenate([np.ones(len(active)), *steps])
     H = np.zeros((len(reach),) * 2)
     for _ in range(iterations if len(reach) else 0):
         H, g = _normal_equations(problem, now, active)
         better = None
-        for _ in range(5):
+        for _ in range(LIKELIHOOD.dampings):
             step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             trial = _stepped(problem, now, active, np.clip(step, -reach, reach))
             if trial.objective < now.objective:
-                better, damping = trial, 0.3 * damping
+                better, damping = trial, LIKELIHOOD.damping_down * damping
                 break
-            damping = max(5.0 * damping, 0.05)
+            damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:
             break
         fell = now.objective - better.objective
@@ -181,10 +175,10 @@ def fit(
 
 
 def promised(
-    problem: Problem, log_p: Floats, suspects: Sequence[Suspect], active: Sequence[int]
+    problem: Problem, nuisance: Floats, suspects: Sequence[Suspect], active: Sequence[int]
 ) -> float:
     """Return the objective that one Gauss-Newton step would leave if all were linear."""
-    now = evaluate(problem, log_p, suspects)
+    now = evaluate(problem, nuisance, suspects)
     H, g = _normal_equations(problem, now, active)
     return now.objective - float(g @ np.linalg.solve(H, g)) if len(g) else now.objective
 
@@ -192,15 +186,17 @@ def promised(
 def _step(H: Floats, g: Floats, damping: float) -> Floats:
     """Return Levenberg's step, each unknown in units of its own curvature."""
     unit = 1.0 / np.sqrt(np.diag(H))
-    scaled = H * unit * unit[:, None] + (damping + _LEAST_DAMPING) * np.eye(len(H))
+    scaled = H * unit * unit[:, None] + (damping + LIKELIHOOD.damping_least) * np.eye(len(H))
     return np.asarray(-unit * np.linalg.solve(scaled, unit * g))
 
 
 def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
-    log_p = np.array(now.log_p)
-    log_p[list(active)] += step[: len(active)]
-    log_p = np.clip(log_p, problem.prior.lower, problem.prior.upper)
-    return evaluate(problem, log_p, changed(problem.catalogue, now.suspects, step[len(active) :]))
+    nuisance = np.array(now.nuisance)
+    nuisance[list(active)] += step[: len(active)]
+    nuisance = np.clip(nuisance, problem.prior.lower, problem.prior.upper)
+    return evaluate(
+        problem, nuisance, changed(problem.catalogue, now.suspects, step[len(active) :])
+    )
 
 
 def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
@@ -212,14 +208,14 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     shapes = problem.sensors @ V[: problem.basis.size]
     a, b = _products(problem, now, active)
     gap = lk[None, :] - lam[:, None]
-    close = np.abs(gap) < _DEGENERATE * np.abs(lk)[None, :]
+    close = np.abs(gap) < LIKELIHOOD.degenerate * np.abs(lk)[None, :]
     F = a - b * lk
     dlam = F[:, k, here]
     C = np.where(close, 0.0, F / np.where(close, 1.0, gap))
     C[:, k, here] = -0.5 * b[:, k, here]
     dshape = np.matmul(shapes, C)
     aim = targets(e)
-    floor = np.maximum(lk, 1e-6 * aim)
+    floor = np.maximum(lk, LIKELIHOOD.least_eigenvalue * aim)
     off = 0.5 * np.log(floor / aim) / noise.frequency
     doff = 0.5 * dlam / floor / noise.frequency
     a = shapes[:, k]
@@ -230,7 +226,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     near = shapes[:, :m]
     joint = joint_macs(lam[:m], t.T @ near, near.T @ near, noise.mixing)[here, k]
     own = np.sum(t * a, axis=0) ** 2
-    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, 1e-12))
+    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, LIKELIHOOD.apart_least))
     scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)
     rest = (a - t * np.sum(t * a, axis=0)) * scale
     d = dshape / length
@@ -243,7 +239,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
     spread = np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
     mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
-    x = np.concatenate([now.log_p[list(active)], magnitudes(now.suspects)])
+    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
     H = H + np.diag(1.0 / spread**2)
     return H, g + (x - mean) / spread**2
 
@@ -257,10 +253,10 @@ def _products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats
     b, i = np.zeros_like(a), first
     a[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.stiffness, p, active), S[:, k]))
     b[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.mass, p, active), S[:, k]))
-    if len(p) - 1 in active:
-        b[active.index(len(p) - 1)] = -S.T @ (problem.mesh @ S[:, k])
+    if len(p) in active:
+        b[active.index(len(p))] = -S.T @ (problem.mesh @ S[:, k])
     for s in now.suspects:
-        rows, law = problem.part(s.kind, np.array([s.row]), now.log_p)
+        rows, law = problem.part(s.kind, np.array([s.row]), now.nuisance)
         U, theta = rows[0], np.array([s.theta])
         u, slopes = U @ S, law.slope(theta, _FIRST)[0]
         if isinstance(law, AttachedLaw):
@@ -276,12 +272,12 @@ def _products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats
             i += 1
         if isinstance(law, ReleaseLaw):
             for j, q in enumerate(active):
-                if q < len(p) - 1:
+                if q < len(p):
                     a[j] += (u.T * law.by_parameter(theta, _FIRST, q)[0]) @ u[:, k]
     return a, b
 
 
 def _by_log(matrices: ReducedSum, p: Floats, active: Sequence[int]) -> Floats:
-    """Differentiate by ln p of the active parameters: (n, r, r), nil for the mesh error."""
-    known = np.append(p[:-1], 0.0)
+    """Differentiate by the active nuisance parameters: (n, r, r), nil for the mesh error."""
+    known = np.append(p, 0.0)
     return np.asarray(matrices.slopes(p, active) * known[list(active), None, None])

@@ -7,13 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..arrays import Bools, Floats, Ints
-from ..weighting import ModeErrors
-
-_PLACED = 0.04
-"""What a right model misses of a shape: positions of sensors, discretisation."""
-_UNSEEN = 1e-10
-"""Squared length at the sensors, relative to the largest, of a mode that they do not see."""
+from ...arrays import Bools, Floats, Ints
+from ...correlation.mode_errors import ModeErrors
+from .likelihood_numbers import LIKELIHOOD
 
 
 @dataclass(frozen=True)
@@ -36,11 +32,11 @@ class Noise:
         differ by no more than this turn freely within their subspace.
     """
 
-    frequency: float | Floats = 0.004
-    shape: float | Floats = 0.05
-    independent: float = 12.0
-    robust: float = 40.0
-    mixing: float = 0.02
+    frequency: float | Floats = LIKELIHOOD.frequency
+    shape: float | Floats = LIKELIHOOD.shape
+    independent: float = LIKELIHOOD.independent
+    robust: float = LIKELIHOOD.robust
+    mixing: float = LIKELIHOOD.mixing
 
     def of(self, modes: Ints | Bools) -> Noise:
         """Return the noise of some modes."""
@@ -61,7 +57,7 @@ def noise_of(errors: ModeErrors | None, level: float) -> Noise:
         Of a sound sensor besides those, over the rms of the shape.
     """
     usual = Noise()
-    shape = float(np.hypot(level, _PLACED))
+    shape = float(np.hypot(level, LIKELIHOOD.placed))
     if errors is None:
         return replace(usual, shape=shape)
     return replace(
@@ -80,7 +76,6 @@ class Evidence:
     frequencies_hz : (n_test,) float
     shapes : (n_sensor, n_test) float
         Real, each of unit length over the sensors that count.
-    sensors : (n_sensor, n_free) sparse or (n_sensor, r) float
     noise : Noise
     """
 
@@ -124,13 +119,13 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     """
     n = gram.shape[-1]
     diagonal = np.einsum("...ii->...i", gram)
-    seen = diagonal > _UNSEEN * diagonal.max(axis=-1, keepdims=True)
+    seen = diagonal > LIKELIHOOD.unseen * diagonal.max(axis=-1, keepdims=True)
     scale = np.where(seen, 1.0 / np.sqrt(np.where(seen, diagonal, 1.0)), 0.0)
     W = mixing(eigenvalues, size)
     G = scale[..., :, None] * scale[..., None, :]
     G *= gram
     G *= W
-    G[..., np.arange(n), np.arange(n)] = 1.0 + 1e-6
+    G[..., np.arange(n), np.arange(n)] = 1.0 + LIKELIHOOD.ridge
     own = cross * scale[..., None, :]
     c = np.linalg.solve(np.linalg.cholesky(G), np.swapaxes(own, -1, -2))
     return np.asarray(np.minimum(np.maximum(np.matmul(np.swapaxes(c**2, -1, -2), W), own**2), 1.0))
@@ -151,7 +146,7 @@ def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) ->
         (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
     """
     omega2 = targets(e)
-    floor = 1e-6 * omega2.min()
+    floor = LIKELIHOOD.least_eigenvalue * omega2.min()
     off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
     n = e.noise
     macs = joint_macs(np.maximum(eigenvalues, floor), cross, gram, n.mixing)

@@ -6,17 +6,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from ..comparison import Placed
-from ..eigen import Eigensolution
-from .responses import Responses
-from .search import Effort
-from .story import MassUnit
-from .structure import Structure
+from ...arrays import Floats, Ints
+from ...correlation.comparison import Placed
+from ...eigen.normal_modes import Eigensolution
+from ...noun import Noun
+from ..effects.sentence_parts import MassUnit
+from ..reduction.elements_and_supports import Structure
+from .frf_likelihood import Responses
+from .likelihood_numbers import EFFORT, Effort
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class Request(Noun):
     """What discovery is asked.
 
     Parameters
@@ -46,7 +47,7 @@ class Request:
     placed: Placed
     mass: float
     masses: MassUnit = field(default_factory=MassUnit)
-    effort: Effort = field(default_factory=Effort)
+    effort: Effort = EFFORT
     responses: Responses | None = None
     modes: Ints | None = None
 

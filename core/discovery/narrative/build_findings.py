@@ -7,58 +7,46 @@ from typing import Any
 
 import numpy as np
 
-from ..alignment import Alignment
-from ..arrays import Bools, Floats
-from .beam import Found
-from .candidates import Candidates, Suspect
-from .credible import Place, between, credible_places
-from .deciding import further_modes, further_sensors
-from .findings import Alternative, Discovery, Finding, MovedParameter
-from .judge import (
+from ...arrays import Bools, Floats
+from ...registration.alignment import Alignment
+from ..effects.candidates import Suspect
+from ..effects.sentence_parts import odds
+from ..findings import Alternative, Discovery, Finding, MovedParameter
+from ..likelihood.hypothesis import Fit
+from ..likelihood.request import Request
+from ..posterior.credible_places import Place, between, credible_places
+from ..posterior.test_design import further_modes, further_sensors
+from ..search.beam_search import Found
+from ..search.model_selection import (
     Judgement,
     contenders,
     cost,
     deviations,
     explained,
     instead,
-    summary,
     times,
 )
-from .places import region
-from .problem import Fit
-from .request import Request
-from .search import Searcher
-from .sensors import Verdicts
-from .story import odds
-from .telling_sensors import accusations, remarks
-from .wording import magnitude_of, sentence_of
-
-_SIGNIFICANT = 3.0
-_SURE = 0.8
-_CONTRADICTED = -4.0
-"""Held-out modes and sensors that are likelier by e² without the last effect speak against it."""
-_UNEXPLAINED = 8.0
-_RIVALS, _RIVAL = 3, 14.0
-"""Hypotheses that further data should tell from the best, those less than a thousand times less
-likely (twice the log)."""
-_SHAPE = {"M": (0.15,), "K": (0.25,), "A": (0.08, 0.02)}
-"""Error of ln magnitudes, for masses, stiffnesses and absorbers, that comes of a place or patch
-which is not quite the true one and of the mesh: as measured on generated cases
-(`benchmarks/discovery`)."""
-_IN_CATALOGUE, _LEFT_OVER = 0.91, 0.003
-"""Share of clear findings that are right, and how it falls with the noise scale: measured there."""
+from ..search.moves import Searcher
+from ..sensor_faults.diagnosis import Verdicts
+from .narrative_numbers import NARRATIVE
+from .region_names import region
+from .sensor_findings import accusations, remarks
+from .sentences import magnitude_of, sentence_of
 
 
-def told(
+def build_discovery(
     request: Request,
     searcher: Searcher,
     found: Found,
     verdict: Judgement,
     zero: Fit,
     tested: Verdicts,
-    out: tuple[Any, Any],
+    held_out: tuple[Bools, Bools],
 ) -> Discovery:
-    """Say what the search amounts to: verdict, findings, alternatives, what would decide."""
+    """Say what the search amounts to: verdict, findings, alternatives, what would decide.
+
+    `held_out` are the test modes and the sensors that were kept out of the search.
+    """
     best = found.levels[verdict.accepted]
     spread = deviations(best, verdict.scale)
     ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
@@ -73,16 +61,16 @@ def told(
     moved = _moved(best, spread)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
-    matters = gained > 2.0 * np.log(len(null.log_p)) + 8.0
+    matters = gained > 2.0 * np.log(len(null.nuisance)) + NARRATIVE.matters
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
-    sure = verdict.posterior >= _SURE and verdict.foretold > _CONTRADICTED
+    sure = verdict.posterior >= NARRATIVE.sure and verdict.foretold > NARRATIVE.contradicted
     if findings and sure and not decide:
         word = "effect"
     elif findings:
         word = "undecided"
-        decide = (*decide, *_would_decide(request, searcher, found, verdict, out[0]))
-    elif verdict.scale > _UNEXPLAINED:
+        decide = (*decide, *_would_decide(request, searcher, found, verdict, held_out[0]))
+    elif verdict.scale > NARRATIVE.unexplained:
         word = "undecided"
         decide = (
             f"the best explanation leaves {verdict.scale:.0f} times the misfit of a right model; "
@@ -98,12 +86,11 @@ def told(
         alternatives,
         moved,
         verdict.scale,
-        summary(found.levels),
         verdict.evidence,
         verdict.posterior,
         verdict.foretold,
-        tuple(int(i) for i in request.numbers[out[0]]),
-        tuple(int(nodes[i]) for i in np.flatnonzero(out[1])),
+        tuple(int(i) for i in request.numbers[held_out[0]]),
+        tuple(int(nodes[i]) for i in np.flatnonzero(held_out[1])),
         tested.faults,
         decide,
         remarks(request.placed.observation, tested),
@@ -135,25 +122,26 @@ def _finding(
     geometry = request.structure.model.geometry
     sizes = np.exp(s.theta)
     places = credible_places(searcher, best, number, verdict.scale)
-    spread = np.hypot(np.hypot(deviation, _SHAPE[c.law.on]), between(places))
-    intervals = sizes[:, None] * np.exp(1.96 * spread[:, None] * np.array([-1.0, 1.0]))
+    error = [m.place_error for m in c.kind.magnitudes]
+    spread = np.hypot(np.hypot(deviation, error), between(places))
+    half = NARRATIVE.interval * spread[:, None]
+    intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
     where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
     where["region"] = region(geometry, c.xyz[s.row])
     magnitude = magnitude_of(c, s.row, sizes, intervals, request.masses)
-    first = intervals[0] * (request.masses.card if "mass" in magnitude else 1.0)
+    first = intervals[0] * (request.masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
     modes = [int(request.numbers[j]) for j in explained(searcher, best, number, verdict.scale)]
     next_best = alternatives[0] if alternatives else None
     return Finding(
         "model",
-        c.kind,
+        c.kind.name,
         where,
         magnitude,
         interval,
         _credible(searcher, found, verdict, number, places),
         _confidence(verdict),
         sentence_of(c.kind, magnitude, where["region"], interval, modes, request.masses, next_best),
-        {"xyz": c.xyz[s.row].tolist(), "radius": _radius(c, s)},
     )
 
 
@@ -170,7 +158,7 @@ def _credible(
             **catalogue[kind].where[row],
             "xyz": catalogue[kind].xyz[row].tolist(),
             "weight": w / total,
-            "kind": catalogue[kind].kind,
+            "kind": catalogue[kind].kind.name,
         }
         for kind, row, w in (*own, *others)
     )
@@ -182,22 +170,19 @@ def _confidence(verdict: Judgement) -> float:
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
     sure, the less so the more misfit even the best one leaves.
     """
-    return verdict.posterior * _IN_CATALOGUE / (1.0 + _LEFT_OVER * (verdict.scale - 1.0))
-
-
-def _radius(c: Candidates, s: Suspect) -> float:
-    return float(c.extra["patches"][s.row].radius) if "patches" in c.extra else 0.0
+    left = 1.0 + NARRATIVE.left_over * (verdict.scale - 1.0)
+    return verdict.posterior * NARRATIVE.in_catalogue / left
 
 
 def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
     """Known parameters as the completed deck takes them."""
-    values = best.log_p[:-1] if best.in_deck is None else best.in_deck
+    values = best.log_p if best.in_deck is None else best.in_deck
     return tuple(
         MovedParameter(
             k,
             float(np.exp(value)),
             float(np.exp(value)) * float(spread[best.active.index(k)]),
-            abs(float(value)) > _SIGNIFICANT * float(spread[best.active.index(k)]),
+            abs(float(value)) > NARRATIVE.significant * float(spread[best.active.index(k)]),
         )
         for k, value in enumerate(values)
     )
@@ -217,10 +202,10 @@ def _alternatives(
         return cost(searcher, f, verdict.scale) - cost(searcher, best, verdict.scale)
 
     def named(f: Fit) -> list[Suspect]:
-        return sorted(f.suspects, key=lambda s: catalogue[s.kind].kind)
+        return sorted(f.suspects, key=lambda s: catalogue[s.kind].kind.name)
 
     def kinds_of(f: Fit) -> tuple[str, ...]:
-        return tuple(catalogue[s.kind].kind for s in named(f))
+        return tuple(catalogue[s.kind].kind.name for s in named(f))
 
     other = contenders(searcher, found, verdict.accepted)
     seen: dict[tuple[str, ...], Fit] = {}
@@ -230,17 +215,17 @@ def _alternatives(
     out = []
     for kinds, f in seen.items():
         xyz = [catalogue[s.kind].xyz[s.row] for s in named(f)]
+        regions = tuple(region(request.structure.model.geometry, x) for x in xyz)
         said = " and ".join(
-            f"{kind.replace('_', ' ')} {region(request.structure.model.geometry, x)}"
-            for kind, x in zip(kinds, xyz, strict=True)
+            f"{k.replace('_', ' ')} {r}" for k, r in zip(kinds, regions, strict=True)
         )
         ratio = times(behind(f))
         places = tuple(tuple(float(v) for v in x) for x in xyz)
-        out.append(Alternative(kinds, places, ratio, f"{said}: {odds(ratio)}"))
+        out.append(Alternative(kinds, places, ratio, said, odds(ratio), regions))
     if verdict.accepted:
         ratio = times(behind(found.levels[0]))
-        out.append(Alternative((), (), ratio, f"the known parameters alone: {odds(ratio)}"))
-    return tuple(sorted(out, key=lambda a: a.times_less_likely))[:8]
+        out.append(Alternative((), (), ratio, "the known parameters alone", odds(ratio)))
+    return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
 
 
 def _would_decide(
@@ -253,9 +238,9 @@ def _would_decide(
         (*contenders(searcher, found, verdict.accepted), *simpler),
         key=lambda f: cost(searcher, f, verdict.scale),
     )
-    here = cost(searcher, best, verdict.scale)
-    near = [f for f in rivals if cost(searcher, f, verdict.scale) - here < _RIVAL] or rivals[:1]
-    told_apart = tuple((_in_words(request, searcher, f), f) for f in near[:_RIVALS])
+    here, scale, most = cost(searcher, best, verdict.scale), verdict.scale, NARRATIVE.rivals
+    near = [f for f in rivals if cost(searcher, f, scale) - here < NARRATIVE.rival] or rivals[:1]
+    told_apart = tuple((_in_words(request, searcher, f), f) for f in near[:most])
     p, model = searcher.problem, request.structure.model
     return (
         *further_sensors(p, model, best, told_apart, request.numbers[~held]),
@@ -269,4 +254,4 @@ def _in_words(request: Request, searcher: Searcher, f: Fit) -> str:
     last = f.suspects[-1]
     c = searcher.problem.catalogue[last.kind]
     spot = region(request.structure.model.geometry, c.xyz[last.row])
-    return f"{'' if len(f.suspects) < 2 else 'one with '}{c.kind.replace('_', ' ')} {spot}"
+    return f"{'' if len(f.suspects) < 2 else 'one with '}{c.kind.words} {spot}"

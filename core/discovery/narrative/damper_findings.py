@@ -7,30 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from .dampers import DamperFound
-from .damping import Oriented, added
-from .findings import Alternative, Discovery, Finding, ModalDamping
-from .judge import times
-from .kinds.local_damper import Dashpots, sentence
-from .places import region
-from .request import Request
-from .story import odds
-from .weighing_dampers import Weighed, moved
-
-_SURE = 0.6
-"""Posterior of a dashpot at its place from which it is an effect."""
-_LISTED = 0.5
-"""Posterior of a dashpot anywhere from which it is a finding."""
-_WORTH_TELLING = 0.02
-_TOGETHER = 0.1
-"""Places nearer than this part of the structure are one."""
-_TAKEN_FOR, _BESIDE = ("ground_spring", "tuned_absorber", "point_mass"), 0.2
-"""What a heavy dashpot looks like to the search, and within which part of the structure."""
-_PLACE = 0.12
-"""Error of ln c that comes of a place which is not quite the true one."""
-_CONFIDENCE = 0.93
-"""Share of clear findings that are right, as for the other kinds."""
+from ...arrays import Floats, Ints
+from ..dampers.damper_evidence import Weighed, moved
+from ..dampers.damper_search import DamperFound
+from ..effects import KINDS
+from ..effects.local_damper import KIND, sentence
+from ..effects.sentence_parts import odds
+from ..effects.structure_points import Axes
+from ..findings import Alternative, Discovery, Finding, ModalDamping
+from ..likelihood.complex_modes import Oriented, added
+from ..likelihood.likelihood_numbers import LIKELIHOOD
+from ..likelihood.request import Request
+from ..search.model_selection import times
+from .narrative_numbers import NARRATIVE
+from .region_names import region
 
 
 def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discovery:
@@ -45,19 +35,20 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
     if w is None:
         return said
     structure, found, places, modes, u = request.structure, w.found, w.places, w.modes, w.u
-    beside = found.level_with if found.exists >= _LISTED else found.level_without
+    beside = found.level_with if found.exists >= NARRATIVE.damper_listed else found.level_without
     without = tuple(float(v) for v in found.level_without)
     said = replace(said, damping=ModalDamping(without, tuple(float(v) for v in beside)))
     ratio = times(-found.evidence)
-    if found.exists < _LISTED:
-        if found.exists < _WORTH_TELLING:
+    if found.exists < NARRATIVE.damper_listed:
+        if found.exists < NARRATIVE.damper_told:
             return said
         spot = region(structure.model.geometry, places.xyz[found.rows[0]])
         alternative = Alternative(
-            ("local_damper",),
+            (KIND.name,),
             (tuple(float(v) for v in places.xyz[found.rows[0]]),),
             ratio,
-            f"a dashpot {spot} besides: {odds(ratio, 'none')}",
+            f"a dashpot {spot} besides",
+            odds(ratio, "none"),
         )
         return replace(said, alternatives=(*said.alternatives, alternative))
     finding, sure = _finding(request, found, places, modes, u)
@@ -65,7 +56,7 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
     rest = [f for f in said.findings if f.side != "model"]
     verdict, decide = said.verdict, said.would_decide
     if verdict not in {"effect", "undecided"}:
-        verdict = "effect" if sure >= _SURE else "undecided"
+        verdict = "effect" if sure >= NARRATIVE.damper_sure else "undecided"
     if verdict == "undecided":
         decide = (*decide, *_would_decide(request, found, places, modes, u))
     beside_it = _beside(request, finding, model)
@@ -88,26 +79,26 @@ def _beside(request: Request, damper: Finding, model: list[Finding]) -> str:
     size = request.structure.model.geometry.size
     for f in model:
         apart = np.linalg.norm(np.subtract(f.where["xyz"], damper.where["xyz"]))
-        if f.kind in _TAKEN_FOR and apart < _BESIDE * size:
-            return f.kind.replace("_", " ")
+        if KINDS[f.kind].at_points and apart < NARRATIVE.damper_beside * size:
+            return KINDS[f.kind].words
     return ""
 
 
 def _finding(
-    request: Request, found: DamperFound, places: Dashpots, modes: Oriented, u: Floats
+    request: Request, found: DamperFound, places: Axes, modes: Oriented, u: Floats
 ) -> tuple[Finding, float]:
     """Return the finding at the place around which most of the posterior lies, and how much."""
     xyz = places.xyz[found.rows]
     size = request.structure.model.geometry.size
-    near = np.linalg.norm(xyz[:, None] - xyz[None], axis=2) < _TOGETHER * size
+    near = np.linalg.norm(xyz[:, None] - xyz[None], axis=2) < NARRATIVE.damper_together * size
     along = np.array([places.where[r]["components"][0] for r in found.rows])
     near &= along[:, None] == along[None]
     mass = near @ found.weights
-    k = int(np.argmax(mass + 1e-6 * found.weights))
+    k = int(np.argmax(mass + NARRATIVE.damper_tie * found.weights))
     w = np.where(near[k], found.weights, 0.0) / mass[k]
     mean = float(w @ found.log_size)
     variance = float(w @ (found.log_deviation**2 + (found.log_size - mean) ** 2))
-    spread = 1.96 * float(np.hypot(np.sqrt(variance), _PLACE))
+    spread = NARRATIVE.interval * float(np.hypot(np.sqrt(variance), KIND.magnitudes[0].place_error))
     c, row = float(np.exp(mean)), int(found.rows[k])
     low, high = float(np.exp(mean - spread)), float(np.exp(mean + spread))
     components = list(places.where[row]["components"])
@@ -120,16 +111,16 @@ def _finding(
     sure = found.exists * float(mass[k])
     finding = Finding(
         "model",
-        "local_damper",
+        KIND.name,
         where,
-        {"damping": c, "components": components},
+        {KIND.magnitudes[0].word: c, "components": components},
         (low, high),
         tuple(
             {**places.where[r], "xyz": places.xyz[r].tolist(), "weight": float(v)}
             for r, v in zip(found.rows, found.weights, strict=True)
-            if v > 0.05 * found.weights[0]
-        )[:40],
-        sure * _CONFIDENCE,
+            if v > NARRATIVE.damper_credible * found.weights[0]
+        )[: NARRATIVE.damper_places],
+        sure * NARRATIVE.damper_confidence,
         sentence(
             c,
             (low, high),
@@ -138,20 +129,20 @@ def _finding(
             [int(request.numbers[j]) for j in felt],
             times(found.evidence),
         ),
-        {"xyz": places.xyz[row].tolist(), "radius": 0.0},
     )
     return finding, sure
 
 
 def _would_decide(
-    request: Request, found: DamperFound, places: Dashpots, modes: Oriented, u: Floats
+    request: Request, found: DamperFound, places: Axes, modes: Oriented, u: Floats
 ) -> tuple[str, ...]:
     """Say which further mode's damping tells the two best places apart."""
     xyz = places.xyz[found.rows]
     size = request.structure.model.geometry.size
-    other: Ints = np.flatnonzero(np.linalg.norm(xyz - xyz[0], axis=1) > _TOGETHER * size)
+    far = NARRATIVE.damper_together * size
+    other: Ints = np.flatnonzero(np.linalg.norm(xyz - xyz[0], axis=1) > far)
     further = np.arange(modes.count, len(modes.omega))
-    further = further[modes.omega[further] > 1e-3 * modes.omega.max()]
+    further = further[modes.omega[further] > LIKELIHOOD.elastic * modes.omega.max()]
     if not len(other) or not len(further):
         return ("damping ratios of further modes, which would tell where the dashpot sits",)
     level = float(np.exp(np.mean(np.log(found.level_with))))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
-from ..geometry import Geometry
+from ...arrays import Floats
+from ...data.geometry import Geometry
+from .narrative_numbers import NARRATIVE
 
 
 def region(geometry: Geometry, xyz: Floats) -> str:
@@ -38,8 +39,8 @@ def _round_axis(xyz: Floats) -> int | None:
         angle = np.arctan2(xyz[:, b], xyz[:, a])
         if not r.max() > 0.0:
             continue
-        rim = r > 0.95 * r.max()
+        rim = r > NARRATIVE.rim * r.max()
         filled = np.unique(np.floor((angle[rim] + np.pi) / (np.pi / 12.0))).size
-        if filled >= 23:
+        if filled >= NARRATIVE.rim_filled:
             return axis
     return None

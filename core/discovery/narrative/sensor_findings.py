@@ -6,26 +6,25 @@ from typing import Any
 
 import numpy as np
 
-from ..observation import Observation
-from .faults import Fault
-from .findings import Finding
-from .sensors import Verdicts
-from .wording import test_sentence
+from ...sensors.sensor_map import Observation
+from ..faults import FAULTS, Fault
+from ..findings import Finding
+from ..sensor_faults.diagnosis import Verdicts
+from .narrative_numbers import NARRATIVE
 
 
 def accusations(seen: Observation, tested: Verdicts) -> list[Finding]:
     """Return the findings on the side of the test."""
-    return [_accusation(seen, f) for f in tested.faults if f.kind != "doubled"]
+    return [_accusation(seen, f) for f in tested.faults if FAULTS[f.kind].accuses]
 
 
 def remarks(seen: Observation, tested: Verdicts) -> tuple[str, ...]:
     """Return what is odd about sensors but no finding."""
     nodes = seen.sensors.node
     twice = tuple(
-        f"sensor {int(nodes[f.sensors[0]])} reads twice what all the others say, as if two "
-        "measurements of it had been added up; its values were halved for the comparison"
+        FAULTS[f.kind].sentence.format(sensors=int(nodes[f.sensors[0]]))
         for f in tested.faults
-        if f.kind == "doubled"
+        if not FAULTS[f.kind].accuses
     )
     odd = np.setdiff1d(nodes[tested.doubtful], nodes[tested.accused])
     if not odd.size:
@@ -47,17 +46,18 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
         "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
     }
     names: list[str] = list(map(str, sensors))
-    within = f.kind == "sensor_swap" and len(sensors) == 1
-    if len(f.sensors) < rows or within:
+    kind = FAULTS[f.kind]
+    if len(f.sensors) < rows or (kind.exchanges and len(sensors) == 1):
         names = where["directions"] = [labels[i] for i in f.sensors]
+    half = len(names) // 2 if kind.exchanges else len(names)
+    first, other = ", ".join(names[:half]), ", ".join(names[half:])
+    said = kind.sentence.format(sensors=first, others=other, size=f.factor)
     magnitude: dict[str, Any] = {}
-    if f.kind == "sensor_gain":
-        magnitude = {"factor": f.factor}
-    elif f.kind == "sensor_axis":
-        magnitude = {"angle_deg": f.factor, "axis": list(f.axis)}
     interval = None
-    if magnitude:
-        interval = (f.factor - 1.96 * f.deviation, f.factor + 1.96 * f.deviation)
+    if kind.magnitude:
+        magnitude = {kind.magnitude: f.factor, **({"axis": list(f.axis)} if f.axis else {})}
+        off = NARRATIVE.interval * f.deviation
+        interval = (f.factor - off, f.factor + off)
     return Finding(
         "test",
         f.kind,
@@ -66,5 +66,5 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
         interval,
         (),
         f.confidence,
-        test_sentence(f.kind, names, f.factor),
+        f"{said}.",
     )

@@ -7,20 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats
-from .candidates import Suspect
-from .fitting import evaluate, fit
-from .judge import CREDIBLE
-from .problem import Fit
-from .scanning import scan
-from .search import Searcher
-
-_NEAR, _MOST = 0.15, 400
-"""Places nearer than this part of the structure are all looked at, so many at most."""
-_SIZES = np.array([-0.6, -0.3, 0.0, 0.3, 0.6])
-"""Steps of θ with which they are."""
-_FITTED, _STEPS = 30, 3
-"""Places at which all else follows, the most promising, and in how many steps."""
+from ...arrays import Floats
+from ..effects.candidates import Suspect
+from ..likelihood.hypothesis import Fit
+from ..likelihood.map_fit import evaluate, fit
+from ..search.exact_scan import scan
+from ..search.moves import Searcher
+from ..search.search_numbers import SEARCH
+from .posterior_numbers import POSTERIOR
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,20 +36,20 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     before, after = best.suspects[:number], best.suspects[number + 1 :]
     c = searcher.problem.catalogue[suspect.kind]
     away = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
-    near = np.flatnonzero(away < _NEAR * searcher.size)[:_MOST]
+    near = np.flatnonzero(away < POSTERIOR.near * searcher.size)[: POSTERIOR.most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
-    small, here = searcher.local(evaluate(searcher.problem, best.log_p, (*before, *after)))
-    trials = c.around(suspect.theta, _SIZES)
+    small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
+    trials = c.around(suspect.theta, np.array(POSTERIOR.sizes))
     score = scan(small, here, suspect.kind, rows, trials)
-    chosen = np.argsort(score.min(axis=1), kind="stable")[:_FITTED]
+    chosen = np.argsort(score.min(axis=1), kind="stable")[: POSTERIOR.fitted]
     chosen = np.union1d(chosen, np.flatnonzero(rows == suspect.row))
     tried = []
     for i in chosen:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
         suspects = (*before, moved, *after)
-        tried.append(fit(small, best.log_p, suspects, searcher.active, _STEPS))
+        tried.append(fit(small, best.nuisance, suspects, searcher.active, POSTERIOR.steps))
     least = min(f.objective for f in tried)
-    kept = [f for f in tried if f.objective - least < CREDIBLE * scale]
+    kept = [f for f in tried if f.objective - least < SEARCH.credible * scale]
     weight = np.exp([-0.5 * (f.objective - least) / scale for f in kept])
     return sorted(
         (

@@ -6,22 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from ..geometry import Geometry
-from ..model import Model
-from .fitting import misfit, solve
-from .problem import Fit, Problem
-
-_SENSORS = 3
-_APART = 0.1
-"""Sensors are proposed at least this part of the structure apart."""
-_TELLS = 0.1
-"""Least difference of a reading, beside the rms of its shape, that a sensor could tell."""
-_SHIFT = 0.01
-"""Least difference of ln f of a mode that was not measured."""
-_ALIKE = 0.5
-_CLOSE = 0.02
-"""Modes whose frequencies differ less are compared as a subspace."""
+from ...arrays import Floats, Ints
+from ...data.geometry import Geometry
+from ...data.parametric_model import Model
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.map_fit import misfit, solve
+from .posterior_numbers import POSTERIOR
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +60,10 @@ def further_sensors(
     g = model.geometry
     for d in np.argsort(-told, kind="stable"):
         rival, mode = np.unravel_index(int(np.argmax(apart[:, d])), (len(apart), a.shape[1]))
-        if apart[rival, d, mode] < _TELLS or len(out) == _SENSORS:
+        if apart[rival, d, mode] < POSTERIOR.tells or len(out) == POSTERIOR.sensors:
             break
         xyz = _xyz(g, int(model.dofs.node[rows[d]]))
-        if any(np.linalg.norm(xyz - c) < _APART * g.size for c in chosen):
+        if any(np.linalg.norm(xyz - c) < POSTERIOR.sensors_apart * g.size for c in chosen):
             continue
         chosen.append(xyz)
         axis = "XYZ"[int(model.dofs.component[rows[d]]) - 1]
@@ -99,10 +89,10 @@ def further_modes(
         return ()
     rows = np.flatnonzero(model.dofs.component <= 3)
     own = _forecast(problem, best, rows)
-    top = 1.5 * float(problem.whole.frequencies_hz.max())
+    top = POSTERIOR.band_above * float(problem.whole.frequencies_hz.max())
     measured = np.zeros(len(own.hz), bool)
     measured[own.match] = True
-    new = np.flatnonzero(~measured & (own.hz < top) & (own.hz > 1e-3 * top))
+    new = np.flatnonzero(~measured & (own.hz < top) & (own.hz > POSTERIOR.elastic * top))
     name, f = rivals[0]
     other = _forecast(problem, f, rows)
     if not len(new) or not len(other.hz):
@@ -110,9 +100,9 @@ def further_modes(
     mac = (own.motion[:, new].T @ other.motion) ** 2 / float(len(rows)) ** 2
     twin = np.argmax(mac, axis=1)
     shift = np.abs(np.log(other.hz[twin] / own.hz[new]))
-    shift = np.where(mac.max(axis=1) > _ALIKE, shift, 0.0)
+    shift = np.where(mac.max(axis=1) > POSTERIOR.twin, shift, 0.0)
     k = int(np.argmax(shift))
-    if shift[k] < _SHIFT:
+    if shift[k] < POSTERIOR.shift:
         return ()
     return (
         f"the mode near {own.hz[new[k]]:.4g} Hz, which was not measured: the best explanation has "
@@ -121,7 +111,7 @@ def further_modes(
 
 
 def _forecast(problem: Problem, f: Fit, rows: Ints) -> _Forecast:
-    values, vectors = solve(problem, f.log_p, f.suspects)
+    values, vectors = solve(problem, f.nuisance, f.suspects)
     n = min(problem.columns, len(values))
     motion = problem.basis.motion[rows] @ vectors[: problem.basis.size, :n]
     length = np.sqrt(np.mean(motion**2, axis=0))
@@ -138,7 +128,7 @@ def _differences(a: Floats, other: _Forecast) -> Floats:
     """
     out = np.empty_like(a)
     for j, k in enumerate(other.match):
-        close = np.abs(np.log(np.maximum(other.hz, 1e-9) / other.hz[k])) < _CLOSE
+        close = np.abs(np.log(np.maximum(other.hz, POSTERIOR.nil) / other.hz[k])) < POSTERIOR.close
         B = other.motion[:, close]
         turned = B @ np.linalg.lstsq(B, a[:, j], rcond=None)[0]
         length = np.sqrt(np.mean(turned**2))

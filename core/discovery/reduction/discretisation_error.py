@@ -17,18 +17,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Bools, Floats
-from ..elements.bar import bar_mass
-from .basis import Basis
-from .structure import Members, Structure
-
-_SHARES = {
-    "quad": np.array([[4, 2, 1, 2], [2, 4, 2, 1], [1, 2, 4, 2], [2, 1, 2, 4]]) / 36.0,
-    "tria": (np.ones((3, 3)) + np.eye(3)) / 12.0,
-}
-"""Consistent mass of the linear interpolation, of an element of unit mass."""
-_PINNED = 1e-9
-_CHUNK = 512
+from ...arrays import Bools, Floats
+from ...elements.bar import bar_mass
+from .elements_and_supports import Members, Structure
+from .reduction_numbers import REDUCTION
+from .search_basis import Basis
 
 
 def lumping(structure: Structure, vectors: Floats) -> Floats:
@@ -42,13 +35,13 @@ def lumping(structure: Structure, vectors: Floats) -> Floats:
     motion = np.asarray(structure.model.expansion @ vectors)
     total = np.zeros((vectors.shape[1],) * 2)
     for m in structure.members:
-        share = _SHARES.get(m.shape)
-        if share is None or m.block.width != 6 or m.corners.shape[1] != len(share):
+        share = m.element.linear_mass
+        if share is None:
             continue
         mass = _lumped(structure, m)
         values, R = np.linalg.eigh(np.eye(len(share)) / len(share) - share)
         S = np.sqrt(np.maximum(values, 0.0))[:, None] * R.T
-        at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, 6)[:, :, :3]
+        at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
         u = np.einsum("ab,ebcr->eacr", S, motion[at]) * np.sqrt(mass)[:, None, None, None]
         x = u.reshape(-1, vectors.shape[1])
         total += x.T @ x
@@ -63,13 +56,13 @@ def with_consistent_bars(structure: Structure, basis: Basis) -> Basis:
     motion = np.asarray(structure.model.expansion @ basis.vectors)
     change = np.zeros((basis.size,) * 2)
     for m in structure.members:
-        if m.shape != "line" or m.block.width != 6:
+        if not m.element.exact:
             continue
         mass = np.where(_pinned(structure, m), 0.0, _lumped(structure, m))
         ends = structure.model.geometry.xyz[m.corners[:, :2]]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         some = np.flatnonzero((mass > 0.0) & (length > 0.0))
-        for rows in np.array_split(some, len(some) // _CHUNK + 1):
+        for rows in np.array_split(some, len(some) // REDUCTION.bars_at_once + 1):
             per_length = mass[rows] / length[rows]
             a, b = ends[rows, 0], ends[rows, 1]
             across = np.eye(3)[np.argmin(np.abs(b - a), axis=1)]
@@ -87,7 +80,7 @@ def _pinned(structure: Structure, m: Members) -> Bools:
     if K is None:
         return np.ones(len(m.ids), bool)
     turning = np.stack([np.linalg.eigvalsh(K[:, s : s + 3, s : s + 3]) for s in (3, 9)], axis=1)
-    return np.asarray(np.any(turning[:, :, 1] <= _PINNED * turning[:, :, 2], axis=1))
+    return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.pinned * turning[:, :, 2], axis=1))
 
 
 def _lumped(structure: Structure, m: Members) -> Floats:

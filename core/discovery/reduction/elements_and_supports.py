@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Bools, Floats, Ints
-from ..assembly import ElementBlock
-from ..model import Model
+from ...arrays import Bools, Floats, Ints
+from ...assembly.element_assembly import ElementBlock
+from ...data.parametric_model import Model
+from ...elements import Element
+from ...noun import Noun
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +22,8 @@ class Members:
     ----------
     card : str
         What the adapter calls them, opaque here but for sentences.
-    shape : str
-        ``line``, ``quad``, ... as in `Geometry`; "" where not drawn.
+    element : Element
+        What they are; one that has a shape.
     ids : (n,) int
     corners : (n, k) int
         Rows of the geometry.
@@ -30,7 +32,7 @@ class Members:
     """
 
     card: str
-    shape: str
+    element: Element
     ids: Ints
     corners: Ints
     block: ElementBlock
@@ -74,7 +76,7 @@ class Supports:
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class Structure(Noun):
     """A model with its elements one by one.
 
     Parameters
@@ -103,7 +105,7 @@ def shelled(structure: Structure) -> Bools:
     """Whether each grid is one of a shell or solid, (n_grid,)."""
     out = np.zeros(len(structure.model.geometry.ids), bool)
     for m in structure.members:
-        if m.shape not in {"line", "point"}:
+        if m.element.dimension > 1:
             out[m.corners.ravel()] = True
     return out
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints
-from ..eigen import Eigensolution
-from ..factor import factorise
-from ..model import Model
-
-_CHUNK = 128
-_AT_ONCE = 600
-"""Loads of which the flexibilities among each other are found together."""
+from ...arrays import Floats, Ints
+from ...data.parametric_model import Model
+from ...eigen.normal_modes import Eigensolution
+from ...numerics.factorisation import factorise
+from .reduction_numbers import REDUCTION
 
 
 class Compliance:
@@ -36,7 +33,7 @@ class Compliance:
         keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
         new = {k: i for i, k in enumerate(keys) if k not in self._known}
         rows = np.array(list(new.values()), dtype=np.int64)
-        for some in np.array_split(rows, -(-len(rows) // _CHUNK)) if len(rows) else ():
+        for some in np.array_split(rows, -(-len(rows) // REDUCTION.at_once)) if len(rows) else ():
             exact = self._factor.compliances(loads[some].T.toarray())
             self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
         return np.array([self._known[k] for k in keys])
@@ -45,7 +42,7 @@ class Compliance:
         """Return L (K − σM)⁻¹ Lᵀ of the rows of `loads` L (n, n_free), (n, n)."""
         n = loads.shape[0]
         out = np.empty((n, n))
-        for some in np.array_split(np.arange(n), -(-n // _CHUNK)) if n else ():
+        for some in np.array_split(np.arange(n), -(-n // REDUCTION.at_once)) if n else ():
             out[:, some] = loads @ self._factor.solve(loads[some].T.toarray())
         return 0.5 * (out + out.T)
 
@@ -139,7 +136,7 @@ class SharedFlexibility:
         for part in parts:
             wider = known.copy()
             wider[part.indices] = True
-            if number and np.count_nonzero(wider) > _AT_ONCE:
+            if number and np.count_nonzero(wider) > REDUCTION.shared_at_once:
                 break
             known, number = wider, number + 1
         own = self._loads[known]

@@ -2,84 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
-from ..eigen import Eigensolution
-from ..factor import factorise
-from ..model import Model, Term
-from ..reduced_basis import projected
-
-_OWN = 1e-6
-"""Least share of the mass of a mode that moves with the structure, for it to count."""
-_ROUNDING = 1e-7
-"""What is left of a vector beside this part of it is rounding."""
-_DEPENDENT = 1e-5
-
-
-@dataclass(frozen=True, eq=False)
-class ReducedSum:
-    """K or M on a basis: a sum of constant matrices times the factors of the full terms.
-
-    Parameters
-    ----------
-    terms : tuple of Term
-    whole : (n_term, s, s) float
-        The matrices on the basis as it was made.
-    turn : (s, r) float, optional
-        What the basis has become since.
-    """
-
-    terms: tuple[Term, ...]
-    whole: Floats
-    turn: Floats | None = None
-
-    @cached_property
-    def matrices(self) -> Floats:
-        """The matrices on the basis, (n_term, r, r), made when first asked for."""
-        if self.turn is None:
-            return self.whole
-        return np.asarray(np.matmul(self.turn.T, np.matmul(self.whole, self.turn)))
-
-    def at(self, p: Floats) -> Floats:
-        """Return the sum at the parameter values `p`, (r, r)."""
-        return np.asarray(np.tensordot([t.coefficient(p) for t in self.terms], self.matrices, 1))
-
-    def slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:
-        """Return its derivatives by some parameters, (len(parameters), r, r)."""
-        c = np.zeros((len(parameters), len(self.terms)))
-        for row, k in zip(c, parameters, strict=True):
-            for i in self._moved_by.get(k, ()):
-                row[i] = self.terms[i].coefficient_derivative(p, k)
-        return np.asarray(np.tensordot(c, self.matrices, 1))
-
-    @cached_property
-    def _moved_by(self) -> dict[int, list[int]]:
-        """Terms that a parameter changes."""
-        out: dict[int, list[int]] = {}
-        for i, t in enumerate(self.terms):
-            for k in {f.parameter for f in t.factors}:
-                out.setdefault(k, []).append(i)
-        return out
-
-    def turned(self, T: Floats) -> ReducedSum:
-        """Return the sum on the basis turned by T (r, s)."""
-        return replace(self, turn=T if self.turn is None else self.turn @ T)
-
-    def plus(self, change: Floats) -> ReducedSum:
-        """Return the sum with a constant matrix (r, r) on the basis more."""
-        none = sp.csr_matrix(self.terms[0].matrix.shape)
-        return ReducedSum((*self.terms, Term(none)), np.stack([*self.matrices, change]))
-
-
-def reduced_sum(terms: tuple[Term, ...], V: Floats) -> ReducedSum:
-    """Return the sum of `terms` on the vectors V (n_free, r)."""
-    return ReducedSum(terms, projected(terms, V))
+from ...arrays import Floats
+from ...data.parametric_model import Model
+from ...eigen.normal_modes import Eigensolution
+from ...numerics.factorisation import factorise
+from ...reduction.reduced_sum import ReducedSum, reduced_sum
+from .reduction_numbers import REDUCTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,10 +57,8 @@ class Basis:
         )
 
 
-def build_basis(
-    model: Model, solution: Eigensolution, targets: int, extra: Floats | None = None
-) -> Basis:
-    """Make the basis: modes, the static response to every parameter, further vectors.
+def build_basis(model: Model, solution: Eigensolution, targets: int) -> Basis:
+    """Make the basis: modes and the static response to every parameter.
 
     Parameters
     ----------
@@ -137,19 +68,15 @@ def build_basis(
         Of the deck as it is, its factor kept.
     targets : int
         The first so many modes get static responses A⁻¹ ∂K/∂p φ.
-    extra : (n_free, k) float, optional
-        Further right-hand sides: their static responses are added.
     """
     K, M = model.K(), model.M()
     phi = solution.vectors
     p = model.deck_point
     sides = [model.dK(k, p) @ phi[:, :targets] for k in range(len(model.parameters))]
-    if extra is not None:
-        sides.append(extra)
     V = np.asarray(phi)
     if sides:
         X = np.asarray(_solve(solution, K, M, np.hstack(sides)))
-        V = np.hstack([phi, beside(X, phi, M, _DEPENDENT)])
+        V = np.hstack([phi, beside(X, phi, M, REDUCTION.dependent)])
     return Basis(
         V,
         np.asarray(model.expansion @ V),
@@ -183,7 +110,7 @@ def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
     for _ in range(2):
         X = X - phi @ (phi.T @ (M @ X))
     length = _lengths(X, M)
-    new = length > _ROUNDING * before
+    new = length > REDUCTION.rounding * before
     X = X[:, new] / length[new]
     values, vectors = np.linalg.eigh(X.T @ (M @ X))
     keep = values > least * values[-1] if len(values) else np.zeros(0, bool)
@@ -202,7 +129,7 @@ def structural(T: Floats, own: Floats) -> Floats:
         independent part of the structure's.
     """
     values, vectors = np.linalg.eigh(np.eye(T.shape[1]) - own.T @ own)
-    if values[0] > _OWN:
+    if values[0] > REDUCTION.own:
         return T
-    keep = values > _OWN
+    keep = values > REDUCTION.own
     return np.asarray(T @ (vectors[:, keep] / np.sqrt(values[keep])))

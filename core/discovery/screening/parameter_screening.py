@@ -15,19 +15,13 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
-from ..assembly import ElementBlock
-from ..eigen import Eigensolution
-from ..model import Model, Term
-from ..parameter import Parameter
-from .structure import Structure
-
-LEAST = 0.01
-"""Relative shift of a frequency that is noticed."""
-MOST = 12
-"""So many such parameters move at most, those with the largest shifts."""
-_AROUND = 1.3
-"""Modes so far outside the measured band in frequency count as well."""
+from ...arrays import Floats
+from ...assembly.element_assembly import ElementBlock
+from ...data.parameter import Parameter
+from ...data.parametric_model import Model, Term
+from ...eigen.normal_modes import Eigensolution
+from ..reduction.elements_and_supports import Structure
+from .screening_numbers import SCREENING
 
 Groups = Sequence[tuple[int, ...]]
 """Numbers of old parameters that a new one moves."""
@@ -50,7 +44,7 @@ def shifts(
     parameters : sequence of int
     """
     hz = solution.frequencies_hz
-    inside = (hz > band_hz[0] / _AROUND) & (hz < band_hz[1] * _AROUND)
+    inside = (hz > band_hz[0] / SCREENING.around) & (hz < band_hz[1] * SCREENING.around)
     inside[: solution.rigid_body_modes] = False
     phi, values = solution.vectors[:, inside], solution.eigenvalues[inside]
     p = model.deck_point
@@ -76,17 +70,17 @@ def noticeable(slopes: Floats, alike: Groups, spread: float) -> list[tuple[int, 
     Returns
     -------
     list of tuple of int
-        Rows that move together, at most `MOST` groups: each alone where it is noticed alone.
+        Rows that move together, at most `most` groups: each alone where it is noticed alone.
     """
     effect = spread * np.abs(slopes).max(axis=1, initial=0.0)
-    groups: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(effect >= LEAST)]
-    rest = [tuple(k for k in group if effect[k] < LEAST) for group in alike]
+    groups: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(effect >= SCREENING.noticed)]
+    rest = [tuple(k for k in group if effect[k] < SCREENING.noticed) for group in alike]
     groups += [group for group in rest if len(group) > 1]
     together = [
         spread * float(np.abs(slopes[list(g)].sum(axis=0)).max(initial=0.0)) for g in groups
     ]
-    order = sorted(range(len(groups)), key=lambda i: -together[i])[:MOST]
-    return [groups[i] for i in sorted(order) if together[i] >= LEAST]
+    order = sorted(range(len(groups)), key=lambda i: -together[i])[: SCREENING.most]
+    return [groups[i] for i in sorted(order) if together[i] >= SCREENING.noticed]
 
 
 def tied(structure: Structure, groups: Groups, names: Sequence[str]) -> Structure:

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Bools, Floats
-from ..comparison import Placed
-from ..correlation import realised
-from ..eigen import Eigensolution
-
-_BELOW = 0.5
-"""Frequency beside the first elastic one of the model, below which a mode may be a rigid one."""
-_FAR_BELOW = 0.15
-"""The same, below which it is one whatever its shape: what its sensors do not measure."""
-_RIGID = 0.8
-"""Share of a shape's square that rigid motions take up, if it is one."""
+from ...arrays import Bools, Floats, Ints
+from ...correlation.comparison import Placed
+from ...correlation.mac import realised
+from ...data.parametric_model import Model
+from ...eigen.normal_modes import Eigensolution
+from ...errors import InputError
+from .screening_numbers import SCREENING
 
 
 def elastic(placed: Placed, solution: Eigensolution, motion: Floats) -> Bools:
@@ -40,5 +36,34 @@ def elastic(placed: Placed, solution: Eigensolution, motion: Floats) -> Bools:
     shapes = realised(placed.test.shapes)
     whole = np.sum(shapes**2, axis=0)
     share = np.sum((Q.T @ shapes) ** 2, axis=0) / np.maximum(whole, np.finfo(float).tiny)
-    swings = (hz < _FAR_BELOW * first) | ((hz < _BELOW * first) & (share > _RIGID))
-    return np.asarray(moving & ~swings)
+    rigid = (hz < SCREENING.swings * first) & (share > SCREENING.as_a_whole)
+    return np.asarray(moving & ~rigid & (hz >= SCREENING.swings_far * first))
+
+
+def vibrating(placed: Placed, solution: Eigensolution, model: Model) -> Bools:
+    """Return which test modes are elastic, (n_test,).
+
+    Raises
+    ------
+    InputError
+        None is.
+    """
+    found = elastic(placed, solution, model.expansion @ solution.vectors)
+    if not found.any():
+        raise InputError(
+            "no mode of the test is elastic: all are at 0 Hz or motions of the structure as a whole"
+        )
+    return found
+
+
+def said_of_others(numbers: Ints) -> tuple[str, ...]:
+    """Say which modes of the test, by number, are motions of the whole; nothing without any."""
+    if not len(numbers):
+        return ()
+    which = ", ".join(map(str, numbers))
+    one = len(numbers) == 1
+    subject = f"test mode {which} is a motion" if one else f"test modes {which} are motions"
+    return (
+        f"{subject} of the structure as a whole (at 0 Hz, or on its suspension), and no evidence "
+        "of what the model lacks",
+    )

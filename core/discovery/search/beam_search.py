@@ -12,23 +12,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from .alike import distinct
-from .candidates import Suspect
-from .fitting import evaluate, fit
-from .problem import Fit, softened
-from .search import Searcher
-
-_HOPELESS = 0.3
-"""A further suspect that gains less than this share of its price before it is moved to better
-neighbours is given up."""
-_NEAR = 0.5
-"""A kind whose best place gains this share of what the best of all gains is followed too."""
-_WORTH = 0.35
-"""A branch that gains less than this share of what the best one gains is not fitted."""
-_TUNED = 2
-"""Hypotheses with a tuned suspect that are followed beside the others, if they lead."""
-_CLOSE = 0.35
-"""A hypothesis that gained less than all but this share of what the best gained is not grown."""
+from ..effects.candidates import Suspect
+from ..likelihood.hypothesis import Fit, softened
+from ..likelihood.map_fit import evaluate, fit
+from .moves import Searcher
+from .same_hypothesis import distinct
+from .search_numbers import SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,26 +58,27 @@ def grown(
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
         for state in beam:
-            count = searcher.effort.branches * (3 if searcher.small else 1)
+            count = searcher.effort.branches * (SEARCH.few_branches if searcher.small else 1)
             small, here = searcher.local(state)
-            soft = evaluate(softened(small), here.log_p, here.suspects).objective
+            soft = evaluate(softened(small), here.nuisance, here.suspects).objective
             for branch in _varied(searcher, searcher.branches(state, count), soft):
-                found.append(searcher.fitted(state, (*state.suspects, branch), 5, small, True))
+                wider = (*state.suspects, branch)
+                found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
             best = min(found, key=_objective)
-            if depth > 1 and enough(levels[-1], best, _HOPELESS):
+            if depth > 1 and enough(levels[-1], best, SEARCH.hopeless):
                 break
         chosen = _distinct(searcher, sorted(found, key=_objective))
         if not chosen:
             break
-        if depth > 1 and enough(levels[-1], chosen[0], _HOPELESS):
+        if depth > 1 and enough(levels[-1], chosen[0], SEARCH.hopeless):
             levels.append(chosen[0])
-            rivals.append(tuple(chosen[1:12]))
+            rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
             break
         plain, tuned = _leagues(searcher, chosen)
         before, _ = _leagues(searcher, beam)
         base = min((f.objective for f in before), default=levels[-1].objective)
         followed = _leading(searcher, plain, base) if plain else []
-        followed += [f for f in tuned if any(f is g for g in chosen[:_TUNED])]
+        followed += [f for f in tuned if any(f is g for g in chosen[: SEARCH.tuned_followed])]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
         if depth > 1:
             firsts = [id(league[0]) for league in _leagues(searcher, beam) if league]
@@ -96,7 +86,7 @@ def grown(
         beam = _distinct(searcher, sorted(beam, key=_objective))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
-        rivals.append(rest[:12])
+        rivals.append(rest[: SEARCH.rivals_kept])
         levels[-1] = _fair(searcher, levels[-1], best)
         previous = levels[-1]
         levels.append(best)
@@ -109,7 +99,7 @@ def grown(
 
 
 def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
-    near = 0.5 * searcher.effort.apart * searcher.size
+    near = SEARCH.same_place * searcher.effort.apart * searcher.size
     return distinct(fits, searcher.problem.catalogue, near)
 
 
@@ -121,7 +111,7 @@ def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     """
     if not fits:
         return []
-    near = fits[0].objective + _CLOSE * (base - fits[0].objective)
+    near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
     kept = close[: searcher.effort.beam - 1]
     changed = {m for f in kept for m in _changed(searcher, f)}
@@ -161,13 +151,13 @@ def _varied(
     simple = next((b for b in branches if not searcher.tuned(b[1])), branches[0])
     for score, s in branches:
         c = searcher.problem.catalogue[s.kind]
-        tuned, kind = searcher.tuned(s), (c.kind, s.kind if "ends" in c.extra else -1)
+        tuned, kind = searcher.tuned(s), (c.kind.name, s.kind if c.ends else -1)
         best = (branches[0] if tuned else simple)[0]
-        if base - score < _WORTH * (base - best) and kept and not searcher.small:
+        if base - score < SEARCH.worth_fitting * (base - best) and kept and not searcher.small:
             continue
         number[tuned] += 1
         number[kind] += 1
-        each = searcher.effort.of_each_kind * (4 if searcher.small else 1)
+        each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)
         if number[tuned] <= searcher.effort.branches or number[kind] <= each:
             kept.append(s)
     return kept
@@ -179,7 +169,7 @@ def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     kept, kinds = list(fits[:most]), set()
     for f in fits:
         kind = searcher.problem.catalogue[f.suspects[-1].kind].kind
-        near = base - f.objective > _NEAR * (base - fits[0].objective)
+        near = base - f.objective > SEARCH.other_kind * (base - fits[0].objective)
         if kind not in kinds and near and not any(f is g for g in kept):
             kept.append(f)
         kinds.add(kind)
@@ -193,7 +183,7 @@ def _fair(searcher: Searcher, poorer: Fit, best: Fit) -> Fit:
     """
     for q in range(len(best.suspects)):
         others = best.suspects[:q] + best.suspects[q + 1 :]
-        trial = fit(searcher.problem, best.log_p, others, searcher.active, 12)
+        trial = fit(searcher.problem, best.nuisance, others, searcher.active, SEARCH.steps_fair)
         if trial.objective < poorer.objective:
             poorer = trial
     return poorer

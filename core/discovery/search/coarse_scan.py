@@ -12,18 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints
-from .candidates import Candidates
-from .problem import Fit, Problem
-from .scanning import scan
-from .tuning import promising
-
-_MANY = 30
-"""Sizes of a kind above which not all are evaluated anywhere."""
-_PLACES, _SIZES = 30, 2
-"""Places, and sizes at each, that are evaluated of a kind with many sizes."""
-_BETWEEN, _AT_LEAST = 0.3, 30
-"""Share of the places, and their number at least, that are looked at with every size."""
+from ...arrays import Bools, Floats, Ints
+from ..effects.candidates import Candidates
+from ..effects.effect_laws import Rows
+from ..likelihood.hypothesis import Fit, Problem
+from ..reduction.elements_and_supports import thinned
+from .exact_scan import scan
+from .search_numbers import SEARCH
+from .secular_screening import promising
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,10 +44,10 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
         Places; those that promise nothing may be missing from the answer.
     """
     c = problem.catalogue[kind]
-    if len(c.trials) > _MANY:
+    if len(c.trials) > SEARCH.sizes_many:
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)
-        rows_kept = np.argsort(guess.min(axis=1), kind="stable")[:_PLACES]
-        sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, :_SIZES]]
+        rows_kept = np.argsort(guess.min(axis=1), kind="stable")[: SEARCH.sizes_places]
+        sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, : SEARCH.sizes_each]]
         rows = rows[rows_kept]
         cost = scan(problem, state, kind, rows, sizes) + c.surprise(sizes)
         return Look(rows, cost.min(axis=1), sizes[np.arange(len(rows)), cost.argmin(axis=1)])
@@ -60,10 +56,37 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
     cost[:, first] = scan(problem, state, kind, rows, c.trials[first])
     cost += c.surprise(c.trials)
     best = np.argsort(cost.min(axis=1), kind="stable")
-    kept = best[: max(_AT_LEAST, int(_BETWEEN * len(rows)))]
+    kept = best[: max(SEARCH.every_size_least, int(SEARCH.every_size * len(rows)))]
     between = scan(problem, state, kind, rows[kept], c.trials[~first])
     cost[np.ix_(kept, np.flatnonzero(~first))] = between + c.surprise(c.trials[~first])
     return Look(rows, cost.min(axis=1), c.trials[cost.argmin(axis=1)])
+
+
+def first_places(c: Candidates, factors: Rows, columns: int, size: float) -> Ints:
+    """Return the places that the first scan looks at: spread over the structure.
+
+    Of a kind with one direction at a place, those where something moves that way.
+
+    Parameters
+    ----------
+    c : Candidates
+    factors : (n, q, r) float
+        Their rows on a basis.
+    columns : int
+        The first so many vectors of the basis count.
+    size : float
+        Of the structure.
+    """
+    if not c.kind.across:
+        return c.first
+    parts = [c.first]
+    if c.kind.directed:
+        moves = np.sum(factors[c.first][:, 0, :columns] ** 2, axis=1)
+        live = c.first[moves > SEARCH.still * moves.max(initial=0.0)]
+        along = np.array([w["components"][0] for w in c.where])[live]
+        parts = [live[along == k] for k in np.unique(along)]
+    spread = [rows[thinned(c.xyz[rows], size / c.kind.across)] for rows in parts]
+    return np.concatenate([c.first[:0], *spread])
 
 
 def every_other(c: Candidates) -> Bools:

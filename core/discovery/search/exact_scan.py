@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from .evidence import matched, mode_costs
-from .laws import AttachedLaw
-from .problem import Fit, Problem
-
-_CHUNK = 64
-"""Places at once: so few that their matrices stay near the processor."""
-_SHIFT = 1e-8
-"""Smallest eigenvalue beside the largest with which the pencil is solved."""
+from ...arrays import Floats, Ints
+from ..effects.effect_laws import AttachedLaw
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.mode_likelihood import matched, mode_costs
+from .search_numbers import SEARCH
 
 
 def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) -> Floats:
@@ -36,7 +32,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     (n, n_trial) float
         The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
     """
-    U, law = problem.part(kind, rows, state.log_p)
+    U, law = problem.part(kind, rows, state.nuisance)
     own = state.vectors[: problem.basis.size]
     U = U @ own
     lam = np.maximum(state.eigenvalues, 0.0)
@@ -46,8 +42,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     S2 = seen.T @ seen
     cross = problem.evidence.shapes.T @ seen
     n = min(problem.columns, len(lam))
-    for start in range(0, len(rows), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    for start in range(0, len(rows), SEARCH.at_once):
+        part = slice(start, start + SEARCH.at_once)
         u = U[part]
         places = np.arange(len(U))[part]
         for j in range(trials.shape[1]):
@@ -75,7 +71,7 @@ def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats
         A = np.matmul(u.transpose(0, 2, 1) * c[:, None, :], u)
         A[:, np.arange(n), np.arange(n)] += lam
         return tuple(np.linalg.eigh(A))  # type: ignore[return-value]
-    shift = max(_SHIFT * lam[-1] - lam[0], 0.0)
+    shift = max(SEARCH.pencil_shift * lam[-1] - lam[0], 0.0)
     root = 1.0 / np.sqrt(lam + shift)
     v = u * root
     B = np.matmul(v.transpose(0, 2, 1) * c[:, None, :], v)

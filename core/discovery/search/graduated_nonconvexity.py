@@ -12,13 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from .beam import Found, grown
-from .fitting import fit
-from .judge import enough
-from .problem import Fit, softened
-from .search import Searcher
-
-_ITERATIONS = 15
+from ..likelihood.hypothesis import Fit, softened
+from ..likelihood.map_fit import fit
+from .beam_search import Found, grown
+from .model_selection import enough
+from .moves import Searcher
+from .search_numbers import SEARCH
 
 
 def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
@@ -41,5 +40,5 @@ def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None)
 
 def _by_the_test(searcher: Searcher, f: Fit) -> Fit:
     """Return a fit by the noise of the test, every suspect at its best neighbour."""
-    start = fit(searcher.problem, f.log_p, f.suspects, searcher.active, _ITERATIONS)
+    start = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
     return searcher.refined(start) if f.suspects else start

@@ -10,13 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from .candidates import Candidates, Suspect
-from .problem import Fit
-from .search import Searcher
-
-_NEAR = 0.09
-"""Suspects of one nature nearer than this part of the structure are one."""
-_MASSES = {"point_mass", "distributed_mass"}
+from ..effects.candidates import Candidates, Suspect
+from ..likelihood.hypothesis import Fit
+from .moves import Searcher
+from .search_numbers import SEARCH
 
 
 def merged(searcher: Searcher, state: Fit) -> Fit:
@@ -33,10 +30,9 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
         left.remove(first)
         same = [s for s in left if _one(searcher, first, s)]
         left = [s for s in left if not any(s is t for t in same)]
-        c = searcher.problem.catalogue[first.kind]
-        if same and c.kind != "local_stiffness":
+        if same and _of(searcher, first).kind.adds_up:
             total = np.sum([np.exp(s.theta) for s in (first, *same)], axis=0)
-            spread = [s for s in (first, *same) if _is_spread(searcher, s)]
+            spread = [s for s in (first, *same) if _of(searcher, s).kind.spread_out]
             first = max(spread or [first], key=lambda s: _size(searcher, s))
             first = first.moved(np.log(total))
         kept.append(first)
@@ -47,25 +43,17 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
     )
 
 
-def _is_spread(searcher: Searcher, s: Suspect) -> bool:
-    return searcher.problem.catalogue[s.kind].kind == "distributed_mass"
+def _of(searcher: Searcher, s: Suspect) -> Candidates:
+    return searcher.problem.catalogue[s.kind]
 
 
 def _size(searcher: Searcher, s: Suspect) -> float:
-    c = searcher.problem.catalogue[s.kind]
     theta = s.theta[0]
-    return abs(theta) if c.kind == "local_stiffness" else float(np.exp(theta))
+    return float(np.exp(theta)) if _of(searcher, s).kind.adds_up else abs(theta)
 
 
 def _one(searcher: Searcher, s: Suspect, t: Suspect) -> bool:
-    a, b = searcher.problem.catalogue[s.kind], searcher.problem.catalogue[t.kind]
-    near = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row])) < _NEAR * searcher.size
-    return near and _alike(a, b, s.row, t.row)
-
-
-def _alike(a: Candidates, b: Candidates, i: int, j: int) -> bool:
-    if a.kind in _MASSES and b.kind in _MASSES:
-        return True
-    if a.kind != b.kind or a.kind not in {"ground_spring", "local_stiffness"}:
-        return False
-    return a.where[i].get("components") == b.where[j].get("components")
+    a, b = _of(searcher, s), _of(searcher, t)
+    near = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row])) < SEARCH.one_effect * searcher.size
+    along = a.where[s.row].get("components") == b.where[t.row].get("components")
+    return near and along and a.kind.joins(b.kind)

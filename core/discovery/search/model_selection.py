@@ -7,26 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats
-from .alike import unmatched
-from .beam import Found
-from .candidates import Suspect
-from .fitting import mode_misfits, on_whole_test, solve
-from .hearing import misfit_of_responses
-from .problem import Fit, Problem
-from .search import Searcher
-
-_MARGIN = 10.0
-_BESIDE, _SAME_EFFECT = 0.2, 40.0
-"""Suspects of one nature nearer than this part of the structure cost this much more."""
-_PER_MODE = 5.0
-CREDIBLE = 6.0
-_MOST_NOISE = 3.0
-_OVERLOOKED = 4.0
-"""Twice −ln of the share of modes in its band that a test overlooks, one in seven."""
-_CLEAR, _SHARE = 4.0, 0.1
-"""A suspect explains a mode if it lowers its misfit by this much, and by this share of what it
-lowers most."""
+from ...arrays import Bools, Floats
+from ..effects.candidates import Suspect
+from ..likelihood.frf_evidence import misfit_of_responses
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
+from .beam_search import Found
+from .moves import Searcher
+from .same_hypothesis import unmatched
+from .search_numbers import SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +42,7 @@ def noise_scale(problem: Problem, best: Fit) -> float:
     """
     e = problem.evidence if best.unseen is None else problem.whole
     found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
-    freedom = _PER_MODE * len(e.frequencies_hz) - len(best.active) - found
+    freedom = SEARCH.per_mode * len(e.frequencies_hz) - len(best.active) - found
     return max(1.0, (best.misfit + (best.unseen or 0.0)) / max(freedom, 1.0))
 
 
@@ -69,7 +58,7 @@ def price(searcher: Searcher, suspect: Suspect) -> float:
         for c, rows in zip(catalogue, searcher.coarse, strict=True)
         if c.kind == kind
     )
-    return 2.0 * float(np.log(max(choices, 2))) + _MARGIN
+    return 2.0 * float(np.log(max(choices, 2))) + SEARCH.margin
 
 
 def burden(searcher: Searcher, f: Fit) -> float:
@@ -84,8 +73,8 @@ def burden(searcher: Searcher, f: Fit) -> float:
         for t in f.suspects[:i]:
             a, b = catalogue[s.kind], catalogue[t.kind]
             apart = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row]))
-            if a.law.on == b.law.on and apart < _BESIDE * searcher.size:
-                total += _SAME_EFFECT
+            if a.law.on == b.law.on and apart < SEARCH.beside * searcher.size:
+                total += SEARCH.same_effect
                 break
     return total
 
@@ -121,7 +110,7 @@ def cost(searcher: Searcher, f: Fit, scale: float) -> float:
     Frequency responses, where there are any, count by a noise of their own.
     """
     f = with_unseen(searcher, f)
-    left = (f.objective + (f.unseen or 0.0)) / scale + _OVERLOOKED * (f.surplus or 0.0)
+    left = (f.objective + (f.unseen or 0.0)) / scale + SEARCH.overlooked * (f.surplus or 0.0)
     return left + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
 
 
@@ -164,7 +153,7 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     """
 
     def rule(previous: Fit, best: Fit, share: float) -> bool:
-        scale = min(noise_scale(searcher.problem, best), _MOST_NOISE)
+        scale = min(noise_scale(searcher.problem, best), SEARCH.most_noise)
         added = burden(searcher, best) - burden(searcher, previous)
         added = max(added, *(price(searcher, s) for s in best.suspects))
         return (previous.objective - best.objective) / scale < share * added
@@ -179,7 +168,8 @@ def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
 
 def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead."""
-    catalogue, near = searcher.problem.catalogue, 1.5 * searcher.effort.apart * searcher.size
+    catalogue = searcher.problem.catalogue
+    near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
@@ -202,7 +192,7 @@ def instead(
     for f in contenders(searcher, found, verdict.accepted):
         alone, others = _unmatched(searcher, best, f)
         behind = cost(searcher, f, verdict.scale) - here
-        if alone == [number] and len(others) == 1 and behind < CREDIBLE:
+        if alone == [number] and len(others) == 1 and behind < SEARCH.credible:
             out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))
     return out
 
@@ -215,10 +205,10 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
     p = searcher.problem.entire()
     others = best.suspects[:number] + best.suspects[number + 1 :]
     left, kept = (
-        mode_misfits(p, *solve(p, best.log_p, suspects)) for suspects in (others, best.suspects)
+        mode_misfits(p, *solve(p, best.nuisance, suspects)) for suspects in (others, best.suspects)
     )
     gained = (left - kept) / scale
-    clear = (gained > _CLEAR) & (gained > _SHARE * gained.max())
+    clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())
     return tuple(int(j) for j in np.flatnonzero(clear))
 
 
@@ -230,18 +220,13 @@ def deviations(best: Fit, scale: float) -> Floats:
     return np.asarray(np.sqrt(np.maximum(np.diag(np.linalg.pinv(H)), 0.0) * scale))
 
 
-def held_out(n: int, start: int, every: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Return a mask of what is kept out of the search: every so many, none of the first."""
+def held_out(n: int, start: int, every: int, enough: int) -> Bools:
+    """Return a mask of what is kept out of the search: of `enough`, every so many from `start`."""
     mask = np.zeros(n, bool)
-    mask[start::every] = True
+    mask[start::every] = n >= enough
     return mask
 
 
 def times(value: float) -> float:
     """Return a likelihood ratio from twice its log, kept finite."""
-    return float(np.exp(min(0.5 * value, 60.0)))
-
-
-def summary(fits: Sequence[Fit]) -> tuple[float, ...]:
-    """Objectives by number of suspects."""
-    return tuple(float(f.objective) for f in fits)
+    return float(np.exp(min(0.5 * value, SEARCH.ln_most)))

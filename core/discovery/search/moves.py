@@ -12,48 +12,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints
-from .basis import structural
-from .candidates import Suspect
-from .fitting import evaluate, fit, promised, solve
-from .looking import look
-from .problem import Fit, Problem, softened
-from .scanning import best_apart, scan
-from .stretching import beside as stretches_beside
-
-_NEIGHBOURING = np.array([-0.45, 0.0, 0.45])
-"""Steps of θ tried when a suspect moves to a neighbouring place."""
-_NEARBY = np.array([-0.35, 0.0, 0.35])
-"""Steps of θ tried around the best places of the first scan."""
-_FEW = 300
-"""Places of all kinds but tuned ones up to which more of them are fitted, the known parameters
-with them."""
-_ROUNDS = 6
-"""Times that a suspect moves to a neighbour at most."""
-_FOLLOWED = 4
-"""Steps in which the known parameters follow a stretch of an edge that changes."""
-_PROMISING = 10
-"""Neighbouring places of which it is asked what a step of all unknowns would leave there."""
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How wide the search looks.
-
-    Models of up to `twice` degrees of freedom are searched a second time, with all kinds at once.
-    """
-
-    beam: int = 3
-    branches: int = 4
-    looked_at: int = 6
-    around: int = 22
-    neighbours: int = 60
-    of_each_kind: int = 2
-    most: int = 4
-    search_modes: int = 48
-    apart: float = 0.08
-    near: float = 0.06
-    twice: int = 8000
+from ...arrays import Bools, Floats, Ints
+from ..effects.candidates import Suspect
+from ..effects.stretches import beside as stretches_beside
+from ..likelihood.hypothesis import Fit, Problem, softened
+from ..likelihood.likelihood_numbers import Effort
+from ..likelihood.map_fit import evaluate, fit, promised, solve
+from ..reduction.search_basis import structural
+from .coarse_scan import look
+from .exact_scan import best_apart, scan
+from .search_numbers import SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,17 +40,17 @@ class Searcher:
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""
-        return fit(self.problem, self.start, (), self.active, iterations=25)
+        return fit(self.problem, self.start, (), self.active, iterations=SEARCH.steps_null)
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         n = min(self.effort.search_modes, self.problem.basis.size)
-        values, T = solve(self.problem, state.log_p, state.suspects, self.problem.basis.size)
+        values, T = solve(self.problem, state.nuisance, state.suspects, self.problem.basis.size)
         T, own = np.split(T, [self.problem.basis.size])
         rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
         bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
         small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
-        return small, evaluate(small, state.log_p, state.suspects)
+        return small, evaluate(small, state.nuisance, state.suspects)
 
     def tuned(self, s: Suspect) -> bool:
         """Whether a suspect is of a kind with a magnitude that tunes it."""
@@ -92,7 +60,7 @@ class Searcher:
     def small(self) -> bool:
         """Whether there are so few places that many of them can be fitted."""
         kinds = zip(self.problem.catalogue, self.coarse, strict=True)
-        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < _FEW
+        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < SEARCH.few_places
 
     def branches(self, state: Fit, count: int) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind by exact evaluation."""
@@ -119,8 +87,8 @@ class Searcher:
                 done.update(near.tolist())
                 theta = tried[i][2]
                 alike = scan(small, here, kind, near, theta[None])[:, 0]
-                near = near[np.argsort(alike, kind="stable")[: _PROMISING // 2]]
-                trials = c.around(theta, _NEARBY)
+                near = near[np.argsort(alike, kind="stable")[: SEARCH.promising // 2]]
+                trials = c.around(theta, np.array(SEARCH.nearby))
                 fine = scan(small, here, kind, near, trials) + c.surprise(trials)
                 tried += zip(fine.min(axis=1), near, trials[fine.argmin(axis=1)], strict=True)
             best = np.array([t[0] for t in tried])
@@ -150,23 +118,23 @@ class Searcher:
         self,
         state: Fit,
         suspects: Sequence[Suspect],
-        iterations: int = 6,
+        iterations: int = SEARCH.steps,
         small: Problem | None = None,
         soften: bool = False,
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small = small or self.local(state)[0]
         if soften:
-            near = fit(softened(small), state.log_p, suspects, self.active, iterations)
+            near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
-        quick = fit(small, state.log_p, suspects, self.active, iterations)
-        return fit(self.problem, quick.log_p, quick.suspects, self.active, 2)
+        quick = fit(small, state.nuisance, suspects, self.active, iterations)
+        return fit(self.problem, quick.nuisance, quick.suspects, self.active, SEARCH.steps_whole)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""
         n = len(state.suspects)
         left, q = n, 0
-        for _ in range(_ROUNDS * n):
+        for _ in range(SEARCH.rounds * n):
             better = self._neighbour(state, q)
             state, left = (state, left - 1) if better is None else (better, n)
             if not left:
@@ -179,9 +147,9 @@ class Searcher:
 
         Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
         """
-        fresh = np.zeros_like(state.log_p)
-        near = fit(softened(self.problem), fresh, state.suspects, self.active, 6)
-        again = fit(self.problem, near.log_p, near.suspects, self.active, 6)
+        fresh = np.zeros_like(state.nuisance)
+        near = fit(softened(self.problem), fresh, state.suspects, self.active, SEARCH.steps)
+        again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
         return again if again.objective < state.objective else state
 
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
@@ -193,41 +161,42 @@ class Searcher:
         distance = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
         rows = rows[np.argsort(distance[rows], kind="stable")][: self.effort.neighbours]
-        without = evaluate(self.problem, state.log_p, others)
+        without = evaluate(self.problem, state.nuisance, others)
         rows = rows[~self._taken(without, suspect.kind, rows)]
         if not len(rows):
             return None
         small, here = self.local(without)
-        trials = c.around(suspect.theta, _NEIGHBOURING)
+        trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
         score = scan(softened(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]
         soft = softened(small)
         options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for i in np.argsort(score.min(axis=1), kind="stable")[:_PROMISING]:
+        for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]:
             if rows[i] == suspect.row:
                 continue
             moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
             beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
-            options.append((promised(soft, state.log_p, beside, self.active), beside))
-        stays = promised(soft, state.log_p, state.suspects, self.active)
-        for hope, beside in sorted(options, key=lambda option: option[0])[:3]:
+            options.append((promised(soft, state.nuisance, beside, self.active), beside))
+        stays = promised(soft, state.nuisance, state.suspects, self.active)
+        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
             if hope > stays:
                 break
-            trial = self.fitted(state, beside, 4, small)
-            if trial.objective < state.objective - 0.3:
+            trial = self.fitted(state, beside, SEARCH.steps_moved, small)
+            if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
         before, after = state.suspects[:q], state.suspects[q + 1 :]
-        small = self.local(evaluate(self.problem, state.log_p, (*before, *after)))[0]
+        small = self.local(evaluate(self.problem, state.nuisance, (*before, *after)))[0]
         tried = [
-            fit(small, state.log_p, (*before, s, *after), self.active, _FOLLOWED) for s in options
+            fit(small, state.nuisance, (*before, s, *after), self.active, SEARCH.steps_moved)
+            for s in options
         ]
-        for near in sorted(tried, key=lambda f: f.objective)[:2]:
-            trial = fit(self.problem, near.log_p, near.suspects, self.active, _FOLLOWED)
-            if trial.objective < state.objective - 0.3:
+        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
+            trial = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps_moved)
+            if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
 
@@ -238,16 +207,16 @@ class Searcher:
         """
         moved = True
         rounds = 0
-        while moved and rounds < 1:
+        while moved and rounds < SEARCH.anew_rounds:
             moved, rounds = False, rounds + 1
             for q in self._doubtful(state, rounds):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
-                without = self.fitted(state, others, 4)
-                for _, branch in self.branches(without, 2)[:3]:
-                    trial = self.fitted(without, (*others, branch), 5, soften=True)
-                    if trial.objective < state.objective + 0.05 * abs(state.objective):
+                without = self.fitted(state, others, SEARCH.steps_moved)
+                for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
+                    trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
+                    if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
                         trial = self.settled(self.refined(trial))
-                    if trial.objective < state.objective - 1.0:
+                    if trial.objective < state.objective - SEARCH.better_anew:
                         state, moved = trial, True
                         break
         return state
@@ -255,11 +224,11 @@ class Searcher:
     def _doubtful(self, state: Fit, rounds: int) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
         older = list(range(len(state.suspects) - (rounds == 1)))
-        if len(state.suspects) < 3:
+        if len(state.suspects) < SEARCH.anew_all:
             return older
         left = [
             evaluate(
-                self.problem, state.log_p, state.suspects[:q] + state.suspects[q + 1 :]
+                self.problem, state.nuisance, state.suspects[:q] + state.suspects[q + 1 :]
             ).objective
             for q in older
         ]

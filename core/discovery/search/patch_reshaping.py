@@ -14,28 +14,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints
-from .candidates import Suspect
-from .fitting import evaluate
-from .kinds.patches import Patch, PatchCandidates, area_of
-from .laws import MassLaw
-from .problem import Fit
-from .scanning import scan
-from .search import Searcher
-from .structure import Members, Structure
-
-_STEPS = 8
-_FITTED = 2
-_CHANGES = np.array([-0.4, -0.15, 0.0, 0.15, 0.4])
-"""Steps of θ tried with every shape: what a patch gains in area it loses in strength."""
-_HALF = 0.5
-"""Part of an element's side by which rows of elements are told apart."""
-_SPREAD = 0.055
-"""Radius beside the size of the structure from which on a mass is spread, not at a point."""
-_BESIDE = 0.05
-"""How far from a point, beside the size, patches are tried in its stead."""
-_SHARE = 0.2
-"""Part of a patch that elements of one property are at least for the patch to end with them."""
+from ...arrays import Bools, Floats, Ints
+from ..effects.candidates import Candidates, Suspect
+from ..effects.element_patches import Patch, PatchCandidates, area_of
+from ..likelihood.hypothesis import Fit
+from ..likelihood.map_fit import evaluate
+from ..reduction.elements_and_supports import Members, Structure
+from .exact_scan import scan
+from .moves import Searcher
+from .search_numbers import SEARCH
 
 
 def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
@@ -49,7 +36,7 @@ def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fi
         How many times the assumed variance the noise has: a step has to gain that much more.
     """
     for q in range(len(state.suspects)):
-        for _ in range(_STEPS):
+        for _ in range(SEARCH.reshape_steps):
             better = _step(searcher, state, q, scale)
             if better is None:
                 break
@@ -64,20 +51,21 @@ def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searche
     if not options:
         return None
     others = state.suspects[:q] + state.suspects[q + 1 :]
-    without = evaluate(wide.problem, state.log_p, others)
+    without = evaluate(wide.problem, state.nuisance, others)
     small, here = wide.local(without)
     tried: list[tuple[float, Suspect]] = []
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
         c = wide.problem.catalogue[kind]
-        trials = c.around(suspect.theta, _CHANGES)
+        trials = c.around(suspect.theta, np.array(SEARCH.reshape_sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))
             tried.append((float(own[best]), Suspect(kind, int(row), tuple(trials[best]))))
     worth = 2.0 * scale * np.log(1.0 + len(options))
-    for _, option in sorted(tried, key=lambda t: t[0])[:_FITTED]:
-        trial = wide.fitted(state, (*state.suspects[:q], option, *state.suspects[q + 1 :]), 5)
+    for _, option in sorted(tried, key=lambda t: t[0])[: SEARCH.reshape_tried]:
+        beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
+        trial = wide.fitted(state, beside, SEARCH.steps_new)
         if trial.objective < state.objective - worth:
             return wide, trial
     return None
@@ -87,34 +75,31 @@ def _options(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspe
     """Return the shapes next to that of a suspect, and a searcher whose catalogue has them."""
     c = searcher.problem.catalogue[suspect.kind]
     if isinstance(c, PatchCandidates):
-        structure: Structure = c.extra["structure"]
-        return _added(searcher, suspect, variants(structure, c.extra["patches"][suspect.row]))
-    if not isinstance(c.law, MassLaw):
-        return searcher, []
+        return _added(searcher, suspect, variants(c.structure, c.patches[suspect.row]))
     beside = [
         replace(suspect, kind=kind, row=int(row))
-        for kind, d in _masses(searcher)
+        for kind, d in _patched(searcher, c)
         for row in np.flatnonzero(
-            np.linalg.norm(d.xyz - c.xyz[suspect.row], axis=1) < _BESIDE * searcher.size
+            np.linalg.norm(d.xyz - c.xyz[suspect.row], axis=1) < SEARCH.patch_beside * searcher.size
         )
     ]
     return searcher, beside
 
 
-def _masses(searcher: Searcher) -> list[tuple[int, PatchCandidates]]:
-    """Return the kinds of masses on patches, point masses first."""
+def _patched(searcher: Searcher, c: Candidates) -> list[tuple[int, PatchCandidates]]:
+    """Return the kinds of the nature of some candidates on patches, small ones first."""
     found = [
-        (kind, c)
-        for kind, c in enumerate(searcher.problem.catalogue)
-        if isinstance(c, PatchCandidates) and isinstance(c.law, MassLaw)
+        (kind, d)
+        for kind, d in enumerate(searcher.problem.catalogue)
+        if isinstance(d, PatchCandidates) and d.kind.joins(c.kind)
     ]
-    return sorted(found, key=lambda f: f[1].kind == "distributed_mass")
+    return sorted(found, key=lambda f: f[1].kind.spread_out)
 
 
 def _added(
     searcher: Searcher, suspect: Suspect, patches: Sequence[Patch]
 ) -> tuple[Searcher, list[Suspect]]:
-    """Put patches into the catalogue, masses where their extent belongs."""
+    """Put patches into the catalogue, each into the kind of its nature where its extent belongs."""
     problem = searcher.problem
     of_kind: dict[int, list[Patch]] = {}
     for p in patches:
@@ -134,12 +119,11 @@ def _added(
 
 def _kind_of(searcher: Searcher, suspect: Suspect, patch: Patch) -> int:
     c = searcher.problem.catalogue[suspect.kind]
-    if not isinstance(c.law, MassLaw):
-        return suspect.kind
-    radius = np.sqrt(area_of(c.extra["structure"], patch) / np.pi)
-    wide = bool(radius > _SPREAD * searcher.size)
-    found = [k for k, d in _masses(searcher) if (d.kind == "distributed_mass") == wide]
-    return found[0] if found else suspect.kind
+    assert isinstance(c, PatchCandidates)
+    radius = np.sqrt(area_of(c.structure, patch) / np.pi)
+    wide = bool(radius > SEARCH.spread_mass * searcher.size)
+    found = [k for k, d in _patched(searcher, c) if d.kind.spread_out == wide]
+    return suspect.kind if suspect.kind in found or not found else found[0]
 
 
 def variants(structure: Structure, patch: Patch) -> list[Patch]:
@@ -148,7 +132,7 @@ def variants(structure: Structure, patch: Patch) -> list[Patch]:
     Rows are taken along the sides of the middle element, forwards and backwards, and all round.
     """
     m = structure.members[patch.member]
-    if m.shape not in {"quad", "tria"}:
+    if m.element.dimension != 2:
         return []
     inside = np.zeros(len(m.ids), bool)
     inside[patch.rows] = True
@@ -164,7 +148,7 @@ def variants(structure: Structure, patch: Patch) -> list[Patch]:
         shapes += [inside | first, inside & ~last]
     own = m.block.depends_of
     for k in np.unique(own[inside]):
-        if _SHARE < np.mean(own[inside] == k) < 1.0:
+        if SEARCH.property_share < np.mean(own[inside] == k) < 1.0:
             shapes.append(inside & (own == k))
     alone = np.unique(own[inside])
     if len(alone) == 1:
@@ -191,13 +175,14 @@ def _rows_of_elements(
         return []
     frame = np.stack([along / side, across / depth])
     place = (xyz - middle) @ frame.T / [side, depth]
-    low, high = place[inside].min(axis=0) - _HALF, place[inside].max(axis=0) + _HALF
+    half = SEARCH.row_of_elements
+    low, high = place[inside].min(axis=0) - half, place[inside].max(axis=0) + half
     out = []
     for k in (0, 1):
         level = (place[:, 1 - k] > low[1 - k]) & (place[:, 1 - k] < high[1 - k])
         for ahead, last in (
-            (place[:, k] > high[k], place[:, k] > high[k] - 2.0 * _HALF),
-            (place[:, k] < low[k], place[:, k] < low[k] + 2.0 * _HALF),
+            (place[:, k] > high[k], place[:, k] > high[k] - 2.0 * half),
+            (place[:, k] < low[k], place[:, k] < low[k] + 2.0 * half),
         ):
             out.append((ring & level & ahead, inside & last))
     return out
@@ -207,11 +192,10 @@ def _patches(patch: Patch, xyz: Floats, inside: Bools, shapes: Sequence[Bools]) 
     """Shapes as patches, each once, none empty nor more than half of all."""
     seen, out = {inside.tobytes()}, []
     for s in shapes:
-        if s.tobytes() in seen or not 0 < np.count_nonzero(s) < 0.5 * len(s):
+        if s.tobytes() in seen or not 0 < np.count_nonzero(s) < SEARCH.largest_patch * len(s):
             continue
         seen.add(s.tobytes())
         rows: Ints = np.flatnonzero(s)
         middle = xyz[rows].mean(axis=0)
-        grown = float(np.sqrt(len(rows) / len(patch.rows)))
-        out.append(Patch(patch.member, rows, middle, patch.radius * grown, False))
+        out.append(Patch(patch.member, rows, middle, False))
     return out

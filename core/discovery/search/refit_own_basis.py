@@ -13,87 +13,69 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Bools, Floats
-from ..eigen import solve
-from ..factor import factorise
-from ..model import Model
-from .basis import Basis, beside, reduced_sum
-from .candidates import Candidates, Suspect, magnitudes
-from .evidence import targets
-from .fitting import fit, on_whole_test
-from .mesh_error import lumping, with_consistent_bars
-from .problem import Fit, Problem, softened
-from .structure import Structure
-
-_DEPENDENT = 1e-5
-_ABOVE, _MORE = 1.6, 8
-"""Eigenvalues beside the test's highest up to which modes are computed, and so many more."""
-_REACHED = 1.2
-"""Eigenvalues beside the test's highest that a fit may still give to a test mode."""
-_RIGID = 1e-6
-"""Eigenvalue beside the largest below which a mode has no strain."""
-_CHANGED = 0.03
-_HELD = 1e-3
-"""Standard deviation of a magnitude that is to stay."""
+from ...arrays import Bools, Floats
+from ...data.parametric_model import Model
+from ...eigen.normal_modes import solve
+from ...numerics.factorisation import factorise
+from ...reduction.reduced_sum import reduced_sum
+from ..effects.candidates import Candidates, Suspect
+from ..likelihood.hypothesis import Fit, Problem, softened
+from ..likelihood.map_fit import fit, on_whole_test
+from ..likelihood.mode_likelihood import targets
+from ..reduction.discretisation_error import lumping, with_consistent_bars
+from ..reduction.elements_and_supports import Structure
+from ..reduction.reduction_numbers import REDUCTION
+from ..reduction.search_basis import Basis, beside
+from .search_numbers import SEARCH
 
 
 def polished(
     structure: Structure,
-    catalogue: Sequence[Candidates],
     observation: sp.csr_matrix,
     seen: Bools,
     problem: Problem,
     state: Fit,
-    rounds: int = 1,
 ) -> Fit:
     """Return the fit with parameters and magnitudes fitted on a basis of its own.
 
     Parameters
     ----------
     structure : Structure
-    catalogue : sequence of Candidates
-        As made, their laws not yet fitted to any basis.
     observation : (n_sensor, n_free) sparse
         All sensors.
     seen : (n_sensor,) bool
         Those of the evidence.
     problem : Problem
-        Evidence and priors.
+        Evidence, priors and catalogue, whose laws are not yet fitted to any basis.
     state : Fit
         From the search.
-    rounds : int
-        At most; ends when no magnitude moves by more than a few per cent.
     """
     top = float(targets(problem.whole).max())
-    for _ in range(rounds):
-        basis, chosen, modes = _own_basis(structure.model, catalogue, state, top)
-        everywhere = np.asarray(observation @ basis.vectors)
-        own = replace(
-            problem,
-            basis=with_consistent_bars(structure, basis),
-            sensors=everywhere[seen],
-            everywhere=everywhere,
-            mesh=lumping(structure, basis.vectors),
-            catalogue=tuple(c for c, _ in chosen),
-            factors=tuple(U for _, U in chosen),
-            missing=(),
-            modes=min(basis.size, max(modes, problem.columns)),
-            turn=None,
-            rest=None,
-        )
-        suspects = [Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects)]
-        new = fit(own, state.log_p, suspects, tuple(range(len(state.log_p))), 20)
-        moved = np.abs(magnitudes(new.suspects) - magnitudes(state.suspects))
-        state = replace(
-            on_whole_test(own, new),
-            suspects=tuple(
-                replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
-            ),
-            in_deck=_in_deck(replace(own, basis=basis), new),
-        )
-        if np.all(moved < _CHANGED):
-            break
-    return state
+    basis, chosen, modes = _own_basis(structure.model, problem.catalogue, state, top)
+    everywhere = np.asarray(observation @ basis.vectors)
+    own = replace(
+        problem,
+        basis=with_consistent_bars(structure, basis),
+        sensors=everywhere[seen],
+        everywhere=everywhere,
+        mesh=lumping(structure, basis.vectors),
+        catalogue=tuple(c for c, _ in chosen),
+        factors=tuple(U for _, U in chosen),
+        missing=(),
+        modes=min(basis.size, max(modes, problem.columns)),
+        turn=None,
+        rest=None,
+    )
+    suspects = [Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects)]
+    active = tuple(range(len(state.nuisance)))
+    new = fit(own, state.nuisance, suspects, active, SEARCH.steps_polished)
+    return replace(
+        on_whole_test(own, new),
+        suspects=tuple(
+            replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
+        ),
+        in_deck=_in_deck(replace(own, basis=basis), new),
+    )
 
 
 def _in_deck(own: Problem, found: Fit) -> Floats:
@@ -103,14 +85,14 @@ def _in_deck(own: Problem, found: Fit) -> Floats:
     moduli, thicknesses and inertias have to absorb both.
     """
     held = tuple(
-        replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), _HELD))
+        replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), SEARCH.held))
         for c, s in zip(own.catalogue, found.suspects, strict=True)
     )
     own = replace(own, catalogue=held)
-    n = len(found.log_p) - 1
-    start = np.append(found.log_p[:n], 0.0)
-    near = fit(softened(own), start, found.suspects, tuple(range(n)), 20)
-    return fit(own, near.log_p, found.suspects, tuple(range(n)), 20).log_p[:n]
+    n = len(found.log_p)
+    start = np.append(found.log_p, 0.0)
+    near = fit(softened(own), start, found.suspects, tuple(range(n)), SEARCH.steps_polished)
+    return fit(own, near.nuisance, found.suspects, tuple(range(n)), SEARCH.steps_polished).log_p
 
 
 def _own_basis(
@@ -134,7 +116,7 @@ def _own_basis(
             K = (K + change).tocsr()
         elif c.law.on == "M":
             M = (M + change).tocsr()
-    modes = int(np.count_nonzero(state.eigenvalues < _ABOVE * top)) + _MORE
+    modes = int(np.count_nonzero(state.eigenvalues < SEARCH.own_above * top)) + SEARCH.own_more
     solution = solve((K, M), n_modes=modes, count=False)
     phi = solution.vectors
     asked = phi[:, _asked(solution.eigenvalues, top)]
@@ -142,11 +124,12 @@ def _own_basis(
     local = [x if isinstance(x, np.ndarray) else x @ asked for x in loads]
     V = np.asarray(phi)
     if local:
-        V = np.hstack([V, beside(A.solve(np.ascontiguousarray(np.hstack(local))), V, M, 1e-13)])
+        X = A.solve(np.ascontiguousarray(np.hstack(local)))
+        V = np.hstack([V, beside(X, V, M, SEARCH.own_dependent)])
     sides = [model.dK(k, p) @ asked for k in range(len(model.parameters))]
     if sides:
         X = A.solve(np.ascontiguousarray(np.hstack(sides)))
-        V = np.hstack([V, beside(X, V, M, _DEPENDENT)])
+        V = np.hstack([V, beside(X, V, M, REDUCTION.dependent)])
     basis = Basis(
         V,
         np.zeros((0, V.shape[1])),
@@ -173,10 +156,10 @@ def _own_basis(
 
 def _asked(eigenvalues: Floats, top: float) -> Bools:
     """Modes whose change with the parameters counts: elastic ones that the test may hold."""
-    elastic = eigenvalues > _RIGID * eigenvalues.max()
-    return np.asarray(elastic & (eigenvalues < _REACHED * top))
+    elastic = eigenvalues > SEARCH.rigid * eigenvalues.max()
+    return np.asarray(elastic & (eigenvalues < SEARCH.own_reached * top))
 
 
 def _shift(eigenvalues: Floats) -> float:
-    positive = eigenvalues[eigenvalues > _RIGID * eigenvalues.max()]
-    return 0.25 * float(positive.min())
+    positive = eigenvalues[eigenvalues > SEARCH.rigid * eigenvalues.max()]
+    return SEARCH.own_shift * float(positive.min())

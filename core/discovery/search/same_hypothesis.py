@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .candidates import Catalogue, Suspect
-from .problem import Fit
+from ..effects.candidates import Catalogue, Suspect
+from ..likelihood.hypothesis import Fit
 
 
 def distinct(fits: Sequence[Fit], catalogue: Catalogue, near: float) -> list[Fit]:

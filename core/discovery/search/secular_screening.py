@@ -15,14 +15,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Ints
-from .evidence import Evidence, targets
-from .laws import AttachedLaw
-from .problem import Fit, Problem
-
-_NEAREST = 3
-"""Modes i that are tried for each test mode, the best of them counts."""
-_CHUNK = 64
+from ...arrays import Floats, Ints
+from ..effects.effect_laws import AttachedLaw
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.mode_likelihood import Evidence, targets
+from .search_numbers import SEARCH
 
 
 def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) -> Floats:
@@ -30,7 +27,7 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
 
     See `scan` for the arguments. Kinds of one direction with a coordinate of their own only.
     """
-    U, law = problem.part(kind, rows, state.log_p)
+    U, law = problem.part(kind, rows, state.nuisance)
     assert isinstance(law, AttachedLaw)
     modes = state.vectors[: problem.basis.size]
     U, seen = U @ modes, problem.sensors @ modes
@@ -38,8 +35,8 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     inertia = 1.0 / (law.value(trials, rows)[:, :1] * aim)
     own = law.own(trials)[0][:, :1] - inertia
     out = []
-    for start in range(0, len(rows), _CHUNK):
-        part = np.arange(len(rows))[start : start + _CHUNK]
+    for start in range(0, len(rows), SEARCH.at_once):
+        part = np.arange(len(rows))[start : start + SEARCH.at_once]
         flexibility = law.missing[part][:, :1, None] + own
         out.append(_misfit(problem.evidence, seen, lam, U[part, 0], flexibility))
     return np.concatenate(out)
@@ -48,17 +45,17 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
 def _misfit(e: Evidence, sensors: Floats, lam: Floats, u: Floats, flexibility: Floats) -> Floats:
     """Misfit for flexibilities (n, n_trial, n_test) at places with mode motion u (n, r)."""
     aim, t = targets(e), e.shapes
-    tests, tiny = np.arange(len(aim)), 1e-9 * aim[:, None]
+    tests, tiny = np.arange(len(aim)), SEARCH.resonance * aim[:, None]
     gap = lam - aim[:, None]
     gap = np.where(np.abs(gap) < tiny, tiny, gap)
     best = np.full(flexibility.shape, np.inf)
-    for i in np.argsort(np.abs(gap), axis=1)[:, :_NEAREST].T:
+    for i in np.argsort(np.abs(gap), axis=1)[:, : SEARCH.nearest].T:
         away = 1.0 / gap
         away[tests, i] = 0.0
         ui, phi = u[:, i], sensors[:, i]
         others = (u**2) @ away.T
         s = ui[:, None] / (flexibility + others[:, None])
-        off = 0.5 * np.log(np.maximum((lam[i] + ui[:, None] * s) / aim, 1e-3))
+        off = 0.5 * np.log(np.maximum((lam[i] + ui[:, None] * s) / aim, SEARCH.secular_least))
         rest = np.einsum("nr,tr,kr->nkt", u, away, sensors, optimize=True)
         across = np.sum(t * phi, axis=0) - s * np.einsum("kt,nkt->nt", t, rest)[:, None]
         square = (

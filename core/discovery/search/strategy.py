@@ -14,19 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from .beam import Found, grown
-from .candidates import Candidates, Suspect
-from .guiding import guided
-from .judge import cost, enough, noise_scale, with_unseen
-from .problem import Fit
-from .search import Searcher
-
-_CLEARLY = 1.3
-"""How many times what a simple effect gains a tuned one has to."""
-_TRIED = 3
-_MUCH, _UNEXPLAINED = 2.5, 4.0
-"""How many times the assumed variance a best hypothesis leaves that asks for a second opinion,
-and where nothing explains the test."""
+from ..effects.candidates import Candidates, Suspect
+from ..likelihood.hypothesis import Fit
+from .beam_search import Found, grown
+from .graduated_nonconvexity import guided
+from .model_selection import cost, enough, noise_scale, with_unseen
+from .moves import Searcher
+from .search_numbers import SEARCH
 
 
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
@@ -52,7 +46,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     better = top is not None and cost(searcher, top, scale) < costs[best]
     small = _small(searcher)
     clearly = (_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None)
-    if better or any(clearly) or (small and (best or scale > _UNEXPLAINED)):
+    if better or any(clearly) or (small and (best or scale > SEARCH.unexplained)):
         other = grown(searcher, enough(searcher), progress)
         return _better(searcher, found, simplified(searcher, other))
     rivals = [list(level) for level in found.rivals]
@@ -66,7 +60,7 @@ def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
     """Search with simple kinds; where much is left, by a wider noise first as well."""
     found = grown(searcher, enough(searcher), progress)
     scale, best = _scale(searcher, found, found), int(np.argmin(_costs(searcher, found, found)))
-    if scale < _MUCH or (best and not _small(searcher)):
+    if scale < SEARCH.second_opinion or (best and not _small(searcher)):
         return found
     progress("looking by a wider noise")
     return _better(searcher, found, guided(searcher, progress))
@@ -95,28 +89,30 @@ def simplified(searcher: Searcher, found: Found) -> Found:
     for k, f in enumerate(found.levels):
         for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
             others = f.suspects[:q] + f.suspects[q + 1 :]
-            fits = (searcher.fitted(f, others, 8), levels[k], *_limits(searcher, levels[k], q))
+            left = searcher.fitted(f, others, SEARCH.steps_instead)
+            fits = (left, levels[k], *_limits(searcher, levels[k], q))
             without, own, *simple = (cost(searcher, t, scale) for t in fits)
+            if not simple:
+                continue
             best = int(np.argmin(simple))
             if simple[best] < own:
                 rivals[k].append(levels[k])
-            if simple[best] < own or without - own < _CLEARLY * (without - simple[best]):
+            if simple[best] < own or without - own < SEARCH.clearly * (without - simple[best]):
                 levels[k] = fits[2 + best]
     return Found(tuple(levels), tuple(tuple(level) for level in rivals))
 
 
 def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
-    """Return fits with an absorber replaced by the spring or the mass it becomes at its limits."""
+    """Return fits with a tuned suspect replaced by the simple ones it becomes at its limits."""
     catalogue, out = searcher.problem.catalogue, []
     s = f.suspects[q]
     own = catalogue[s.kind]
-    mass, hz = np.exp(s.theta)
-    sizes = {"ground_spring": mass * (2.0 * np.pi * hz) ** 2, "point_mass": mass}
+    sizes = own.kind.limits(np.exp(s.theta))
     for kind, c in enumerate(catalogue):
         if c.kind in sizes and c.rows_each:
             plain = Suspect(kind, _same_place(own, s.row, c), (float(np.log(sizes[c.kind])),))
             suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
-            out.append(searcher.refined(searcher.fitted(f, suspects, 8)))
+            out.append(searcher.refined(searcher.fitted(f, suspects, SEARCH.steps_instead)))
     return out
 
 
@@ -151,8 +147,8 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 def _best_beside(searcher: Searcher, state: Fit) -> Fit | None:
     """Return the best fit of a state with one more suspect, None where there is no place."""
     fits = [
-        searcher.fitted(state, (*state.suspects, branch), 5, None, True)
-        for _, branch in searcher.branches(state, _TRIED)[:_TRIED]
+        searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        for _, branch in searcher.branches(state, SEARCH.tuned_tried)[: SEARCH.tuned_tried]
     ]
     if not fits:
         return None
@@ -162,7 +158,7 @@ def _best_beside(searcher: Searcher, state: Fit) -> Fit | None:
 def _clearly(found: Found, k: int, f: Fit) -> bool:
     """Whether a tuned kind beside a level does clearly better than the simple one that came."""
     here = found.levels[k].objective
-    return here - f.objective > _CLEARLY * (here - found.levels[k + 1].objective)
+    return here - f.objective > SEARCH.clearly * (here - found.levels[k + 1].objective)
 
 
 def _joined(best: Found, other: Found) -> Found:

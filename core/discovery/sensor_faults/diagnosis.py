@@ -13,21 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Bools, Floats
-from .alternatives import Alternative
-from .faults import Fault
-from .survey import Span, Survey
-from .suspects import suspects
-from .swaps import Swap
-from .turning import maps_of, rotation
-from .weighing import Weighed, weigh
+from ...arrays import Bools, Floats
+from ..faults import AXIS, SWAP, Fault
+from .fault_hypotheses import Alternative
+from .fault_posterior import Weighed, weigh
+from .leave_one_out import Span, Survey
+from .misalignment import maps_of, rotation
+from .outliers import suspects
+from .sensor_numbers import SENSORS
+from .swapped_channels import Swap
 
-_FEWEST, _FEWEST_MODES = 8, 3
-"""Nodes and modes below which nodes cannot judge each other."""
-_NAMED, _DOUBTFUL = 0.6, 0.05
-_ODDS = float(np.log(_NAMED / (1.0 - _NAMED)))
-_KNOWN = 0.97
-"""Chance that what is wrong with a faulty sensor is in the list."""
+_ODDS = float(np.log(SENSORS.named / (1.0 - SENSORS.named)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +64,12 @@ def judge_sensors(survey: Survey, span: Span) -> Verdicts:
         Shapes of the best model there is.
     """
     slots, n = survey.slots, len(survey.node)
-    if len(slots) < _FEWEST or survey.shapes.shape[1] < _FEWEST_MODES:
-        return Verdicts((), np.zeros(n, bool), 0.03)
+    if len(slots) < SENSORS.fewest or survey.shapes.shape[1] < SENSORS.fewest_modes:
+        return Verdicts((), np.zeros(n, bool), SENSORS.noise)
     span = span.seen()
     weighed = weigh(survey, span, suspects(survey, span))
-    while np.any(weighed.aside & (weighed.guilt <= _DOUBTFUL)):
-        weighed = weigh(survey, span, weighed.guilt > _DOUBTFUL)
+    while np.any(weighed.aside & (weighed.guilt <= SENSORS.doubtful)):
+        weighed = weigh(survey, span, weighed.guilt > SENSORS.doubtful)
     doubtful = np.zeros(n, bool)
     doubtful[slots[weighed.aside][slots[weighed.aside] >= 0]] = True
     return Verdicts(faults_of(weighed), doubtful, weighed.sigma)
@@ -101,30 +97,31 @@ def _swapped(weighed: Weighed, s: Swap) -> Fault:
     rivals = [t.odds for t in weighed.swaps if t is not s and {i, j} & set(t.nodes)]
     share = float(np.exp(s.odds - logsumexp([0.0, s.odds, *rivals])))
     rows = (*(int(r) for r in a), *(int(r) for r in b))
-    return Fault("sensor_swap", rows, exchange, 1.0, 0.0, (), _KNOWN * share)
+    return Fault(SWAP.name, rows, exchange, 1.0, 0.0, (), SENSORS.known * share)
 
 
 def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     """Return the likeliest kind of fault of a node, if it is likely enough."""
     share = weighed.shares(i)
-    if sum(share.values()) < _NAMED:
+    if sum(share.values()) < SENSORS.named:
         return []
     kind = max(share, key=lambda k: share[k])
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
-    return [_told(weighed.survey, i, best, _KNOWN * share[kind])]
+    return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]
 
 
 def _told(survey: Survey, i: int, a: Alternative, confidence: float) -> Fault:
     rows = survey.rows(i)[list(a.rows)]
     reads: Floats | None = np.eye(len(rows)) * a.factor
     axis: tuple[float, ...] = ()
-    if a.kind == "sensor_axis":
+    if a.kind == AXIS.name:
         vector = np.array(a.vector)
         axis = tuple(float(v) for v in vector / np.linalg.norm(vector))
         axes = survey.axis[rows]
         seen = maps_of(axes, rotation(vector)[None])[0][:, len(rows) :]
-        reads = seen @ axes.T if np.allclose(seen @ axes.T @ axes, seen, atol=0.02) else None
-    elif a.kind == "sensor_swap":
+        whole = np.allclose(seen @ axes.T @ axes, seen, atol=SENSORS.in_plane)
+        reads = seen @ axes.T if whole else None
+    elif a.kind == SWAP.name:
         reads = np.eye(2)[::-1]
     return Fault(
         a.kind, tuple(int(r) for r in rows), reads, a.factor, a.deviation, axis, confidence

@@ -14,22 +14,13 @@ from scipy.special import logsumexp
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from ..arrays import Floats
-from .readings import Node, evidence
-from .turning import Evidence, about, anyhow, tilted
+from ...arrays import Floats
+from ..faults import AXIS, DOUBLED, GAIN, POLARITY, SWAP
+from .misalignment import Evidence, about, anyhow, tilted
+from .node_likelihood import Node, evidence
+from .sensor_numbers import SENSORS
 
-_LOG_GAIN = np.arange(-1.8, 1.8001, 0.0125)
-_SPREAD = 0.6
-"""Of ln gain of a sensor that has a wrong one; gains nearer to 1 than the next are no faults."""
-_LEAST = np.log(1.12)
-_TAIL = 5.0
-_SHARE = {"sensor_polarity": 0.25, "sensor_gain": 0.25, "doubled": 0.1, "sensor_axis": 0.2}
-_LONELY_AXIS = 0.05
-"""Share of a turned sensor where a node has one."""
-_EXCHANGED = 0.05
-_SCATTER = 0.02
-"""Of sound gains."""
-_WHOLE = 0.6
+_LOG_GAIN = np.arange(-SENSORS.gains, SENSORS.gains + 0.5 * SENSORS.gain_step, SENSORS.gain_step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +83,9 @@ def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Altern
     of = partial(evidence, node, shares=before.shares)
     k = node.reading.shape[1]
     out = [Alternative("sound", float(of(node.identity[None])[0]))]
-    parts = [(tuple(range(k)), 1.0 if k == 1 else _WHOLE)]
+    parts = [(tuple(range(k)), 1.0 if k == 1 else SENSORS.whole)]
     if k > 1:
-        parts += [((a,), (1.0 - _WHOLE) / k) for a in range(k)]
+        parts += [((a,), (1.0 - SENSORS.whole) / k) for a in range(k)]
     for rows, share in parts:
         out += _scaled(node, rows, share, of, before)
     for a in range(k):
@@ -102,8 +93,8 @@ def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Altern
             swapped = node.identity
             swapped[[a, b]] = swapped[[b, a]]
             log = float(of(swapped[None])[0])
-            prior = np.log(before.faulty * _EXCHANGED * 2.0 / (k * (k - 1)))
-            out.append(Alternative("sensor_swap", log + prior, (b, a)))
+            prior = np.log(before.faulty * SENSORS.exchanged * 2.0 / (k * (k - 1)))
+            out.append(Alternative(SWAP.name, log + prior, (b, a)))
     if axes is not None:
         out += _turned(node, axes, of, before)
     return out
@@ -120,18 +111,20 @@ def _scaled(
     for r in rows:
         maps[:, r] *= every[:, None]
     log, reverse = np.split(of(maps), 2)
-    size = max(float(np.sqrt(np.mean(node.mean[:, list(rows)] ** 2))), 1e-6)
+    size = max(float(np.sqrt(np.mean(node.mean[:, list(rows)] ** 2))), SENSORS.least_motion)
     step = _LOG_GAIN[1] - _LOG_GAIN[0]
 
     def near(factor: float) -> Floats:
         """Log prior of gains that would be `factor` if every sound gain were 1."""
-        scale = np.hypot(_SCATTER, before.proportion / size)
+        scale = np.hypot(SENSORS.gain_scatter, before.proportion / size)
         return np.asarray(norm.logpdf(_LOG_GAIN - np.log(factor), scale=scale) + np.log(step))
 
     chance, centre, scale = before.in_proportion.T[..., None]
     off = ((gains - 1.0) * size - centre) / scale
-    model = logsumexp(student.logpdf(off, _TAIL), axis=0, b=chance * gains * size / scale * step)
-    wide = np.where(np.abs(_LOG_GAIN) > _LEAST, np.exp(-0.5 * (_LOG_GAIN / _SPREAD) ** 2), 1e-300)
+    each = chance * gains * size / scale * step
+    model = logsumexp(student.logpdf(off, SENSORS.tail), axis=0, b=each)
+    wide = np.exp(-0.5 * (_LOG_GAIN / SENSORS.gain_spread) ** 2)
+    wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = SENSORS.never
     as_fault = log + np.log(wide / wide.sum())
     weight = np.exp(as_fault - as_fault.max())
     weight /= weight.sum()
@@ -144,9 +137,9 @@ def _scaled(
         return Alternative(kind, float(logsumexp(log)) + np.log(prior), rows, size, deviation)
 
     return [
-        told("sensor_polarity", reverse + near(1.0), sure * _SHARE["sensor_polarity"], -1.0),
-        told("doubled", log + near(2.0), sure * _SHARE["doubled"], 2.0),
-        told("sensor_gain", as_fault, sure * _SHARE["sensor_gain"], factor, np.sqrt(spread)),
+        told(POLARITY.name, reverse + near(1.0), sure * SENSORS.polarity, -1.0),
+        told(DOUBLED.name, log + near(2.0), sure * SENSORS.doubled, 2.0),
+        told(GAIN.name, as_fault, sure * SENSORS.gain, factor, np.sqrt(spread)),
         told("model", log + model, share, 1.0),
     ]
 
@@ -161,19 +154,20 @@ def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alte
         angle = float(np.degrees(np.linalg.norm(vector)))
         log = log + prior + np.log(share)
         return Alternative(
-            "sensor_axis", log, rows, angle, float(np.degrees(spread)), tuple(map(float, vector))
+            AXIS.name, log, rows, angle, float(np.degrees(spread)), tuple(map(float, vector))
         )
 
     if k == 1:
-        return [told(tilted(axes[0], of), _LONELY_AXIS)]
-    share = _SHARE["sensor_axis"]
+        return [told(tilted(axes[0], of), SENSORS.lonely_axis)]
+    share = SENSORS.axis
     own = axes if k == 3 else np.vstack([axes, np.cross(*axes)])
-    weights = np.full(3, share / 5.0) if k == 3 else share * np.array([0.1, 0.1, 0.8])
+    pair, three = share * np.array(SENSORS.about_pair), np.full(3, share / SENSORS.about_each)
+    weights = three if k == 3 else pair
     out = [told(about(axes, u, of), w) for u, w in zip(own, weights, strict=True)]
     if k == 3:
         found = anyhow(axes, _kabsch(node, axes), of)
         if found is not None:
-            out.append(told(found, 0.4 * share))
+            out.append(told(found, SENSORS.about_any * share))
     return out
 
 

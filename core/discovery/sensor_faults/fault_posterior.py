@@ -7,24 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import expit, logsumexp
 
-from ..arrays import Bools, Floats
-from .alternatives import Alternative, Before, alternatives
-from .readings import LOCAL, Node, likelihood, local_shares, node_of
-from .survey import Prediction, Span, Survey, predict
-from .suspects import LEVELS, SUSPICIOUS, distance, level_of
-from .swaps import Swap, swaps
-
-_FAULTY = 0.5
-"""Faulty nodes that are expected of a test."""
-_IN_PROPORTION, _PROPORTION = 0.05, 0.04
-"""Share of nodes at which a model may be wrong by a factor of its own in all modes, and by how
-much, at least, over the rms of a shape."""
-_BESIDE, _NEAR, _UNLIKE = 0.4, 0.15, 0.5
-"""The same of nodes nearer than this part of the structure to another that is off its prediction,
-and how far their errors are from alike."""
-_SURE, _CLEARED = 0.9, 0.01
-_NO_MODEL = {"sensor_polarity", "sensor_swap"}
-"""What no error of a model looks like."""
+from ...arrays import Bools, Floats
+from ..faults import FAULTS
+from .fault_hypotheses import Alternative, Before, alternatives
+from .leave_one_out import Prediction, Span, Survey, predict
+from .node_likelihood import LOCAL, Node, likelihood, local_shares, node_of
+from .outliers import LEVELS, distance, level_of
+from .sensor_numbers import SENSORS
+from .swapped_channels import Swap, swaps
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +80,9 @@ def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
     sound = np.flatnonzero(~aside)
     likely = np.array([likelihood(nodes[i], nodes[i].identity[None])[0] for i in sound.tolist()])
     off = _in_proportion(said)
-    usual = 1.4826 * float(np.median(np.abs(off[sound])))
-    anywhere = np.array([[_IN_PROPORTION, 0.0, max(usual, _PROPORTION)]])
-    before = Before(_FAULTY / len(aside), local_shares(likely), usual, anywhere)
+    usual = SENSORS.mad * float(np.median(np.abs(off[sound])))
+    anywhere = np.array([[SENSORS.in_proportion, 0.0, max(usual, SENSORS.proportion)]])
+    before = Before(SENSORS.faulty / len(aside), local_shares(likely), usual, anywhere)
     doubted = np.flatnonzero(aside).tolist()
     alone = {i: alternatives(nodes[i], _axes(survey, i), before) for i in doubted}
     crossed = _swaps(nodes, alone, before)
@@ -109,7 +99,7 @@ def _swaps(
     nodes: dict[int, Node], alone: dict[int, list[Alternative]], before: Before
 ) -> list[Swap]:
     """Return the possible swaps among nodes that are not clearly sound."""
-    among = [i for i, every in alone.items() if _unsound(every) > _CLEARED]
+    among = [i for i, every in alone.items() if _unsound(every) > SENSORS.cleared]
     return swaps(nodes, among, alone, before)
 
 
@@ -122,9 +112,11 @@ def _unsound(every: list[Alternative]) -> float:
 def _disturbed(survey: Survey, said: Prediction, weighed: Weighed) -> Bools:
     """Nodes that are off their prediction by something that a model may have wrong, (n_node,)."""
     off = distance(said, (survey.slots >= 0).sum(axis=1))
-    out = weighed.aside & (off > SUSPICIOUS * max(1.0, float(np.median(off[~weighed.aside]))))
+    usual = max(1.0, float(np.median(off[~weighed.aside])))
+    out = weighed.aside & (off > SENSORS.suspicious * usual)
     for i in weighed.alone:
-        clear = sum(p for k, p in weighed.shares(i).items() if k in _NO_MODEL) > _SURE
+        sure = (p for k, p in weighed.shares(i).items() if not FAULTS[k].like_model)
+        clear = sum(sure) > SENSORS.sure
         out[i] &= not clear and all(s.odds < 0.0 for s in weighed.swaps if i in s.nodes)
     return np.asarray(out)
 
@@ -135,17 +127,17 @@ def _near(survey: Survey) -> Bools:
     size = float(np.linalg.norm(np.ptp(xyz, axis=0)))
     apart = np.linalg.norm(xyz[:, None] - xyz[None, :], axis=2)
     np.fill_diagonal(apart, np.inf)
-    return np.asarray(apart < _NEAR * size)
+    return np.asarray(apart < SENSORS.near * size)
 
 
 def _beside(before: Before, off: Floats) -> Before:
     """Assume more of a node near to others that are off in proportion by `off`."""
-    spread = np.hypot(_UNLIKE * off, before.in_proportion[0, 2])
-    alike = np.column_stack([np.full(len(off), _BESIDE / len(off)), off, spread])
+    spread = np.hypot(SENSORS.unlike * off, before.in_proportion[0, 2])
+    alike = np.column_stack([np.full(len(off), SENSORS.beside / len(off)), off, spread])
     return replace(
         before,
         in_proportion=np.vstack([before.in_proportion, alike]),
-        shares=(1.0 - _BESIDE) * before.shares + _BESIDE / len(LOCAL),
+        shares=(1.0 - SENSORS.beside) * before.shares + SENSORS.beside / len(LOCAL),
     )
 
 
@@ -161,6 +153,6 @@ def _in_proportion(said: Prediction) -> Floats:
     k = said.rows
     mean = said.mean[..., :k]
     one = np.diagonal(said.covariance[..., :k, :k], axis1=2, axis2=3) + said.noise
-    square = np.sum(mean**2 / one, axis=(1, 2))
-    gain = np.sum(mean * said.reading / one, axis=(1, 2)) / np.maximum(square, 1e-12)
+    square = np.maximum(np.sum(mean**2 / one, axis=(1, 2)), SENSORS.least_variance)
+    gain = np.sum(mean * said.reading / one, axis=(1, 2)) / square
     return np.asarray((gain - 1.0) * np.sqrt(np.mean(mean**2, axis=(1, 2))))

@@ -12,10 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints
-
-_FAINT = 1e-3
-_ABSENT = 1e6
+from ...arrays import Bools, Floats, Ints
+from .sensor_numbers import SENSORS
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +85,7 @@ class Span:
     def seen(self) -> Span:
         """Return the shapes that the sensors see, each of unit rms at them."""
         length = np.sqrt(np.mean(self.rows**2, axis=0))
-        keep = length > 1e-9 * length.max()
+        keep = length > SENSORS.unseen * length.max()
         scale = length[keep]
         return Span(
             self.rows[:, keep] / scale, self.around[:, :, keep] / scale, self.frequencies_hz[keep]
@@ -146,7 +144,7 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
     variance = np.full(y.shape, sigma**2)
     if survey.errors is not None:
         variance = variance + survey.errors**2
-    near = np.maximum(span.frequencies_hz, 0.2 * survey.frequencies_hz[:, None])
+    near = np.maximum(span.frequencies_hz, SENSORS.nearest * survey.frequencies_hz[:, None])
     h = 1.0 / (1.0 + (np.log(near / survey.frequencies_hz[:, None]) / width[:, None]) ** 2) ** 2
     h = h / h.sum(axis=1, keepdims=True)
     sound = np.zeros(len(y), bool)
@@ -154,9 +152,9 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
     modes = y.shape[1]
     mean, covariance = np.zeros((n, modes, q)), np.zeros((n, modes, q, q))
     reading = np.where(there[:, None, :], y[slots].transpose(0, 2, 1), 0.0)
-    noise = np.where(there[:, None, :], variance[slots].transpose(0, 2, 1), _ABSENT)
+    noise = np.where(there[:, None, :], variance[slots].transpose(0, 2, 1), SENSORS.absent)
     for j in range(modes):
-        root = np.sqrt(np.where(h[j] > _FAINT * h[j].max(), h[j], 0.0))
+        root = np.sqrt(np.where(h[j] > SENSORS.faint * h[j].max(), h[j], 0.0))
         used = root > 0.0
         B = span.rows[:, used] * root[used]
         known = B[sound] / variance[sound, j, None]

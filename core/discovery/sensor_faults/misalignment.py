@@ -7,13 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Floats
-
-_STEP = np.radians(1.5)
-_LEAST = np.radians(6.0)
-_TILT, _AROUND = 60, 36
-_SMALL = 0.02
-"""Step of the differences of a log likelihood by a rotation [rad]."""
+from ...arrays import Floats
+from .sensor_numbers import SENSORS
 
 
 def rotation(vector: Floats) -> Floats:
@@ -53,14 +48,16 @@ def about(axes: Floats, axis: Floats, of: Evidence) -> tuple[float, Floats, floa
 
     Every angle but the smallest is as likely before as any other.
     """
-    angle = np.arange(-np.pi + _STEP, np.pi + 0.5 * _STEP, _STEP)
-    angle = angle[np.abs(angle) > _LEAST]
+    step = np.radians(SENSORS.angle_step)
+    angle = np.arange(-np.pi + step, np.pi + 0.5 * step, step)
+    angle = angle[np.abs(angle) > np.radians(SENSORS.angle_least)]
     log = of(maps_of(axes, rotation(angle[:, None] * axis)))
     best = float(angle[np.argmax(log)])
     weight = np.exp(log - log.max())
     off = (angle - best + np.pi) % (2.0 * np.pi) - np.pi
-    spread = float(np.sqrt(np.sum(weight * off**2) / weight.sum() + _STEP**2 / 12.0))
-    mean = best + float(np.sum(weight * off) / weight.sum()) if spread < 0.3 else best
+    spread = float(np.sqrt(np.sum(weight * off**2) / weight.sum() + step**2 / 12.0))
+    sure = spread < SENSORS.angle_unsure
+    mean = best + float(np.sum(weight * off) / weight.sum()) if sure else best
     return float(logsumexp(log) - np.log(len(angle))), mean * np.asarray(axis), spread
 
 
@@ -79,30 +76,30 @@ def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, fl
     tuple or None
         None where the readings do not hold the rotation.
     """
-    Q = start
-    steps = _SMALL * np.array([[0, 0, 0], *np.eye(3), *-np.eye(3)])
+    Q, h = start, SENSORS.turn_step
+    steps = h * np.array([[0, 0, 0], *np.eye(3), *-np.eye(3)])
     pairs = [(0, 1), (0, 2), (1, 2)]
     mixed = [
         s * np.eye(3)[a] + t * np.eye(3)[b] for a, b in pairs for s in (1, -1) for t in (1, -1)
     ]
-    steps = np.vstack([steps, _SMALL * np.array(mixed)])
-    for _ in range(4):
+    steps = np.vstack([steps, h * np.array(mixed)])
+    for _ in range(SENSORS.turn_rounds):
         f = of(maps_of(axes, rotation(steps) @ Q))
-        g = (f[1:4] - f[4:7]) / (2.0 * _SMALL)
-        H = np.diag((f[1:4] + f[4:7] - 2.0 * f[0]) / _SMALL**2)
+        g = (f[1:4] - f[4:7]) / (2.0 * h)
+        H = np.diag((f[1:4] + f[4:7] - 2.0 * f[0]) / h**2)
         for n, (a, b) in enumerate(pairs):
             q = f[7 + 4 * n : 11 + 4 * n]
-            H[a, b] = H[b, a] = (q[0] - q[1] - q[2] + q[3]) / (4.0 * _SMALL**2)
+            H[a, b] = H[b, a] = (q[0] - q[1] - q[2] + q[3]) / (4.0 * h**2)
         values = np.linalg.eigvalsh(-H)
-        if values[0] < 1.0:
+        if values[0] < SENSORS.turn_curved:
             return None
         step = np.linalg.solve(-H, g)
-        Q = rotation(np.clip(step, -0.2, 0.2)) @ Q
-        if np.abs(step).max() < 0.2 * _SMALL:
+        Q = rotation(np.clip(step, -SENSORS.turn_most, SENSORS.turn_most)) @ Q
+        if np.abs(step).max() < SENSORS.turn_done * h:
             break
     best = float(of(maps_of(axes, Q[None]))[0])
     vector = vector_of(Q)
-    along = vector / max(float(np.linalg.norm(vector)), 1e-12)
+    along = vector / max(float(np.linalg.norm(vector)), SENSORS.least_variance)
     log = best + 1.5 * np.log(2.0 * np.pi) - 0.5 * np.log(values).sum() - np.log(8.0 * np.pi**2)
     return float(log), vector, float(np.sqrt(along @ np.linalg.solve(-H, along)))
 
@@ -113,12 +110,13 @@ def tilted(axis: Floats, of: Evidence) -> tuple[float, Floats, float]:
     a = np.cross(axis, other)
     a /= np.linalg.norm(a)
     b = np.cross(axis, a)
-    cosine = (np.arange(_TILT) + 0.5) * 2.0 / _TILT - 1.0
+    cosine = (np.arange(SENSORS.tilts) + 0.5) * 2.0 / SENSORS.tilts - 1.0
     tilt, way = np.meshgrid(
-        np.arccos(cosine), 2.0 * np.pi * np.arange(_AROUND) / _AROUND, indexing="ij"
+        np.arccos(cosine), 2.0 * np.pi * np.arange(SENSORS.ways) / SENSORS.ways, indexing="ij"
     )
     vector = tilt[..., None] * (np.cos(way)[..., None] * a + np.sin(way)[..., None] * b)
-    kept = (tilt > _LEAST) & (tilt < np.pi - _LEAST)
+    least = np.radians(SENSORS.angle_least)
+    kept = (tilt > least) & (tilt < np.pi - least)
     vector, tilt = vector[kept], tilt[kept]
     log = of(maps_of(axis[None], rotation(vector)))
     weight = np.exp(log - log.max())

@@ -7,18 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Floats
-from .survey import Prediction
+from ...arrays import Floats
+from .leave_one_out import Prediction
+from .sensor_numbers import SENSORS
 
-LOCAL = np.array([0.0, 0.015, 0.03, 0.06, 0.12, 0.24, 0.48])
+LOCAL = np.array(SENSORS.local)
 """Sizes of what a model may have wrong at one node, over the rms of a shape."""
-_BEFORE = np.array([0.50, 0.20, 0.12, 0.08, 0.05, 0.03, 0.02])
-_WEIGHT = 2.0
-"""So many nodes the assumed shares of those sizes count."""
-_GAIN = 0.02
-"""Scatter of sound gains."""
-_STRAY, _FAR = 0.05, 1.0
-"""Share of modes that may read anything at a node, and how far off they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +71,14 @@ def likelihood_of(node: Node, mean: Floats, covariance: Floats) -> Floats:
         Without the noise of the readings.
     """
     k = node.reading.shape[1]
-    C = covariance + _GAIN**2 * mean[..., :, None] * mean[..., None, :]
+    C = covariance + SENSORS.gain_scatter**2 * mean[..., :, None] * mean[..., None, :]
     C[..., np.arange(k), np.arange(k)] += node.noise
     off = node.reading - mean
     if k == 1:
-        return _mixed(off**2, np.maximum(C[..., 0], 1e-12))
+        return _mixed(off**2, np.maximum(C[..., 0], SENSORS.least_variance))
     values, vectors = np.linalg.eigh(C)
     r = (np.swapaxes(vectors, -1, -2) @ off[..., None])[..., 0]
-    return _mixed(r**2, np.maximum(values, 1e-12))
+    return _mixed(r**2, np.maximum(values, SENSORS.least_variance))
 
 
 def _mixed(square: Floats, values: Floats) -> Floats:
@@ -92,14 +86,15 @@ def _mixed(square: Floats, values: Floats) -> Floats:
     out = np.empty((len(square), len(LOCAL)))
     for t, size in enumerate(LOCAL):
         one = values + size**2
-        far = one + _FAR**2
+        far = one + SENSORS.far**2
         a = -0.5 * np.sum(square / one + np.log(2.0 * np.pi * one), axis=-1)
         b = -0.5 * np.sum(square / far + np.log(2.0 * np.pi * far), axis=-1)
-        out[:, t] = np.logaddexp(np.log1p(-_STRAY) + a, np.log(_STRAY) + b).sum(axis=-1)
+        both = np.logaddexp(np.log1p(-SENSORS.stray) + a, np.log(SENSORS.stray) + b)
+        out[:, t] = both.sum(axis=-1)
     return out
 
 
-def local_shares(sound: Floats, rounds: int = 30) -> Floats:
+def local_shares(sound: Floats, rounds: int = SENSORS.local_rounds) -> Floats:
     """Return the shares of the sizes `LOCAL` among nodes taken as sound (empirical Bayes).
 
     Parameters
@@ -107,11 +102,11 @@ def local_shares(sound: Floats, rounds: int = 30) -> Floats:
     sound : (n_node, n_local) float
         Log likelihoods.
     """
-    shares = _BEFORE
+    shares = np.array(SENSORS.local_before)
     for _ in range(rounds):
         weight = sound + np.log(shares)
         each = np.exp(weight - logsumexp(weight, axis=1, keepdims=True))
-        total = each.sum(axis=0) + _WEIGHT * _BEFORE
+        total = each.sum(axis=0) + SENSORS.local_weight * np.array(SENSORS.local_before)
         shares = total / total.sum()
     return np.asarray(shares)
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints
-from .survey import Prediction, Span, Survey, predict
+from ...arrays import Bools, Floats, Ints
+from .leave_one_out import Prediction, Span, Survey, predict
+from .sensor_numbers import SENSORS
 
-LEVELS = 0.008 * 1.4 ** np.arange(10)
+LEVELS = SENSORS.noise_least * SENSORS.noise_step ** np.arange(SENSORS.noise_levels)
 """Noise of a sound sensor over the rms of its shape that is thought possible."""
-_WIDTHS = 0.03 * 2.0 ** np.arange(5)
-_TRUSTED = 0.85
-"""Share of the nodes, the best predicted ones, by which the noise is judged."""
-SUSPICIOUS = 4.0
-_MOST, _ALWAYS = 0.25, 4
+_WIDTHS = SENSORS.width_least * SENSORS.width_step ** np.arange(SENSORS.widths)
 
 
 def suspects(survey: Survey, span: Span) -> Bools:
@@ -25,13 +22,13 @@ def suspects(survey: Survey, span: Span) -> Bools:
     count = (survey.slots >= 0).sum(axis=1)
     masked = np.zeros(len(count), bool)
     level, width = level_of(survey, near, masked)
-    always = min(_ALWAYS, len(count) // 8)
-    for number in range(max(always, int(_MOST * len(count)))):
+    always = min(SENSORS.aside_always, len(count) // SENSORS.aside_always_of)
+    for number in range(max(always, int(SENSORS.aside_most * len(count)))):
         off = distance(predict(survey, near, float(LEVELS[level]), width, masked), count)
         off = off / max(1.0, float(np.median(off[~masked])))
         off[masked] = 0.0
         worst = int(np.argmax(off))
-        if off[worst] < SUSPICIOUS and number >= always:
+        if off[worst] < SENSORS.suspicious and number >= always:
             break
         masked[worst] = True
         level = _lowered(survey, near, masked, level, width)
@@ -45,7 +42,7 @@ def distance(said: Prediction, count: Ints) -> Floats:
     S[..., np.arange(k), np.arange(k)] += said.noise
     off = said.reading - said.mean[..., :k]
     square = np.einsum("nmk,nmk->nm", off, np.linalg.solve(S, off[..., None])[..., 0])
-    return np.asarray(np.minimum(square / count[:, None], 30.0).mean(axis=1))
+    return np.asarray(np.minimum(square / count[:, None], SENSORS.distance_most).mean(axis=1))
 
 
 def level_of(survey: Survey, span: Span, masked: Bools) -> tuple[int, Floats]:
@@ -53,7 +50,8 @@ def level_of(survey: Survey, span: Span, masked: Bools) -> tuple[int, Floats]:
 
     Looked for in steps of three, then beside the best.
     """
-    likely = {n: _likeliest(survey, span, masked, n) for n in range(1, len(LEVELS), 3)}
+    some = range(1, len(LEVELS), SENSORS.noise_strides)
+    likely = {n: _likeliest(survey, span, masked, n) for n in some}
     best = max(likely, key=lambda n: likely[n][0])
     beside = (n for n in (best - 1, best + 1) if 0 <= n < len(LEVELS))
     likely |= {n: _likeliest(survey, span, masked, n) for n in beside}
@@ -83,7 +81,7 @@ def _likeliest(survey: Survey, span: Span, masked: Bools, level: int) -> tuple[f
 def _likelihood(survey: Survey, span: Span, masked: Bools, level: int, width: Floats) -> Floats:
     """Log likelihood of each mode at the nodes, the worst predicted ones left out, (n_mode,)."""
     said = predict(survey, span, float(LEVELS[level]), width, masked)
-    keep = max(1, int(_TRUSTED * np.count_nonzero(~masked)))
+    keep = max(1, int(SENSORS.trusted * np.count_nonzero(~masked)))
     one = np.diagonal(said.covariance, axis1=2, axis2=3) + said.noise
     off = said.reading - said.mean
     there = (survey.slots >= 0)[:, None, :]

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
-from ..comparison import Placed
-from ..correlation import realised
-from ..dofs import Dofs
-from ..model import Model
-from ..observation import observe
-from .problem import Fit, Problem
-from .sensors import Verdicts, judge_sensors
-from .survey import Span, Survey
+from ...arrays import Floats
+from ...correlation.comparison import Placed
+from ...correlation.mac import realised
+from ...data.dofs import Dofs
+from ...data.parametric_model import Model
+from ...sensors.sensor_map import observe
+from ..likelihood.hypothesis import Fit, Problem
+from .diagnosis import Verdicts, judge_sensors
+from .leave_one_out import Span, Survey
 
 
 class Bench:

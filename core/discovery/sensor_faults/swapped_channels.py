@@ -13,15 +13,10 @@ from itertools import combinations
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Floats
-from .alternatives import Alternative, Before
-from .readings import Node, averaged, likelihood_of
-
-_SHARE = 0.25
-_LONE_BACK, _BACK = 0.5, 0.15
-"""Of swaps of lone sensors and of single directions of sets, those with the sign turned."""
-_WHOLE = 0.7
-"""Of swaps of sets with several directions, those of the whole set."""
+from ...arrays import Floats
+from .fault_hypotheses import Alternative, Before
+from .node_likelihood import Node, averaged, likelihood_of
+from .sensor_numbers import SENSORS
 
 
 @dataclass(frozen=True)
@@ -55,7 +50,7 @@ def swaps(
     """
     total = {i: float(logsumexp([a.log for a in alone[i]])) for i in among}
     n = len(nodes)
-    prior = float(np.log(before.faulty * _SHARE / max(n - 1, 1)))
+    prior = float(np.log(before.faulty * SENSORS.swapped / max(n - 1, 1)))
     out = []
     for i, j in combinations(among, 2):
         ways = _ways(nodes[i].reading.shape[1], nodes[j].reading.shape[1])
@@ -73,14 +68,14 @@ _Rows = tuple[int, ...]
 def _ways(k: int, m: int) -> list[tuple[_Rows, _Rows, float, float]]:
     """Rows of sets with k and m directions that may be exchanged, the sign, and the share."""
     if k * m == 1:
-        return [((0,), (0,), 1.0, 1.0 - _LONE_BACK), ((0,), (0,), -1.0, _LONE_BACK)]
-    whole = [(tuple(range(k)), tuple(range(k)), 1.0, _WHOLE)] if k == m else []
-    share = (1.0 - _WHOLE if k == m else 1.0) / (k * m)
+        return [((0,), (0,), 1.0, 1.0 - SENSORS.back_lone), ((0,), (0,), -1.0, SENSORS.back_lone)]
+    whole = [(tuple(range(k)), tuple(range(k)), 1.0, SENSORS.whole_swap)] if k == m else []
+    share = (1.0 - SENSORS.whole_swap if k == m else 1.0) / (k * m)
     single = [
         ((a,), (b,), sign, share * chance)
         for a in range(k)
         for b in range(m)
-        for sign, chance in ((1.0, 1.0 - _BACK), (-1.0, _BACK))
+        for sign, chance in ((1.0, 1.0 - SENSORS.back), (-1.0, SENSORS.back))
     ]
     return [*whole, *single]
 

@@ -6,20 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
-from .bands import Band
-from .candidates import Proposal
+from ...arrays import Floats, Numbers
+from ..survey.modal_synthesis import modal_response
+from ..survey.mode_indicator import Band
+from ..survey.survey_data import Survey
 from .moments import BandData, band_data
-from .refinement import Fit, fit_shapes
-from .selection import prune, select
+from .pole_candidates import Proposal
+from .pole_numbers import POLES
+from .pole_selection import prune, select
+from .pole_splitting import plausible
 from .significance import significance
-from .splitting import plausible
-from .starting import start_from
-from .survey import Survey
-from .synthesis import modal_response
-
-_FINAL_SWEEPS = 2
-_SAME = 0.5  # half bandwidths within which roots of two bands are one
+from .start_values import start_from
+from .variable_projection import Fit, fit_shapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +89,7 @@ def fit_range(
         owned[n] = _core(f, fit, band)
         beside[n] = _background(f, fit)
         owned = _without_doubles(owned)
-    for sweep in range(_FINAL_SWEEPS):
+    for sweep in range(POLES.final_sweeps):
         done = []
         for n, band in enumerate(bands):
             near, far = _near_and_far(_joined(owned), band)
@@ -101,7 +99,7 @@ def fit_range(
             owned[n] = _core(f, fit, band)
             owned = _without_doubles(owned)
             beside[n] = _background(f, fit)
-            if sweep == _FINAL_SWEEPS - 1:
+            if sweep == POLES.final_sweeps - 1:
                 value = significance(data, f, fit)
                 mine = np.isin(fit.poles, owned[n].poles)
                 aside = ~plausible(f, fit)
@@ -127,7 +125,7 @@ def _roots(fit: Fit) -> Roots:
 def _core(f: Floats, fit: Fit, band: Band) -> Roots:
     """Modes of a fit that belong to the core of its band."""
     hz = np.abs(fit.poles) / (2.0 * np.pi)
-    reach = np.abs(fit.poles.real) / (2.0 * np.pi) * _SAME
+    reach = np.abs(fit.poles.real) / (2.0 * np.pi) * POLES.same
     inside = (hz >= band.low - reach) & (hz <= band.high + reach)
     return _take(_roots(fit), inside & plausible(f, fit))
 
@@ -154,7 +152,7 @@ def _without_doubles(owned: list[Roots]) -> list[Roots]:
         keep = np.ones(len(roots.poles), bool)
         for pole in below.poles:
             gap = np.abs(roots.poles - pole)
-            if len(gap) and gap.min() < _SAME * abs(pole.real):
+            if len(gap) and gap.min() < POLES.same * abs(pole.real):
                 keep[int(np.argmin(gap))] = False
         cleaned.append(
             Roots(roots.poles[keep], roots.participation[:, keep], roots.shapes[:, keep])

@@ -8,13 +8,9 @@ import numpy as np
 import scipy.fft
 from scipy.stats import chi2
 
-from ..arrays import Floats, Numbers
-from .stabilisation import Candidate
-
-_WIDTHS = (0.5, 1.5, 4.0, 12.0, 36.0)  # decay rates of the filters, in line spacings
-_RISK = 0.1  # that noise shows a trace somewhere
-_CHUNK = 1 << 17  # numbers filtered at once, few enough to stay near the processor
-_SMOOTHED = 15  # lines over which the level of the residual is taken
+from ...arrays import Floats, Numbers
+from .pole_numbers import POLES
+from .pole_stabilisation import Candidate
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,17 +68,18 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Trac
     level = np.einsum("oif,oif->f", residual.real, residual.real)
     level += np.einsum("oif,oif->f", residual.imag, residual.imag)
     level /= np.count_nonzero(measured)
-    width = min(_SMOOTHED, n_line)
+    width = min(POLES.filter_smoothed, n_line)
     window = np.ones(width)
     smooth = np.convolve(level, window, "same") / np.convolve(np.ones(n_line), window, "same")
     size = 2 * n_line
     scale = 1.0 / np.sqrt(np.maximum(smooth, 1e-300))
     offset = np.fft.fftfreq(size, 1.0 / size)
-    decay = np.array([w for w in _WIDTHS if w <= 0.1 * n_line] or [_WIDTHS[0]])
+    widths, widest = POLES.filter_widths, POLES.filter_widest * n_line
+    decay = np.array([w for w in widths if w <= widest] or [widths[0]])
     kernels = 1.0 / (1j * offset + decay[:, None])
     filters = scipy.fft.fft(kernels).conj()
     grams = np.zeros((len(decay), n_line, n_input, n_input), complex)
-    step = max(1, _CHUNK // (n_input * size))
+    step = max(1, POLES.filter_at_once // (n_input * size))
     for first in range(0, n_output, step):
         spectrum = scipy.fft.fft(residual[first : first + step] * scale, size)
         for d in range(len(decay)):
@@ -92,5 +89,5 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Trac
     energy = np.sum(np.abs(kernels) ** 2, axis=1)
     explained = np.linalg.eigvalsh(grams)[..., -1] / energy[:, None]
     freedom = (np.sqrt(2.0 * n_output) + np.sqrt(2.0 * n_input - 2.0)) ** 2
-    limit = 0.5 * float(chi2.isf(_RISK / explained.size, freedom))
+    limit = 0.5 * float(chi2.isf(POLES.filter_risk / explained.size, freedom))
     return Traces(frequencies_hz, explained, grams, decay, limit)

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Numbers
+from ...arrays import Floats, Ints, Numbers
 
 _IN_TURN = ["einsum_path", (0, 1), (0, 1)]  # of three factors, without looking for a better order
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from ..arrays import Floats, Numbers
-
-_RIDGE = 1e-13  # relative, keeps the normal matrices of clean data invertible
+from ...arrays import Floats, Numbers
+from .pole_numbers import POLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +66,7 @@ def poles_by_order(
     top = max(orders)
     M = _normal_matrix(frequencies_hz, values, top)
     n = n_input * top
-    ridge = _RIDGE * np.trace(M) / len(M) * np.eye(n)
+    ridge = POLES.ridge * np.trace(M) / len(M) * np.eye(n)
     factor = np.linalg.cholesky(M[n_input:, n_input:] + ridge)
     return tuple(_poles(M, factor, q, n_input, frequencies_hz) for q in orders)
 
@@ -89,7 +88,7 @@ def _normal_matrix(f: Floats, values: Numbers, order: int) -> Floats:
     T = t[:, :, lag].transpose(2, 0, 3, 1).reshape(size, size)
     S = s[:, :, lag].transpose(2, 0, 3, 1).reshape(order + 1, n_output * size)
     R = r[lag]
-    factor = np.linalg.cholesky(R + _RIDGE * R[0, 0] * np.eye(order + 1))
+    factor = np.linalg.cholesky(R + POLES.ridge * R[0, 0] * np.eye(order + 1))
     Y = scipy.linalg.solve_triangular(factor, S, lower=True).reshape(-1, size)
     return np.asarray(T - Y.T @ Y)
 

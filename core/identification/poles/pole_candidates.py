@@ -7,14 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Ints, Numbers
+from ...arrays import Ints, Numbers
+from ..survey.survey_data import Survey
 from .plscf import poles_by_order
-from .stabilisation import Candidate, Chart, stabilise
-from .survey import Survey
-
-_ENOUGH = 8  # complete responses that speak for a band
-_MAX_COLUMNS = 180  # of the denominator, order times inputs
-_SAME = 1.5  # half bandwidths within which candidates of two runs are the same root
+from .pole_numbers import POLES
+from .pole_stabilisation import Candidate, Chart, stabilise
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +58,7 @@ def propose(
             found, _ = _run(survey, block, first, last, n_peaks, max_order)
             spare += _new(found, [*firm, *spare])
         third = (last - first) / 3.0
-        for step in range(5):
+        for step in range(POLES.thirds):
             low = first + 0.5 * step * third
             found, _ = _run(survey, blocks[0], low, low + third, max(3, n_peaks // 2), max_order)
             spare += _new(found, [*firm, *spare])
@@ -90,13 +87,14 @@ def complete_blocks(measured: Numbers) -> list[tuple[Ints, Ints]]:
     for pattern in patterns:
         rows = np.flatnonzero(measured[:, pattern].all(axis=1))
         blocks.append((rows, np.flatnonzero(pattern)))
-    blocks.sort(key=lambda b: (-len(b[1]) * min(len(b[0]), _ENOUGH), -len(b[0])))
+    blocks.sort(key=lambda b: (-len(b[1]) * min(len(b[0]), POLES.responses_enough), -len(b[0])))
     chosen = [blocks[0]]
     seen = np.zeros_like(measured)
     seen[np.ix_(*blocks[0])] = True
     for rows, columns in blocks[1:]:
         inputs_done = seen.any(axis=0).all()
-        outputs_done = np.count_nonzero(seen.any(axis=1)) >= min(n_output, 2 * _ENOUGH)
+        enough = min(n_output, 2 * POLES.responses_enough)
+        outputs_done = np.count_nonzero(seen.any(axis=1)) >= enough
         if inputs_done and outputs_done:
             break
         if not seen[np.ix_(rows, columns)].all():
@@ -117,9 +115,10 @@ def _run(
     lines = survey.lines(first, last)
     f = survey.frequencies_hz[lines]
     n_input = len(columns)
-    top = max_order or int(np.ceil((4 * n_peaks + 16) * 1.2 / n_input)) + 4
-    top = max(2, min(top, _MAX_COLUMNS // n_input, len(f) // 3))
-    if len(f) < 12:
+    wanted = (POLES.order_each * n_peaks + POLES.order_base) * POLES.order_wider / n_input
+    top = max_order or int(np.ceil(wanted)) + POLES.order_more
+    top = max(2, min(top, POLES.columns_most // n_input, len(f) // 3))
+    if len(f) < POLES.lines_least:
         return (), stabilise([], first, last)[1]
     values = survey.values[:, :, lines][rows][:, columns]
     scale = np.sqrt(np.mean(np.abs(values) ** 2, axis=(0, 2)))
@@ -143,7 +142,7 @@ def _new(found: tuple[Candidate, ...], known: list[Candidate]) -> list[Candidate
         gaps = [abs(c.pole - k.pole) for k in free]
         if gaps:
             best = int(np.argmin(gaps))
-            if gaps[best] < _SAME * max(abs(c.pole.real), abs(free[best].pole.real)):
+            if gaps[best] < POLES.candidate_same * max(abs(c.pole.real), abs(free[best].pole.real)):
                 del free[best]
                 continue
         fresh.append(c)

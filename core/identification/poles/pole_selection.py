@@ -6,25 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ...arrays import Floats, Numbers
+from .matched_filters import Traces, traces
 from .moments import BandData, basis, excerpt, parts_of
-from .refinement import Fit, fit_shapes, refine
-from .search import Traces, traces
+from .pole_numbers import POLES
+from .pole_splitting import plausible, split_roots, strength
+from .pole_stabilisation import Candidate
 from .significance import allowance, best_of_noise, residual_lines, significance
-from .splitting import plausible, split_roots, strength
-from .stabilisation import Candidate
-from .starting import complete_participation
-
-_BEYOND_DOUBT = 50.0  # significance above which a root is not tested by refining without it
-_ROUNDS = 12  # of trying a root where the residual still shows one
-_FAILURES = 5  # in a row, after which no more is tried
-_NEIGHBOURS = 8.0  # half bandwidths to either side that a trial root is fitted over
-_LEAST_AROUND = 24  # lines to either side that a trial root is fitted over
-_HOPELESS = 0.1  # significance of a root before any refinement, below which it is not tried
-_PROMISING = 0.6  # significance of a root in a fit of the lines around it, to be tried at all
-_TRIAL_ITERATIONS = 10  # after which a root that explains too little is given up
-_AROUND = 4  # lines around a failed trial that are not tried again
-_BACKGROUND = 2  # roots beside or beneath the modes of a band, which a fit may use
+from .start_values import complete_participation
+from .variable_projection import Fit, fit_shapes, refine
 
 
 def select(
@@ -58,20 +48,20 @@ def select(
         poles = np.append(state.poles, c.pole)
         part = np.column_stack([state.participation, c.participation])
         spare = fit_shapes(data, poles, complete_participation(data, poles, part))
-        if significance(data, f, spare)[-1] > _HOPELESS:
+        if significance(data, f, spare)[-1] > POLES.hopeless:
             state = _try(data, f, state, spare) or state
     left, found = _look(data, f, state)
     failed = 0
-    for _ in range(_ROUNDS):
+    for _ in range(POLES.rounds):
         trace = found.strongest(open_lines)
-        if trace is None or failed == _FAILURES:
+        if trace is None or failed == POLES.failures:
             break
         line, root = trace
         trial = _with_neighbours(data, f, state, left, root)
         grown = None if trial is None else _try(data, f, state, trial)
         if grown is None:
             failed += 1
-            open_lines[max(line - _AROUND, 0) : line + _AROUND + 1] = False
+            open_lines[max(line - POLES.failed_around, 0) : line + POLES.failed_around + 1] = False
         else:
             failed = 0
             state = grown
@@ -89,11 +79,11 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
     while len(fit.poles):
         fit = refine(data, fit.poles, fit.participation)
         value = significance(data, f, fit)
-        if np.count_nonzero(~plausible(f, fit)) > _BACKGROUND:
+        if np.count_nonzero(~plausible(f, fit)) > POLES.background:
             value = value * plausible(f, fit)
         drop = int(np.argmin(value))
         if value[drop] >= 1.0:
-            doubtful = np.flatnonzero((value < _BEYOND_DOUBT) & ~tested)
+            doubtful = np.flatnonzero((value < POLES.beyond_doubt) & ~tested)
             missed = [k for k in doubtful if not _is_missed(data, f, fit, int(k))]
             tested[doubtful] = True
             doubles = split_roots(data, f, fit, value)
@@ -114,11 +104,11 @@ def _is_missed(data: BandData, f: Floats, fit: Fit, k: int) -> bool:
     poles, part = fit.poles, fit.participation
     local, near, lines = _around(data, f, fit, residual_of(data, fit), complex(poles[k]))
     near[k] = True
-    with_it = refine(local, poles[near], part[:, near], max_iterations=_TRIAL_ITERATIONS)
+    with_it = refine(local, poles[near], part[:, near], max_iterations=POLES.trial_steps)
     place = int(np.count_nonzero(near[:k]))
     allowed = allowance(local, f[lines], with_it)[place]
     near[k] = False
-    without = refine(local, poles[near], part[:, near], max_iterations=_TRIAL_ITERATIONS)
+    without = refine(local, poles[near], part[:, near], max_iterations=POLES.trial_steps)
     return bool(without.misfit - with_it.misfit >= allowed)
 
 
@@ -141,14 +131,15 @@ def _around(
     """
     centre = pole.imag
     gap = np.abs(fit.poles.imag - centre)
-    close = gap < _NEIGHBOURS * np.abs(fit.poles.real)
+    close = gap < POLES.neighbours * np.abs(fit.poles.real)
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     widest = max([-pole.real, *(-fit.poles.real[close])])
-    reach = max(_NEIGHBOURS * widest, _LEAST_AROUND * spacing)
+    reach = max(POLES.neighbours * widest, POLES.around_least * spacing)
     near = gap < reach
     first, last = np.searchsorted(2.0 * np.pi * f, [centre - reach, centre + reach])
-    first, last = max(int(last) - _LEAST_AROUND, 0) if last - first < _LEAST_AROUND else first, last
-    lines = slice(int(first), int(max(last, first + _LEAST_AROUND)))
+    if last - first < POLES.around_least:
+        first = max(int(last) - POLES.around_least, 0)
+    lines = slice(int(first), int(max(last, first + POLES.around_least)))
     F = basis(data, fit.poles[near], derivative=False)
     mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
     functions = left + mine @ F.reshape(len(F), -1).T
@@ -157,16 +148,16 @@ def _around(
 
 def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
     """Refine a fit with one root more (the last); None when the data do not ask for it."""
-    grown = refine(data, start.poles, start.participation, max_iterations=_TRIAL_ITERATIONS)
+    grown = refine(data, start.poles, start.participation, max_iterations=POLES.trial_steps)
     if not grown.converged:
-        if significance(data, f, grown)[-1] < 0.8:
+        if significance(data, f, grown)[-1] < POLES.nearly:
             return None
         grown = refine(data, grown.poles, grown.participation)
     value = significance(data, f, grown)
     new = len(grown.poles) - 1
     if value[new] < 1.0 or split_roots(data, f, grown, value)[new]:
         return None
-    if value[new] < _BEYOND_DOUBT and not _is_missed(data, f, grown, new):
+    if value[new] < POLES.beyond_doubt and not _is_missed(data, f, grown, new):
         return None
     grown = prune(data, f, grown)
     freedom = max(data.y.size - data.weight.size, 1)
@@ -189,14 +180,14 @@ def _with_neighbours(
     None when the fit of the lines around it shows nothing but noise.
     """
     centre = root.pole.imag
-    close = np.abs(fit.poles.imag - centre) < _NEIGHBOURS * np.abs(fit.poles.real)
+    close = np.abs(fit.poles.imag - centre) < POLES.neighbours * np.abs(fit.poles.real)
     decays = [-root.pole.real, *(-fit.poles.real[close])]
     local, near, lines = _around(data, f, fit, left, root.pole)
-    best, most = None, _PROMISING
+    best, most = None, POLES.promising
     for decay in (decays[0], float(np.median(decays))):
         poles = np.append(fit.poles[near], complex(-decay, centre))
         part = np.column_stack([fit.participation[:, near], root.participation])
-        trial = refine(local, poles, part, max_iterations=_TRIAL_ITERATIONS)
+        trial = refine(local, poles, part, max_iterations=POLES.trial_steps)
         values = significance(local, f[lines], trial)
         value = 0.0 if split_roots(local, f[lines], trial, values)[-1] else float(values[-1])
         if value > most:

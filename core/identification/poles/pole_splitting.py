@@ -4,21 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ...arrays import Floats, Numbers
 from .moments import BandData
-from .refinement import Fit
+from .pole_numbers import POLES
 from .significance import residual_is_white
-from .stabilisation import MAX_DAMPING
-
-_ONE_SHAPE = 0.95  # MAC above which two close roots have one shape
-_ONE_PARTICIPATION = 0.9  # MAC below which their participations contradict that
-_SATELLITE = 0.2  # of the strength of a root: what a satellite has at most
-_TELLING = 5  # outputs below which shapes tell nothing
-_FAINT = 0.01  # of the strength of a root: what a satellite has at most where shapes are not told
-_SPLIT_WIDTHS = 6.0  # half bandwidths, and
-_SPLIT_LINES = 8.0  # lines within which the roots of a split mode lie
-_TOUCHING = 3.0  # lines, within which two modes of one shape are one
-_WIDEST = 0.3  # of the band: the half-power bandwidth of a mode
+from .variable_projection import Fit
 
 
 def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
@@ -44,17 +34,17 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
     decay, omega = np.abs(fit.poles.real), fit.poles.imag
     gap = np.abs(omega - omega[:, None])
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
-    if len(fit.shapes) < _TELLING:
-        repeats = ratio < _FAINT
+    if len(fit.shapes) < POLES.telling:
+        repeats = ratio < POLES.faint
     else:
         noise = 1.0 / np.maximum(2.0 * value, 1.0)
         attainable = 1.0 / ((1.0 + noise[:, None]) * (1.0 + noise))
-        contradict = _mac(fit.participation) < _ONE_PARTICIPATION * attainable
+        contradict = _mac(fit.participation) < POLES.one_participation * attainable
         white = residual_is_white(data, f, fit)
-        satellite = ~white & (ratio < _SATELLITE)
-        repeats = (ratio < 1.0) & (contradict | satellite | (gap < _TOUCHING * spacing))
-        repeats &= _mac(fit.shapes) > _ONE_SHAPE * attainable
-    reach = _SPLIT_WIDTHS * np.maximum(decay, decay[:, None]) + _SPLIT_LINES * spacing
+        satellite = ~white & (ratio < POLES.satellite)
+        repeats = (ratio < 1.0) & (contradict | satellite | (gap < POLES.touching * spacing))
+        repeats &= _mac(fit.shapes) > POLES.one_shape * attainable
+    reach = POLES.split_widths * np.maximum(decay, decay[:, None]) + POLES.split_lines * spacing
     return np.asarray((repeats & (gap < reach) & mode & mode[:, None]).any(axis=0))
 
 
@@ -78,5 +68,5 @@ def plausible(f: Floats, fit: Fit) -> Numbers:
     magnitude = np.abs(fit.poles)
     hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
     inside = (hz >= f[0]) & (hz <= f[-1])
-    narrow = 2.0 * damping * hz < _WIDEST * (f[-1] - f[0])
-    return np.asarray(inside & (damping < MAX_DAMPING) & narrow)
+    narrow = 2.0 * damping * hz < POLES.widest * (f[-1] - f[0])
+    return np.asarray(inside & (damping < POLES.damping_most) & narrow)

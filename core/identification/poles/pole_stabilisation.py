@@ -8,13 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..arrays import Floats, Ints, Numbers
+from ...arrays import Floats, Ints, Numbers
 from .plscf import PoleSet
-
-MAX_DAMPING = 0.25  # of critical; above it a pole is taken for a description of the background
-_REACH = 1.0  # largest distance between the poles of one track, see `_distance`
-_PATIENCE = 2  # orders that a track may miss
-_MEMBERS = 9  # last members of a track that speak for it
+from .pole_numbers import POLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +78,7 @@ def stabilise(
         for k in range(len(magnitude)):
             hz, zeta = magnitude[k] / (2.0 * np.pi), -s.values[k].real / magnitude[k]
             rows.append((s.order, float(hz), float(zeta), bool(joined[k])))
-    enough = max(4, len(sets) // 4)
+    enough = max(POLES.track_least, len(sets) // POLES.track_least)
     found = [t.candidate() for t in tracks if len(t.poles) >= enough]
     found.sort(key=lambda c: abs(c.pole))
     table = np.array(rows, dtype=float).reshape(-1, 4)
@@ -104,9 +100,9 @@ class _Track:
         self.participations.append(participation)
 
     def candidate(self) -> Candidate:
-        poles = np.array(self.poles[-_MEMBERS:])
+        poles = np.array(self.poles[-POLES.track_members :])
         pole = complex(np.median(poles.real), np.median(poles.imag))
-        w = np.array(self.participations[-_MEMBERS:])
+        w = np.array(self.participations[-POLES.track_members :])
         u, _, _ = np.linalg.svd(w.T, full_matrices=False)
         return Candidate(pole, u[:, 0], len(self.poles))
 
@@ -115,14 +111,14 @@ def _plausible(s: PoleSet, low: float, high: float) -> PoleSet:
     magnitude = np.abs(s.values)
     damping = -s.values.real / magnitude
     hz = magnitude / (2.0 * np.pi)
-    keep = (damping > 0.0) & (damping < MAX_DAMPING) & (hz >= low) & (hz <= high)
+    keep = (damping > 0.0) & (damping < POLES.damping_most) & (hz >= low) & (hz <= high)
     return PoleSet(s.order, s.values[keep], s.participation[keep])
 
 
 def _extend(tracks: list[_Track], s: PoleSet) -> Numbers:
     """Join the poles of one order to the tracks; return which of them continued one."""
     joined = np.zeros(len(s.values), dtype=bool)
-    alive = [t for t in tracks if s.order - t.order <= _PATIENCE]
+    alive = [t for t in tracks if s.order - t.order <= POLES.track_patience]
     if alive and len(s.values):
         distance = _distance(
             np.array([t.poles[-1] for t in alive]),
@@ -130,8 +126,9 @@ def _extend(tracks: list[_Track], s: PoleSet) -> Numbers:
             s.values,
             s.participation,
         )
-        for a, b in zip(*linear_sum_assignment(np.minimum(distance, _REACH)), strict=True):
-            if distance[a, b] < _REACH:
+        pairs = linear_sum_assignment(np.minimum(distance, POLES.track_reach))
+        for a, b in zip(*pairs, strict=True):
+            if distance[a, b] < POLES.track_reach:
                 alive[a].add(s.order, complex(s.values[b]), s.participation[b])
                 joined[b] = True
     for k in np.flatnonzero(~joined):
@@ -146,6 +143,6 @@ def _distance(a: Numbers, wa: Numbers, b: Numbers, wb: Numbers) -> Floats:
     0.3; participations may turn within a pair of equal poles, so they count less.
     """
     width = np.minimum(np.abs(a.real)[:, None], np.abs(b.real)[None, :])
-    apart = np.abs(a[:, None] - b[None, :]) / np.maximum(width, 1e-12)
+    apart = np.abs(a[:, None] - b[None, :]) / np.maximum(width, POLES.width_least)
     mac = np.abs(wa.conj() @ wb.T) ** 2
     return np.asarray(2.0 * apart + 0.5 * (1.0 - mac))

@@ -7,21 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from ..arrays import Floats, Numbers
+from ...arrays import Floats, Numbers
 from .moments import BandData, basis, parts_of, shape_normals
-from .refinement import Fit, solve_shapes
-
-_RISK = 0.01  # that noise alone makes one root somewhere in a band
-_MARGIN = 2.0  # beyond what that risk allows, since noise is never quite white
-_MARGIN_OF_SPIKES = 6.0  # the same for a pole narrower than the lines are apart
-_MARGIN_OF_NEEDLES = 20.0  # and for one much narrower, which noise of a single line may make
-_NEEDLE = 0.3  # lines that those are narrower than
-_DYNAMIC_RANGE = 3e-4  # of the level around: what is weaker is not a mode, however clean the data
-_SEEN = 0.03  # of one function, over the width of a mode: what artefacts make of it
-_WHITE = 2.0  # variance over that of the differences, below which noise is white
-_LEAST_SEEN = 12.0  # lines to either side of a mode over which that is judged
-_LISTENED = 200  # functions enough to tell the colour of the residual
-_PRIOR = 16.0  # numbers that the variance of all functions counts for in that of one
+from .pole_numbers import POLES
+from .variable_projection import Fit, solve_shapes
 
 
 def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
@@ -49,8 +38,8 @@ def significance(data: BandData, f: Floats, fit: Fit) -> Floats:
         by_row = np.einsum("oka,kab,okb->ko", x[rows], np.linalg.inv(own), x[rows])
         lost += np.sum(by_row / variance[:, rows], axis=1)
     width = -fit.poles.real / np.pi / np.median(np.diff(f))
-    margin = np.where(width < 1.0, _MARGIN_OF_SPIKES, _MARGIN)
-    margin = np.where(width < _NEEDLE, _MARGIN_OF_NEEDLES, margin)
+    margin = np.where(width < 1.0, POLES.margin_of_spikes, POLES.margin)
+    margin = np.where(width < POLES.needle, POLES.margin_of_needles, margin)
     explained = lost / (margin * best_of_noise(data, f, len(x)))
     return np.asarray(np.minimum(explained, visibility(data, f, fit, F)))
 
@@ -72,7 +61,7 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
         gap = np.abs(f - hz[k])
         near = gap <= max(half[k], float(gap.min()))
         result[k] = own[near, k].sum() / max(float(energy[near].sum()), 1e-300)
-    return np.asarray(result * (data.weight.sum() / _SEEN) ** 2)
+    return np.asarray(result * (data.weight.sum() / POLES.seen) ** 2)
 
 
 def energy_by_line(data: BandData, fit: Fit, F: Floats) -> Floats:
@@ -100,14 +89,14 @@ def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:
     total = variance.sum(axis=1)
     outputs = total**2 / np.sum(variance**2, axis=1)
     noise = np.array([best_of_noise(data, f, n) for n in outputs])
-    return np.asarray(_MARGIN * noise * total / outputs)
+    return np.asarray(POLES.margin * noise * total / outputs)
 
 
 def best_of_noise(data: BandData, f: Floats, n_output: float) -> float:
     """Return what the best pole fitted to unit noise explains, see `significance`."""
     n_input = data.weight.shape[1]
     freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
-    return float(chi2.isf(_RISK / len(f), freedom))
+    return float(chi2.isf(POLES.risk / len(f), freedom))
 
 
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
@@ -133,17 +122,18 @@ def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     result = np.empty((len(hz), len(data.weight)))
     for k in range(len(hz)):
         mask = np.abs(f - hz[k]) <= half[k]
-        mask[np.argsort(np.abs(f - hz[k]))[:12]] = True
+        mask[np.argsort(np.abs(f - hz[k]))[: POLES.near_least]] = True
         near = np.flatnonzero(mask)
         used = np.count_nonzero(np.abs(hz - hz[k]) <= half[k])
-        spent = max(1.0 - used / len(near) / max(1.0, data.weight.sum(axis=1).mean()), 0.25)
+        share = used / len(near) / max(1.0, data.weight.sum(axis=1).mean())
+        spent = max(1.0 - share, POLES.spent_least)
         here = left[..., np.concatenate([near, near + n_line])]
         squares = np.einsum("oin,oin->oi", here, here) / (2.0 * len(near) * spent)
         mean = squares.sum() / data.weight.sum()
-        squares = (squares * 2.0 * len(near) + _PRIOR * mean) / (2.0 * len(near) + _PRIOR)
+        squares = (squares * 2.0 * len(near) + POLES.prior * mean) / (2.0 * len(near) + POLES.prior)
         part = data.weight * np.abs(fit.participation[:, k]) ** 2
         row = np.sum(part * squares, axis=1) / np.maximum(part.sum(axis=1), 1e-300)
-        floor = _DYNAMIC_RANGE**2 * (power[near].mean() + 0.01 * power.mean())
+        floor = POLES.dynamic_range**2 * (power[near].mean() + POLES.floor * power.mean())
         result[k] = np.maximum(row * inflation[k], max(floor, 1e-300))
     return result
 
@@ -162,7 +152,7 @@ def colour(left: Floats, f: Floats, fit: Fit) -> Floats:
     """
     n_line = len(f)
     functions = left.reshape(-1, 2, n_line)
-    functions = functions[:: max(1, len(functions) // _LISTENED)]
+    functions = functions[:: max(1, len(functions) // POLES.listened)]
     over_time = np.fft.ifft(functions[:, 0] + 1j * functions[:, 1], axis=1)
     energy = np.sum(np.abs(over_time) ** 2, axis=0)
     mean = float(energy.mean())
@@ -201,7 +191,7 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
     The variance of white noise equals that of its fourth difference over 70. What a faulty model
     leaves, and the noise of windowed records, changes slowly from line to line.
     """
-    some = slice(None, None, max(1, int(data.weight.sum()) // _LISTENED))
+    some = slice(None, None, max(1, int(data.weight.sum()) // POLES.listened))
     heard = replace(data, y=data.y[some], weight=data.weight[some])
     fitted = replace(fit, shapes=fit.shapes[some])
     left = residual_lines(heard, fitted, basis(heard, fit.poles, derivative=False))
@@ -210,7 +200,7 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
     square = np.sum(np.abs(functions) ** 2, axis=0)
     rough = np.sum(np.abs(np.diff(functions, n=4, axis=1)) ** 2, axis=0) / 70.0
     spacing = float(np.median(np.diff(f)))
-    half = np.maximum(2.0 * np.abs(fit.poles.real) / np.pi, _LEAST_SEEN * spacing)
+    half = np.maximum(2.0 * np.abs(fit.poles.real) / np.pi, POLES.seen_least * spacing)
     centre = np.clip(np.abs(fit.poles) / (2.0 * np.pi), f[0], f[-1])
     near = np.abs(f[:, None] - centre) <= half
     count = near.sum(axis=0)
@@ -227,4 +217,4 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
 
 def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
     """Tell for each mode whether the residual around it is about noise without memory."""
-    return np.asarray(memory_of_residual(data, f, fit).ratio < _WHITE)
+    return np.asarray(memory_of_residual(data, f, fit).ratio < POLES.white)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Numbers
+from ...arrays import Numbers
 from .moments import BandData
-from .refinement import Fit, fit_shapes
-from .stabilisation import Candidate
+from .pole_numbers import POLES
+from .pole_stabilisation import Candidate
+from .variable_projection import Fit, fit_shapes
 
 
 def start_from(data: BandData, candidates: tuple[Candidate, ...]) -> Fit:
@@ -40,7 +41,7 @@ def complete_participation(data: BandData, poles: Numbers, part: Numbers) -> Num
         residues[rows, i] = fit_shapes(one, poles, np.ones((1, len(poles)), complex)).shapes
     part = np.where(unknown, 0.0, part)
     W = data.weight[:, :, None]
-    for _ in range(10):
+    for _ in range(POLES.start_rounds):
         weight = np.sum(W * np.abs(part) ** 2, axis=1)
         shape = np.sum(W * part.conj() * residues, axis=1) / np.maximum(weight, 1e-300)
         power = np.sum(W * np.abs(shape[:, None]) ** 2, axis=0)

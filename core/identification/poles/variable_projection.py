@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ...arrays import Floats, Numbers
 from .moments import (
     BandData,
     Normal,
@@ -17,12 +17,7 @@ from .moments import (
     shape_normals,
     turned,
 )
-
-_RIDGE = 1e-12  # relative, on the normal matrices of the shapes
-_STUCK = 1e8  # of the damping of the iteration: no step helps any more
-_FACTOR = 1.5  # largest change of the logarithm of a decay rate in one step
-_LEAST_DAMPING = 1e-6
-_SMALL = 1e-3  # decrease of the misfit, over its mean per number, that ends the iteration
+from .pole_numbers import POLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +56,7 @@ def refine(
     poles: Numbers,
     participation: Numbers,
     free: Numbers | None = None,
-    max_iterations: int = 40,
+    max_iterations: int = POLES.fit_steps,
 ) -> Fit:
     """Minimise the output error over poles and participation, the shapes being projected out.
 
@@ -93,8 +88,8 @@ def refine(
     """
     moving = np.ones(len(poles), bool) if free is None else np.asarray(free)
     fit, projections = _with_shapes(data, poles, participation)
-    mu, count, converged = 1e-4, 0, not moving.any()
-    floor = 1e-14 * data.power
+    mu, count, converged = POLES.damping_first, 0, not moving.any()
+    floor = POLES.misfit_least * data.power
     while count < max_iterations and not converged:
         count += 1
         columns = free_columns(fit.participation, moving)
@@ -106,15 +101,15 @@ def refine(
             step = np.zeros(2 * len(poles) * (1 + len(participation)))
             step[columns] = np.linalg.solve(S + mu * np.eye(len(S)), gradient / scale) / scale
             trial, of_trial = _moved(data, fit, step)
-            if trial.misfit <= fit.misfit + floor or mu > _STUCK:
+            if trial.misfit <= fit.misfit + floor or mu > POLES.damping_stuck:
                 break
-            mu *= 10.0
-        if mu > _STUCK:
+            mu *= POLES.damping_factor
+        if mu > POLES.damping_stuck:
             converged = True
             break
         decrease = fit.misfit - trial.misfit
-        converged = decrease <= _SMALL * trial.misfit / data.y.size + floor
-        fit, projections, mu = trial, of_trial, max(mu / 10.0, 1e-9)
+        converged = decrease <= POLES.converged * trial.misfit / data.y.size + floor
+        fit, projections, mu = trial, of_trial, max(mu / POLES.damping_factor, POLES.damping_least)
     return Fit(fit.poles, fit.participation, fit.shapes, fit.misfit, count, bool(converged))
 
 
@@ -173,9 +168,9 @@ def solve_shapes(N: Floats, right: Floats) -> Floats:
         for a mode.
     """
     diagonal = np.diagonal(N, axis1=-2, axis2=-1)
-    floor = 1e-12 * diagonal.max(initial=0.0) + 1e-300
+    floor = POLES.shape_ridge * diagonal.max(initial=0.0) + 1e-300
     scale = 1.0 / np.sqrt(np.maximum(diagonal, floor))
-    scaled = N * scale[..., :, None] * scale[..., None, :] + _RIDGE * np.eye(N.shape[-1])
+    scaled = N * scale[..., :, None] * scale[..., None, :] + POLES.shape_ridge * np.eye(N.shape[-1])
     x = np.linalg.solve(scaled, right * scale[..., :, None])
     return np.asarray(x * scale[..., :, None])
 
@@ -220,8 +215,8 @@ def _moved(data: BandData, fit: Fit, step: Floats) -> tuple[Fit, Floats]:
     pole = step[: 2 * m].reshape(m, 2)
     part = step[2 * m :].reshape(m, 2, -1)
     decay, omega = -fit.poles.real, fit.poles.imag
-    reach = 2.0 * decay + 1e-3 * omega
-    decay = decay * np.exp(np.clip(-pole[:, 0] / decay, -_FACTOR, _FACTOR))
+    reach = 2.0 * decay + POLES.frequency_step * omega
+    decay = decay * np.exp(np.clip(-pole[:, 0] / decay, -POLES.decay_step, POLES.decay_step))
     omega = np.maximum(omega + np.clip(pole[:, 1], -reach, reach), 0.5 * omega)
-    poles = -np.maximum(decay, _LEAST_DAMPING * omega) + 1j * omega
+    poles = -np.maximum(decay, POLES.ratio_least * omega) + 1j * omega
     return _with_shapes(data, poles, fit.participation + (part[:, 0] + 1j * part[:, 1]).T)

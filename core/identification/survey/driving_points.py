@@ -8,15 +8,10 @@ from itertools import permutations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..arrays import Floats, Ints, Numbers
-from ..dofs import Dofs
-from ..geometry import Geometry
-
-_MISALIGNED = 0.03  # largest part of a reference direction that the responses do not span
-_IN_PHASE = np.cos(np.radians(45.0))
-_UNRECIPROCAL = 0.3  # relative difference of H_ij and H_ji above which scaling is withheld
-_MOST_PERMUTED = 6
-_COINCIDENT = 1e-6  # of the size of the geometry: nodes this close are one point
+from ...arrays import Floats, Ints, Numbers
+from ...data.dofs import Dofs
+from ...data.geometry import Geometry
+from .survey_numbers import SURVEY
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +53,8 @@ def driving_points(outputs: Dofs, inputs: Dofs, geometry: Geometry | None = None
         if not len(rows):
             continue
         axes = outputs.axis[rows].T
-        c = np.linalg.lstsq(axes, inputs.axis[i], rcond=1e-6)[0]
-        if np.linalg.norm(axes @ c - inputs.axis[i]) <= _MISALIGNED:
+        c = np.linalg.lstsq(axes, inputs.axis[i], rcond=SURVEY.spanned)[0]
+        if np.linalg.norm(axes @ c - inputs.axis[i]) <= SURVEY.misaligned:
             factors[i] = 0.0
             factors[i, rows] = c
     return factors
@@ -71,7 +66,7 @@ def _points(dofs: Dofs, geometry: Geometry | None) -> Ints:
         return dofs.node
     rows = geometry.index_of(dofs.node)
     tree = cKDTree(geometry.xyz)
-    reach = _COINCIDENT * max(geometry.size, 1e-300)
+    reach = SURVEY.coincident * max(geometry.size, 1e-300)
     number = dofs.node.copy()
     for k in np.flatnonzero(rows >= 0):
         number[k] = geometry.ids[tree.query_ball_point(geometry.xyz[rows[k]], reach)].min()
@@ -118,13 +113,13 @@ def scale(
             f"references {names} seem to stand under each other's name: reciprocity fails "
             f"as they are ({100 * now:.0f} % difference) and holds when they are exchanged "
             f"({100 * then:.0f} %); modal masses are withheld",))  # fmt: skip
-    if now > _UNRECIPROCAL:
+    if now > SURVEY.unreciprocal:
         return Scaling(none, (f"the functions between the driving points differ by {100 * now:.0f} "
                               "% from their reciprocal: modal masses are withheld",))  # fmt: skip
     q = np.sum(at.conj() * part, axis=0) / np.maximum(np.sum(np.abs(at) ** 2, axis=0), 1e-300)
     inverse_mass = 2j * poles.imag * q
-    sound = inverse_mass.real > _IN_PHASE * np.abs(inverse_mass)
-    reversed_sign = inverse_mass.real < -_IN_PHASE * np.abs(inverse_mass)
+    in_phase = np.cos(np.radians(SURVEY.in_phase_deg)) * np.abs(inverse_mass)
+    sound, reversed_sign = inverse_mass.real > in_phase, inverse_mass.real < -in_phase
     warnings = []
     if np.count_nonzero(reversed_sign) > 0.5 * n_mode:
         warnings.append("the driving-point functions have the wrong sign (force or response "
@@ -141,7 +136,7 @@ def _exchange(at: Numbers, part: Numbers, level: Floats) -> tuple[list[int], flo
     n = len(at)
     identity = tuple(range(n))
     now = _reciprocity_error(at, part, level)
-    if n < 2 or n > _MOST_PERMUTED:
+    if n < 2 or n > SURVEY.permuted_most:
         return [], now, now
     best, then = identity, now
     for order in permutations(range(n)):
@@ -149,7 +144,7 @@ def _exchange(at: Numbers, part: Numbers, level: Floats) -> tuple[list[int], flo
         if error < then:
             best, then = order, error
     moved = [k for k in range(n) if best[k] != k]
-    if now > _UNRECIPROCAL and then < 0.25 * now:
+    if now > SURVEY.unreciprocal and then < SURVEY.exchanged * now:
         return moved, now, then
     return [], now, now
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
-from ..errors import InputError
-from ..frfs import QUANTITIES
+from ...arrays import Floats, Numbers
+from ...data.frfs import QUANTITIES
+from ...errors import InputError
 
 
 def derivative_order(quantity: str) -> int:

@@ -8,14 +8,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.signal import find_peaks, peak_widths
 
-from ..arrays import Floats, Ints, Numbers
-
-MAX_PEAKS = 10  # in one band
-_MAX_LINES = 2000  # in the core of one band
-_MIN_LINES = 96  # a band is not split below twice this, or
-_MIN_WIDTHS = 12.0  # this many half-power bandwidths of its modes
-_MARGIN = 0.25  # of the core's width, on either side
-_PROMINENCE_DB = 1.0
+from ...arrays import Floats, Ints, Numbers
+from .survey_numbers import SURVEY
 
 
 @dataclass(frozen=True)
@@ -67,7 +61,7 @@ def peaks(indicator: Floats, floor: float) -> Ints:
     """
     found = []
     for column in np.maximum(indicator.T, 1e-300):
-        lines, _ = find_peaks(20.0 * np.log10(column), prominence=_PROMINENCE_DB)
+        lines, _ = find_peaks(20.0 * np.log10(column), prominence=SURVEY.prominence_db)
         out_of_noise, _ = find_peaks(column, height=2.0 * floor, prominence=floor)
         found.append(np.intersect1d(lines, out_of_noise))
     return np.sort(np.concatenate(found)) if found else np.empty(0, np.int64)
@@ -91,7 +85,8 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
     f = frequencies_hz
     bands = []
     for a, b in pairwise(edges):
-        margin = max(_MARGIN * (f[b] - f[a]), f[min(a + 8, len(f) - 1)] - f[a])
+        some = f[min(a + SURVEY.margin_lines, len(f) - 1)] - f[a]
+        margin = max(SURVEY.margin * (f[b] - f[a]), some)
         first, last = max(f[a] - margin, f[0]), min(f[b] + margin, f[-1])
         bands.append(Band(float(f[a]), float(f[b]), float(first), float(last)))
     return tuple(bands)
@@ -112,10 +107,11 @@ def _widths(indicator: Floats, lines: Ints) -> Floats:
 def _cuts(valley: Floats, lines: Ints, widths: Floats, a: int, b: int) -> list[int]:
     here = (lines > a) & (lines < b)
     inside = lines[here]
-    least = max(_MIN_LINES, int(_MIN_WIDTHS * np.median(widths[here])) if len(inside) else 0)
+    wide = int(SURVEY.core_widths * np.median(widths[here])) if len(inside) else 0
+    least = max(SURVEY.core_least, wide)
     low, high = a + least, b - least
-    few = len(inside) <= MAX_PEAKS
-    if (few and b - a <= _MAX_LINES) or low >= high:
+    few = len(inside) <= SURVEY.peaks_most
+    if (few and b - a <= SURVEY.core_most) or low >= high:
         return []
     if few:
         low, high = a + (b - a) // 3, b - (b - a) // 3

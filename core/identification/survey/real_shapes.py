@@ -4,15 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Numbers
-from ..clusters import clusters_by_bandwidth
-
-_PAIR_WIDTH = 0.01  # frequencies closer than this are a subspace
-KNOWN = 0.3
-"""Relative standard error of a component that a shape may be scaled by."""
-
-_DOUBTFUL = 4.0  # standard error over the median one's, above which a component is not known
-_PARALLEL = 0.4  # ratio of singular values below which real shapes of a pair are nearly one
+from ...arrays import Bools, Floats, Numbers
+from ...correlation.mode_clusters import clusters_by_bandwidth
+from .survey_numbers import SURVEY
 
 
 def known_components(shapes: Numbers, covariance: Floats) -> Bools:
@@ -31,8 +25,8 @@ def known_components(shapes: Numbers, covariance: Floats) -> Bools:
     (n_output, n_mode) bool
     """
     variance = np.trace(covariance, axis1=2, axis2=3)
-    as_others = variance <= _DOUBTFUL**2 * np.median(variance, axis=0)
-    return np.asarray(as_others | (variance <= KNOWN**2 * np.abs(shapes) ** 2))
+    as_others = variance <= SURVEY.doubtful**2 * np.median(variance, axis=0)
+    return np.asarray(as_others | (variance <= SURVEY.known**2 * np.abs(shapes) ** 2))
 
 
 def turned_to_principal_phase(shapes: Numbers, known: Bools) -> Numbers:
@@ -69,7 +63,7 @@ def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats, known: 
     (n_output, n_mode) float
     """
     real = np.array(shapes.real)
-    for group in clusters_by_bandwidth(frequencies_hz, _PAIR_WIDTH):
+    for group in clusters_by_bandwidth(frequencies_hz, SURVEY.pair_width):
         columns = list(group)
         if len(columns) < 2 or len(shapes) <= len(columns):
             continue
@@ -82,6 +76,6 @@ def real_shapes(frequencies_hz: Floats, shapes: Numbers, weight: Floats, known: 
         _, sigma, v = np.linalg.svd(parts[rows], full_matrices=False)
         basis = parts @ (v[: len(columns)].T / sigma[: len(columns)])
         w, s, vt = np.linalg.svd(basis[rows].T @ parts[rows, : len(columns)])
-        if s[-1] < _PARALLEL * s[0]:
+        if s[-1] < SURVEY.parallel * s[0]:
             real[:, columns] = (basis @ (w @ vt)) * size / weight[:, None]
     return real

@@ -6,17 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
-from ..dofs import Dofs
-from ..errors import InputError
-from ..frfs import Frfs
-from .synthesis import derivative_order
+from ...arrays import Floats, Numbers
+from ...data.dofs import Dofs
+from ...data.frfs import Frfs
+from ...errors import InputError
+from .modal_synthesis import derivative_order
+from .survey_numbers import SURVEY
 
-MIN_LINES = 16
-_MODEL_ERROR = 0.01  # relative error that a response is assumed to have besides its noise
-_TOO_SMOOTH = 1e-5  # noise over rms below which functions were computed, not measured
 _OF_MANY = {"is": "are", "has": "have", "holds": "hold"}
-_NOISE_ONLY = 0.7  # noise over rms above which a response holds nothing else
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,14 +80,15 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     responses, references = frfs.responses, frfs.references
     measured = _measured(values, responses, references, name, warnings)
     noise, rms = _noise_and_size(values, measured)
-    quiet = measured & (noise > _NOISE_ONLY * rms)
-    _name_functions(quiet, "holds nothing but noise", responses, references, name, warnings)
+    quiet = measured & (noise > SURVEY.noise_only * rms)
+    what = "holds", "nothing but noise"
+    _name_functions(quiet, what, responses, references, name, warnings)
     measured &= ~quiet
     if not measured.any():
         reason = f": {warnings[-1]}" if warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
     smooth = float(np.median(noise[measured] / np.maximum(rms[measured], 1e-300)))
-    if smooth < _TOO_SMOOTH:
+    if smooth < SURVEY.too_smooth:
         warnings.append(
             f"{name}: the functions are smooth to {smooth:.0e} of their size, as measured ones "
             "are not: they seem computed from an earlier identification, whose own errors the "
@@ -162,11 +160,11 @@ def _axis(frfs: Frfs, fmin: float | None, fmax: float | None, name: str) -> tupl
     if low >= high:
         raise InputError(f"the band asked for, {low:g} to {high:g} Hz, is empty")
     keep = (f >= low) & (f <= high) & (f > 0.0)
-    if np.count_nonzero(keep) < MIN_LINES:
+    if np.count_nonzero(keep) < SURVEY.lines_least:
         where = f" between {low:g} and {high:g} Hz" if fmin is not None or fmax is not None else ""
         raise InputError(
             f"{name} has {np.count_nonzero(keep)} frequency line(s){where}; "
-            f"identification needs {MIN_LINES}"
+            f"identification needs {SURVEY.lines_least}"
         )
     return np.asarray(f[keep]), keep
 
@@ -182,27 +180,35 @@ def _measured(
     with np.errstate(invalid="ignore"):
         constant = measured & ~gaps & (np.abs(values - values[:, :, :1]).max(axis=2) == 0.0)
         real = measured & ~gaps & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
-        unit = real & (values.real.min(axis=2) >= 0.0) & (values.real.max(axis=2) <= 1.0 + 1e-6)
-    for bad, what in (
-        (gaps, "has lines without a finite value"),
-        (constant, "is the same at every line (a dead channel)"),
-        (unit, "is real and between 0 and 1 (a coherence, not a frequency response)"),
-        (real & ~unit, "is real (a spectrum or a time record, not a frequency response)"),
+        low, high = values.real.min(axis=2), values.real.max(axis=2)
+        unit = real & (low >= 0.0) & (high <= 1.0 + SURVEY.coherence_most)
+    for bad, verb, rest in (
+        (gaps, "has", "lines without a finite value"),
+        (constant, "is", "the same at every line (a dead channel)"),
+        (unit, "is", "real and between 0 and 1 (a coherence, not a frequency response)"),
+        (real & ~unit, "is", "real (a spectrum or a time record, not a frequency response)"),
     ):
-        _name_functions(bad, what, responses, references, name, warnings)
+        _name_functions(bad, (verb, rest), responses, references, name, warnings)
     return np.asarray(measured & ~gaps & ~constant & ~real)
 
 
 def _name_functions(
-    bad: Numbers, what: str, responses: Dofs, references: Dofs, name: str, warnings: list[str]
+    bad: Numbers,
+    what: tuple[str, str],
+    responses: Dofs,
+    references: Dofs,
+    name: str,
+    warnings: list[str],
 ) -> None:
     rows, columns = np.nonzero(bad)
     if not len(rows):
         return
     o, i = responses.labels, references.labels
-    shown = ", ".join(f"{o[a]}/{i[b]}" for a, b in list(zip(rows, columns, strict=True))[:5])
-    more = f" and {len(rows) - 5} more" if len(rows) > 5 else ""
-    verb, rest = what.split(" ", 1)
+    some = list(zip(rows, columns, strict=True))[: SURVEY.named]
+    shown = ", ".join(f"{o[a]}/{i[b]}" for a, b in some)
+    left = len(rows) - SURVEY.named
+    more = f" and {left} more" if left > 0 else ""
+    verb, rest = what
     verb = _OF_MANY[verb] if len(rows) > 1 else verb
     warnings.append(f"{name}: {shown}{more} {verb} {rest}: left out")
 
@@ -235,10 +241,11 @@ def _one_component(
             best = out_set, in_set
     lost = rows & ~best[0]
     if lost.any():
-        labels = ", ".join(responses.take(np.flatnonzero(lost)).labels[:5])
+        labels = ", ".join(responses.take(np.flatnonzero(lost)).labels[: SURVEY.named])
+        more = ", ..." if lost.sum() > SURVEY.named else ""
         kept = ", ".join(references.take(np.flatnonzero(best[1])).labels)
         warnings.append(
-            f"{np.count_nonzero(lost)} response(s) ({labels}{', ...' if lost.sum() > 5 else ''}) "
+            f"{np.count_nonzero(lost)} response(s) ({labels}{more}) "
             f"share no reference with the others ({kept}): "
             "their scale is unknown, left out"
         )
@@ -248,11 +255,11 @@ def _one_component(
 def _weights(measured: Numbers, noise: Floats, rms: Floats) -> tuple[Floats, Floats]:
     """One over the noise of each function, as a product of output and input weights."""
     with np.errstate(divide="ignore"):
-        level = np.log(np.hypot(noise, _MODEL_ERROR * rms))
+        level = np.log(np.hypot(noise, SURVEY.model_error * rms))
     level[~measured] = np.nan
     of_input = np.zeros(level.shape[1])
     of_output = np.zeros(level.shape[0])
-    for _ in range(5):
+    for _ in range(SURVEY.level_rounds):
         of_output = np.nanmedian(level - of_input, axis=1)
         of_input = np.nanmedian(level - of_output[:, None], axis=0)
     return np.exp(-of_output), np.exp(-of_input)

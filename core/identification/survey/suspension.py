@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
-from ..dofs import Dofs
-from ..geometry import Geometry
-
-RIGID = 0.95
-"""Share of a shape in the rigid-body motions from which it is called one of them."""
-
-_ENOUGH = 2  # sensors per rigid-body motion, below which shapes cannot be told from them
+from ...arrays import Floats
+from ...data.dofs import Dofs
+from ...data.geometry import Geometry
+from .survey_numbers import SURVEY
 
 
 def rigid_share(shapes: Floats, dofs: Dofs, geometry: Geometry | None) -> Floats:
@@ -41,8 +37,8 @@ def rigid_share(shapes: Floats, dofs: Dofs, geometry: Geometry | None) -> Floats
         return unknown
     arm = (xyz - xyz.mean(axis=0)) / max(float(np.ptp(xyz, axis=0).max()), 1e-300)
     u, s, _ = np.linalg.svd(np.hstack([axis, np.cross(arm, axis)]), full_matrices=False)
-    motions = u[:, s > 1e-3 * s[0]]
-    if len(xyz) < _ENOUGH * motions.shape[1]:
+    motions = u[:, s > SURVEY.rigid_spanned * s[0]]
+    if len(xyz) < SURVEY.rigid_sensors * motions.shape[1]:
         return unknown
     measured = shapes[known]
     total = np.maximum(np.sum(measured**2, axis=0), 1e-300)

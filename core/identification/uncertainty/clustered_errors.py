@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats
-from .moments import BandData, turned
-from .refinement import Fit
-from .significance import residual_lines
-
-_ENOUGH = 8  # responses whose scatter tells the error of their mean
-_DISAGREE = 9.0  # variance between references over the noise's, above which they disagree
+from ...arrays import Floats
+from ..poles.moments import BandData, turned
+from ..poles.significance import residual_lines
+from ..poles.variable_projection import Fit
+from .uncertainty_numbers import UNCERTAINTY
 
 
 def widened(
@@ -53,10 +51,10 @@ def widened(
         rest[:, i, :, :, i] += of_part[:, i]
     change = score @ inverse[:, : 2 * m]
     result = poles
-    if n_output >= _ENOUGH:
+    if n_output >= UNCERTAINTY.enough:
         result = _larger(result, change.sum(axis=1), m, 1.0)
     if n_input > 1:
-        result = _larger(result, change.sum(axis=0), m, _DISAGREE)
+        result = _larger(result, change.sum(axis=0), m, UNCERTAINTY.disagree)
     return result
 
 

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
-from .moments import BandData, basis
-from .refinement import Fit
-from .significance import energy_by_line, memory_of_residual
-
-CHAIN = 1e-3
-"""Relative error over the width of a mode that the best measuring chain has.
-
-Of the decay rate for poles, of the largest component for shapes. Functions may be cleaner than
-that (computed ones are); what is measured is not known better.
-"""
-_WINDOW = 1.0 / 3.0  # variance of a Hann window's kernel, squared lines: (1, 4, 1)/6
-_MEMORY = 1.1  # of the residual, above which it is not the noise of single lines
-_SURE = 3.0  # standard deviations beyond that
-_MANY = 8.0  # lines across the half-power band, above which a window hardly matters
+from ...arrays import Floats, Numbers
+from ..poles.moments import BandData, basis
+from ..poles.significance import energy_by_line, memory_of_residual
+from ..poles.variable_projection import Fit
+from .uncertainty_numbers import UNCERTAINTY
 
 
 def pole_errors(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Numbers]:
@@ -40,12 +30,12 @@ def pole_errors(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Numbers]:
     memory = memory_of_residual(data, f, fit)
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     decay = np.abs(fit.poles.real)
-    wrong = memory.ratio > _MEMORY + _SURE * memory.scatter
-    blurred = wrong & (2.0 * decay < _MANY * spacing)
-    blur = np.where(blurred, np.minimum(_WINDOW * spacing**2 / decay, decay), 0.0)
+    wrong = memory.ratio > UNCERTAINTY.memory + UNCERTAINTY.sure * memory.scatter
+    blurred = wrong & (2.0 * decay < UNCERTAINTY.many * spacing)
+    blur = np.where(blurred, np.minimum(UNCERTAINTY.window * spacing**2 / decay, decay), 0.0)
     slope = energy_by_line(data, fit, basis(data, fit.poles)[:, 1])
     moved = memory.systematic / np.maximum(np.sum(slope * memory.near, axis=0), 1e-300)
-    common = (CHAIN * decay) ** 2 + np.where(wrong, np.minimum(moved, decay**2), 0.0)
+    common = (UNCERTAINTY.chain * decay) ** 2 + np.where(wrong, np.minimum(moved, decay**2), 0.0)
     covariance = common[:, None, None] * np.eye(2)
     covariance[:, 0, 0] += blur**2
     return covariance, np.asarray(blurred)

@@ -8,15 +8,12 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-from ..arrays import Floats, Ints, Numbers
-from .clustered import widened
-from .moments import BandData, Normal, normal, turned
-from .refinement import Fit, free_columns, solve_shapes, system_at
-from .significance import residual_lines
-
-_SMOOTHED = 7  # lines over which the noise level is averaged
-_MOST_LAGS = 24
-_LEAST_LEFT = 0.05  # of a line's freedom, below which its residual says nothing
+from ...arrays import Floats, Ints, Numbers
+from ..poles.moments import BandData, Normal, normal, turned
+from ..poles.significance import residual_lines
+from ..poles.variable_projection import Fit, free_columns, solve_shapes, system_at
+from .clustered_errors import widened
+from .uncertainty_numbers import UNCERTAINTY
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +77,8 @@ def _noisy(data: BandData, fit: Fit, n: Normal, F: Floats, n_theta: int) -> Norm
     """
     n_line = len(data.s)
     left = residual_lines(data, fit, F)
-    free = 1.0 - np.minimum(_leverage(data, fit, n, F), 1.0 - _LEAST_LEFT)
-    free *= max(1.0 - n_theta / (data.weight.sum() * free.sum()), _LEAST_LEFT)
+    free = 1.0 - np.minimum(_leverage(data, fit, n, F), 1.0 - UNCERTAINTY.least_left)
+    free *= max(1.0 - n_theta / (data.weight.sum() * free.sum()), UNCERTAINTY.least_left)
     both = free[:n_line] + free[n_line:]
     level = _level(data, left, both)
     variances = [
@@ -133,12 +130,12 @@ def _level(data: BandData, left: Floats, free: Floats) -> Floats:
     typical = design.sum(axis=1, keepdims=True)
     coefficients, _ = scipy.optimize.nnls(design / typical, residual / scale / typical[:, 0])
     even, following = coefficients
-    model = even + following * design[:, 1] / free + 1e-12
+    model = even + following * design[:, 1] / free + UNCERTAINTY.level_ridge
     ratio = residual / scale / free / model
-    width = min(_SMOOTHED, n_line)
+    width = min(UNCERTAINTY.smoothed, n_line)
     window = np.ones(width)
     smooth = np.convolve(ratio, window, "same") / np.convolve(np.ones(n_line), window, "same")
-    return np.asarray(scale * model * np.maximum(smooth, 1e-6))
+    return np.asarray(scale * model * np.maximum(smooth, UNCERTAINTY.least_level))
 
 
 def _leverage(data: BandData, fit: Fit, n: Normal, F: Floats) -> Floats:
@@ -165,9 +162,9 @@ def _correlation(left: Floats, level: Floats, variances: list[Floats], parts: li
         white[..., part] /= scale[:, :, None, None]
     power = max(float(np.sum(white**2)), 1e-300)
     rho = [1.0]
-    for lag in range(1, min(_MOST_LAGS, n_line // 4)):
+    for lag in range(1, min(UNCERTAINTY.lags, n_line // UNCERTAINTY.lags_share)):
         value = float(np.sum(white[..., lag:] * white[..., :-lag])) / power
-        if value < max(3.0 / np.sqrt(white.size), 0.02):
+        if value < max(UNCERTAINTY.noticed / np.sqrt(white.size), UNCERTAINTY.correlated):
             break
         rho.append(value)
     taper = 1.0 - np.arange(len(rho)) / (len(rho) + 1.0)
@@ -218,7 +215,7 @@ def _inverse(S: Floats) -> Floats:
     """Inverse of a symmetric matrix, scaled; directions without information get a large one."""
     scale = 1.0 / np.sqrt(np.maximum(np.diag(S), 1e-300))
     value, vector = scipy.linalg.eigh(S * np.outer(scale, scale))
-    value = np.maximum(value, 1e-10)
+    value = np.maximum(value, UNCERTAINTY.least_curvature)
     return np.asarray((vector / value) @ vector.T * np.outer(scale, scale))
 
 

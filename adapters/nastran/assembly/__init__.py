@@ -1,0 +1,1 @@
+"""A neutral model made of a deck."""

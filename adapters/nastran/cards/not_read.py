@@ -1,0 +1,90 @@
+"""Cards that are known and not read: left out with a reason, or refused with one."""
+
+from __future__ import annotations
+
+from ..deck.card_definition import Card
+from ..deck.movable_values import Moves
+
+_IGNORED = {
+    "loads do not enter normal modes": "FORCE FORCE1 FORCE2 MOMENT MOMENT1 MOMENT2 PLOAD PLOAD1 "
+    "PLOAD2 PLOAD4 PLOADX1 LOAD GRAV RFORCE RFORCE1 ACCEL ACCEL1 SLOAD SPCD SPCR LSEQ DLOAD TLOAD1 "
+    "TLOAD2 RLOAD1 RLOAD2 DAREA DELAY DPHASE TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPF TIC DEFORM QVOL "
+    "LOADCYN LOADCYH CLOAD ACSRCE BOLTFOR BOLTLD",
+    "it belongs to response analyses": "FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 TSTEP TSTEP1 TSTEPNL "
+    "TABLED1 TABLED2 TABLED3 TABLED4 TABDMP1 TABRND1 TABRNDG TABLES1 TABLEST RANDPS RANDT1 NLPARM "
+    "NLPCI NLCNTL NLCNTL2 EIGC EIGB EIGP EPOINT TF NOLIN1 NOLIN2 NOLIN3 NOLIN4 RCROSS RSPINR "
+    "RSPINT ROTORG ROTORD UNBALNC SDAMP HYBDAMP DTEMP",
+    "damping does not enter normal modes": "CDAMP5 PDAMP5 CVISC2 PDAMPT PELAST PBUSHT TABDMP2",
+    "it belongs to heat transfer": "MAT4 MAT5 MATT4 MATT5 CHBDYE CHBDYG CHBDYP PHBDY CONV CONVM "
+    "PCONV PCONVM QBDY1 QBDY2 QBDY3 QHBDY QVECT RADBC RADM RADMT RADSET RADCAV RADLST VIEW VIEW3D "
+    "TEMPBC",
+    "it belongs to nonlinear analyses": "MATS1 MATS3 MATS8 CREEP MATHP MATEP MATF MATVE "
+    "TABLEH1 TABLEHT BCPARA BCTPARM BCTPARA BCONPRG BCONPRP",
+    "it belongs to optimisation": "DESVAR DVPREL1 DVPREL2 DVMREL1 DVMREL2 DVCREL1 DVCREL2 DVGRID "
+    "DVSHAP DVBSHAP DRESP1 DRESP2 DRESP3 DCONSTR DCONADD DDVAL DLINK DOPTPRM DSCREEN DTABLE DEQATN "
+    "DTABLE2 TOPVAR BEADVAR DVTREL1 DMNCON GROUP MODTRAK BNDGRID DVLREL1",
+    "it belongs to aerodynamics": "CAERO1 CAERO2 CAERO3 CAERO4 CAERO5 PAERO1 PAERO2 PAERO3 PAERO4 "
+    "PAERO5 SPLINE1 SPLINE2 SPLINE3 SPLINE4 SPLINE5 SPLINE6 SPLINE7 AERO AEROS AESTAT AESURF "
+    "AESURFS AELINK AELIST AEPARM AEFACT AECOMP AECOMPL AEPRESS AEFORCE TRIM TRIM2 DIVERG FLUTTER "
+    "FLFACT MKAERO1 MKAERO2 GUST CSSCHD MONPNT1 MONPNT2 MONPNT3 MONDSP1",
+    "it is for drawing, output or control only": "PLOTEL PLOTEL3 PLOTEL4 PLOTEL6 PLOTEL8 PLOTHEX "
+    "PLOTPEN PLOTPYR PLOTTET SET1 SET2 SET3 MDLPRM ECHOON ECHOOFF SEQGP CBARAO USET USET1 PANEL "
+    "CYSYM GMCURV GMSURF FEEDGE FEFACE OUTRCV TEMPG DMI DMIJ DMIJI DMIK SKIPON "
+    "SKIPOFF ENDDATA POINT SWLDPRM BSURF BSURFS BCPROP BCPROPS BLSEG NXSTRAT ITER CONTRLT",
+    "no card refers to it in what is read": "PBEND PLPLANE PLSOLID PGAP PWELD PFAST PSEAM PBMSECT "
+    "PBRSECT PBARN1 PBEMN1 PSHLN1 PSHLN2 PSLDN1 PCOMPS PBCOMP PBEAM3 PRAC2D PRAC3D PAXSYM PPLANE "
+    "MAT3 MAT10 MAT11 MATT3 MATT11 MATG PBUSH2D",
+}  # fmt: skip
+"""Cards that carry neither stiffness nor mass nor constraint by themselves: why, the names."""
+
+_REFUSED = {
+    "its stiffness or mass is not supported":
+    "CBEND CBEAM3 CWELD CFAST CSEAM CINTC CGAP CBUSH2D CRAC2D CRAC3D CTRIAX CTRIAX6 CQUADX "
+    "CQUADX4 CQUADX8 CTRAX3 CTRAX6 CQUAD CPLSTN3 CPLSTN4 CPLSTN6 CPLSTN8 CPLSTS3 CPLSTS4 CPLSTS6 "
+    "CPLSTS8 CCONEAX CDUM1 CDUM2 CDUM3 CDUM4 CDUM5 CDUM6 CDUM7 CDUM8 CDUM9 GENEL CIFHEX CIFPENT "
+    "CIFQUAD CBELL BOLT CHEXCZ CPENTCZ CFLUID2 CFLUID3 CFLUID4 CAXIF2 CAXIF3 CAXIF4 CSLOT3 CSLOT4 "
+    "CHACAB CHACBR CAABSF ACMODL MFLUID",
+    "this rigid element or constraint is not supported":
+    "RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT RGYRO CYJOIN CYAX",
+    "glue and contact are not supported":
+    "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP",
+    "component modes (sets q, b, c) are not supported: give the model without this reduction":
+    "QSET QSET1 BSET BSET1 CSET CSET1 BNDFIX BNDFIX1 BNDFREE BNDFREE1 DYNRED SENQSET",
+    "superelements are not supported: give the assembled deck":
+    "CSUPER CSUPEXT SEELT SESET SECONCT SEBULK SELOC SETREE RELEASE SEBNDRY SECSET SEBSET SEQSET "
+    "SEUSET EXTRN",
+    "it defines or constrains points in a way that is not supported":
+    "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1",
+}  # fmt: skip
+"""Cards that carry stiffness, mass or constraint and are not supported: the sentence, the names."""
+
+_SAID = ("CHBDY", "CONV", "CAERO", "CDAMP", "CVISC")
+"""Those that connect grids: leaving them out is said in a warning too."""
+
+_LAYOUTS = {
+    "MAT3": "MID:i EX:r ETH:r EZ:r NUXTH:r NUTHZ:r NUZX:r RHO:r / - - GZX:r AX:r ATH:r AZ:r TREF:r "
+    "GE:r",
+    "MAT10": "MID:i BULK:r RHO:r C:r GE:r",
+    "MAT11": "MID:i E1:r E2:r E3:r NU12:r NU13:r NU23:r G12:r G13:r G23:r RHO:r A1:r A2:r A3:r "
+    "TREF:r GE:r",
+    "PBEND": "PID:i MID:i A:r I1:r I2:r J:r RB:r THETAB:r C1:r C2:r D1:r D2:r E1:r E2:r F1:r F2:r "
+    "K1:r K2:r NSM:r RC:r ZC:r DELTAN:r",
+    "PFAST": "PID:i D:r MCID:i MFLAG:i KT1:r KT2:r KT3:r KR1:r KR2:r KR3:r MASS:r GE:r",
+    "PWELD": "PID:i MID:i D:r - - MSET:w - TYPE:w",
+}
+"""Of those among them whose values may be written all the same."""
+
+CARDS = (
+    *(
+        Card(
+            name,
+            _LAYOUTS.get(name, ""),
+            ignored=why,
+            warned=name.startswith(_SAID),
+            moves=Moves() if name in _LAYOUTS else None,
+        )
+        for why, names in _IGNORED.items()
+        for name in names.split()
+    ),
+    *(Card(name, refused=why) for why, names in _REFUSED.items() for name in names.split()),
+)

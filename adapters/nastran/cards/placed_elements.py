@@ -1,0 +1,94 @@
+"""Shells and solids of a deck: which middle nodes they have, where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....core.arrays import Floats, Ints
+from ....core.elements import ELEMENTS, Element
+from ....core.elements.middle_nodes import spread
+from ..deck.card_definition import Values
+from .element_group import Context, Key, check_shape, distinct_properties
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Elements of one card that have the same middle nodes.
+
+    Parameters
+    ----------
+    nodes : (n, n_there) int
+        Grid rows of the nodes that are there.
+    xyz : (n, nodes, 3) float
+        Of all nodes.
+    spread : (nodes, n_there) float or None
+        All nodes from those that are there (`middle_nodes.spread`).
+    keys, of : list of Key, (n,) int
+        Properties used, and which of them each has.
+    """
+
+    name: str
+    element: Element
+    cards: list[Values]
+    ids: Ints
+    nodes: Ints
+    xyz: Floats
+    spread: Floats | None
+    keys: list[Key]
+    of: Ints
+
+    def whole(self) -> Floats | None:
+        """Motions of all nodes from those of the nodes that are there; None where all are."""
+        return None if self.spread is None else np.kron(self.spread, np.eye(self.element.freedoms))
+
+
+def placed(context: Context, may_have: str) -> Iterator[Placed]:
+    """Yield the elements of every card that may have a property.
+
+    Raises
+    ------
+    InputError
+        An element that is flat, turned inside out, or names what does not exist.
+    """
+    for name, definition in context.bulk.definitions.items():
+        kinds = [ELEMENTS[kind] for kind in definition.elements.split()]
+        patterns: dict[tuple[bool, ...], list[Values]] = {}
+        if kinds and may_have in definition.properties.split():
+            for card in context.bulk.table(name).values():
+                there = tuple(bool(n) for n in card.nodes[kinds[0].corners :])
+                patterns.setdefault(there if any(there) else (), []).append(card)
+        for present, cards in patterns.items():
+            yield _placed(context, name, kinds[-1] if present else kinds[0], cards, present)
+
+
+def _placed(
+    context: Context, name: str, element: Element, cards: list[Values], present: tuple[bool, ...]
+) -> Placed:
+    ids = np.array([c.eid for c in cards], dtype=np.int64)
+    kept = np.zeros(element.nodes, dtype=bool)
+    kept[: element.corners] = True
+    kept[element.corners :][: len(present)] = present
+    used = [[n for n, there in zip(c.nodes, kept, strict=False) if there] for c in cards]
+    nodes = context.points.rows(used, name, ids)
+    if element.dimension == 3:
+        _refuse_repeated(context, name, ids, nodes)
+    T = spread(element.edges, kept)
+    xyz = context.points.xyz[nodes] if T is None else T @ context.points.xyz[nodes]
+    check_shape(context, name, element, ids, xyz)
+    keys, of = distinct_properties(context.bulk, name, ids, np.array([c.pid for c in cards]))
+    return Placed(name, element, cards, ids, nodes, xyz, T, keys, of)
+
+
+def _refuse_repeated(context: Context, name: str, ids: Ints, nodes: Ints) -> None:
+    """Raise `InputError` for a solid that names a grid twice."""
+    ordered = np.sort(nodes, axis=1)
+    twice = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
+    if twice.any():
+        place = context.bulk.place(name, int(ids[np.flatnonzero(twice)[0]]))
+        raise place.fault(
+            "names a grid twice; use the element of the shape it stands for "
+            "(CPENTA, CPYRAM, CTETRA)"
+        )

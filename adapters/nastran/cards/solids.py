@@ -1,0 +1,145 @@
+"""Solids: CHEXA, CPENTA, CTETRA, CPYRAM, without and with middle nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ....core.arrays import Floats, Ints, Matrices
+from ....core.elements import Element
+from ....core.elements.solid import rotate_material
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card
+from ..properties.materials import elastic
+from .element_group import Context, Group, Key, with_material
+from .placed_elements import Placed, placed
+
+
+def _card(name: str, corners: int, nodes: int, elements: str) -> Card:
+    names = [f"G{k}" for k in range(1, nodes + 1)]
+    first, middle = ",".join(names[:corners]), ",".join(names[corners:])
+    layout = f"EID:i! PID:i=EID {first}>nodes:i! {middle}>nodes:i"
+    return Card(name, layout, "eid", elements=elements, properties="PSOLID")
+
+
+CARDS = (
+    _card("CTETRA", 4, 10, "tetra4 tetra10"),
+    _card("CPYRAM", 5, 13, "pyramid5 pyramid13"),
+    _card("CPENTA", 6, 15, "penta6 penta15"),
+    _card("CHEXA", 8, 20, "hexa8 hexa20"),
+    Card(
+        "PSOLID",
+        "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH",
+        "pid",
+    ),
+)
+
+_INTEGRATION = {
+    "0": "BUBBLE", "1": "GAUSS", "2": "TWO", "3": "THREE", "": "", "BUBBLE": "BUBBLE",
+    "GAUSS": "GAUSS", "TWO": "TWO", "THREE": "THREE",
+}  # fmt: skip
+_SCHEME = {"0": "REDUCED", "1": "FULL", "": "REDUCED", "REDUCED": "REDUCED", "FULL": "FULL"}
+
+
+_LINEAR = {
+    ("", "REDUCED"): "bubble",
+    ("BUBBLE", "REDUCED"): "bubble",
+    ("BUBBLE", "FULL"): "bubble",
+    ("TWO", "REDUCED"): "reduced",
+    ("THREE", "REDUCED"): "reduced",
+    ("", "FULL"): "full",
+    ("TWO", "FULL"): "full",
+    ("THREE", "FULL"): "full",
+}
+_QUADRATIC = {
+    ("", "REDUCED"): "reduced",
+    ("THREE", "REDUCED"): "reduced",
+    ("TWO", "REDUCED"): "two",
+    ("TWO", "FULL"): "two",
+    ("", "FULL"): "full",
+    ("THREE", "FULL"): "full",
+}
+
+
+def solids(context: Context) -> list[Group]:
+    """Make the groups of every card that may have a PSOLID, by which middle nodes are there."""
+    return [_group(context, solid) for solid in placed(context, "PSOLID")]
+
+
+def _group(context: Context, solid: Placed) -> Group:
+    element, keys, of, xyz = solid.element, solid.keys, solid.of, solid.xyz
+    schemes = [_scheme(context, solid.name, element, key) for key in keys]
+    centre = xyz[:, : element.corners].mean(axis=1)
+    full = solid.whole()
+
+    def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
+        C, rho = _materials(context, values, keys, of[rows], centre[rows])
+        K = M = None
+        if wanted[0]:
+            K = _stiffness(element, xyz[rows], C, [schemes[k] for k in of[rows]])
+        if wanted[1] and element.mass:
+            M = element.mass(xyz[rows], rho, context.settings.coupled)
+        if full is not None:
+            K, M = (None if X is None else full.T @ X @ full for X in (K, M))
+        return K, M
+
+    sources = tuple(with_material(context.bulk, key) for key in keys)
+    return Group(solid.name, solid.ids, element, solid.nodes, matrices, sources, of)
+
+
+def _stiffness(element: Element, xyz: Floats, C: Floats, schemes: list[str]) -> Floats:
+    if len(set(schemes)) == 1:
+        return element.stiffness(xyz, C, schemes[0])
+    n = 3 * element.nodes
+    K = np.zeros((len(xyz), n, n))
+    for scheme in dict.fromkeys(schemes):
+        rows = np.flatnonzero([s == scheme for s in schemes])
+        K[rows] = element.stiffness(xyz[rows], C[rows], scheme)
+    return K
+
+
+def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
+    """Return the element's word for the integration that PSOLID asks for."""
+    card = context.bulk.table(key[0])[key[1]]
+    place = context.bulk.place(*key)
+    if card.fctn != "SMECH":
+        raise place.error(f"FCTN {card.fctn} (fluid elements) is not supported")
+    if len(element.integrations) < 2:
+        return element.integrations[0]
+    words = ("" if w is None else str(w) for w in (card.integration, card.isop))
+    asked = tuple(table.get(w, w) for table, w in zip((_INTEGRATION, _SCHEME), words, strict=True))
+    schemes = _QUADRATIC if len(element.edges) else _LINEAR
+    found = schemes.get((asked[0], asked[1]))
+    if found is None:  # as the Quick Reference Guide says, PSOLID remark 10
+        context.notes.append(
+            f"{place}: no integration IN = {asked[0] or 'blank'}, ISOP = {asked[1]} exists "
+            f"for {name} with {element.nodes} nodes: the default is used, as in Nastran"
+        )
+        return element.integrations[0]
+    return found
+
+
+def _materials(
+    context: Context, bulk: Bulk, keys: list[Key], of: Ints, centre: Floats
+) -> tuple[Floats, Floats]:
+    """Elastic matrices in the basic frame, (n, 6, 6), and densities, (n,)."""
+    used, position = np.unique(of, return_inverse=True)
+    found = []
+    for k in used:
+        place = context.bulk.place(*keys[k])
+        found.append(elastic(bulk, bulk.table(keys[k][0])[keys[k][1]].mid, place))
+    C = np.array([m.C for m in found])[position]
+    rho = np.array([m.rho for m in found])[position]
+    for number, (k, material) in enumerate(zip(used, found, strict=True)):
+        if material.isotropic:
+            continue
+        place = context.bulk.place(*keys[k])
+        cordm = bulk.table(keys[k][0])[keys[k][1]].cordm
+        if cordm < 0:
+            raise place.error(
+                "CORDM = -1 (element coordinates) is not supported with MAT9: name a "
+                "coordinate system"
+            )
+        rows = np.flatnonzero(position == number)
+        frame = context.points.frames.get(cordm, place)
+        C[rows] = rotate_material(C[rows], frame.directions(centre[rows]))
+    return C, rho

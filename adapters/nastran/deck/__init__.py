@@ -1,0 +1,1 @@
+"""The bulk data: logical lines, continuations, fields, cards by name and number."""

@@ -1,0 +1,12 @@
+"""Cards that say what to solve and in which units: EIGRL, EIGR, PARAM, DTI."""
+
+from __future__ import annotations
+
+from .card_definition import Card
+
+CARDS = (
+    Card("EIGRL", "SID:i! V1:r V2:r ND:i MSGLVL:i=0 MAXSET:i SHFSCL:r NORM:w ...", "sid"),
+    Card("EIGR", "SID:i! METHOD:w=LAN F1:r F2:r NE:i ND:i - CRIT:r / NORM:w=MASS G:x C:x", "sid"),
+    Card("PARAM", "N:x V1:x V2:x ..."),
+    Card("DTI", "NAME:x IREC:x MASS:x FORCE:x LENGTH:x TIME:x ..."),
+)

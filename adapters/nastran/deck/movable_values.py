@@ -1,0 +1,93 @@
+"""What of a card may be a parameter: its reals, by the names that its layout gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+Read = Callable[[int], str]
+"""Text of the field at a position of one card, stripped and in capitals; "" where blank.
+
+A position is the field number printed above the card in the guide, counted on over the
+continuations: 1 is the name, 2 to 9 the data of the first line, 12 to 19 of the second, 22 to 29
+of the third, whatever format the lines are written in.
+"""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Values that an analyst doubts first.
+
+    Parameters
+    ----------
+    fields : tuple of str
+        Moved together, those that are not blank.
+    spread : float
+        Of ln of the factor.
+    lower, upper : float
+        Bounds of the factor.
+    """
+
+    fields: tuple[str, ...]
+    spread: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, eq=False)
+class Variable:
+    """Values whose position depends on what the card holds.
+
+    Parameters
+    ----------
+    names : tuple of str
+        To be offered: one of each kind where there may be any number.
+    knows : callable
+        Whether a name in capitals is one of them.
+    find : callable
+        Position of a name on a card; None where this card does not hold it.
+    """
+
+    names: tuple[str, ...]
+    knows: Callable[[str], bool]
+    find: Callable[[str, Read], int | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Moves:
+    """What is known of the values of a card beside their names.
+
+    Parameters
+    ----------
+    also : mapping of str to str
+        Other ways to write a name, in capitals.
+    linear : tuple of str
+        Values in which stiffness and mass are exactly linear.
+    concentrated : tuple of str
+        Values of a concentrated mass or spring, which a discovery may find wrong by itself.
+    doubt : Doubt or None
+        What an analyst doubts first.
+    variable : Variable or None
+        Values that stand where the card's own content says.
+    """
+
+    also: Mapping[str, str] = field(default_factory=dict)
+    linear: tuple[str, ...] = ()
+    concentrated: tuple[str, ...] = ()
+    doubt: Doubt | None = None
+    variable: Variable | None = None
+
+
+def position_of(index: int) -> int:
+    """Return the position of data field `index`, 0 being the first after the card's name."""
+    return 10 * (index // 8) + index % 8 + 2
+
+
+def after(position: int, steps: int) -> int:
+    """Return the position `steps` data fields after another, over the line ends.
+
+    >>> after(8, 3)
+    13
+    """
+    line, column = divmod(position, 10)
+    return position_of(line * 8 + (column - 2) + steps)

@@ -1,0 +1,30 @@
+"""Read a deck by the cards of the registry."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from .cards import definitions
+from .deck import read_deck as by_definitions
+from .deck.pynastran_bridge import file_of
+from .deck.read_deck import Deck
+from .text.deck_text import DeckText
+
+
+def read_deck(path: str | Path | DeckText | Any) -> Deck:
+    """Read a deck with its INCLUDE files.
+
+    Parameters
+    ----------
+    path : path, DeckText or pyNastran BDF
+        The main file; executive and case control may be missing (bulk data alone). A text that
+        was changed is read as it is, whatever its files on disk say.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read or is not a deck, a card that cannot be read: file and line.
+    """
+    source = path if isinstance(path, DeckText) else file_of(path)
+    return by_definitions.read_deck(source, definitions())

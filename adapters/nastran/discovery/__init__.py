@@ -1,0 +1,1 @@
+"""What a discovery needs of a deck, and the cards its effects become."""

@@ -1,0 +1,41 @@
+"""The writers of cards: one module a kind of effect, one list."""
+
+from __future__ import annotations
+
+from .....core.errors import InputError
+from . import (
+    distributed_mass,
+    ground_spring,
+    joint_flexibility,
+    local_damper,
+    local_stiffness,
+    point_mass,
+    support_flexibility,
+    tuned_absorber,
+)
+from .site import Site as Site
+from .site import Writer
+
+WRITERS: dict[str, Writer] = {
+    "point_mass": point_mass.write,
+    "distributed_mass": distributed_mass.write,
+    "local_stiffness": local_stiffness.write,
+    "ground_spring": ground_spring.write,
+    "support_flexibility": support_flexibility.write,
+    "joint_flexibility": joint_flexibility.write,
+    "tuned_absorber": tuned_absorber.write,
+    "local_damper": local_damper.write,
+}
+
+
+def register_writer(kind: str, writer: Writer) -> None:
+    """Write a further kind of effect into decks; ``del WRITERS[kind]`` undoes it.
+
+    Raises
+    ------
+    InputError
+        A kind that has a writer.
+    """
+    if kind in WRITERS:
+        raise InputError(f"there is a writer of {kind} already")
+    WRITERS[kind] = writer

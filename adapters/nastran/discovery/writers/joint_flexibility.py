@@ -1,0 +1,13 @@
+"""CBUSH between the end of a beam and its joint."""
+
+from __future__ import annotations
+
+from ...text.deck_text import DeckText
+from .detached_elements import detached
+from .site import Site
+
+
+def write(text: DeckText, site: Site) -> DeckText:
+    """Put a coincident grid at a beam's end: rigid in translation, sprung in rotation."""
+    elements = [int(e) for e in site.finding.where["elements"]]
+    return detached(text, site, elements, site.grids[0])

@@ -1,0 +1,1 @@
+"""Where values stand on cards, and how a user names them."""

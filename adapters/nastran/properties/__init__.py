@@ -1,0 +1,1 @@
+"""What cards say of points, materials, sections and constraints, in numbers."""

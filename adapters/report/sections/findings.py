@@ -1,0 +1,114 @@
+"""What is missing in the model or wrong in the test: sentences, picture, table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ....core.discovery.effects import KINDS as EFFECTS
+from ....core.discovery.faults import FAULTS
+from ....core.results.discovery import DiscoverTables, FindingRow
+from ....core.results.plain import Json
+from ..html.html_table import html_table
+from ..html.markup import esc, tag
+from ..pictures import heatmap
+from ..pictures.scene import scene
+from ..tables.number_formats import MISSING, general, percent
+from ..tables.table import Cell, Column, Table
+from . import marks_on_structure
+from .section import ReportedRun, Section
+
+_SHOWN = 12
+"""So many of the cards that carry an effect are shown."""
+_ROLES = (
+    ("effect", "missing in the model"),
+    ("credible", "places that explain the data about as well"),
+    ("fault", "fault of the test"),
+    ("sensor", "sensor"),
+)
+
+
+def kind_in_words(kind: str) -> str:
+    """Return what a kind of effect or fault calls itself; an unknown kind as it stands."""
+    known = EFFECTS.get(kind) or FAULTS.get(kind)
+    return known.label if known else kind.replace("_", " ")
+
+
+def _tables(found: DiscoverTables) -> Sequence[Table]:
+    rows = tuple(
+        (
+            Cell(f.side),
+            Cell(kind_in_words(f.kind)),
+            Cell(f.where.region or ""),
+            Cell(_magnitude(f)),
+            Cell(percent(f.confidence), bar=f.confidence),
+            Cell(str(sum(place.size for place in f.credible_set) or MISSING)),
+        )
+        for f in found.findings
+    )
+    columns = (
+        Column("side", numeric=False),
+        Column("what", numeric=False),
+        Column("where", numeric=False),
+        Column("size (95 % interval)", numeric=False),
+        Column("confidence %"),
+        Column("places as good"),
+    )
+    return [Table("Findings", columns, rows)] if rows else []
+
+
+def _magnitude(finding: FindingRow) -> str:
+    """Return the magnitudes, the first with its 95 % interval."""
+    said = [f"{k.replace('_', ' ')} {_value(v)}" for k, v in finding.magnitude.items()]
+    if said and finding.interval is not None:
+        low, high = finding.interval
+        said[0] += f" ({general(low, 3)} to {general(high, 3)})"
+    return "; ".join(said) or MISSING
+
+
+def _value(value: Json) -> str:
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_value, value))
+    return general(value, 3) if isinstance(value, int | float) else str(value)
+
+
+def _render(run: ReportedRun[DiscoverTables]) -> str:
+    found, misfit = run.tables.findings, run.tables.misfit
+    if not found and misfit is None:
+        return ""
+    said = ""
+    for k, f in enumerate(found, 1):
+        left = len(f.cards) - _SHOWN
+        more = f"\n... and {left} more, see changes.diff" if left > 0 else ""
+        said += tag(
+            "div",
+            tag("span", str(k), class_=f"no {f.side}"),
+            tag("p", esc(f.sentence)),
+            tag("pre", esc("\n".join(f.cards[:_SHOWN]) + more), class_="diff") if f.cards else "",
+            class_="finding",
+        )
+    return said + _picture(run) + "".join(map(html_table, _tables(run.tables)))
+
+
+def _picture(run: ReportedRun[DiscoverTables]) -> str:
+    if run.geometry is None:
+        return ""
+    told, geometry = run.tables, run.geometry
+    values = None
+    if told.misfit is not None:
+        values = marks_on_structure.spread(told.misfit.grids, told.misfit.values, geometry)
+    sensors = marks_on_structure.sensors(told.final.alignment.sensors, geometry, directions=False)
+    marks = sensors + marks_on_structure.findings(told.findings, geometry, sensors)
+    scale = heatmap.legend("misfit, % of its largest") if values is not None else ""
+    keys = [
+        tag("span", tag("i", class_=role), text, class_="key")
+        for role, text in _ROLES
+        if any(m.role == role for m in marks)
+    ]
+    return (
+        scene(geometry, "Where", marks=marks, values=values)
+        + scale
+        + tag("p", *keys, class_="note")
+    )
+
+
+FINDINGS = Section("What was found", "findings", DiscoverTables, _tables, _render)

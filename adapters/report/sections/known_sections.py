@@ -1,0 +1,53 @@
+"""The sections of the report, one line each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ....core.errors import InputError
+from .alignment import ALIGNMENT
+from .alternatives import ALTERNATIVES
+from .damping import DAMPING
+from .deck_changes import DECK_CHANGES
+from .disagreement import DISAGREEMENT
+from .findings import FINDINGS
+from .frequency_responses import FREQUENCY_RESPONSES
+from .gap import GAP
+from .mac_matrices import MAC_MATRICES
+from .moving_shapes import MOVING_SHAPES
+from .pairs import PAIRS
+from .parameters import PARAMETERS
+from .section import Section
+from .unpaired_modes import UNPAIRED_MODES
+from .would_decide import WOULD_DECIDE
+
+SECTIONS: list[Section[Any]] = [
+    FINDINGS,
+    WOULD_DECIDE,
+    GAP,
+    DAMPING,
+    FREQUENCY_RESPONSES,
+    DISAGREEMENT,
+    PAIRS,
+    MAC_MATRICES,
+    MOVING_SHAPES,
+    UNPAIRED_MODES,
+    PARAMETERS,
+    ALTERNATIVES,
+    ALIGNMENT,
+    DECK_CHANGES,
+]
+"""In the order of the page."""
+
+
+def register_section(section: Section[Any], before: Section[Any] | None = None) -> None:
+    """Add a section to every report, before another or last; ``SECTIONS.remove`` undoes it.
+
+    Raises
+    ------
+    InputError
+        Its anchor is taken.
+    """
+    if any(s.anchor == section.anchor for s in SECTIONS):
+        raise InputError(f"a section with the anchor '{section.anchor}' is there already")
+    SECTIONS.insert(len(SECTIONS) if before is None else SECTIONS.index(before), section)

@@ -1,0 +1,45 @@
+"""The MAC as measured, after rotation, after updating."""
+
+from __future__ import annotations
+
+from ....core.results.correlation import RunTables
+from ....core.results.discovery import DiscoverTables
+from ..html.markup import tag
+from ..pictures import heatmap
+from .section import ReportedRun, Section
+
+
+def _render(run: ReportedRun[RunTables]) -> str:
+    answer = run.tables
+    first, last = answer.initial or answer.final, answer.final
+    shown = [
+        (first, first.mac, "As measured"),
+        (first, first.mac_rotated, "After rotation of close modes"),
+    ]
+    if answer.initial is not None:
+        discovered = isinstance(answer, DiscoverTables)
+        changed = "completing the model" if discovered else "updating"
+        shown.append((last, last.mac_rotated, f"After {changed}"))
+    if not all(m.values.size for _, m, _ in shown):
+        return ""
+    narrow = max(len(m.analysis) for _, m, _ in shown) <= 13
+    figures = [
+        heatmap.heatmap(
+            matrix,
+            title,
+            test_hz=c.test_hz,
+            analysis_hz=c.analysis_hz,
+            pairs=[(p.test, p.analysis) for p in c.pairs] if matrix is c.mac_rotated else [],
+            clusters=[(k.test, k.analysis) for k in c.clusters],
+            width=500 if narrow else 1050,
+        )
+        for c, matrix, title in shown
+    ]
+    keys = tag("span", tag("i", class_="ring"), "pair", class_="key") + tag(
+        "span", tag("i", class_="frame"), "cluster of close modes", class_="key"
+    )
+    top = tag("div", heatmap.legend(), tag("span", keys, class_="note"), class_="row")
+    return top + tag("div", *figures, class_="row")
+
+
+MAC_MATRICES = Section("MAC matrices", "mac", RunTables, render=_render)

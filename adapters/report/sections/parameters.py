@@ -1,0 +1,169 @@
+"""What was moved, and how an update went."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ....core.arrays import Floats
+from ....core.results.discovery import DiscoverTables
+from ....core.results.update import ChangingTables, IterationRow, ParameterRow, UpdateTables
+from ..html.html_table import html_table
+from ..html.markup import tag
+from ..pictures import charts
+from ..tables.number_formats import MISSING, fixed, general, hz
+from ..tables.table import Cell, Column, Table
+from .section import ReportedRun, Section
+
+_LOOSE = 0.5
+"""Standard error of a factor over the factor from which the data hardly identify it."""
+_STEEP = 15.0
+"""Ratio of the largest objective to the smallest from which their scale is logarithmic."""
+_UNSURE = " One above half the factor: the data hardly identify the parameter."
+_LEFT = "The deck was left as it was; the factors are those of the best explanation. "
+
+
+def _tables(answer: ChangingTables) -> Sequence[Table]:
+    tables = [_moved(answer)] if answer.parameters else []
+    if isinstance(answer, UpdateTables) and answer.history:
+        tables.append(_iterations(answer))
+    return tables
+
+
+def _moved(answer: ChangingTables) -> Table:
+    """Return what was moved: cards, values before and after, factor, standard error, bounds."""
+    rows = [_row(p) for p in answer.parameters]
+    columns = (
+        Column("parameter", numeric=False),
+        Column("cards", numeric=False),
+        Column("initial"),
+        Column("updated"),
+        Column("factor"),
+        Column("std. error"),
+        Column("", numeric=False),
+    )
+    used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
+    note = "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
+    if isinstance(answer, DiscoverTables) and not answer.adopted:
+        note = _LEFT + note
+    return Table(
+        "Parameters",
+        tuple(columns[k] for k in used),
+        tuple(tuple(r[k] for k in used) for r in rows),
+        note,
+    )
+
+
+def _row(p: ParameterRow) -> tuple[Cell, ...]:
+    cards, error = ", ".join(p.cards), p.standard_error
+    loose = error is not None and error > _LOOSE * abs(p.factor)
+    return (
+        Cell(p.name),
+        Cell("" if cards == p.name else cards, "muted"),
+        Cell(", ".join(general(v, 6) for v in p.initial)),
+        Cell(", ".join(general(v, 6) for v in p.updated)),
+        Cell(fixed(p.factor, 4)),
+        Cell(MISSING if error is None else f"± {fixed(error, 4)}", "poor" if loose else ""),
+        Cell("at bound" if p.at_bound else "", "poor"),
+    )
+
+
+def _iterations(answer: UpdateTables) -> Table:
+    """Return the iterations: objective, mean and worst deviation, factors."""
+    rows = []
+    for h in answer.history:
+        off = np.abs(h.deviations_percent[np.isfinite(h.deviations_percent)])
+        cells = [str(h.iteration), general(h.objective)]
+        cells += [fixed(float(f(off)), 2) if len(off) else MISSING for f in (np.mean, np.max)]
+        rows.append(tuple(map(Cell, [*cells, *[fixed(f, 4) for f in h.factors]])))
+    columns = (
+        Column("iteration"),
+        Column("objective"),
+        Column("mean |dev.| %"),
+        Column("worst |dev.| %"),
+        *[Column(p.name, "factors") for p in answer.parameters],
+    )
+    note = f"Ended: {answer.stopped}." if answer.stopped else ""
+    return Table("Iterations", columns, tuple(rows), note)
+
+
+def _render(run: ReportedRun[ChangingTables]) -> str:
+    answer = run.tables
+    tables = [html_table(table) for table in _tables(answer)]
+    body = "".join(tables[:1])
+    if isinstance(answer, UpdateTables) and answer.history:
+        body += _progress(answer)
+        body += tag("details", tag("summary", "Iterations as a table"), *tables[1:])
+    return body
+
+
+def _progress(answer: UpdateTables) -> str:
+    steps = answer.history
+    at, breaks = _counted_through(steps)
+    factors = _series([p.name for p in answer.parameters], [h.factors for h in steps])
+    known = answer.final.test_hz
+    modes = [f"{k} · {hz(f)} Hz" for k, f in enumerate(known, 1)]
+    deviations = [
+        replace(s, brief=str(k))
+        for k, s in enumerate(_series(modes, [h.deviations_percent for h in steps]), 1)
+    ]
+    objective = [h.objective for h in steps]
+    steep = 0.0 < _STEEP * min(objective) < max(objective)
+    return tag(
+        "div",
+        charts.lines("Factors on the deck's values", at, factors, reference=1.0, breaks=breaks),
+        charts.lines(
+            "Objective", at, _by_stage(objective, at, breaks), log=steep, breaks=breaks,
+        ),
+        charts.lines(
+            "Frequency deviation of each pair", at, deviations, unit="%", reference=0.0,
+            ordered=True, width=1056, height=330, breaks=breaks,
+        ),
+        class_="row",
+    )  # fmt: skip
+
+
+def _series(names: Sequence[str], steps: Sequence[Floats]) -> list[charts.Series]:
+    """Return one line a name; no value where the step has none."""
+    values = [[v if np.isfinite(v) else None for v in step.tolist()] for step in steps]
+    return [
+        charts.Series(n, tuple(v)) for n, v in zip(names, zip(*values, strict=True), strict=True)
+    ]
+
+
+def _by_stage(
+    objective: list[float], at: list[float], breaks: list[tuple[float, str]]
+) -> list[charts.Series]:
+    """Cut the objective where a stage begins: each stage minimises another one."""
+    starts = [at[0], *[x for x, _ in breaks], float("inf")]
+    names = ["first stage" if breaks else "objective", *[name for _, name in breaks]]
+    return [
+        charts.Series(
+            name, tuple(v if a <= x < b else None for v, x in zip(objective, at, strict=True))
+        )
+        for name, (a, b) in zip(names, pairwise(starts), strict=True)
+    ]
+
+
+def _counted_through(
+    steps: Sequence[IterationRow],
+) -> tuple[list[float], list[tuple[float, str]]]:
+    """Return the x of each step, and where a new stage begins.
+
+    Iterations that start again with every stage are counted through.
+    """
+    x = [float(h.iteration) for h in steps]
+    if any(b <= a for a, b in pairwise(x)):
+        x = [float(k) for k in range(len(steps))]
+    breaks = [
+        (x[k], f"stage {b.stage}")
+        for k, (a, b) in enumerate(pairwise(steps), 1)
+        if b.stage != a.stage
+    ]
+    return x, breaks
+
+
+PARAMETERS = Section("Parameters and progress", "parameters", ChangingTables, _tables, _render)

@@ -1,0 +1,1 @@
+"""What a run says: read, put in tables and sentences."""

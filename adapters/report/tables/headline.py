@@ -1,0 +1,148 @@
+"""The one sentence that a person reads first."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.results.correlation import Compared, Gap, RunTables
+from ....core.results.discovery import DiscoverTables
+from ....core.results.update import UpdateTables
+from .number_formats import counted, fixed, general, listed
+
+VERDICTS = {
+    "effect": "the model lacks something",
+    "parameters_only": "only known parameters are off",
+    "test_fault": "the test is at fault",
+    "no_gap": "nothing is missing",
+    "undecided": "undecided",
+}
+_VERDICT_SENTENCES = {
+    "no_gap": "Nothing is missing: model and test agree within the scatter of the test.",
+    "undecided": "The data do not decide what is missing.",
+    "parameters_only": "Known parameters alone explain the gap; nothing is missing.",
+    "test_fault": "The gap comes from the test, not from the model.",
+    "effect": "The model lacks something that the test has.",
+}
+_MOVED = 3
+"""So many parameters are named where they explain the gap."""
+
+
+def headline(answer: RunTables) -> str:
+    """Return the result of a run in a few plain sentences, ending with a full stop."""
+    return " ".join(story(answer))
+
+
+def story(answer: RunTables) -> list[str]:
+    """Return the sentences of the headline, the most important first."""
+    if isinstance(answer, UpdateTables):
+        return _update(answer)
+    if isinstance(answer, DiscoverTables):
+        return _discover(answer)
+    return _correlate(answer.final)
+
+
+def _correlate(found: Compared) -> list[str]:
+    n_test = len(found.test_modes)
+    if not n_test:
+        return ["The test holds no modes to pair."]
+    if not found.pairs:
+        return [f"None of the {counted(n_test, 'test mode')} pairs with the model."]
+    worst = max(found.pairs, key=lambda p: abs(p.deviation_percent))
+    mean = fixed(found.summary.mean_abs_deviation_percent, 1)
+    text = f"{_of(found.summary, n_test)} with the model"
+    text += f"; frequencies are {mean} % off on average"
+    if len(found.pairs) > 1:
+        text += f", {fixed(abs(worst.deviation_percent), 1)} % at worst (test mode {worst.test})"
+    alone = found.unpaired_test
+    if not alone:
+        return [text + "."]
+    noun, has = ("mode", "has") if len(alone) == 1 else ("modes", "have")
+    return [text + ".", f"Test {noun} {listed(alone)} {has} no partner."]
+
+
+def _update(answer: UpdateTables) -> list[str]:
+    moved = answer.parameters
+    text = f"After updating {counted(len(moved), 'parameter')}, " if moved else ""
+    old, new = answer.before, answer.after
+    change = _change(old.summary, new.summary, "model", len(new.test_modes))
+    told = [_sentence(text + change)]
+    at_bound = [p.name for p in moved if p.at_bound]
+    if at_bound:
+        noun = "One parameter" if len(at_bound) == 1 else f"{len(at_bound)} parameters"
+        told.append(f"{noun} stopped at a bound: {listed(at_bound)}.")
+    return told
+
+
+def _discover(answer: DiscoverTables) -> list[str]:
+    verdict, found = answer.verdict, answer.findings
+    told = [
+        _sentence(found[0].sentence) if found else _VERDICT_SENTENCES.get(verdict, f"{verdict}.")
+    ]
+    if found and verdict == "undecided":
+        told = [_VERDICT_SENTENCES[verdict], f"The best explanation so far: {told[0]}"]
+    elif verdict == "parameters_only":
+        told += _moved(answer)
+    if len(found) > 1:
+        told.append(f"{counted(len(found) - 1, 'further finding')} below.")
+    old, new = answer.gap.before, answer.gap.after
+    if verdict in ("no_gap", "undecided") or old == new:
+        told.append(_sentence(_of(new) + " with the model"))
+    else:
+        told.append(_sentence("with that adopted, " + _change(old, new, "completed model")))
+    return told
+
+
+def _moved(answer: DiscoverTables) -> list[str]:
+    """Name the parameters that moved by more than their scatter, the farthest first."""
+    clear = [p for p in answer.parameters if p.significant]
+    first = sorted(clear, key=lambda p: -abs(math.log(p.factor)))[:_MOVED]
+    said = [f"{p.name} is {general(p.factor, 3)} times the deck's value" for p in first]
+    return [_sentence("; ".join(said))] if said else []
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
+
+
+def _of(now: Gap, n_test: int = 0) -> str:
+    modes = f"{now.pairs} of {n_test} test modes" if n_test else counted(now.pairs, "test mode")
+    return f"{modes} {'pairs' if now.pairs == 1 else 'pair'}"
+
+
+def _change(old: Gap, new: Gap, what: str, n_test: int = 0) -> str:
+    text = f"{_of(new, n_test)} with the {what} ({old.pairs} before)"
+    if new.mean_abs_deviation_percent is not None:
+        text += f" and frequencies are {fixed(new.mean_abs_deviation_percent, 1)} % off on average"
+        if old.mean_abs_deviation_percent is not None:
+            text += f" ({fixed(old.mean_abs_deviation_percent, 1)} % before)"
+    return text
+
+
+def figures(answer: RunTables) -> list[tuple[str, str, str]]:
+    """Return the key figures as (what, now, before or empty), for the strip under the headline."""
+    if isinstance(answer, DiscoverTables):
+        now, then = _figures(answer.gap.after), _figures(answer.gap.before)
+    else:
+        now = _figures(answer.final.summary, len(answer.final.test_modes))
+        before = answer.initial
+        then = ["", "", "", ""]
+        if before is not None:
+            then = _figures(before.summary, len(before.test_modes))
+    what = ("pairs", "mean frequency deviation", "worst frequency deviation",
+            "mean MAC of the pairs")  # fmt: skip
+    rows = list(zip(what, now, then, strict=True))
+    if isinstance(answer, UpdateTables):
+        rows.append(("full eigensolutions", str(answer.eigensolutions), ""))
+    if isinstance(answer, UpdateTables | DiscoverTables):
+        rows.append(("time", f"{general(answer.seconds, 3)} s", ""))
+    return [(said, a, "" if a == b else b) for said, a, b in rows if a]
+
+
+def _figures(gap: Gap, n_test: int = 0) -> list[str]:
+    mean, worst, mac = gap.mean_abs_deviation_percent, gap.worst_deviation_percent, gap.mean_mac
+    return [
+        f"{gap.pairs} of {n_test}" if n_test else str(gap.pairs),
+        "" if mean is None else f"{fixed(mean, 2)} %",
+        "" if worst is None else f"{fixed(worst, 2)} %",
+        "" if mac is None else f"{fixed(100.0 * mac, 1)} %",
+    ]

@@ -1,0 +1,1 @@
+"""The run folder: what a verb leaves behind."""

@@ -1,0 +1,1 @@
+"""One module a group of datasets: from its lines to what it says."""

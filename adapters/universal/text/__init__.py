@@ -1,0 +1,1 @@
+"""Numbers and lines as universal files print them, read and written by array arithmetic."""

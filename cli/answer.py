@@ -1,0 +1,74 @@
+"""Where a verb writes and how it answers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..verbs.study import Study
+from .console import emit_json, speaks, stderr, stdout
+from .options import Output
+
+if TYPE_CHECKING:
+    from ..verbs.run import Changing, Run
+
+
+def new_folder(study: Study, verb: str, output: Output) -> Path:
+    """Return ``--out``, or DECK_VERB in the current folder, numbered if that is taken.
+
+    Raises
+    ------
+    InputError
+        It exists and ``--force`` is not given.
+    """
+    from ..adapters.run_folder.write_run import refuse_existing
+
+    assert study.deck is not None
+    folder = study.out or free_folder(f"{study.deck.stem}_{verb}")
+    refuse_existing(folder, output.force)
+    return folder
+
+
+def free_folder(name: str) -> Path:
+    """Return a folder of this name in the current one, numbered if that is taken."""
+    base = Path(name)
+    path, number = base, 2
+    while path.exists():
+        path, number = Path(f"{base}_{number}"), number + 1
+    return path
+
+
+def answer_changed(found: Changing, folder: Path, output: Output) -> None:
+    """Write the run folder and, where asked, the changed deck over the user's own; answer.
+
+    The deck is changed when everything else is written and checked: a run that fails leaves it
+    alone.
+    """
+    from ..adapters.run_folder.write_run import run_folder, write_json
+
+    with run_folder(folder, output.force) as work:
+        found.fill(work)
+        if output.in_place:
+            found = found.put_in_place()
+            write_json(work / "result.json", found.to_dict())
+    answer(found, folder, output)
+    if found.in_place and speaks(output):
+        for file, backup in zip(found.in_place.files, found.in_place.backups, strict=True):
+            stdout().print(f"changed in place: {file} (before: {backup})", markup=False)
+
+
+def answer(found: Run, folder: Path, output: Output) -> None:
+    """Give the result: JSON where asked, else the sentence and the tables; then the warnings."""
+    emit_json(found.to_dict(), output)
+    if speaks(output):
+        from ..adapters.report.tables.headline import headline
+        from .terminal_tables import result_tables
+
+        console = stdout()
+        console.print(headline(found), markup=False)
+        for table in result_tables(found, console.width):
+            console.print(table)
+        console.print(f"run folder: {folder}", markup=False)
+    if not output.quiet:
+        for warning in found.warnings:
+            stderr().print(f"warning: {warning}", markup=False)

@@ -1,0 +1,1 @@
+"""From element matrices to the free degrees of freedom: parameters, constraints, condensation."""

@@ -1,0 +1,1 @@
+"""MAC, pairing of modes, clusters of close modes turned onto each other."""

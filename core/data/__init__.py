@@ -1,0 +1,1 @@
+"""The neutral nouns: geometry, degrees of freedom, modes, responses, tests, parameters, model."""

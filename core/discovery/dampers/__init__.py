@@ -1,0 +1,1 @@
+"""Dashpots to ground, by damping ratios and complex shapes."""

@@ -1,0 +1,49 @@
+"""The kinds of effects: one module each, one list."""
+
+from __future__ import annotations
+
+from ...errors import InputError
+from . import (
+    distributed_mass,
+    ground_spring,
+    joint_flexibility,
+    local_damper,
+    local_stiffness,
+    point_mass,
+    support_flexibility,
+    tuned_absorber,
+)
+from .candidates import Candidates as Candidates
+from .effect_kind import FACTOR as FACTOR
+from .effect_kind import MASS as MASS
+from .effect_kind import STIFFNESS as STIFFNESS
+from .effect_kind import EffectKind as EffectKind
+from .effect_kind import Magnitude as Magnitude
+from .effect_scale import Scale as Scale
+
+KINDS: dict[str, EffectKind] = {
+    k.name: k
+    for k in (
+        point_mass.KIND,
+        distributed_mass.KIND,
+        local_stiffness.KIND,
+        ground_spring.KIND,
+        support_flexibility.KIND,
+        joint_flexibility.KIND,
+        tuned_absorber.KIND,
+        local_damper.KIND,
+    )
+}
+
+
+def register_effect(kind: EffectKind) -> None:
+    """Let discovery look for a further kind of effect; ``del KINDS[name]`` takes it away.
+
+    Raises
+    ------
+    InputError
+        A name that another kind has.
+    """
+    if kind.name in KINDS:
+        raise InputError(f"there is a kind of effect named {kind.name} already")
+    KINDS[kind.name] = kind

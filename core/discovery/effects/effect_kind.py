@@ -1,0 +1,111 @@
+"""A kind of effect: all that is particular about it, in one declaration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...arrays import Floats
+from ..reduction.elements_and_supports import Structure
+from .effect_numbers import EFFECTS
+from .effect_scale import Scale
+
+if TYPE_CHECKING:
+    from .candidates import Candidates
+
+Words = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Magnitude:
+    """A size of an effect, e^θ.
+
+    Parameters
+    ----------
+    word : str
+        Its key in ``magnitude`` of result.json.
+    place_error : float
+        Standard deviation of θ that comes of a place or patch which is not quite the true one and
+        of the mesh, as measured on generated cases (`benchmarks/discovery`).
+    is_mass : bool
+        Whether it is told in the deck's unit of mass.
+    """
+
+    word: str
+    place_error: float
+    is_mass: bool = False
+
+
+MASS = Magnitude("mass", EFFECTS.mass_error, is_mass=True)
+STIFFNESS = Magnitude("stiffness", EFFECTS.stiffness_error)
+FACTOR = Magnitude("factor", EFFECTS.factor_error)
+
+
+@dataclass(frozen=True, eq=False)
+class EffectKind:
+    """A kind of effect that a model may lack.
+
+    One with several magnitudes can imitate what has one: the search looks for it in a second
+    round, beside what was found of simple kinds.
+
+    Parameters
+    ----------
+    name : str
+        The fixed word of result.json.
+    label : str
+        What the report calls it.
+    sentence : str
+        What is missing, up to the words ``explains test mode ...``: a template of `magnitudes`,
+        ``components`` and ``region``.
+    magnitudes : tuple of Magnitude
+        One for each θ of its law.
+    places : callable
+        Candidates, with their law, on a structure; none of a kind that is not searched for.
+    across : float
+        Of a kind that sits at points: so many places across the structure, each way, does the
+        first scan look at. 0: all places, of patches those marked so.
+    directed : bool
+        Whether a place has one direction, looked at only where something moves that way.
+    nature : str
+        Effects of one nature side by side, along the same components, are told as one. ""
+        stays by itself.
+    adds_up : bool
+        Whether the magnitudes of what is told as one add up; else the strongest stays.
+    spread_out : bool
+        Whether it is what small patches of its nature become when they grow.
+    limits : callable
+        What it becomes where its tuning says nothing, with which size: sizes (t,) to sizes by kind.
+    further : callable
+        Further words of the magnitude of one place.
+    in_modes : bool
+        Whether undamped modes show it.
+    """
+
+    name: str
+    label: str
+    sentence: str
+    magnitudes: tuple[Magnitude, ...]
+    places: Callable[[Structure, Scale], tuple[Candidates, ...]] = lambda *_: ()
+    across: float = 0.0
+    directed: bool = False
+    nature: str = ""
+    adds_up: bool = True
+    spread_out: bool = False
+    limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
+    further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
+    in_modes: bool = True
+
+    @property
+    def words(self) -> str:
+        """Return the name as words."""
+        return self.name.replace("_", " ")
+
+    @property
+    def at_points(self) -> bool:
+        """Whether it sits at points."""
+        return self.across > 0.0
+
+    def joins(self, other: EffectKind) -> bool:
+        """Whether two effects side by side may be one."""
+        return self.nature == other.nature != ""

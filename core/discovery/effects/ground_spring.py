@@ -1,0 +1,43 @@
+"""A spring to ground: a cable, a hose, a suspension, a contact that the model does not have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..reduction.elements_and_supports import Structure
+from .candidates import Candidates
+from .effect_kind import STIFFNESS, EffectKind
+from .effect_laws import SpringLaw
+from .effect_numbers import EFFECTS
+from .effect_scale import Scale
+from .structure_points import along_axes, points_of
+
+
+def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
+    """Springs along each basic axis at every grid, shell middle and shell edge that moves."""
+    xyz, root, where = along_axes(structure, *points_of(structure))
+    made = Candidates(
+        kind=KIND,
+        xyz=xyz,
+        law=SpringLaw(np.zeros((len(xyz), 1))),
+        trials=scale.springs(),
+        root=root,
+        rows_each=1,
+        where=where,
+        typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
+        spread=np.array([EFFECTS.spring_spread]),
+    )
+    return (made,)
+
+
+KIND = EffectKind(
+    name="ground_spring",
+    label="spring to ground",
+    sentence="A spring to ground of about {stiffness:.3g} (deck units) in direction {components} "
+    "is missing {region}: it",
+    magnitudes=(STIFFNESS,),
+    places=_places,
+    across=EFFECTS.springs_across,
+    directed=True,
+    nature="spring",
+)

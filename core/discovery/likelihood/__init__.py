@@ -1,0 +1,1 @@
+"""How well a hypothesis explains the test."""

@@ -1,0 +1,67 @@
+"""The tuned numbers of the likelihood, and how wide a search looks."""
+
+from dataclasses import dataclass
+
+from ...number_table import ROUNDING, number
+
+SIZE = "of the structure's size"
+
+
+@dataclass(frozen=True)
+class Effort:
+    beam: int = number(3, "hypotheses", "that are grown at once")
+    branches: int = number(4, "suspects", "that are fitted beside each of them")
+    looked_at: int = number(6, "places", "of the first scan around which neighbours are scanned")
+    around: int = number(22, "places", "scanned around each of them, at most")
+    neighbours: int = number(60, "places", "that a suspect may move to at once, at most")
+    of_each_kind: int = number(2, "suspects", "of a kind that are fitted, whatever the others gain")
+    most: int = number(4, "suspects", "of a hypothesis, at most")
+    search_modes: int = number(48, "modes", "of a hypothesis on which places are scanned")
+    apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
+    near: float = number(0.06, SIZE, "how far a suspect moves at once")
+    twice: int = number(8000, "degrees of freedom", "models up to it are searched a second time, with all kinds at once", "time")
+
+
+@dataclass(frozen=True)
+class LikelihoodNumbers:
+    frequency: float = number(0.004, "of ln f", "standard deviation of what a right model misses")
+    shape: float = number(0.05, "of the rms of a shape", "the same of a sensor's reading, if nothing is known of the test")
+    placed: float = number(0.04, "of the rms of a shape", "the same of any test: positions of sensors, discretisation")
+    independent: float = number(12.0, "sensors", "that count as independent: errors of a model are smooth")
+    robust: float = number(40.0, "2 ln L", "misfit of one mode beyond which more of it counts less and less")
+    mixing: float = number(0.02, "of λ", "changes of K that no model has right, see `mixing`")
+    soft: float = number(3.0, "of the noise", "where wide valleys are wanted")
+    soft_mixing: float = number(5.0, "of `mixing`", "where the known parameters have yet to follow")
+    unseen: float = number(1e-10, "of the largest squared length", "at the sensors, of a mode that they do not see", ROUNDING)
+    ridge: float = number(1e-6, "-", "on the diagonal of a Gram matrix of shapes that are alike", ROUNDING)
+    least_eigenvalue: float = number(1e-6, "of a test mode's λ", "λ of a rigid-body mode that is matched to it")
+
+    steps: int = number(8, "steps", "of Gauss and Newton, unless said otherwise")
+    tolerance: float = number(0.05, "2 ln L", "fall of the objective that counts")
+    dampings: int = number(5, "trials", "of Levenberg's damping a step")
+    damping_first: float = number(0.05, "of the curvature", "least damping after a step that failed")
+    damping_up: float = number(5.0, "-", "times the damping after a step that failed")
+    damping_down: float = number(0.3, "-", "times the damping after one that did not")
+    damping_least: float = number(1e-10, "of the curvature", "damping of any step", ROUNDING)
+    reach: float = number(0.8, "ln p, or steps of a kind", "largest move of an unknown at once")
+    few_modes: float = number(0.25, "of the eigenpairs", "below which finding these alone takes less time than all", "time")
+    degenerate: float = number(2e-3, "of λ", "gap below which modes do not turn into each other in a derivative")
+    apart_least: float = number(1e-12, "1 - MAC", "least that is divided by", ROUNDING)
+    edge: float = number(0.04, "of ln λ", "how far within the measured band a mode counts in full as one too many")
+    nil: float = number(1e-9, "of the test's lowest λ", "λ of a mode without strain whose log is taken", ROUNDING)
+    law_top: float = number(2.0, "of the test's highest λ", "below which springs that stand for a rigid link do not matter")
+
+    above: float = number(1.5, "of the highest test frequency", "up to which modes count when shapes are turned onto the test's")
+    turning: float = number(0.02, "of λ", "gaps below which modes turn freely, see `mixing`")
+    elastic: float = number(1e-3, "of the highest frequency", "above which a mode has a damping ratio", ROUNDING)
+
+    lines: int = number(240, "lines", "of the responses that hypotheses are compared on", "time")
+    functions: int = number(60, "functions", "likewise", "time")
+    far: float = number(4.0, "ratio", "of magnitudes beyond which more of it counts no more")
+    ratio: float = number(0.01, "-", "damping ratio where the test has none")
+    least_error: float = number(0.02, "of ln H", "log magnitudes are not known better")
+    band_below: float = number(0.7, "of the lowest test frequency", "from which responses count")
+    band_above: float = number(1.05, "of the highest test frequency", "up to which they do")
+
+
+EFFORT, LIKELIHOOD = Effort(), LikelihoodNumbers()

@@ -1,0 +1,39 @@
+"""The tuned numbers of what a person is told."""
+
+from dataclasses import dataclass
+
+from ...number_table import number
+
+SIZE, READER = "of the structure's size", "what a reader takes in"
+
+
+@dataclass(frozen=True)
+class NarrativeNumbers:
+    sure: float = number(0.8, "-", "posterior of a hypothesis from which on its effects are told as such")
+    contradicted: float = number(-4.0, "2 ln L", "held-out modes and sensors that lose more by the last effect speak against it", "a likelihood ratio of exp(2)")
+    unexplained: float = number(8.0, "of the assumed variance", "that a hypothesis without effects leaves where something is missing")
+    matters: float = number(8.0, "2 ln L", "what known parameters must gain besides 2 ln of their number")
+    significant: float = number(3.0, "standard deviations", "by which a known parameter moved, for it to be adopted")
+    in_catalogue: float = number(0.91, "-", "share of clear findings that are right", "python -m benchmarks.discovery.calibrate FOLDER")
+    left_over: float = number(0.003, "-", "how it falls with the noise scale", "python -m benchmarks.discovery.calibrate FOLDER")
+    interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")
+    hardly: float = number(20.0, "-", "quotient of the ends of an interval from which on a magnitude is hardly known")
+    alternatives: int = number(8, "alternatives", "that are told, at most", READER)
+    rivals: int = number(3, "hypotheses", "that further data should tell from the best, at most", READER)
+    rival: float = number(14.0, "2 ln L", "how far behind the best they are, at most", "a thousand times less likely")
+
+    damper_sure: float = number(0.6, "-", "posterior of a dashpot at its place from which on it is an effect")
+    damper_listed: float = number(0.5, "-", "posterior of a dashpot anywhere from which on it is a finding")
+    damper_told: float = number(0.02, "-", "the same, from which on it is an alternative")
+    damper_confidence: float = number(0.93, "-", "share of clear findings of dashpots that are right", "python -m benchmarks.discovery")
+    damper_together: float = number(0.1, SIZE, "places that are nearer are one")
+    damper_beside: float = number(0.2, SIZE, "how near a heavy dashpot looks like another effect to the search")
+    damper_tie: float = number(1e-6, "-", "weight by which the likeliest of places that hold as much comes first", "decides ties alone")
+    damper_credible: float = number(0.05, "of the likeliest place's weight", "below which a place is not listed")
+    damper_places: int = number(40, "places", "that are listed, at most", READER)
+
+    rim: float = number(0.95, "of the largest radius", "from which on grids are on the rim of a round structure")
+    rim_filled: int = number(23, "of 24 sectors", "that hold grids of the rim if a structure is round", "one may be cut out")
+
+
+NARRATIVE = NarrativeNumbers()

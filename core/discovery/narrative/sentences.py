@@ -1,0 +1,74 @@
+"""The sentence a person reads first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...arrays import Floats
+from ..effects.candidates import Candidates
+from ..effects.effect_kind import EffectKind
+from ..effects.sentence_parts import MassUnit, mode_ranges, odds
+from ..findings import Alternative
+from .narrative_numbers import NARRATIVE
+
+
+def magnitude_of(
+    c: Candidates, row: int, sizes: Floats, intervals: Floats, masses: MassUnit
+) -> dict[str, Any]:
+    """Return the magnitudes of a finding by the words of the interface.
+
+    Parameters
+    ----------
+    c : Candidates
+    row : int
+    sizes : (t,) float
+    intervals : (t, 2) float
+        95 %; that of the first magnitude stands beside the magnitudes, in the finding.
+    masses : MassUnit
+        Masses are given as cards have them.
+    """
+    said: dict[str, Any] = {}
+    for k, (m, size, interval) in enumerate(zip(c.kind.magnitudes, sizes, intervals, strict=True)):
+        unit = masses.card if m.is_mass else 1.0
+        said[m.word] = float(size) * unit
+        if k:
+            said[f"{m.word}_interval"] = (interval * unit).tolist()
+    where = c.where[row]
+    said |= {k: where[k] for k in ("components", "free_components") if k in where}
+    return said | c.kind.further(c, row, said)
+
+
+def sentence_of(
+    kind: EffectKind,
+    magnitude: dict[str, Any],
+    region: str,
+    interval: tuple[float, float],
+    modes: Sequence[int],
+    masses: MassUnit,
+    next_best: Alternative | None,
+) -> str:
+    """Say what is missing, where, which test modes it explains, how sure, and what comes next."""
+    values = {**magnitude, "region": region}
+    low, high = (f"{v:.3g}" for v in interval)
+    if "components" in values:
+        values["components"] = "".join(str(k) for k in values["components"])
+    for m in kind.magnitudes:
+        if m.is_mass:
+            values[m.word] = masses.said(float(magnitude[m.word]))
+    if kind.magnitudes[0].is_mass:
+        low, high = masses.figure(interval[0]), masses.said(interval[1])
+    if "free_components" in values:
+        turning = "".join(str(k) for k in values["free_components"])
+        values["components"] += f" and freely in direction {turning}"
+    text = kind.sentence.format(**values)
+    what = mode_ranges(modes) if modes else "the test a little better"
+    text += f" explains {what} (95 %: {low} to {high}"
+    text += ", the test hardly tells)" if interval[1] > NARRATIVE.hardly * interval[0] else ")"
+    if next_best is not None:
+        what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
+        if next_best.kinds == (kind.name,):
+            what = next_best.where
+            what = f"{kind.words} there alone" if next_best.regions == (region,) else what
+        text += f"; next best, {what}, is {odds(next_best.times_less_likely)}"
+    return text + "."

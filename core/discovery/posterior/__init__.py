@@ -1,0 +1,1 @@
+"""What follows from the data: credible places, measurements that would decide."""

@@ -1,0 +1,1 @@
+"""The bases on which hypotheses are evaluated, and what they lack."""

@@ -1,0 +1,19 @@
+"""The tuned numbers of the small models that a discovery works on."""
+
+from dataclasses import dataclass
+
+from ...number_table import ROUNDING, number
+
+
+@dataclass(frozen=True)
+class ReductionNumbers:
+    own: float = number(1e-6, "of the mass of a mode", "that moves with the structure, for it to count", ROUNDING)
+    rounding: float = number(1e-7, "of a vector", "what is left of it is rounding", ROUNDING)
+    dependent: float = number(1e-5, "of the largest squared length", "directions with less are not new to a basis")
+    pinned: float = number(1e-9, "of the larger bending stiffness", "below which a bar does not bend with the grid", ROUNDING)
+    bars_at_once: int = number(512, "bars", "whose consistent mass is made at once", "memory")
+    at_once: int = number(128, "loads", "whose displacements are found at once", "memory")
+    shared_at_once: int = number(600, "loads", "whose flexibilities among each other are found together", "memory")
+
+
+REDUCTION = ReductionNumbers()

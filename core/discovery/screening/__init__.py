@@ -1,0 +1,1 @@
+"""What takes part in a discovery: modes of the test, known parameters."""

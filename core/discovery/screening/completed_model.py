@@ -1,0 +1,129 @@
+"""Whether the model completed by what was found bears the verdict out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol, TypeVar
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...correlation.comparison import Comparison, Placed
+from ...correlation.mode_pairing import Correlation
+from ...data.dofs import Dofs
+from ...eigen.normal_modes import Eigensolution
+from ..effects import KINDS
+from ..faults import corrected, lost
+from ..findings import Discovery, MovedParameter
+from .screening_numbers import SCREENING
+
+ADOPTED = ("effect", "parameters_only")
+"""Verdicts that change the model."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedModel:
+    """A model compared with the test: the comparison, its solution, D or None without dashpots."""
+
+    compared: Comparison
+    solution: Eigensolution
+    damping: sp.csr_matrix | None
+
+
+class Completed(Protocol):
+    """A model that was completed by what was found."""
+
+    @property
+    def after(self) -> SolvedModel:
+        """SolvedModel and compared again."""
+        ...
+
+
+C = TypeVar("C", bound=Completed)
+
+
+def upheld(
+    found: Discovery, before: Comparison, complete: Callable[[Discovery], C]
+) -> tuple[Discovery, C]:
+    """Complete the model; withdraw the verdict where that brings it no nearer to the test.
+
+    Parameters
+    ----------
+    found : Discovery
+    before : Comparison
+        Of the model as it came.
+    complete : callable
+        Gives the model completed by a discovery.
+    """
+    done = complete(found)
+    if found.verdict in ADOPTED and no_nearer(before.correlation, done.after.compared.correlation):
+        found = withdrawn(found)
+        done = complete(found)
+    return found, done
+
+
+def written_factor(verdict: str, moved: MovedParameter) -> float:
+    """Return the factor by which the completed model has a known property."""
+    far = abs(moved.factor - 1.0) > SCREENING.moved
+    return moved.factor if verdict in ADOPTED and far else 1.0
+
+
+def borne_out(found: Discovery, agrees: bool) -> Discovery:
+    """Return what was found; nothing where the model as it is agrees with every mode of the test.
+
+    Dampers and faults of sensors show elsewhere and stay.
+    """
+    told = any(f.side == "test" or not KINDS[f.kind].in_modes for f in found.findings)
+    if not agrees or told:
+        return found
+    return replace(found, verdict="no_gap", findings=(), would_decide=())
+
+
+def no_nearer(before: Correlation, after: Correlation) -> bool:
+    """Whether fewer modes pair, or as many with frequencies that are farther off."""
+    was, now = before.mean_abs_deviation_percent, after.mean_abs_deviation_percent
+    if len(after.pairs) != len(before.pairs) or was is None or now is None:
+        return len(after.pairs) < len(before.pairs)
+    return now > was
+
+
+def withdrawn(found: Discovery) -> Discovery:
+    """Return a verdict that the completed model did not bear out."""
+    if found.verdict == "parameters_only":
+        return replace(found, verdict="no_gap")
+    why = (
+        "a finer mesh, or one with consistent mass (PARAM,COUPMASS,1): completed as found, the "
+        "deck came no nearer to the test than it was"
+    )
+    return replace(found, verdict="undecided", would_decide=(why, *found.would_decide))
+
+
+def sound_test(placed: Placed, found: Discovery, had: Dofs, has: Dofs) -> Placed:
+    """Return the test as sound sensors would have read it, on a model with further grids.
+
+    Sensors of which that cannot be known are left out.
+
+    Parameters
+    ----------
+    placed : Placed
+        On the degrees of freedom `had`.
+    found : Discovery
+    had, has : Dofs
+        Of the model as it came and as completed.
+    """
+    if has.node.shape != had.node.shape:
+        seen = placed.observation
+        placed = replace(
+            placed, observation=replace(seen, matrix=(seen.matrix @ _onto(had, has)).tocsr())
+        )
+    shapes = corrected(placed.test.shapes, found.corrected_sensors)
+    left = ~lost(found.corrected_sensors, len(shapes))
+    return replace(placed, test=replace(placed.test, shapes=shapes)).take(left)
+
+
+def _onto(had: Dofs, has: Dofs) -> sp.csr_matrix:
+    """Return ones where a degree of freedom of `had` is one of `has`, (n_had, n_has)."""
+    old, new = (6 * d.node + d.component for d in (had, has))
+    _, rows, columns = np.intersect1d(old, new, assume_unique=True, return_indices=True)
+    return sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(had), len(has)))

@@ -1,0 +1,1 @@
+"""Sensors checked against each other and against the model."""

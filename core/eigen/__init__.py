@@ -1,0 +1,1 @@
+"""Normal modes of a pencil (K, M), each solution checked."""

@@ -1,0 +1,23 @@
+"""The tuned numbers of what is said of a mode."""
+
+from dataclasses import dataclass
+
+from ..number_table import ROUNDING, SURVEYS, number
+
+
+@dataclass(frozen=True)
+class IdentificationNumbers:
+    poor_quality: float = number(0.9, "-", "correlation of responses about a mode below which it is remarked", SURVEYS)
+    poor_mpc: float = number(0.7, "-", "modal phase collinearity below which it is remarked", SURVEYS)
+    poor_indicator: float = number(0.3, "-", "indicator of a mode below which it is remarked", SURVEYS)
+    weak: float = number(0.05, "of a shape", "standard error above which it is called uncertain", SURVEYS)
+    input_rank: float = number(0.02, "-", "singular value ratio below which references see one and the same", SURVEYS)
+    excited: float = number(1e-9, "of the largest eigenvalue", "below which a combination of references excites nothing", ROUNDING)
+    near_lines: float = number(5.0, "lines", "to either side of a mode over which its quality is judged, at least", SURVEYS)
+    orders: tuple[int, int] = number((2, 20), "orders", "first and last whose poles tell conjugated functions", SURVEYS)
+    orders_last: int = number(6, "orders", "the last, whose stable poles are counted", SURVEYS)
+    backwards: int = number(3, "-", "times as many of the conjugated functions say that these run backwards", SURVEYS)
+    stable: float = number(0.1, "of critical", "damping of a pole that counts as stable", SURVEYS)
+
+
+IDENTIFICATION = IdentificationNumbers()

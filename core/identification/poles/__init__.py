@@ -1,0 +1,1 @@
+"""Poles and participation: estimated, refined, selected."""

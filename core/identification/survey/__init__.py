@@ -1,0 +1,1 @@
+"""A survey of frequency responses: checked, cleaned, weighted."""

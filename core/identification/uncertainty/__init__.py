@@ -1,0 +1,1 @@
+"""Standard errors of a fit, and what the fitted model is wrong by."""

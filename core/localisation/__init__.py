@@ -1,0 +1,1 @@
+"""Where model and test disagree: the misfit of shapes and frequencies, mapped."""

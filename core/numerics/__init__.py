@@ -1,0 +1,1 @@
+"""Sparse numerical linear algebra that knows nothing of structures."""

@@ -1,0 +1,1 @@
+"""Reduced bases, and derivatives of eigenvalues and eigenvectors."""

@@ -1,0 +1,271 @@
+"""The tables of a correlation; mode numbers count from 1 in their own files."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..arrays import Floats
+from ..correlation.comparison import Comparison
+from ..correlation.mode_pairing import Correlation, Criteria
+from ..noun import Noun
+from . import export
+from .plain import Table, Tables, key
+
+_SHOWN = 12
+"""Modes of either side of a MAC matrix on a page."""
+
+
+@dataclass(frozen=True)
+class PairRow:
+    """One test mode with one analysis mode; `deviation_percent` is 100·(analysis − test)/test."""
+
+    test: int
+    analysis: int
+    test_hz: float
+    analysis_hz: float
+    deviation_percent: float
+    mac: float
+    cluster: int | None
+    rotation_deg: float | None
+
+
+@dataclass(frozen=True)
+class ClusterRow:
+    """Close modes of both sides that are treated as one subspace."""
+
+    id: int
+    analysis: tuple[int, ...]
+    test: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class MacTable(Noun):
+    """MAC `values` (n_test, n_analysis), 0..1, of the modes whose numbers stand beside."""
+
+    test: tuple[int, ...]
+    analysis: tuple[int, ...]
+    values: Floats
+
+    def __len__(self) -> int:
+        return len(self.test)
+
+    @property
+    def _wide(self) -> tuple[list[export.Column], list[dict[str, object]]]:
+        names = ["test mode", *(f"analysis mode {a}" for a in self.analysis)]
+        rows = zip(self.test, self.values.tolist(), strict=True)
+        records = [dict(zip(names, (t, *row), strict=True)) for t, row in rows]
+        return [export.Column(name) for name in names], records
+
+    def to_csv(self, path: Path | str) -> None:
+        """Write a CSV file, test modes down, analysis modes across."""
+        export.write_csv(path, *self._wide)
+
+    def _repr_html_(self) -> str:
+        rows, columns = len(self.test), len(self.analysis)
+        if max(rows, columns) <= _SHOWN:
+            return export.html(*self._wide)
+        part = MacTable(self.test[:_SHOWN], self.analysis[:_SHOWN], self.values[:_SHOWN, :_SHOWN])
+        return (
+            f"{part._repr_html_()}<p>… the first of {rows} test modes and {columns} analysis "
+            "modes</p>"
+        )
+
+
+@dataclass(frozen=True)
+class Gap:
+    """How far apart model and test are, in four figures; None without pairs."""
+
+    pairs: int
+    mean_abs_deviation_percent: float | None
+    worst_deviation_percent: float | None
+    mean_mac: float | None
+
+
+@dataclass(frozen=True)
+class SensorRow:
+    """A sensor on the model: axis and position in the analysis frame, deck length unit."""
+
+    node: int
+    direction: str
+    axis: tuple[float, ...]
+    xyz: tuple[float, ...]
+    nearest_grid: int
+    distance: float
+
+
+@dataclass(frozen=True, eq=False)
+class AlignmentTable(Noun):
+    """How the test was laid onto the model: x_analysis = rotation · (scale · x_test) + translation.
+
+    Shapes: `rotation` (3, 3), `translation` (3,) and `rms` in the deck length unit.
+    """
+
+    rotation: Floats
+    translation: Floats
+    scale: float
+    rms: float
+    sensors: Table[SensorRow]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Compared(Tables):
+    """A model and a test, correlated.
+
+    `mac` is as measured, `mac_rotated` after rotation; `test_hz` (n_test,) and `analysis_hz`
+    (n_analysis,) are the frequencies of all modes.
+    """
+
+    pairs: Table[PairRow]
+    unpaired_test: tuple[int, ...]
+    unpaired_analysis: tuple[int, ...]
+    clusters: Table[ClusterRow]
+    mac: MacTable
+    mac_rotated: MacTable
+    test_hz: Floats
+    analysis_hz: Floats
+    summary: Gap
+    criteria: Criteria
+    alignment: AlignmentTable
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def test_modes(self) -> tuple[int, ...]:
+        """Numbers of the test modes that took part."""
+        return tuple(sorted((*(p.test for p in self.pairs), *self.unpaired_test)))
+
+
+class RunTables(Tables):
+    """Base of what a verb that compares answers."""
+
+    if TYPE_CHECKING:
+        warnings: tuple[str, ...]
+
+    @property
+    def sources(self) -> tuple[str, tuple[str, ...]]:
+        """The deck and the files of the test that were compared."""
+        raise NotImplementedError
+
+    @property
+    def final(self) -> Compared:
+        """The correlation that counts: of the changed deck where there is one."""
+        raise NotImplementedError
+
+    @property
+    def initial(self) -> Compared | None:
+        """The correlation of the deck as it came, where the verb changed it."""
+        return None
+
+    @property
+    def all_warnings(self) -> tuple[str, ...]:
+        """Warnings of the run and of its correlations, each once."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CorrelateTables(Compared, RunTables):
+    """What ``correlate`` answers."""
+
+    verb = "correlate"
+    deck_file: str = field(metadata=key("deck"))
+    test_files: tuple[str, ...] = field(metadata=key("test"))
+
+    @property
+    def sources(self) -> tuple[str, tuple[str, ...]]:
+        """The deck and the files of the test."""
+        return self.deck_file, self.test_files
+
+    @property
+    def final(self) -> Compared:
+        """The correlation itself."""
+        return self
+
+    @property
+    def all_warnings(self) -> tuple[str, ...]:
+        """Its warnings."""
+        return self.warnings
+
+
+def compared(c: Comparison) -> Compared:
+    """Return the tables of a comparison."""
+    found = c.correlation
+    return Compared(
+        pairs=pair_rows(found),
+        unpaired_test=tuple(t + 1 for t in found.unpaired_test),
+        unpaired_analysis=tuple(a + 1 for a in found.unpaired_analysis),
+        clusters=Table(
+            ClusterRow(k, tuple(a + 1 for a in g.analysis), tuple(t + 1 for t in g.test))
+            for k, g in enumerate(found.clusters, 1)
+        ),
+        mac=_mac(found.mac),
+        mac_rotated=_mac(found.mac_rotated),
+        test_hz=c.test.frequencies_hz,
+        analysis_hz=c.analysis.frequencies_hz,
+        summary=gap(found),
+        criteria=found.criteria,
+        alignment=_alignment(c),
+        warnings=c.warnings,
+    )
+
+
+def pair_rows(found: Correlation) -> Table[PairRow]:
+    """Return the pairs of a correlation."""
+    return Table(
+        PairRow(
+            p.test + 1,
+            p.analysis + 1,
+            p.test_hz,
+            p.analysis_hz,
+            p.deviation_percent,
+            p.mac,
+            None if p.cluster is None else p.cluster + 1,
+            p.rotation_deg,
+        )
+        for p in found.pairs
+    )
+
+
+def gap(found: Correlation, among: Collection[int] | None = None) -> Gap:
+    """Return how far apart model and test are, over all test modes or those of some numbers."""
+    kept = tuple(p for p in found.pairs if among is None or p.test + 1 in among)
+    found = replace(found, pairs=kept)
+    return Gap(
+        len(kept), found.mean_abs_deviation_percent, found.worst_deviation_percent, found.mean_mac
+    )
+
+
+def _mac(values: Floats) -> MacTable:
+    n_test, n_analysis = values.shape
+    return MacTable(tuple(range(1, n_test + 1)), tuple(range(1, n_analysis + 1)), values)
+
+
+def _alignment(c: Comparison) -> AlignmentTable:
+    move, seen = c.alignment, c.observation
+    rows = zip(
+        seen.sensors.node,
+        seen.sensors.directions,
+        seen.sensors.axis,
+        seen.xyz,
+        seen.nearest_grid,
+        seen.distance,
+        strict=True,
+    )
+    return AlignmentTable(
+        move.rotation,
+        move.translation,
+        c.placed.length_factor,
+        move.rms,
+        Table(
+            SensorRow(
+                int(node),
+                direction,
+                tuple(axis.tolist()),
+                tuple(xyz.tolist()),
+                int(grid),
+                float(distance),
+            )
+            for node, direction, axis, xyz, grid, distance in rows
+        ),
+    )

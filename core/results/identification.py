@@ -1,0 +1,126 @@
+"""The tables of an identification."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypedDict
+
+import numpy as np
+
+from ..data.dofs import Dofs
+from ..identification.result import Identification
+from .plain import Table, Tables
+
+_HZ = {"unit": "Hz"}
+
+
+@dataclass(frozen=True)
+class IdentifiedRow:
+    """A mode of the test with its uncertainty and quality, see `Identification`."""
+
+    frequency_hz: float = field(metadata=_HZ)
+    damping_ratio: float
+    frequency_std: float = field(metadata=_HZ)
+    damping_std: float
+    mpc: float
+    mpd: float = field(metadata={"unit": "deg"})
+    mode_indicator: float
+    quality: float
+    generalized_mass: float
+    close_pair_possible: bool
+    rigid_body_share: float | None
+    suspension: bool
+    remark: str
+
+
+@dataclass(frozen=True)
+class PlaceRow:
+    """Where a response was measured or the structure driven."""
+
+    node: int
+    direction: str
+
+
+@dataclass(frozen=True)
+class BandRow:
+    """A band that was fitted by itself."""
+
+    low_hz: float = field(metadata=_HZ)
+    high_hz: float = field(metadata=_HZ)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IdentifyTables(Tables):
+    """What ``identify`` answers; `lines` were used, from `range_hz`[0] to `range_hz`[1]."""
+
+    verb = "identify"
+    frf: tuple[str, ...]
+    modes: Table[IdentifiedRow]
+    references: Table[PlaceRow]
+    responses: Table[PlaceRow]
+    bands: Table[BandRow]
+    quantity: str
+    lines: int
+    range_hz: tuple[float, float]
+    warnings: tuple[str, ...]
+
+
+class _Told(TypedDict):
+    modes: Table[IdentifiedRow]
+    references: Table[PlaceRow]
+    responses: Table[PlaceRow]
+    bands: Table[BandRow]
+    quantity: str
+    lines: int
+    range_hz: tuple[float, float]
+
+
+def identified(found: Identification) -> _Told:
+    """Return the tables of an identification, by field of `IdentifyTables`."""
+    hz = found.cmif.frequencies_hz
+    each = {
+        "frequency_hz": found.modes.frequencies_hz,
+        "damping_ratio": found.modes.damping,
+        "frequency_std": found.frequency_std,
+        "damping_std": found.damping_std,
+        "mpc": found.mpc,
+        "mpd": found.mpd,
+        "mode_indicator": found.mode_indicator,
+        "quality": found.quality,
+        "generalized_mass": found.real_modes.generalized_mass,
+    }
+    return {
+        "modes": Table(
+            (
+                IdentifiedRow(
+                    close_pair_possible=bool(found.close_pair_possible[k]),
+                    rigid_body_share=_finite(found.rigid_share[k]),
+                    suspension=bool(found.suspension[k]),
+                    remark=found.remarks[k],
+                    **{name: float(values[k]) for name, values in each.items()},
+                )
+                for k in range(len(found.modes))
+            ),
+            IdentifiedRow,
+        ),
+        "references": _places(found.references),
+        "responses": _places(found.modes.dofs),
+        "bands": Table((BandRow(b.band.low, b.band.high) for b in found.bands), BandRow),
+        "quantity": found.quantity,
+        "lines": len(hz),
+        "range_hz": (float(hz[0]), float(hz[-1])),
+    }
+
+
+def _places(dofs: Dofs) -> Table[PlaceRow]:
+    return Table(
+        (
+            PlaceRow(int(node), direction)
+            for node, direction in zip(dofs.node, dofs.directions, strict=True)
+        ),
+        PlaceRow,
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

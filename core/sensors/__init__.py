@@ -1,0 +1,1 @@
+"""The sparse sensor map: from analysis shapes to what sensors read."""

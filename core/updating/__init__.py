@@ -1,0 +1,1 @@
+"""Parameters moved to the test by sensitivities."""

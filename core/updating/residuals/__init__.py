@@ -1,0 +1,16 @@
+"""The residuals that an update may minimise: one declaration a file, one line each in a list."""
+
+from .declaration import Linearisation, Residual, Seen, Slopes, Target
+from .known_residuals import RESIDUALS, Weights, register_residual, residuals_named
+
+__all__ = [
+    "RESIDUALS",
+    "Linearisation",
+    "Residual",
+    "Seen",
+    "Slopes",
+    "Target",
+    "Weights",
+    "register_residual",
+    "residuals_named",
+]

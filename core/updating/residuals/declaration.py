@@ -1,0 +1,157 @@
+"""What a residual declares, and what it is given of the model and the test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...arrays import Floats, Ints, Numbers
+from ...correlation.mode_pairing import Criteria, Pair
+from ...data.parametric_model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """The test at its sensors: what the update aims at.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_test,) float
+    shapes : (n_sensor, n_test) float or complex
+    sensors : (n_sensor, n_free) sparse
+        Sensor displacements from the free degrees of freedom of the model.
+    modes : tuple of int, optional
+        Test modes that the update may use; default all.
+    frequency_std, shape_std : (n_test,) float, optional
+        Standard errors of the test's frequencies, relative, and lengths of those of its shapes,
+        over the shapes'; they add to the standard deviations of the weights.
+    """
+
+    frequencies_hz: Floats
+    shapes: Numbers
+    sensors: sp.csr_matrix
+    modes: tuple[int, ...] | None = None
+    frequency_std: Floats | None = None
+    shape_std: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A model at one parameter point beside the test: one column a pair.
+
+    Parameters
+    ----------
+    model : Model
+    factors : (n_parameter,) float
+    pairs : tuple of Pair
+    eigenvalues : (n_pair,) float
+        Of the analysis modes, after rotation their Rayleigh quotients, (rad/s)².
+    analysis, test : (n_sensor, n_pair) float
+        Shapes at the sensors as they are paired: the analysis' mass-normalised, the test's of
+        any scaling.
+    """
+
+    model: Model
+    factors: Floats
+    pairs: tuple[Pair, ...]
+    eigenvalues: Floats
+    analysis: Floats
+    test: Floats
+
+    @property
+    def test_eigenvalues(self) -> Floats:
+        """Of the test modes, (n_pair,), (rad/s)²."""
+        return np.array([(2.0 * np.pi * q.test_hz) ** 2 for q in self.pairs])
+
+    def take(self, columns: Sequence[int] | Ints) -> Seen:
+        """Return the same of some of the pairs, in this order."""
+        at = np.asarray(columns, np.int64)
+        return replace(
+            self,
+            pairs=tuple(self.pairs[k] for k in at),
+            eigenvalues=self.eigenvalues[at],
+            analysis=self.analysis[:, at],
+            test=self.test[:, at],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """Derivatives of what is seen by the parameters that move.
+
+    Parameters
+    ----------
+    parameters : tuple of int
+        Their positions in ``Model.parameters``.
+    eigenvalues : (n_pair, n_active) float
+    analysis : (n_sensor, n_pair, n_active) float or None
+        None unless a residual in use asks for it (`Residual.needs_shapes`).
+    """
+
+    parameters: tuple[int, ...]
+    eigenvalues: Floats
+    analysis: Floats | None
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """Weighted residuals W^½Δz, (n,), and their derivatives W^½∂(z_a)/∂p, (n, n_active)."""
+
+    values: Floats
+    gradient: Floats
+
+
+@dataclass(frozen=True)
+class Residual:
+    """One kind of difference Δz in the objective of equation (2).
+
+    Parameters
+    ----------
+    name : str
+        What users say: ``residuals = "frequencies"``.
+    weight : str
+        Key of the study that holds the standard deviation σ, for example ``frequency_sigma``.
+    sigma : float
+        Default of that standard deviation.
+    value : callable
+        Δz of a `Seen`: (n_row, k), each row in units of one σ; rows are pairs, or stand for the
+        whole model where `error` is not given.
+    derivative : callable
+        Of the value by the active parameters: `Seen` and `Slopes` to (n_row, k, n_active).
+    needs_shapes : bool
+        Whether the derivative looks at ``Slopes.analysis``, which costs a solve a mode.
+    size : callable, optional
+        Squared length of each row of the value, (n_row,), where it is known for less.
+    unpaired : callable
+        The squared length that is due for a test mode without a partner.
+    error : callable
+        Standard errors of the test itself in units of the value, (n_test,), or None; they add to σ.
+    tells_pairs : bool
+        Whether modes are paired by this very residual: a step that loses a pair has then made it
+        worse.
+    """
+
+    name: str
+    weight: str
+    sigma: float
+    value: Callable[[Seen], Floats]
+    derivative: Callable[[Seen, Slopes], Floats]
+    needs_shapes: bool = False
+    size: Callable[[Seen], Floats] | None = None
+    unpaired: Callable[[Criteria], float] = lambda _: 0.0
+    error: Callable[[Target], Floats | None] = lambda _: None
+    tells_pairs: bool = False
+
+    def squared(self, seen: Seen) -> Floats:
+        """Squared length of each row of the value, (n_row,)."""
+        return np.sum(self.value(seen) ** 2, axis=1) if self.size is None else self.size(seen)
+
+    def linearised(self, seen: Seen, slopes: Slopes, sigma: Floats | float) -> Linearisation:
+        """Weigh value and derivative by 1/σ, one σ in all or one a row."""
+        values, gradient = self.value(seen), self.derivative(seen, slopes)
+        rows = np.broadcast_to(np.asarray(sigma, np.float64), len(values))
+        values, gradient = values / rows[:, None], gradient / rows[:, None, None]
+        return Linearisation(values.ravel(), gradient.reshape(values.size, -1))

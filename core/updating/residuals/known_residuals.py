@@ -1,0 +1,86 @@
+"""The list of residuals, how users name them, and what they are weighed by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ...errors import InputError
+from .declaration import Residual
+from .frequencies import FREQUENCIES
+from .shapes import SHAPES
+
+RESIDUALS: list[Residual] = [
+    FREQUENCIES,
+    SHAPES,
+]
+"""What an update may minimise; `register_residual` adds to it."""
+
+BOTH = "both"
+"""What users say for frequencies and shapes."""
+
+
+def register_residual(residual: Residual) -> None:
+    """Add a residual to the list: its name goes into studies from then on, and so does its key.
+
+    Raises
+    ------
+    InputError
+        A name or a key that another has.
+    """
+    names = [BOTH, *(r.name for r in RESIDUALS)]
+    if residual.name in names or residual.weight in [r.weight for r in RESIDUALS]:
+        raise InputError(f"there is a residual '{residual.name}' or '{residual.weight}' already")
+    RESIDUALS.append(residual)
+
+
+def residuals_named(words: str) -> tuple[Residual, ...]:
+    """Return the residuals of a name, of several with commas between, or of ``both``.
+
+    Raises
+    ------
+    InputError
+        A name that no residual has.
+    """
+    known = {BOTH: (FREQUENCIES, SHAPES), **{r.name: (r,) for r in RESIDUALS}}
+    said = [word.strip() for word in words.split(",")]
+    if not all(word in known for word in said):
+        names = ", ".join([*(r.name for r in RESIDUALS), BOTH])
+        raise InputError(f"residuals is '{words}'; give one of {names}, or several with commas")
+    return tuple(dict.fromkeys(r for word in said for r in known[word]))
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Standard deviations that make W = diag(1/σ²), and the regularisation W_p.
+
+    Parameters
+    ----------
+    sigmas : mapping of str to float
+        Standard deviations by the key of their residual, for example ``frequency_sigma``; what
+        is not given is the residual's default.
+    regularisation : float
+        Standard deviation of a parameter step is 1/√regularisation; 0 leaves W_p out.
+    """
+
+    sigmas: Mapping[str, float] = field(default_factory=dict)
+    regularisation: float = 1e-2
+
+    def __post_init__(self) -> None:
+        known = [r.weight for r in RESIDUALS]
+        for key, sigma in self.sigmas.items():
+            if key not in known:
+                raise InputError(f"no residual is weighed by '{key}'; known: {', '.join(known)}")
+            if not sigma > 0.0:
+                raise InputError(f"{key} is a standard deviation; it must be above 0")
+        if self.regularisation < 0.0:
+            raise InputError("the regularisation must not be negative")
+
+    @property
+    def all(self) -> dict[str, float]:
+        """Standard deviations of all residuals by their keys, defaults included."""
+        return {r.weight: self.sigma(r) for r in RESIDUALS}
+
+    def sigma(self, residual: Residual) -> float:
+        """Return the standard deviation of a residual."""
+        return float(self.sigmas.get(residual.weight, residual.sigma))

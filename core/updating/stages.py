@@ -1,0 +1,91 @@
+"""What an update is asked stage by stage, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ..arrays import Floats, Numbers
+from ..errors import InputError
+from ..noun import Noun
+from .objective import State
+from .residuals import Residual, residuals_named
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of a strategy: which parameters move on which residuals.
+
+    Parameters
+    ----------
+    parameters : tuple of int
+        Positions in ``Model.parameters``.
+    residuals : str
+        A name of `RESIDUALS`, several with commas between, or ``both``: frequencies and shapes.
+    max_iterations : int
+    """
+
+    parameters: tuple[int, ...]
+    residuals: str = "both"
+    max_iterations: int = 10
+
+    def __post_init__(self) -> None:
+        residuals_named(self.residuals)
+        if not self.parameters:
+            raise InputError("a stage of the update names no parameter")
+
+    @property
+    def minimised(self) -> tuple[Residual, ...]:
+        """The residuals of the stage."""
+        return residuals_named(self.residuals)
+
+
+class Reason(Enum):
+    """Why an update ended."""
+
+    SETTLED = "settled"
+    NO_STEP = "no step"
+    MOST_ITERATIONS = "most iterations"
+    NO_STAGE = "no stage"
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Why an update ended, and the same in words."""
+
+    reason: Reason
+    sentence: str
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+@dataclass(frozen=True, eq=False)
+class Iteration(Noun):
+    """One entry of the history; `deviations_percent` by test mode (NaN where unpaired)."""
+
+    iteration: int
+    stage: int
+    objective: float
+    factors: Floats
+    deviations_percent: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Updated(Noun):
+    """The outcome of an update.
+
+    `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
+    `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
+    the iteration ended.
+    """
+
+    factors: Floats
+    standard_error: Floats
+    at_bound: Numbers
+    before: State
+    after: State
+    history: tuple[Iteration, ...]
+    eigensolutions: int
+    stopped: Stop
+    warnings: tuple[str, ...]

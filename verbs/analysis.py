@@ -1,0 +1,150 @@
+"""The analysis side of a verb, and both sides brought together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..core.correlation.comparison import Comparison, Placed, compare, place_test
+from ..core.data.geometry import Geometry
+from ..core.data.modes import Modes
+from ..core.data.parametric_model import Model
+from ..core.errors import InputError, naming
+from .sources import Measured, Source, file_or_pynastran, geometry_of, read_deck
+from .study import Study
+
+if TYPE_CHECKING:
+    from ..adapters.nastran import Deck, ParameterSpec
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """The analysis side: the deck (None where a model was given), its model and its modes.
+
+    `specs` are what the parameters of the model stand for in the deck.
+    """
+
+    deck: Deck | None
+    specs: tuple[ParameterSpec, ...]
+    model: Model
+    modes: Modes
+    rigid_body_modes: int
+    warnings: tuple[str, ...]
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the model, with the length unit that the deck declares."""
+        return geometry_of(self.model, self.deck)
+
+
+def read_analysis(
+    source: Source, study: Study, fmax: float, modes: Source | None = None
+) -> Analysis:
+    """Assemble a deck and find its modes up to `fmax`, or take them from where they are.
+
+    At least as many modes as the deck asks for are found.
+
+    Parameters
+    ----------
+    source : path, Deck or Model
+    study : Study
+    fmax : float
+    modes : path or Modes, optional
+        Analysis modes of the user's own Nastran run.
+    """
+    from ..adapters.nastran import build_model, parse_parameter
+    from ..core.eigen import normal_modes
+
+    deck = None if isinstance(source, Model) else read_deck(source)
+    name = None if deck is None else deck.path
+    specs = tuple(parse_parameter(p) for p in study.parameters)
+    with naming(name):
+        if isinstance(source, Model):
+            model = source
+        else:
+            assert deck is not None
+            model = build_model(deck, specs)
+    warnings = (*(deck.warnings if deck else ()), *model.warnings)
+    if modes is not None:
+        given = analysis_modes(modes, deck)
+        return Analysis(deck, specs, model, given, _rigid(given), warnings)
+    asked = deck.eigen.nd if deck and deck.eigen and deck.eigen.nd else 0
+    with naming(name):
+        solution = normal_modes.solve(model, fmax=fmax)
+        if len(solution.eigenvalues) < asked:
+            solution = normal_modes.solve(model, n_modes=asked)
+    found = normal_modes.modes_of(model, solution)
+    said = (*warnings, *solution.warnings)
+    return Analysis(deck, specs, model, found, solution.rigid_body_modes, said)
+
+
+def analysis_modes(source: Source, deck: Deck | None) -> Modes:
+    """Return analysis modes of the user's own Nastran run."""
+    from ..adapters.nastran import read_modes
+    from .solve import Solved
+
+    if isinstance(source, Solved):
+        return source.shapes
+    if isinstance(source, Modes):
+        return source
+    return read_modes(file_or_pynastran(source, "modes"), deck)
+
+
+def placed(model: Model, deck: Deck | None, modes: Modes, test: Measured, study: Study) -> Placed:
+    """Return the test laid onto the model."""
+    with naming(test.name):
+        return place_test(
+            geometry_of(model, deck),
+            modes,
+            test.measurement,
+            study.deck_length_unit,
+            motion=model.expansion,
+            seed=study.seed,
+        )
+
+
+def correlated(analysis: Analysis, test: Measured, study: Study) -> Comparison:
+    """Return both sides correlated."""
+    on_model = placed(analysis.model, analysis.deck, analysis.modes, test, study)
+    found = compare(
+        analysis.geometry, analysis.modes, on_model, study.criteria, analysis.rigid_body_modes
+    )
+    return replace(found, warnings=(*analysis.warnings, *found.warnings))
+
+
+def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[Source, Source]:
+    """Return the deck and the test: as given, else as the study names them.
+
+    Raises
+    ------
+    InputError
+        One is in neither.
+    """
+    deck = study.deck if deck is None else deck
+    test = study.test or None if test is None else test
+    if deck is None or test is None:
+        raise InputError("give a deck and a test, or a study that names both")
+    return deck, test
+
+
+def named(study: Study, deck: Deck | None, test: Measured, modes: Source | None) -> Study:
+    """Return the study with the files that took part, so that it runs again."""
+    from_file = modes if isinstance(modes, str | Path) else None
+    return replace(
+        study,
+        deck=None if deck is None else deck.path,
+        test=test.files,
+        modes=None if from_file is None else Path(from_file),
+    )
+
+
+def _rigid(modes: Modes) -> int:
+    """Count the leading modes that are rigid-body motions to the rounding of the file."""
+    hz = modes.frequencies_hz
+    if not len(hz):
+        return 0
+    leading = np.flatnonzero(hz > 1e-3 * np.max(hz))
+    return int(leading[0]) if len(leading) else 0

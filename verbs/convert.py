@@ -1,0 +1,143 @@
+"""The verb `convert`."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..core.errors import InputError, Place, path_of
+from ..core.results.inspection import ConvertTables
+from .delivery import is_empty, losses, target_of
+from .exchange import KINDS, Cargo, cargo_of, load
+from .options import Files, Say, checked_call, unheard
+from .sources import Source, existing
+
+_MOST, _LONGEST = 4, 200
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Converted(ConvertTables):
+    """What `convert` wrote, and what it had to leave out."""
+
+
+@checked_call
+def convert(
+    sources: Source,
+    destination: Files,
+    *,
+    from_: str | None = None,
+    to: str | None = None,
+    subcase: int | None = None,
+    lossy: bool = False,
+    force: bool = False,
+    progress: Say = unheard,
+) -> Converted:
+    """Write what one or several sources hold in another format.
+
+    Results, matrices, universal files and stores go into universal files (.unv, .uff), stores
+    (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
+    gives them geometry and axes.
+
+    Parameters
+    ----------
+    sources : path, sequence of paths, or a noun
+        A noun is a Measurement, Modes, Frfs, Geometry, StoreContent or what a verb gave.
+    destination : path
+    from_, to : str, optional
+        Kind of the sources and format of the destination; default: told by the contents and by
+        the suffix.
+    subcase : int, optional
+        Whose modes are meant.
+    lossy : bool
+        Leave out what the destination cannot hold.
+    force : bool
+        Replace a destination that exists.
+    progress : callable
+        Told what is done, a few words at a time.
+
+    Returns
+    -------
+    Converted
+
+    Raises
+    ------
+    InputError
+        A source that cannot be read, a format that is not known, content that the destination
+        cannot hold.
+    """
+    path = path_of(destination, "the destination")
+    target = target_of(path, to)
+    files = _files(sources)
+    _check(files, path, from_, force)
+    progress("reading")
+    cargo = load(files, from_, subcase) if files else cargo_of(sources)
+    names = ", ".join(p.name for p in files) or type(sources).__name__
+    if is_empty(cargo, target):
+        nothing = f"{names}: nothing that a {target.name} can hold ({_told(cargo)})"
+        raise InputError(nothing, file=files[0] if files else None)
+    lost = losses(cargo, target)
+    if lost and not lossy:
+        more = f" and {len(lost) - _MOST} more" if len(lost) > _MOST else ""
+        raise Place(path).error(
+            f"a {target.name} cannot hold {'; '.join(lost[:_MOST])}{more}; give "
+            "lossy=True to leave that out"
+        )
+    progress("writing")
+    target.write(path, cargo)
+    return Converted(
+        sources=tuple(map(str, files)),
+        destination=str(path),
+        format=target.name,
+        written=_written(cargo, target.holds),
+        lost=tuple(lost),
+        warnings=tuple(dict.fromkeys(cargo.notes)),
+    )
+
+
+def _files(sources: Source) -> list[Path]:
+    every = sources if isinstance(sources, list | tuple) else [sources]
+    if not every:
+        raise InputError("give at least one source to convert")
+    files = [path_of(s, "a source") for s in every if isinstance(s, str | os.PathLike)]
+    if files and len(files) < len(every):
+        raise InputError("the sources are files and objects; convert them one by one")
+    return files
+
+
+def _check(sources: list[Path], destination: Path, kind: str | None, force: bool) -> None:
+    if kind is not None and kind not in KINDS:
+        raise InputError(f"--from {kind} is not known; give one of {', '.join(KINDS)}")
+    existing(sources)
+    if any(destination.exists() and destination.samefile(p) for p in sources):
+        raise Place(destination).fault("is a source as well; give the destination another name")
+    if destination.exists() and not force:
+        raise Place(destination).fault("exists; give force=True to replace it")
+
+
+def _written(cargo: Cargo, holds: frozenset[str]) -> dict[str, str]:
+    said: dict[str, str] = {}
+    if cargo.geometry is not None and "geometry" in holds:
+        said["geometry"] = f"{len(cargo.geometry.ids)} nodes"
+    if cargo.modes and "modes" in holds:
+        said["modes"] = ", ".join(f"{k} {len(m)}" for k, m in cargo.modes.items())
+    if cargo.frfs and "frfs" in holds:
+        said["frequency responses"] = ", ".join(
+            f"{k} {len(f.responses)} x {len(f.references)} x {len(f.frequencies_hz)}"
+            for k, f in cargo.frfs.items()
+        )
+    if cargo.functions and "functions" in holds:
+        kinds = Counter(f.kind for f in cargo.functions.values())
+        said["functions"] = ", ".join(f"{n} x {kind}" for kind, n in kinds.items())
+    if cargo.matrices and "matrices" in holds:
+        said["matrices"] = ", ".join(
+            f"{k} {m.matrix.shape[0]} x {m.matrix.shape[1]}" for k, m in cargo.matrices.items()
+        )
+    return said
+
+
+def _told(cargo: Cargo) -> str:
+    every = frozenset({"geometry", "modes", "frfs", "matrices", "functions"})
+    told = "; ".join([*(f"{k} {v}" for k, v in _written(cargo, every).items()), *cargo.rest[:3]])
+    return told[:_LONGEST] + "..." * (len(told) > _LONGEST) or "no content at all"

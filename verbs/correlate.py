@@ -1,0 +1,62 @@
+"""The verb `correlate`."""
+
+from __future__ import annotations
+
+from typing import Unpack
+
+from ..core.results.correlation import compared
+from .analysis import both_given, correlated, named, read_analysis
+from .options import CorrelateOptions, Files, study_of
+from .run import Correlated, content_of
+from .sources import Source, measured
+from .study import Study
+
+
+def correlate(
+    deck: Source | None = None,
+    test: Source | None = None,
+    *,
+    modes: Source | None = None,
+    study: Study | Files | None = None,
+    **options: Unpack[CorrelateOptions],
+) -> Correlated:
+    """Align a test with a model, pair their modes, rotate close modes, and tabulate.
+
+    Parameters
+    ----------
+    deck : path, Deck or Model
+        The analysis side; default: the deck of `study`.
+    test : path, sequence of paths or Measurement
+        Modes, or responses of which modes are identified; default: the test of `study`.
+    modes : path or Modes, optional
+        Analysis modes of the user's own Nastran run instead of the embedded solver's.
+    study : path or Study, optional
+        A study file; keyword arguments win.
+    **options
+        See `CorrelateOptions`.
+
+    Returns
+    -------
+    Correlated
+
+    Raises
+    ------
+    InputError
+        A file, an object or an option that is at fault: which, and what to do.
+    CheckError
+        The eigensolution does not meet its own check.
+    """
+    asked = study_of("correlate", study, options, CorrelateOptions.__annotations__)
+    deck, test = both_given(deck, test, asked)
+    modes = asked.modes if modes is None else modes
+    side = measured(test)
+    analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance), modes)
+    found = correlated(analysis, side, asked)
+    tables = compared(found)
+    return Correlated(
+        **vars(tables),
+        deck_file=str(analysis.deck.path) if analysis.deck else "",
+        test_files=tuple(map(str, side.files)),
+        content=content_of(found, tables),
+        study=named(asked, analysis.deck, side, modes),
+    )

@@ -1,0 +1,243 @@
+"""The verb `discover`."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+
+from ..core.arrays import Bools
+from ..core.correlation.comparison import Comparison, Placed, compare
+from ..core.correlation.mode_errors import with_scatter
+from ..core.data.parametric_model import Model
+from ..core.discovery import discover as core
+from ..core.discovery.findings import Discovery
+from ..core.discovery.likelihood.frf_evidence import place_responses
+from ..core.discovery.reduction.elements_and_supports import Structure
+from ..core.discovery.screening.completed_model import (
+    SolvedModel,
+    borne_out,
+    upheld,
+    written_factor,
+)
+from ..core.discovery.screening.reference_modes import reference_modes
+from ..core.discovery.screening.suspension_modes import said_of_others, vibrating
+from ..core.eigen.normal_modes import Eigensolution, modes_of
+from ..core.errors import InputError
+from ..core.localisation.error_localisation import Disagreement, agrees, disagreement
+from ..core.results.correlation import compared
+from ..core.results.discovery import (
+    JudgementTable,
+    alternative_rows,
+    finding_rows,
+    gap_table,
+)
+from ..core.results.evidence import damping_table, misfit_table, response_table
+from ..core.results.plain import Table
+from ..core.results.update import ParameterRow
+from .analysis import both_given, named, placed
+from .options import DiscoverOptions, Files, Say, study_of, unheard
+from .run import Discovered, content_of
+from .sources import Measured, Source, geometry_of, measured, read_deck
+from .study import Study
+
+if TYPE_CHECKING:
+    from ..adapters.nastran import Deck, ParameterSpec
+
+
+def discover(
+    deck: Source | None = None,
+    test: Source | None = None,
+    *,
+    study: Study | Files | None = None,
+    progress: Say = unheard,
+    **options: Unpack[DiscoverOptions],
+) -> Discovered:
+    """Find where and what the model lacks, or what is wrong in the test, and complete the deck.
+
+    Parameters
+    ----------
+    deck : path or Deck
+        Default: the deck of `study`.
+    test : path, sequence of paths or Measurement
+        Modes, responses or both; default: the test of `study`.
+    study : path or Study, optional
+        A study file; keyword arguments win.
+    progress : callable
+        Told what is done, a few words at a time.
+    **options
+        See `DiscoverOptions` and `CompareOptions`.
+
+    Returns
+    -------
+    Discovered
+
+    Raises
+    ------
+    InputError
+        A file, an object or an option that is at fault: which, and what to do; no mode of the
+        test is a vibration of the structure.
+    CheckError
+        An eigensolution does not meet its own check.
+    """
+    from ..adapters.nastran import parse_parameter
+    from ..adapters.nastran.discovery.build_structure import build_structure
+    from ..adapters.nastran.discovery.complete_deck import CompletedDeck, complete
+    from ..adapters.nastran.discovery.doubted_parameters import doubted, settled
+
+    start = time.perf_counter()
+    accepted = {**DiscoverOptions.__annotations__, "modes": None}
+    asked = study_of("discover", study, options, accepted)
+    deck, test = both_given(deck, test, asked)
+    if asked.modes is not None:
+        raise InputError("--modes gives fixed modes, which no effect can change; leave it out")
+    if isinstance(deck, Model):
+        raise InputError("discover completes a deck, and a model has none; give the deck")
+    progress("reading and placing")
+    side = measured(test)
+    top = side.highest(asked.frequency_tolerance)
+    deck = read_deck(deck)
+    every = doubted(deck, [parse_parameter(p) for p in asked.parameters])
+    structure = build_structure(deck, every.specs)
+    solution = reference_modes(structure.model, top)
+    before = _compared(deck, structure, solution, side, asked)
+    elastic = vibrating(before.placed, solution, structure.model)
+    structure, known = settled(
+        deck, structure, solution, before.test.frequencies_hz[elastic], every
+    )
+    progress("mapping where model and test disagree")
+    maps = _maps(before, structure, solution)
+    progress("discovering")
+    request, unplaced = _request(deck, structure, known.spreads, solution, before, side, elastic)
+    found = core.discover(request, progress)
+    found = borne_out(found, maps is not None and agrees(before, maps))
+    progress("completing the deck and solving it again")
+
+    def completed(found: Discovery) -> CompletedDeck:
+        return complete(
+            deck, known.specs, structure.model, found, before.placed, asked.criteria,
+            len(before.analysis),
+        )  # fmt: skip
+
+    found, done = upheld(found, before, completed)
+    after = done.after.compared
+    final = replace(compared(after), warnings=())
+    own = SolvedModel(before, solution, structure.damping)
+    return Discovered(
+        deck_file=f"deck/{done.deck.name}",
+        input_deck=str(deck.path),
+        test_files=tuple(map(str, side.files)),
+        verdict=found.verdict,
+        findings=finding_rows(found, done.cards),
+        alternatives=alternative_rows(found),
+        gap=gap_table(found, before, after),
+        parameters=_parameters(known.specs, structure.model, found),
+        would_decide=found.would_decide,
+        noise_scale=found.noise_scale,
+        judgement=JudgementTable(found.evidence_for, found.posterior, found.foretold),
+        before=replace(compared(before), warnings=()),
+        after=final,
+        damping=damping_table(found, before.test.damping, elastic, own, done.after),
+        frf=response_table(found.responses),
+        pairs=final.pairs,
+        misfit=None if maps is None else misfit_table(before, maps),
+        seconds=time.perf_counter() - start,
+        warnings=(
+            *deck.warnings,
+            *structure.model.warnings,
+            *before.warnings,
+            *found.warnings,
+            *said_of_others(np.flatnonzero(~elastic) + 1),
+            *unplaced,
+            *done.refused,
+        ),
+        content=content_of(before, final, after),
+        study=named(asked, deck, side, None),
+        deck=done.deck,
+    )
+
+
+def _compared(
+    deck: Deck, structure: Structure, solution: Eigensolution, side: Measured, asked: Study
+) -> Comparison:
+    """Return the deck as it is beside the test, whose scatter the user may state."""
+    model = structure.model
+    modes = modes_of(model, solution)
+    on_model = _scattered(placed(model, deck, modes, side, asked), asked)
+    geometry = geometry_of(model, deck)
+    return compare(geometry, modes, on_model, asked.criteria, solution.rigid_body_modes)
+
+
+def _scattered(test: Placed, asked: Study) -> Placed:
+    if asked.frequency_scatter is None and asked.shape_scatter is None:
+        return test
+    errors = with_scatter(
+        test.errors,
+        len(test.observation),
+        len(test.test),
+        asked.frequency_scatter or 0.0,
+        asked.shape_scatter or 0.0,
+    )
+    return replace(test, errors=errors)
+
+
+def _maps(before: Comparison, structure: Structure, solution: Eigensolution) -> Disagreement | None:
+    """Return the maps of the misfit; None where nothing pairs or the test side was turned."""
+    if not before.correlation.pairs or before.correlation.criteria.rotate == "test":
+        return None
+    point = structure.model.deck_point
+    return disagreement(before, structure.members, structure.displacement, solution.vectors, point)
+
+
+def _request(
+    deck: Deck,
+    structure: Structure,
+    spreads: tuple[float, ...],
+    solution: Eigensolution,
+    before: Comparison,
+    side: Measured,
+    elastic: Bools,
+) -> tuple[core.Request, tuple[str, ...]]:
+    """Return what discovery is asked, and what of the responses cannot be used."""
+    from ..adapters.nastran import weight
+    from ..adapters.nastran.discovery.mass_unit import mass_unit
+
+    model, on_model = structure.model, before.placed
+    responses, unplaced = place_responses(
+        side.measurement.frfs, on_model, before.geometry, model.dofs, model.expansion
+    )
+    request = core.Request(
+        structure,
+        np.array(spreads),
+        solution,
+        on_model.of_modes(elastic),
+        weight(deck).mass,
+        mass_unit(deck, on_model.test_geometry.length_unit),
+        responses=responses,
+        modes=np.flatnonzero(elastic) + 1,
+    )
+    return request, tuple(unplaced)
+
+
+def _parameters(
+    specs: tuple[ParameterSpec, ...], model: Model, found: Discovery
+) -> Table[ParameterRow]:
+    rows = []
+    for m in found.parameters:
+        q = model.parameters[m.number]
+        factor = written_factor(found.verdict, m)
+        rows.append(
+            ParameterRow(
+                specs[m.number].name,
+                q.handle,
+                q.deck_values,
+                tuple(v * factor for v in q.deck_values),
+                m.factor,
+                m.standard_error,
+                False,
+                m.significant,
+            )
+        )
+    return Table(rows)

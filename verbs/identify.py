@@ -1,0 +1,209 @@
+"""The verb `identify`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from ..adapters.store import StoreContent
+from ..adapters.universal import UniversalContent
+from ..adapters.universal.universal_content import Skipped, Units
+from ..core.data.frfs import Frfs
+from ..core.data.measurement import Measurement
+from ..core.errors import InputError, Place, path_of
+from ..core.results.identification import IdentifyTables, identified
+from ..core.results.plain import BESIDE
+from .options import Say, checked_call, unheard
+from .run import Folder
+from .sources import Source, existing, files_of
+
+if TYPE_CHECKING:
+    from ..adapters.universal import Function
+
+_MOST_NAMED = 20
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Identified(IdentifyTables, Folder):
+    """What `identify` found: the tables of result.json as fields, and the nouns behind them.
+
+    Parameters
+    ----------
+    content : StoreContent
+        Geometry, modes ``test`` (normalised real shapes) and ``test_complex``, and ``shape_std``.
+    units : Units or None
+        Of the responses.
+    page : str
+        The stabilisation chart as one self-contained HTML page.
+    skipped : tuple of Skipped
+        What of the files was not read, and why.
+    """
+
+    content: StoreContent = field(metadata=BESIDE)
+    units: Units | None = field(metadata=BESIDE)
+    page: str = field(metadata=BESIDE)
+    skipped: tuple[Skipped, ...] = field(default=(), metadata=BESIDE)
+
+    def write(self, path: Path | str, complex_shapes: bool = False) -> Path:
+        """Write the modes by the suffix: a store (.h5), which holds both kinds, or .unv, .uff.
+
+        Raises
+        ------
+        InputError
+            No mode was found, or the file cannot be written.
+        """
+        from ..adapters.store import write_store
+        from ..adapters.universal import write_universal
+
+        path = path_of(path, "the file")
+        if not self.modes:
+            raise Place(path).fault("is not written: no mode stands out of the noise")
+        if path.suffix.lower() == ".h5":
+            write_store(path, **vars(self.content))
+            return path
+        write_universal(
+            path,
+            geometry=self.content.geometry,
+            modes=self.content.modes["test_complex" if complex_shapes else "test"],
+            units=self.units,
+            description="complex shapes" if complex_shapes else "normalised real shapes",
+        )
+        return path
+
+    def fill(self, work: Path) -> None:
+        """Write everything that the run folder of an identification holds."""
+        from ..adapters.run_folder.write_run import write_json
+        from ..adapters.store import write_store
+
+        if self.modes:
+            self.write(work / "modes.unv")
+            self.write(work / "modes_complex.unv", complex_shapes=True)
+        write_store(work / "result.h5", **vars(self.content))
+        write_json(work / "result.json", self.to_dict())
+        self.write_tables(work / "tables")
+        (work / "stabilisation.html").write_text(self.page, encoding="utf-8")
+
+    @classmethod
+    def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
+        """Return what `fill` wrote."""
+        from ..adapters.universal import read_universal
+
+        modes, page = run / "modes.unv", run / "stabilisation.html"
+        units = read_universal([modes]).units if modes.is_file() else None
+        shown = page.read_text(encoding="utf-8") if page.is_file() else ""
+        return cls.from_dict(result, content=content, units=units, page=shown)
+
+
+@checked_call
+def identify(
+    frf: Source,
+    fmin: float | None = None,
+    fmax: float | None = None,
+    max_order: int | None = None,
+    *,
+    progress: Say = unheard,
+) -> Identified:
+    """Find modes in measured frequency responses, close pairs included.
+
+    Parameters
+    ----------
+    frf : path, sequence of paths, Measurement or Frfs
+        Responses of motion to force at any number of references.
+    fmin, fmax : float, optional
+        Use lines from here, up to here, Hz.
+    max_order : int, optional
+        Highest model order in a band.
+    progress : callable
+        Told what is done, a few words at a time.
+
+    Returns
+    -------
+    Identified
+
+    Raises
+    ------
+    InputError
+        A file that is missing or holds no frequency response; an empty range of frequencies.
+    """
+    from ..adapters.report.stabilisation_page import stabilisation_page
+    from ..core.identification import identify as find
+
+    for name, value in (("fmin", fmin), ("fmax", fmax), ("max_order", max_order)):
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
+            raise InputError(f"{name} is {value!r}; give a number")
+    progress("reading")
+    files = () if isinstance(frf, Frfs | Measurement) else tuple(files_of(frf))
+    read = read_responses(files) if files else _content(frf)
+    assert read.frfs is not None
+    progress("identifying")
+    found = find(read.frfs, fmin=fmin, fmax=fmax, max_order=max_order, geometry=read.geometry)
+    warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
+    name = ", ".join(p.name for p in files)
+    return Identified(
+        frf=tuple(map(str, files)),
+        **identified(found),
+        warnings=warnings,
+        content=StoreContent(
+            geometry=read.geometry,
+            modes={"test": found.real_modes, "test_complex": found.modes},
+            matrices={"shape_std": found.shape_std},
+        ),
+        units=read.units,
+        page=stabilisation_page(found, name, warnings),
+        skipped=read.skipped,
+    )
+
+
+def _content(source: Source) -> UniversalContent:
+    if isinstance(source, Frfs):
+        return UniversalContent(frfs=source)
+    assert isinstance(source, Measurement)
+    if source.frfs is None:
+        raise InputError("the test holds no frequency responses to identify modes from")
+    return UniversalContent(geometry=source.geometry, frfs=source.frfs, warnings=source.warnings)
+
+
+def read_responses(paths: Sequence[Path]) -> UniversalContent:
+    """Read files that together hold frequency responses.
+
+    Raises
+    ------
+    InputError
+        A file that is missing; no frequency response among what the files hold.
+    """
+    from ..adapters.universal import read_universal
+
+    content = read_universal(existing(paths))
+    if content.frfs is None:
+        names = " and ".join(content.files)
+        said = [_kind(f) for f in content.functions]
+        held = [f"{said.count(kind)} × {kind}" for kind in dict.fromkeys(said)]
+        held += ["mode shapes"] if content.modes is not None else []
+        held += [f"{s.what} (line {s.line}: {s.why})" for s in content.skipped[:1]]
+        what = f"; it holds {', '.join(held)}" if held else ""
+        raise InputError(
+            f"{names}: no frequency response of motion to a force (dataset 58 or 58b){what}; "
+            "give the file that holds them",
+            file=paths[0],
+        )
+    return content
+
+
+def _kind(function: Function) -> str:
+    """Say what a function is; of one called a frequency response, why it cannot be used."""
+    if function.kind != "frequency response":
+        return function.kind
+    real = "" if np.iscomplexobj(function.values) else "real "
+    return f"{real}frequency response of {function.quantity} per {function.per}"
+
+
+def _lost(skipped: Sequence[Skipped]) -> list[str]:
+    """Name the responses that could not be used, the first few one by one."""
+    lost = [str(s) for s in skipped if s.harm == "lost"]
+    more = len(lost) - _MOST_NAMED
+    told = f"{more} further functions were not read; trueup inspect lists them"
+    return [*lost[:_MOST_NAMED], *([told] if more > 0 else [])]

@@ -1,0 +1,114 @@
+"""Keyword arguments of the verbs that compare: the keys of a study file, with the same meaning."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
+from inspect import signature
+from typing import ParamSpec, TypedDict, TypeVar
+
+from ..core.errors import InputError, path_of
+from .study import StageRequest, Study, merge, read_study, unknown
+
+Files = str | os.PathLike[str]
+P = ParamSpec("P")
+R = TypeVar("R")
+Say = Callable[[str], None]
+"""Told what a verb is at, a few words at a time."""
+
+
+class CompareOptions(TypedDict, total=False):
+    """What every verb that compares can be told; None is the default, of ``rotate`` "none".
+
+    ``deck_length_unit`` ("m", "mm", "in", "ft"); ``mac_min`` of a pair; ``frequency_tolerance``,
+    the largest |analysis − test|/test of a pair; ``cluster_width``, the relative bandwidth within
+    which modes are close; ``rotate`` ("analysis", "test", "none"), the side that is rotated;
+    ``seed`` of every random number.
+    """
+
+    deck_length_unit: str | None
+    mac_min: float | None
+    frequency_tolerance: float | None
+    cluster_width: float | None
+    rotate: str | None
+    seed: int | None
+
+
+class CorrelateOptions(CompareOptions, total=False):
+    """What ``correlate`` can be told: `CompareOptions`, and ``parameters`` of the model."""
+
+    parameters: str | Sequence[str] | None
+
+
+class UpdateOptions(CompareOptions, total=False):
+    """What ``update`` can be told besides `CompareOptions`.
+
+    ``residuals`` ("frequencies", "shapes", "both", others with commas); ``test_modes`` that take
+    part, from 1;
+    ``max_iterations`` of a stage; ``frequency_sigma``, ``shape_sigma`` and ``regularisation``
+    weigh the residuals and the parameters; ``stages`` of a strategy.
+    """
+
+    residuals: str | None
+    test_modes: int | Sequence[int] | None
+    max_iterations: int | None
+    frequency_sigma: float | None
+    shape_sigma: float | None
+    regularisation: float | None
+    stages: Sequence[StageRequest | Mapping[str, object]] | None
+
+
+class DiscoverOptions(CorrelateOptions, total=False):
+    """What ``discover`` can be told besides `CompareOptions`.
+
+    ``parameters`` that may be off besides the usual ones, as on the command line;
+    ``frequency_scatter`` and ``shape_scatter``: standard deviations of the test, of a frequency
+    over itself and of a reading over the rms of its shape.
+    """
+
+    frequency_scatter: float | None
+    shape_scatter: float | None
+
+
+def study_of(
+    verb: str,
+    study: Study | Files | None,
+    given: Mapping[str, object],
+    known: Mapping[str, object],
+) -> Study:
+    """Return what a verb is asked: the study (a file is read) with keyword arguments on top.
+
+    Raises
+    ------
+    InputError
+        A keyword that the verb does not know, a value of the wrong type or that no run accepts.
+    """
+    if isinstance(study, str | os.PathLike):
+        study = read_study(path_of(study, "a study"))
+    if not isinstance(study, Study | None):
+        raise InputError(f"{verb}: study is {study!r}; give the path of a study file")
+    if "rotate" in given and given["rotate"] is None:
+        given = {**given, "rotate": "none"}
+    return merge(study or Study(), given, known, verb)
+
+
+def checked_call(verb: Callable[P, R]) -> Callable[P, R]:
+    """Return a verb that refuses a keyword it does not know, as the verbs that compare do.
+
+    The verb raises `InputError` that names the keyword and those that are known.
+    """
+    known = list(signature(verb).parameters)
+
+    @wraps(verb)
+    def call(*args: P.args, **given: P.kwargs) -> R:
+        for name in given:
+            if name not in known:
+                raise InputError(f"{verb.__name__}: {unknown(name, known)}")
+        return verb(*args, **given)
+
+    return call
+
+
+def unheard(_: str) -> None:
+    """Take what a verb says and keep it quiet."""

@@ -1,0 +1,145 @@
+"""The verb `solve`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+
+from ..adapters.store import StoreContent
+from ..core.data.geometry import Geometry
+from ..core.data.modes import Modes
+from ..core.data.parametric_model import Model
+from ..core.eigen import normal_modes
+from ..core.errors import InputError, Place, naming, path_of
+from ..core.results.plain import BESIDE, Table
+from ..core.results.solution import Checks, ModeRow, SolveTables
+from .options import Say, checked_call, unheard
+from .run import Folder
+from .sources import Source, geometry_of, read_deck
+
+_FEW = 10
+"""Modes where neither the user nor the deck says how many."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Solved(SolveTables, Folder):
+    """What `solve` found: the tables as fields, and the nouns behind them.
+
+    Parameters
+    ----------
+    geometry : Geometry
+    shapes : Modes
+        On all degrees of freedom, mass-normalised.
+    """
+
+    geometry: Geometry = field(metadata=BESIDE)
+    shapes: Modes = field(metadata=BESIDE)
+
+    @property
+    def content(self) -> StoreContent:
+        """What a store holds of it."""
+        return StoreContent(geometry=self.geometry, modes={"analysis": self.shapes})
+
+    def write(self, path: Path | str) -> Path:
+        """Write the modes by the suffix: a store (.h5) or a universal file (.unv, .uff).
+
+        Raises
+        ------
+        InputError
+            Another suffix, or a file that cannot be written.
+        """
+        from ..adapters.store import write_store
+        from ..adapters.universal import write_universal
+
+        path = path_of(path, "the file")
+        if path.suffix == ".h5":
+            write_store(path, **vars(self.content))
+        elif path.suffix in (".unv", ".uff"):
+            write_universal(path, geometry=self.geometry, modes=self.shapes)
+        else:
+            raise InputError(f"{path}: modes are written as .h5 or .unv", file=path)
+        return path
+
+    def fill(self, work: Path) -> None:
+        """Write everything that the run folder of a solution holds."""
+        from ..adapters.run_folder.write_run import write_json
+
+        self.write(work / "result.h5")
+        write_json(work / "result.json", self.to_dict())
+        self.write_tables(work / "tables")
+
+    @classmethod
+    def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
+        """Return what `fill` wrote."""
+        if content.geometry is None or "analysis" not in content.modes:
+            raise Place(run / "result.h5").fault("holds no modes of an analysis")
+        return cls.from_dict(result, geometry=content.geometry, shapes=content.modes["analysis"])
+
+
+@checked_call
+def solve(
+    deck: Source,
+    number: int | None = None,
+    fmax: float | None = None,
+    *,
+    progress: Say = unheard,
+) -> Solved:
+    """Find the normal modes of a deck with the embedded solver.
+
+    Parameters
+    ----------
+    deck : path, Deck, ChangedDeck or Model
+    number : int, optional
+        Modes to find, rigid-body ones included; default: what the deck asks for, or ten.
+    fmax : float, optional
+        All modes up to here, Hz.
+    progress : callable
+        Told what is done, a few words at a time.
+
+    Returns
+    -------
+    Solved
+
+    Raises
+    ------
+    InputError
+        A deck that cannot be read or assembled, a number or frequency that is none.
+    CheckError
+        The eigensolution does not meet its own check.
+    """
+    from ..adapters.nastran import build_model, weight
+
+    if number is not None and (not isinstance(number, int) or number < 1):
+        raise InputError(f"number is {number!r}; ask for at least one mode")
+    if fmax is not None and (not isinstance(fmax, int | float) or not fmax > 0.0):
+        raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
+    read = None if isinstance(deck, Model) else read_deck(deck)
+    name = read.path if read else None
+    with naming(name):
+        model = build_model(read) if read else deck
+    assert isinstance(model, Model)
+    asked = read.eigen.nd if read and read.eigen else None
+    progress("solving")
+    with naming(name):
+        wanted = number if number or fmax else (asked or _FEW)
+        solution = normal_modes.solve(model, n_modes=wanted, fmax=fmax)
+    modes = normal_modes.modes_of(model, solution)
+    mass = weight(read) if read else None
+    return Solved(
+        deck_file=str(read.path) if read else "",
+        modes=Table(
+            map(ModeRow, modes.frequencies_hz.tolist(), modes.generalized_mass.tolist()), ModeRow
+        ),
+        rigid_body_modes=solution.rigid_body_modes,
+        mass=mass.mass if mass else None,
+        centre_of_gravity=mass.centre_of_gravity if mass else None,
+        checks=Checks(**solution.checks),
+        degrees_of_freedom=model.n_free,
+        backend=solution.backend,
+        seconds=solution.seconds,
+        warnings=(*(read.warnings if read else ()), *model.warnings, *solution.warnings),
+        geometry=geometry_of(model, read),
+        shapes=modes,
+    )

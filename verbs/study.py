@@ -1,0 +1,265 @@
+"""What a run is asked to do: study file, options and keyword arguments, merged and checked."""
+
+from __future__ import annotations
+
+import dataclasses
+import numbers
+import os
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
+
+from ..core.errors import InputError, Place
+
+if TYPE_CHECKING:
+    from ..core.correlation.mode_pairing import Criteria
+    from ..core.updating.residuals import Weights
+
+UNITS = ("m", "mm", "in", "ft")
+
+
+@dataclass(frozen=True)
+class StageRequest:
+    """One ``[[stages]]`` table of a study: parameters move on the named residuals."""
+
+    parameters: tuple[str, ...] = ()
+    residuals: str = "both"
+    max_iterations: int = 10
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything a verb that compares can be told; each field is a key of ``study.toml``.
+
+    Paths in a study file are relative to the file. `parameters` are written as in
+    ``-p PBAR 11 I1``; `stages` (a strategy of several steps) refer to them by name.
+    """
+
+    deck: Path | None = None
+    test: tuple[Path, ...] = ()
+    modes: Path | None = None
+    deck_length_unit: str | None = None
+    mac_min: float = 0.7
+    frequency_tolerance: float = 0.3
+    cluster_width: float = 0.02
+    rotate: str = "analysis"
+    parameters: tuple[str, ...] = ()
+    residuals: str = "both"
+    test_modes: tuple[int, ...] = ()
+    max_iterations: int = 10
+    frequency_scatter: float | None = None
+    shape_scatter: float | None = None
+    regularisation: float = 1e-2
+    stages: tuple[StageRequest, ...] = ()
+    out: Path | None = None
+    seed: int = 0
+    sigmas: Mapping[str, float] = field(default_factory=dict, metadata={"file_key": False})
+    """By the key of its residual, each a key of the file as well: ``frequency_sigma``."""
+    source: Path | None = field(default=None, metadata={"file_key": False})
+
+    def __post_init__(self) -> None:
+        if self.deck_length_unit is not None and self.deck_length_unit not in UNITS:
+            raise InputError(
+                f"deck_length_unit is '{self.deck_length_unit}'; give one of {', '.join(UNITS)}"
+            )
+        for name in ("frequency_scatter", "shape_scatter"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value < 1.0:
+                raise InputError(
+                    f"{name} is {value:g}; give the standard deviation as a share, 0 to 1"
+                )
+        if any(m < 1 for m in self.test_modes):
+            raise InputError("test_modes are mode numbers in the test file and count from 1")
+        self._require_accepted()
+
+    def __repr__(self) -> str:
+        every = ((f.name, getattr(self, f.name)) for f in dataclasses.fields(self))
+        default = {f.name: f.default for f in dataclasses.fields(self)} | {"sigmas": {}}
+        told = ", ".join(f"{name}={value!r}" for name, value in every if value != default[name])
+        return f"Study({told})"
+
+    def _require_accepted(self) -> None:
+        """Refuse what the core accepts in no run, before any file is read."""
+        from ..core.updating.residuals import residuals_named
+
+        _ = self.criteria, self.weights
+        for words in (self.residuals, *(s.residuals for s in self.stages)):
+            residuals_named(words)
+        if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
+            raise InputError("max_iterations must be at least 1")
+
+    @property
+    def criteria(self) -> Criteria:
+        """When a test mode and an analysis mode may be a pair."""
+        from ..core.correlation.mode_pairing import Criteria
+
+        return Criteria(self.mac_min, self.frequency_tolerance, self.cluster_width, self.rotate)
+
+    @property
+    def weights(self) -> Weights:
+        """What the residuals of an update are weighed by."""
+        from ..core.updating.residuals import Weights
+
+        return Weights(self.sigmas, self.regularisation)
+
+
+_HINTS = get_type_hints(Study)
+_FIELDS = {
+    f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
+}
+_STAGE_FIELDS = get_type_hints(StageRequest)
+
+
+def _sigma_fields() -> dict[str, Any]:
+    from ..core.updating.residuals import RESIDUALS
+
+    return {r.weight: float for r in RESIDUALS}
+
+
+def _study_values(
+    table: Mapping[str, object], fields: Mapping[str, Any], who: Place
+) -> dict[str, Any]:
+    """Check values by key of the file and put the standard deviations of residuals together."""
+    values = _checked(table, fields, who)
+    sigmas = {name: values.pop(name) for name in _sigma_fields() if name in values}
+    return {**values, "sigmas": sigmas} if sigmas else values
+
+
+def read_study(path: Path) -> Study:
+    """Read a study file.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read or is not TOML, an unknown key, a value of the wrong type.
+    """
+    here = Place(path, shown=f"study file {path}")
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise here.error(error.strerror or str(error)) from error
+    except UnicodeDecodeError as error:
+        raise here.fault("is not UTF-8 text") from error
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise here.fault(f"is not valid TOML: {error}") from error
+    values = _study_values(table, {**_FIELDS, **_sigma_fields()}, here)
+    for name in ("deck", "modes", "out"):
+        if values.get(name) is not None:
+            values[name] = path.parent / values[name]
+    values["test"] = tuple(path.parent / t for t in values.get("test", ()))
+    try:
+        return Study(**values, source=path)
+    except InputError as error:
+        raise here.about(str(error)) from None
+
+
+def merge(
+    study: Study, given: Mapping[str, object], known: Mapping[str, object], who: str
+) -> Study:
+    """Return the study with what was given on top; what is None or empty was not given.
+
+    Parameters
+    ----------
+    study : Study
+    given : mapping
+        By key of `Study`.
+    known : mapping
+        The keys that may be given.
+    who : str
+        Begins the sentence of an error.
+
+    Raises
+    ------
+    InputError
+        A key that is not known, a value of the wrong type or that no run accepts.
+    """
+    fields = {name: kind for name, kind in _FIELDS.items() if name in known}
+    if "residuals" in known:
+        fields |= _sigma_fields()
+    there = {k: v for k, v in given.items() if k not in fields or not _absent(v)}
+    values = _study_values(there, fields, Place(shown=who))
+    values["sigmas"] = {**study.sigmas, **values.get("sigmas", {})}
+    return dataclasses.replace(study, **values)
+
+
+def _absent(value: object) -> bool:
+    return value is None or (isinstance(value, list | tuple) and not value)
+
+
+def study_toml(study: Study) -> str:
+    """Write the study as TOML that runs it again, defaults included."""
+    lines = ["# trueup study: run it again with  trueup VERB --study study.toml"]
+    for name in _FIELDS:
+        value = getattr(study, name)
+        if name in {"stages", "out"} or value is None or (name == "test" and not value):
+            continue
+        lines.append(f"{name} = {_toml(value)}")
+    lines += [f"{key} = {sigma!r}" for key, sigma in study.weights.all.items()]
+    for stage in study.stages:
+        lines += ["", "[[stages]]"]
+        lines += [f"{n} = {_toml(getattr(stage, n))}" for n in _STAGE_FIELDS]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(_toml(v) for v in value) + "]"
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return repr(value)
+    text = str(value).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{text}"'
+
+
+def _checked(table: Mapping[str, object], fields: Mapping[str, Any], who: Place) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for name, value in table.items():
+        if name not in fields:
+            raise who.error(unknown(name, fields))
+        values[name] = _converted(name, value, fields[name], who)
+    return values
+
+
+def unknown(name: str, known: Iterable[str]) -> str:
+    """Say that a key is not known, and which may have been meant."""
+    near = get_close_matches(name, known := list(known), n=1)
+    return f"unknown key '{name}'" + (
+        f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(known)}"
+    )
+
+
+def _converted(name: str, value: object, kind: Any, who: Place) -> Any:
+    wrong = who.error(f"'{name}' has a value of the wrong type: {value!r}")
+    of = get_args(kind)
+    if StageRequest in of:
+        if not isinstance(value, list | tuple):
+            raise wrong
+        return tuple(_stage(v, who, wrong) for v in value)
+    if get_origin(kind) is tuple:
+        items = value if isinstance(value, list | tuple) else [value]
+        return tuple(_converted(name, v, of[0], who) for v in items)
+    make = of[0] if of else kind
+    if isinstance(value, bool) or not isinstance(value, _MADE_FROM[make]):
+        raise wrong
+    return make(value)
+
+
+_MADE_FROM: dict[Any, tuple[type, ...]] = {
+    Path: (str, os.PathLike),
+    str: (str,),
+    int: (numbers.Integral,),
+    float: (numbers.Real,),
+}
+"""What a value of each type may be made from."""
+
+
+def _stage(value: object, who: Place, wrong: InputError) -> StageRequest:
+    if isinstance(value, StageRequest):
+        return value
+    if not isinstance(value, Mapping):
+        raise wrong
+    return StageRequest(**_checked(value, _STAGE_FIELDS, who))

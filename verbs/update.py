@@ -1,0 +1,181 @@
+"""The verb `update`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+
+from ..core.correlation.comparison import Comparison, Placed, compare
+from ..core.data.parametric_model import Model
+from ..core.eigen.normal_modes import Eigensolution, modes_of
+from ..core.errors import CheckError, InputError
+from ..core.results.correlation import compared
+from ..core.results.update import iteration_rows, parameter_rows, weights_table
+from ..core.updating import update as core
+from .analysis import Analysis, both_given, correlated, named, read_analysis
+from .options import Files, Say, UpdateOptions, study_of, unheard
+from .run import Updated, content_of
+from .sources import Source, measured
+from .stages import stages_of
+from .study import Study
+
+if TYPE_CHECKING:
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+
+_AGREES = 1e-4
+"""Relative difference of eigenvalues, updated model and deck read back, that is none."""
+
+
+def update(
+    deck: Source | None = None,
+    test: Source | None = None,
+    parameters: str | Sequence[str] | None = None,
+    *,
+    study: Study | Files | None = None,
+    progress: Say = unheard,
+    **options: Unpack[UpdateOptions],
+) -> Updated:
+    """Move named parameters so that the analysis meets the test, by sensitivities.
+
+    Parameters
+    ----------
+    deck : path or Deck
+        Default: the deck of `study`.
+    test : path, sequence of paths or Measurement
+        Default: the test of `study`.
+    parameters : str or sequence of str
+        What may move, as the analyst reads the deck: ``"PBAR 11 I1"``, ``"front = PBAR 11 I1,
+        PBAR 11 I2 [0.2, 5]"``. Default: those of `study`.
+    study : path or Study, optional
+        A study file; keyword arguments win.
+    progress : callable
+        Told what is done, a few words at a time.
+    **options
+        See `UpdateOptions` and `CompareOptions`.
+
+    Returns
+    -------
+    Updated
+
+    Raises
+    ------
+    InputError
+        A file, an object or an option that is at fault: which, and what to do; no test mode
+        pairs with the model as it is.
+    CheckError
+        An eigensolution does not meet its own check, or the updated deck, read back, is not the
+        updated model.
+    """
+    start = time.perf_counter()
+    accepted = {**UpdateOptions.__annotations__, "parameters": None, "modes": None}
+    asked = study_of("update", study, {**options, "parameters": parameters}, accepted)
+    deck, test = both_given(deck, test, asked)
+    if not asked.parameters:
+        raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
+    if asked.modes is not None:
+        raise InputError(
+            "--modes gives fixed modes, which no parameter can move; leave it out to update"
+        )
+    if isinstance(deck, Model):
+        raise InputError("update changes a deck, and a model has none; give the deck")
+    progress("reading and correlating")
+    side = measured(test)
+    analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
+    placed = correlated(analysis, side, asked).placed
+    progress("updating")
+    done = _moved(analysis, placed, asked)
+
+    def comparison(solution: Eigensolution) -> Comparison:
+        modes = modes_of(analysis.model, solution)
+        rigid = solution.rigid_body_modes
+        return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
+
+    states = [s.solution for s in (done.before, done.after)]
+    before, after = (comparison(s) for s in states if isinstance(s, Eigensolution))
+    progress("writing the updated deck and solving it again")
+    changed, values = _written(analysis, done)
+    history = iteration_rows(done.history)
+    final = replace(compared(after), warnings=())
+    assert analysis.deck is not None
+    return Updated(
+        deck_file=f"deck/{changed.name}",
+        input_deck=str(analysis.deck.path),
+        test_files=tuple(map(str, side.files)),
+        parameters=parameter_rows(analysis.model.parameters, done, values),
+        history=history,
+        before=replace(compared(before), warnings=()),
+        after=final,
+        weights=weights_table(placed.errors),
+        eigensolutions=done.eigensolutions,
+        stopped=done.stopped.sentence,
+        seconds=time.perf_counter() - start,
+        warnings=(*analysis.warnings, *placed.warnings, *done.warnings),
+        content=content_of(before, final, after, history),
+        study=named(asked, analysis.deck, side, None),
+        deck=changed,
+    )
+
+
+def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
+    chosen = tuple(m - 1 for m in asked.test_modes) or None
+    if chosen and max(chosen) >= len(placed.test):
+        raise InputError(
+            f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
+        )
+    target = core.Target(
+        placed.test.frequencies_hz,
+        placed.weighted(placed.test.shapes),
+        placed.weighted(placed.observation.matrix @ analysis.model.expansion),
+        chosen,
+        None if placed.errors is None else placed.errors.frequency,
+        None if placed.errors is None else placed.errors.length,
+    )
+    return core.update(
+        analysis.model,
+        target,
+        stages_of(asked, analysis.model.parameters),
+        asked.criteria,
+        asked.weights,
+        n_modes=len(analysis.modes),
+    )
+
+
+def _written(
+    analysis: Analysis, done: core.Updated
+) -> tuple[ChangedDeck, list[list[float | None]]]:
+    """Return the updated deck and the values of its parameters' fields, read back and solved.
+
+    Raises
+    ------
+    CheckError
+        When the deck read back does not give the frequencies of the updated model.
+    """
+    from ..adapters.nastran import read_value, set_values
+    from ..adapters.nastran.assembly.read_back import read_back
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+
+    assert analysis.deck is not None
+    original = analysis.deck.text
+    wanted = {
+        ref: value * float(factor)
+        for spec, parameter, factor in zip(
+            analysis.specs, analysis.model.parameters, done.factors, strict=True
+        )
+        for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
+        if abs(factor - 1.0) > 1e-12
+    }
+    changed = ChangedDeck.of(original, set_values(original, wanted))
+    target = done.after.solution.eigenvalues
+    again = read_back(changed, len(target)).solution
+    elastic = slice(again.rigid_body_modes, None)
+    off = np.max(np.abs(again.eigenvalues[elastic] / target[elastic] - 1.0), initial=0.0)
+    if not off < _AGREES:
+        raise CheckError(
+            f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
+            "updated model's; nothing was written"
+        )
+    return changed, [[read_value(changed.text, r) for r in s.fields] for s in analysis.specs]
