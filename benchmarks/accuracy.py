@@ -22,8 +22,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trueup import Dofs, InputError, Modes, build_model, modes_of, read_deck, read_modes, solve
-from trueup.adapters.nastran import weight
+from trueup import Dofs, InputError, Modes
+from trueup.adapters.nastran import build_model, read_deck, read_modes, weight
+from trueup.core.eigen.normal_modes import modes_of, solve
 
 MOST = 10
 """Elastic modes compared."""

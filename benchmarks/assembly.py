@@ -19,7 +19,7 @@ import numpy as np
 from shell import deck_text
 
 from trueup.adapters.nastran import build_model, parse_parameter, read_deck
-from trueup.core.eigen import solve
+from trueup.core.eigen.normal_modes import solve
 
 _MODES = 36
 _PROPERTIES = 20

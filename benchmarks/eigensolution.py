@@ -1,7 +1,7 @@
 """Our eigensolution beside scipy's default, in one run; ends with one line of JSON.
 
 ``python benchmarks/eigensolution.py [--quick] [--million]``: 36 modes of a free barrel shell,
-by ``trueup.core.eigen.solve`` with every check that it makes, and by
+by ``trueup.core.eigen.normal_modes.solve`` with every check that it makes, and by
 ``scipy.sparse.linalg.eigsh(K, 36, M, sigma=...)`` as it comes. ``--quick`` leaves out the larger
 of the two sizes; ``--million`` solves 1,000,000 degrees of freedom with ours alone and reports
 the peak memory of the process.
@@ -19,9 +19,9 @@ import numpy as np
 import scipy.sparse.linalg as spla
 from shell import SIZES, shell_model
 
-from trueup.core.eigen import Eigensolution, solve
-from trueup.core.factor import best_backend
-from trueup.core.model import Model
+from trueup.core.data.parametric_model import Model
+from trueup.core.eigen.normal_modes import Eigensolution, solve
+from trueup.core.numerics.factorisation import best_backend
 
 _MODES = 36
 _SIGMA = -((2.0 * np.pi * 20.0) ** 2)

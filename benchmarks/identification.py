@@ -22,10 +22,10 @@ from typing import Any
 
 import numpy as np
 
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
 from trueup.core.identification import identify
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 
 _BAND = (10.0, 810.0)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from trueup.adapters.nastran import build_model, parse_parameter, read_deck
-from trueup.core.model import Model
+from trueup.core.data.parametric_model import Model
 
 SIZES = {18_000: (60, 50), 120_000: (200, 100), 1_000_000: (500, 334)}
 """Grids around and along, by degrees of freedom."""

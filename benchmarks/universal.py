@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from trueup.adapters.universal import read_universal, write_universal
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
 
 _PEAK = """
 import sys

@@ -20,10 +20,10 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from shell import SIZES, shell_model
 
-from trueup.core.correlate import Criteria
-from trueup.core.eigen import Eigensolution, solve
-from trueup.core.model import Model
-from trueup.core.updating import Stage, Target, update
+from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.data.parametric_model import Model
+from trueup.core.eigen.normal_modes import Eigensolution, solve
+from trueup.core.updating.update import Stage, Target, update
 
 _MODES = 36
 _PARAMETERS = 20
@@ -86,7 +86,7 @@ def main() -> None:
             round(s.correlation.mean_abs_deviation_percent or np.nan, 3)
             for s in (done.before, done.after)
         ],
-        "stopped": done.stopped,
+        "stopped": done.stopped.sentence,
     }
     if not chosen.no_scipy:
         result["scipy_over_ours"] = round(_scipy(model, runs[0][1]) / eigensolution, 2)

@@ -1,8 +1,9 @@
 """``python -m benchmarks.discovery.calibrate FOLDER``: what share of findings is right.
 
-Fits the two figures of `trueup.core.discovery.telling` that turn a posterior into a confidence,
-by maximum likelihood over findings whose truth is known (Platt 1999 with the posterior and the
-noise that is left as features), from a folder of cases with ``truth.json`` and ``result.json``.
+Fits the two figures of `trueup.core.discovery.narrative.build_findings` that turn a posterior
+into a confidence, by maximum likelihood over findings whose truth is known (Platt 1999 with the
+posterior and the noise that is left as features), from a folder of cases with ``truth.json`` and
+``result.json``.
 """
 
 from __future__ import annotations

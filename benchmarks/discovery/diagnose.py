@@ -11,7 +11,6 @@ import itertools
 import json
 import math
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +26,7 @@ class _Stop(Exception):
 
 def searched(place: Path) -> tuple[Any, Any, Any]:
     """Return searcher, hypotheses and judgement of a case."""
-    from trueup.cli.options import Output
-    from trueup.cli.study import Study
-    from trueup.cli.verbs.discover import run_discover
+    import trueup
     from trueup.core.discovery import discover as engine
 
     test = next(place.glob("*_test.unv"))
@@ -43,9 +40,7 @@ def searched(place: Path) -> tuple[Any, Any, Any]:
 
     engine.judge = judge
     try:
-        with tempfile.TemporaryDirectory() as out:
-            study = Study(deck=deck, test=(test,), deck_length_unit="mm", out=Path(out) / "run")
-            run_discover(study, Output(quiet=True))
+        trueup.discover(deck, test, deck_length_unit="mm")
     except _Stop:
         pass
     finally:
@@ -55,23 +50,19 @@ def searched(place: Path) -> tuple[Any, Any, Any]:
 
 def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
     """Return suspects of the true kind and size at the places nearest to the true one."""
-    from trueup.core.discovery.candidates import Suspect
+    from trueup.core.discovery.effects import KINDS
+    from trueup.core.discovery.effects.candidates import Suspect
 
     spot, _ = spot_of(effect)
-    sizes = [effect[k] for k in ("mass", "factor", "stiffness", "damping") if k in effect][:1]
-    theta = tuple(math.log(x) for x in (*(sizes or [1.0]), *_tuning(effect)))
+    theta = tuple(math.log(effect.get(m.word, 1.0)) for m in KINDS[effect["kind"]].magnitudes)
     wanted, out = effect.get("components"), []
     for number, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - np.array(spot), axis=1)
-        for row in np.argsort(away, kind="stable") if c.kind == effect["kind"] else ():
+        for row in np.argsort(away, kind="stable") if c.kind.name == effect["kind"] else ():
             own = c.where[row].get("components")
             if not own or not wanted or list(own) == wanted:
                 out.append((float(away[row]), Suspect(number, int(row), theta)))
     return [s for _, s in sorted(out, key=lambda o: o[0])[:count]]
-
-
-def _tuning(effect: dict[str, Any]) -> list[float]:
-    return [effect["frequency_hz"]] if effect["kind"] == "tuned_absorber" else []
 
 
 def describe(searcher: Any, fit: Any) -> str:
@@ -81,7 +72,7 @@ def describe(searcher: Any, fit: Any) -> str:
         c = searcher.problem.catalogue[s.kind]
         x = ", ".join(f"{v:.0f}" for v in c.xyz[s.row])
         words.append(
-            f"{c.kind} ({x}) {' '.join(f'{math.exp(v):.4g}' for v in s.theta)} "
+            f"{c.kind.name} ({x}) {' '.join(f'{math.exp(v):.4g}' for v in s.theta)} "
             f"{c.where[s.row].get('components', '')}"
         )
     return f"{fit.objective:8.1f}  " + "; ".join(words)
@@ -89,7 +80,7 @@ def describe(searcher: Any, fit: Any) -> str:
 
 def explain(place: Path) -> None:
     """Print what was chosen and how the truth fits."""
-    from trueup.core.discovery.fitting import fit
+    from trueup.core.discovery.likelihood.map_fit import fit
 
     truth = json.loads((place / "truth.json").read_text())
     searcher, found, verdict = searched(place)
@@ -103,7 +94,7 @@ def explain(place: Path) -> None:
         if not p:
             say(f"  the catalogue has no {e['kind']} {e.get('components', '')}")
     tries = [
-        fit(searcher.problem, found.levels[0].log_p, combination, searcher.active, 15)
+        fit(searcher.problem, found.levels[0].nuisance, combination, searcher.active, 15)
         for combination in itertools.product(*[p for p in places if p])
         if combination
     ]

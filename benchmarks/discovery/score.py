@@ -8,7 +8,6 @@ from typing import Any
 
 Json = dict[str, Any]
 
-MASSES = {"point_mass", "distributed_mass", "tuned_absorber"}
 PLACE = 0.1
 """A place is right within this part of the structure's largest dimension."""
 
@@ -85,6 +84,8 @@ def _credible(effect: Json, finding: Json, size: float) -> bool:
 
 
 def _effect(effect: Json, finding: Json, size: float) -> Named:
+    from trueup.core.discovery.effects import KINDS
+
     kind = effect["kind"]
     gap = _gap(effect, finding)
     placed = gap is not None and gap <= PLACE * size
@@ -99,7 +100,7 @@ def _effect(effect: Json, finding: Json, size: float) -> Named:
     inside = None
     if right and key and isinstance(interval, (list, tuple)) and len(interval) == 2:
         inside = bool(interval[0] <= effect[key] <= interval[1])
-    tolerance = 1.3 if kind in MASSES else 2.0
+    tolerance = 1.3 if KINDS[kind].magnitudes[0].is_mass else 2.0
     sized = ratio is not None and 1.0 / tolerance <= ratio <= tolerance
     return Named(
         kind,
@@ -162,6 +163,7 @@ def score(truth: Json, result: Json) -> Score:
         )
         named.append(tries[best])
         model.pop(best)
+    held = all(n.in_credible for n in named)
     for fault in truth["faults"]:
         hit, finding = _fault(fault, test)
         named.append(hit)
@@ -170,9 +172,5 @@ def score(truth: Json, result: Json) -> Score:
     false = [(str(f.get("kind")), float(f.get("confidence") or 0.0)) for f in (*model, *test)]
     verdict = str(result.get("verdict"))
     solved = verdict in expected and all(n.solved for n in named) and not false
-    held = all(n.in_credible for n in named if n.kind not in _FAULTS)
     safe = solved or (verdict == "undecided" and held)
     return Score("/".join(expected), verdict, solved, safe, tuple(named), tuple(false))
-
-
-_FAULTS = {"sensor_polarity", "sensor_gain", "sensor_swap", "sensor_axis"}

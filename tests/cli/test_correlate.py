@@ -107,7 +107,7 @@ def test_metres_of_the_test_become_millimetres_of_the_deck(runs: dict[str, Any])
 def test_the_run_folder_is_whole(runs: dict[str, Any]) -> None:
     _, result, folder = runs["analysis"]
     assert {p.name for p in folder.iterdir()} == {
-        "result.json", "result.h5", "report.html", "study.toml",
+        "result.json", "result.h5", "report.html", "study.toml", "tables",
     }  # fmt: skip
     assert json.loads((folder / "result.json").read_text()) == result
     content = read_store(folder / "result.h5")
@@ -140,11 +140,11 @@ def test_an_existing_run_folder_is_kept_unless_forced(
     runs: dict[str, Any], call: Call, duct: Path
 ) -> None:
     folder = runs["none"][2]
-    before = {p: p.read_bytes() for p in folder.iterdir()}
+    before = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
     said = call("correlate", duct / "duct.bdf", duct / "duct_test.unv", "--out", folder)
     assert said.status == 1
     assert "exists; give --force" in said.sentence
-    assert {p: p.read_bytes() for p in folder.iterdir()} == before
+    assert {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()} == before
     (folder / "notes.txt").write_text("mine")
     again = call("correlate", "--study", folder / "study.toml", "--out", folder, "--force",
                  "--quiet")  # fmt: skip

@@ -67,7 +67,7 @@ def test_a_deck_unit_by_which_the_sizes_cannot_agree_is_refused(unit, tmp_path, 
 
 def test_parameters_alone_are_enough_where_nothing_is_missing(tmp_path):
     from trueup.adapters.nastran import parse_parameter, read_deck
-    from trueup.adapters.nastran.variation import value_of
+    from trueup.adapters.nastran.assembly.variation import value_of
 
     result, out = discovered("tower_frame", "tower", tmp_path)
     assert result["verdict"] == "parameters_only"

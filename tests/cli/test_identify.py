@@ -13,10 +13,10 @@ import pytest
 
 from trueup.adapters.store import read_store
 from trueup.adapters.universal import read_universal, write_universal
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 GARTEUR = DATA / "uff" / "garteur_frf_1995.uff"
@@ -82,7 +82,8 @@ def test_the_run_folder(frf: Path, call: Call, result_of: Callable[[Path], Any])
     assert call("identify", frf, "--quiet").out == ""
     run = Path("survey_identify")
     assert {p.name for p in run.iterdir()} == {
-        "modes.unv", "modes_complex.unv", "result.h5", "result.json", "stabilisation.html"
+        "modes.unv", "modes_complex.unv", "result.h5", "result.json", "stabilisation.html",
+        "tables",
     }  # fmt: skip
     hz = [m["frequency_hz"] for m in result_of(run)["modes"]]
     content = read_universal([run / "modes.unv"])

@@ -60,9 +60,9 @@ def test_update_in_place(call: Call, nested: Path, tmp_path: Path, option: str) 
     assert "changed in place" in said.out
     value = result["parameters"][0]["updated"][0]
     deck = read_deck_text(nested / "duct.bdf")
-    from trueup.adapters.nastran import FieldRef
+    from trueup.adapters.nastran import FieldRef, read_value
 
-    assert deck.value(FieldRef("PBAR", 11, "I1")) == value
+    assert read_value(deck, FieldRef("PBAR", 11, "I1")) == value
     diff = (run / "changes.diff").read_bytes()
     assert b"--- a/rings/front.blk" in diff
     assert b"-PBAR    11" in diff

@@ -22,11 +22,11 @@ from trueup.adapters.nastran import (
 from trueup.adapters.store import read_store, write_store
 from trueup.adapters.universal import read_universal, write_universal
 from trueup.cli.app import run
-from trueup.cli.formats import kind_of_file
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.modes import Modes
+from trueup.verbs.read import kind_of_file
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 KINDS = {
@@ -97,7 +97,7 @@ def test_every_file_at_hand_is_told_on_one_screen_or_refused_in_one_sentence(
             assert err.count("\n") == 1, path
         else:
             assert status == 0, (path, err)
-            assert kind_of_file(path) == KINDS[path.suffix]
+            assert kind_of_file(path).name == KINDS[path.suffix]
             assert 3 <= len(out.splitlines()) <= 40, path
 
 

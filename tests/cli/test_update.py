@@ -20,6 +20,7 @@ from trueup.adapters.nastran import (
     read_value,
 )
 from trueup.adapters.store import read_store
+from trueup.core.updating.residuals import RESIDUALS
 
 FLANGES = ("PBAR 11 I1, PBAR 11 I2", "rear flange = PBAR 12 I1, PBAR 12 I2")
 Call = Callable[..., Any]
@@ -125,6 +126,7 @@ def test_the_run_folder_is_whole(updated: Any) -> None:
     result, folder = updated[1:]
     assert {p.name for p in folder.iterdir()} == {
         "result.json", "result.h5", "report.html", "study.toml", "deck", "changes.diff",
+        "tables",
     }  # fmt: skip
     assert json.loads((folder / "result.json").read_text()) == result
     assert set(read_store(folder / "result.h5").modes) == {"test", "analysis", "updated"}
@@ -188,7 +190,7 @@ def test_frequencies_and_shapes_together_close_the_gap_of_both(
 
 
 def test_the_three_strategies_of_the_paper_are_study_files(duct: Path) -> None:
-    from trueup.cli.study import read_study
+    from trueup.verbs.study import read_study
 
     first, second, third = (
         read_study(duct / f"{n}.toml") for n in ("frequencies", "masses_first", "both")
@@ -199,3 +201,25 @@ def test_the_three_strategies_of_the_paper_are_study_files(duct: Path) -> None:
     for study in (first, second, third):
         assert study.deck == duct / "duct.bdf"
         assert study.test == (duct / "duct_test.unv",)
+
+
+def test_a_residual_added_from_outside_is_named_in_a_study(
+    inputs: Path, call: Call, documented: Callable[[str], dict[str, Any]], tmp_path: Path
+) -> None:
+    """The skin's density alone moves, to what the deck would weigh with 1.1 of it."""
+    before = list(RESIDUALS)
+    weighing = documented("A residual")
+    model = build_model(read_deck(inputs / "duct.bdf"), [parse_parameter("MAT1 1 RHO")])
+    weighing["WEIGHED"] = weighing["moving_along_x"](model, model.M(np.array([1.1])))
+    (inputs / "study.toml").write_text(
+        "deck = 'duct.bdf'\ntest = ['duct_test.unv']\nparameters = ['MAT1 1 RHO']\n"
+        "deck_length_unit = 'mm'\nresiduals = 'mass'\nmass_sigma = 0.0001\n"
+    )
+    try:
+        said = call("update", "--study", inputs / "study.toml", "--out", tmp_path / "run",
+                    "--json", "-")  # fmt: skip
+    finally:
+        RESIDUALS[:] = before
+    assert said.status == 0, said.err
+    assert json.loads(said.out)["parameters"][0]["factor"] == pytest.approx(1.1, rel=1e-4)
+    assert "mass_sigma = 0.0001" in (tmp_path / "run" / "study.toml").read_text()

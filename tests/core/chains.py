@@ -3,9 +3,9 @@
 import numpy as np
 import scipy.sparse as sp
 
-from trueup.core.dofs import Dofs
-from trueup.core.geometry import Geometry
-from trueup.core.model import Model, Term
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parametric_model import Model, Term
 
 
 def chain(n, k=1.0, m=1.0, ground=0.0):

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core.dofs import Dofs
-from trueup.core.factor import best_backend
-from trueup.core.geometry import Geometry
-from trueup.core.model import Model, Term, proportional
-from trueup.core.parameter import Parameter
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parameter import Parameter
+from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.numerics.factorisation import best_backend
 
 
 @dataclass(frozen=True)

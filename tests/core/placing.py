@@ -5,14 +5,23 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from trueup.core.dofs import Dofs
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
-from trueup.core.observation import observe
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.modes import Modes
+from trueup.core.sensors.sensor_map import observe
 
 FRAME = Rotation.from_euler("xyz", [25.0, -40.0, 110.0], degrees=True).as_matrix()
 FLIPS = [[90, 0, 0], [0, 0, 180], [180, 5, 90]]
 SHIFT = np.array([0.3, -2.0, 0.7])
+
+
+def is_identity(move):
+    """Whether nothing moves, a change of unit apart."""
+    return np.array_equal(move.rotation, np.eye(3)) and not move.translation.any()
+
+
+def angle_deg(move):
+    return np.degrees(Rotation.from_matrix(move.rotation).magnitude())
 
 
 def geometry(xyz, unit="mm", **elements):

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from trueup.core.dofs import Dofs
-from trueup.core.geometry import Geometry
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
 
 RNG = np.random.default_rng(7)
 

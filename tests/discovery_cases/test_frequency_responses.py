@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from trueup.adapters.universal import read_test, write_universal
-from trueup.core.frfs import Frfs
-from trueup.core.identification.synthesis import poles_from
+from trueup.core.data.frfs import Frfs
+from trueup.core.identification.survey.modal_synthesis import poles_from
 
 CASE = Path(__file__).resolve().parent / "cases" / "0003_tower_joint_flexibility"
 

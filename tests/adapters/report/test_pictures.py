@@ -12,14 +12,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.adapters.report.axes import Plot, decades, spread, ticks
-from trueup.adapters.report.charts import Series, bars, lines
-from trueup.adapters.report.colour import STEPS, oklch, ramp, series
-from trueup.adapters.report.heatmap import heatmap
-from trueup.adapters.report.reading import MacMatrix
+from trueup.adapters.report.pictures.axes import Plot, decades, spread, ticks
+from trueup.adapters.report.pictures.charts import Series, bars, lines
+from trueup.adapters.report.pictures.colour import STEPS, oklch, ramp, series
+from trueup.adapters.report.pictures.heatmap import heatmap
+from trueup.core.results.correlation import MacTable
 
 VALUES = np.array([[0.974, 0.02, np.nan], [0.0, 0.5, 1.0]])
-MATRIX = MacMatrix((1, 2), (4, 5, 7), VALUES)
+TEST_HZ = np.array([10.0, 20.0])
+ANALYSIS_HZ = np.arange(8.0, 15.0)
+MATRIX = MacTable((1, 2), (4, 5, 7), VALUES)
 
 
 def parsed(figure: str) -> ET.Element:
@@ -31,8 +33,8 @@ def drawn() -> ET.Element:
         heatmap(
             MATRIX,
             "As <measured>",
-            test_hz={1: 10.0},
-            analysis_hz={4: 11.0},
+            test_hz=TEST_HZ,
+            analysis_hz=ANALYSIS_HZ,
             pairs=[(1, 4), (2, 99)],
             clusters=[([1, 2], [4, 5])],
         )
@@ -58,8 +60,8 @@ def test_the_pointer_reads_the_values_back() -> None:
     code = svg.attrib["data-v"]
     read = [None if c == "--" else int(c, 36) / 1000 for c in re.findall("..", code)]
     assert read == [0.974, 0.02, None, 0.0, 0.5, 1.0]
-    assert svg.attrib["data-rows"] == "1 (10.00 Hz)|2"
-    assert svg.attrib["data-cols"] == "4 (11.00 Hz)|5|7"
+    assert svg.attrib["data-rows"] == "1 (10.00 Hz)|2 (20.00 Hz)"
+    assert svg.attrib["data-cols"] == "4 (11.00 Hz)|5 (12.00 Hz)|7 (14.00 Hz)"
 
 
 def test_pairs_are_ringed_and_unknown_ones_passed_over() -> None:
@@ -73,7 +75,7 @@ def test_clusters_are_framed_along_their_outer_edge_only() -> None:
 
 
 def test_values_stand_in_a_table_too() -> None:
-    html = heatmap(MATRIX, "x", test_hz={}, analysis_hz={})
+    html = heatmap(MATRIX, "x", test_hz=TEST_HZ, analysis_hz=ANALYSIS_HZ)
     assert "<tr><th>1</th><td>97<td>2<td>–</tr>" in html
 
 

@@ -8,13 +8,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from trueup.adapters.report.stabilisation import (
+from trueup.adapters.report.stabilisation_page import (
     modes_table,
     stabilisation_chart,
     stabilisation_page,
 )
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
 from trueup.core.identification import Identification, identify
 
 ROOTS = (20.0, 50.0, 80.0)

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from trueup.adapters.store import describe_store, is_store, read_store, write_store
-from trueup.core.dofs import Dofs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.modes import Modes
 from trueup.core.errors import InputError
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 maybe = st.one_of(st.just(float("nan")), finite)

@@ -4,7 +4,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from trueup.adapters.universal.source import open_source
+from trueup.adapters.universal.open_file import open_source
 from trueup.core.errors import InputError
 
 TWO = "    -1\n   151\nname\n    -1\n    -1\n    15\n         1         0\n    -1\n"

@@ -27,7 +27,7 @@ def test_nodes_in_file_order(uff, write, kind):
 def test_length_unit_by_its_factor(uff, write, factor, unit):
     content = read_universal(write(uff.units(factor, 9) + uff.nodes_15(NODES)))
     assert content.length_unit == content.geometry.length_unit == unit
-    assert content.units.length_to_m == pytest.approx(1.0 / factor)
+    assert content.units.length_factor == pytest.approx(factor)
     assert bool(content.warnings) == (unit is None)
 
 

@@ -78,15 +78,6 @@ def test_no_unit_is_told(uff, write):
     assert "length unit of the test is not declared" in test.warnings[-1]
 
 
-def test_converted_to_the_unit_of_the_deck(uff, write):
-    _, _, shapes = radial(uff)
-    path = write(uff.units() + uff.nodes_15(NODES) + shapes)
-    metres, millimetres = read_test(path), read_test(path, "mm")
-    np.testing.assert_allclose(millimetres.geometry.xyz, 1000 * metres.geometry.xyz)
-    np.testing.assert_allclose(millimetres.modes.shapes, 1000 * metres.modes.shapes)
-    assert millimetres.length_unit == "mm"
-
-
 def test_responses_with_geometry(uff, write):
     text = uff.nodes_15(NODES) + uff.function_58([1.0, 2.0], (1, 1), (2, 1))
     test = read_test(write(text))

@@ -9,11 +9,11 @@ from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
 
 from trueup.adapters.universal import Units, read_universal, write_universal
-from trueup.core.dofs import Dofs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.modes import Modes
 from trueup.core.errors import InputError
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
 
 CORNERS = {"point": 1, "line": 2, "tria": 3, "quad": 4, "tetra": 4, "pyramid": 5, "penta": 6,
            "hexa": 8}  # fmt: skip

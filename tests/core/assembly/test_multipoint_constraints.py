@@ -6,8 +6,8 @@ import scipy.sparse as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.core.constraints import Equations, reduction, unsupported
-from trueup.core.errors import InputError
+from trueup.core.assembly.multipoint_constraints import Equations, reduction, unsupported
+from trueup.core.errors import InputError, Place
 
 
 def equations(n, rows):
@@ -16,7 +16,7 @@ def equations(n, rows):
     for k, terms in enumerate(rows.values()):
         for dof, value in terms.items():
             matrix[k, dof] = value
-    owners = tuple(f"MPC {k + 1}" for k in range(len(rows)))
+    owners = tuple(Place(card=f"MPC {k + 1}") for k in range(len(rows)))
     return Equations(np.array(list(rows), dtype=np.int64), matrix.tocsr(), owners)
 
 
@@ -76,7 +76,8 @@ def test_what_is_not_determined_is_named(rows, fixed, message):
 
 
 def test_two_equations_for_one_degree_of_freedom_are_named():
-    twice = Equations(np.array([0, 0]), sp.csr_matrix(np.eye(3)[[1, 2]]), ("RBE2 1", "RBE2 2"))
+    owners = (Place(card="RBE2 1"), Place(card="RBE2 2"))
+    twice = Equations(np.array([0, 0]), sp.csr_matrix(np.eye(3)[[1, 2]]), owners)
     with pytest.raises(InputError, match=r"0:1 .* made dependent by RBE2 1 and RBE2 2"):
         reduction(3, twice, np.zeros(3, bool), lambda d: f"{d}:1")
 

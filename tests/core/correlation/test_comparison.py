@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.comparison import compare, mass_normalised, place_test
-from trueup.core.dofs import Dofs
-from trueup.core.eigen import modes_of, solve
+from trueup.core.correlation.comparison import compare, mass_normalised, place_test
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.measurement import Measurement
+from trueup.core.data.modes import Modes
+from trueup.core.eigen.normal_modes import modes_of, solve
 from trueup.core.errors import InputError
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
-from trueup.core.measurement import Measurement
-from trueup.core.modes import Modes
 
 NODES = np.arange(0, 13)
 
@@ -58,7 +58,7 @@ def test_lengths_and_shapes_are_converted_to_the_decks_unit(analysis, unit, fact
     geometry, modes = analysis
     plain = place_test(geometry, modes, measured(analysis), "m")
     placed = place_test(geometry, modes, measured(analysis, unit, factor), "m")
-    assert placed.alignment.scale == pytest.approx(1.0 / factor)
+    assert placed.length_factor == pytest.approx(1.0 / factor)
     assert placed.test_geometry.length_unit == "m"
     np.testing.assert_allclose(placed.observation.xyz, plain.observation.xyz, atol=1e-9)
     np.testing.assert_allclose(placed.test.shapes, plain.test.shapes, atol=1e-9)

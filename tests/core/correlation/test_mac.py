@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from trueup.core.correlation import deviation_percent, mac, realised
+from trueup.core.correlation.mac import deviation_percent, mac, realised
 from trueup.core.errors import InputError
 
 

@@ -7,16 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from tests.core.test_comparison import analysis, measured
-from tests.core.test_updating import HALVES, chain
-from tests.core.test_updating import measured as target_of
+from tests.core.correlation.test_comparison import analysis, measured
+from tests.core.updating.test_update import HALVES, chain
+from tests.core.updating.test_update import measured as target_of
+from tests.core.updating.weighing import eigenvalue_residuals, shape_residuals
 
-from trueup.core.comparison import compare, place_test
-from trueup.core.correlate import Pair
+from trueup.core.correlation.comparison import compare, place_test
+from trueup.core.correlation.mode_errors import (
+    ModeErrors,
+    mode_errors,
+    told,
+    with_scatter,
+)
+from trueup.core.correlation.mode_pairing import Pair
 from trueup.core.errors import InputError
-from trueup.core.residuals import Weights, eigenvalue_residuals, shape_residuals
-from trueup.core.updating import Stage, update
-from trueup.core.weighting import ModeErrors, mode_errors, told, weight_tables, with_scatter
+from trueup.core.updating.residuals import Weights
+from trueup.core.updating.update import Stage, update
 
 __all__ = ["analysis"]
 
@@ -40,7 +46,6 @@ def test_sensors_alike_weigh_alike_and_a_poor_one_less():
     assert weight[2] == pytest.approx((0.05**2 + 0.02**2) / (0.05**2 + 0.5**2))
     assert "sensor(s) c count less than half" in told(ModeErrors(np.zeros(3), shape), "abcde")
     assert "less than half" not in told(alike, "abcde")
-    assert weight_tables(None) is None
 
 
 def test_each_residual_is_over_the_deviation_of_its_own_pair():
@@ -71,7 +76,7 @@ def test_an_uncertain_frequency_hardly_moves_the_parameters():
         t = replace(
             target, frequencies_hz=wrong, frequency_std=None if std is None else np.array(std)
         )
-        done = update(model, t, [stage], weights=Weights(frequency=1e-3), n_modes=8)
+        done = update(model, t, [stage], weights=Weights({"frequency_sigma": 1e-3}), n_modes=8)
         off[name] = np.abs(done.factors / truth - 1.0).max()
     assert off["known"] < 1e-3
     assert off["unknown"] > 10.0 * off["known"]

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.core.correlate import Criteria, correlate
+from trueup.core.correlation.mode_pairing import Criteria, correlate
 from trueup.core.errors import InputError
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)

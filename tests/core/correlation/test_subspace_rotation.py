@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from trueup.core.correlation import mac
-from trueup.core.rotation import combinations, rotate_cluster, subspace_mac
+from trueup.core.correlation.mac import mac
+from trueup.core.correlation.subspace_rotation import combinations, rotate_cluster, subspace_mac
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from trueup.core.data.coordinate_systems import BASIC, frame_of_points
 from trueup.core.errors import InputError
-from trueup.core.frames import BASIC, frame_of_points
 
 A, B, C = np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 5.0]), np.array([4.0, 2.0, 2.0])
 

@@ -6,8 +6,8 @@ of a wave on and n times less, along its rim (Love, *Mathematical Theory of Elas
 
 import numpy as np
 
-from trueup.core.discovery.sensors import judge_sensors
-from trueup.core.discovery.survey import Span, Survey
+from trueup.core.discovery.sensor_faults.diagnosis import judge_sensors
+from trueup.core.discovery.sensor_faults.leave_one_out import Span, Survey
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
 WAVES = np.repeat(np.arange(2, 9), 2)

@@ -6,13 +6,16 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.basis import Basis, ReducedSum
-from trueup.core.discovery.candidates import Candidates
-from trueup.core.discovery.evidence import Evidence, Noise
-from trueup.core.discovery.laws import MassLaw, SpringLaw, TunedLaw
-from trueup.core.discovery.problem import Prior, Problem
-from trueup.core.discovery.search import Effort, Searcher
-from trueup.core.model import Factor, Term
+from trueup.core.data.parametric_model import Factor, Term
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Candidates
+from trueup.core.discovery.effects.effect_laws import MassLaw, SpringLaw, TunedLaw
+from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
+from trueup.core.discovery.likelihood.likelihood_numbers import Effort
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.reduction.search_basis import Basis
+from trueup.core.discovery.search.moves import Searcher
+from trueup.core.reduction.reduced_sum import ReducedSum
 
 N = 32
 X = np.arange(1, N + 1) / (N + 1.0)
@@ -70,7 +73,7 @@ def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> 
 
     def of(kind, law, trials, typical, spread=(1.5,), **more):
         return Candidates(
-            kind=kind,
+            kind=KINDS[kind],
             xyz=xyz,
             law=law,
             trials=np.log(trials),

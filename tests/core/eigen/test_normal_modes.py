@@ -5,10 +5,10 @@ import pytest
 import scipy.sparse as sp
 from tests.core.chains import chain, chain_exact, scalar_model
 
-from trueup.core import eigen, sparse_modes
-from trueup.core.eigen import modes_of, solve
+from trueup.core.data.parametric_model import Model, Term
+from trueup.core.eigen import normal_modes, shift_invert_solver
+from trueup.core.eigen.normal_modes import modes_of, solve
 from trueup.core.errors import CheckError, InputError
-from trueup.core.model import Model, Term
 
 # closed forms
 
@@ -190,7 +190,7 @@ def test_mass_that_is_indefinite_off_the_diagonal(n, backend):
 def test_a_missed_mode_is_found_again(membrane, monkeypatch):
     """An iteration that hides one mode: the count notices and a second search brings it."""
     K, M, exact = membrane(30)
-    honest = sparse_modes._converged
+    honest = shift_invert_solver._converged
     calls = []
 
     def forgetful(*args):
@@ -199,14 +199,14 @@ def test_a_missed_mode_is_found_again(membrane, monkeypatch):
         if len(calls) > 1:
             return found
         keep = np.arange(len(found.values)) != 4
-        return sparse_modes.replace(
+        return shift_invert_solver.replace(
             found,
             values=found.values[keep],
             vectors=found.vectors[:, keep],
             residual=found.residual[keep],
         )
 
-    monkeypatch.setattr(sparse_modes, "_converged", forgetful)
+    monkeypatch.setattr(shift_invert_solver, "_converged", forgetful)
     found = solve((K, M), 12)
     np.testing.assert_allclose(found.eigenvalues, exact[:12], rtol=1e-9)
     assert found.checks["missed"] == 0
@@ -215,8 +215,8 @@ def test_a_missed_mode_is_found_again(membrane, monkeypatch):
 
 def test_a_mode_that_stays_missing_is_an_error(membrane, monkeypatch):
     K, M, _ = membrane(30)
-    honest = sparse_modes._inertia
-    monkeypatch.setattr(sparse_modes, "_inertia", lambda *a: honest(*a) + 1)
+    honest = shift_invert_solver._inertia
+    monkeypatch.setattr(shift_invert_solver, "_inertia", lambda *a: honest(*a) + 1)
     with pytest.raises(CheckError, match="inertia count"):
         solve((K, M), 12)
 
@@ -229,12 +229,12 @@ def test_checks_that_are_not_met_raise():
         {"residual": np.nan, "orthonormality": 0.0, "missed": 0},
     ):
         with pytest.raises(CheckError):
-            eigen._verify(bad)
+            normal_modes._verify(bad)
 
 
 @pytest.mark.parametrize("hertz", [1e-9, 1e-3, 1.0, 1e4, 1e9])
 def test_any_first_shift_leads_to_the_modes(ring, monkeypatch, hertz):
-    monkeypatch.setattr(sparse_modes, "_FIRST_SHIFT_HZ", hertz)
+    monkeypatch.setattr(shift_invert_solver, "_FIRST_SHIFT_HZ", hertz)
     model = ring(150)
     expected = solve(ring(150), 16).eigenvalues[6:]
     np.testing.assert_allclose(solve(model, 16).eigenvalues[6:], expected, rtol=1e-7)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from trueup.core.eigen.pencil import Pencil
 from trueup.core.errors import InputError
-from trueup.core.pencil import Pencil
 
 
 def chain(mass):

@@ -7,11 +7,11 @@ import pytest
 import scipy.sparse as sp
 from tests.core.chains import chain, chain_exact, scalar_model
 
-from trueup.core.dofs import Dofs
-from trueup.core.eigen import solve
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parametric_model import Model, Term
+from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
-from trueup.core.geometry import Geometry
-from trueup.core.model import Model, Term
 
 # rigid-body modes by rank
 

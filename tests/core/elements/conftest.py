@@ -28,6 +28,7 @@ def nx():
     path = DATA / "solid_shell_bar" / "static_solid_shell_bar_kelm.op2"
     if not path.exists():
         pytest.skip(f"{path} is not there")
+    pytest.importorskip("pyNastran")
     from pyNastran.op2.op2_geom import read_op2_geom
 
     with warnings.catch_warnings():
@@ -61,6 +62,8 @@ def msc():
     if not path.exists():
         pytest.skip(f"{path} is not there")
     import h5py
+
+    pytest.importorskip("pyNastran")
     from pyNastran.bdf.bdf import read_bdf
 
     with warnings.catch_warnings():

@@ -7,16 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.elements import (
-    HEXA20,
-    PENTA15,
-    TETRA10,
-    hexa20_stiffness,
-    isotropic_solid,
-    tetra10_stiffness,
-)
-from trueup.core.elements.solid import solid_stiffness
-from trueup.core.elements.solid_shapes import gauss_wedge
+from trueup.core.elements.hexa import HEXA20
+from trueup.core.elements.penta import PENTA15
+from trueup.core.elements.quadrature import gauss_wedge
+from trueup.core.elements.solid import isotropic_solid
+from trueup.core.elements.tetra import TETRA10
 
 CORNERS = {
     20: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
@@ -29,7 +24,7 @@ ORDER = {
     15: [*range(9), *range(12, 15), *range(9, 12)],
     10: list(range(10)),
 }
-NINE_POINTS = replace(PENTA15, **dict(zip(("points", "weights"), gauss_wedge(3, 3), strict=True)))
+NINE_POINTS = replace(PENTA15, rules={"full": gauss_wedge(3, 3)})
 KINDS = {20: "C3D20", 15: "C3D15", 10: "C3D10"}
 
 
@@ -71,10 +66,10 @@ def calculix(folder, xyz, kind, order, E, nu, force):
 @pytest.mark.parametrize(
     ("solid", "stiffness"),
     [
-        (HEXA20, lambda x, C: hexa20_stiffness(x, C, "full")),
-        (TETRA10, tetra10_stiffness),
+        (HEXA20, lambda x, C: HEXA20.stiffness(x, C, "full")),
+        (TETRA10, TETRA10.stiffness),
         # nine points there, twenty-one in Nastran
-        (PENTA15, lambda x, C: solid_stiffness(NINE_POINTS, x, C)),
+        (PENTA15, lambda x, C: NINE_POINTS.stiffness(x, C, "full")),
     ],
     ids=["C3D20", "C3D10", "C3D15"],
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.elements import (
+from trueup.core.elements.bar import (
     bar_axes,
     bar_mass,
     bar_stiffness,
@@ -125,7 +125,10 @@ def test_mass_of_lines(structure, coupled):
     xa, xb, v = rng.standard_normal((3, 4, 3))
     length = np.linalg.norm(xb - xa, axis=1)
     line = np.full(4, 0.7)
-    for M in (bar_mass(xa, xb, v, line, coupled), rod_mass(xa, xb, line, coupled)):
+    for M in (
+        bar_mass(xa, xb, v, line, coupled),
+        rod_mass(np.stack([xa, xb], axis=1), line, coupled),
+    ):
         for i in range(4):
             R = structure.rigid_motions(np.array([xa[i], xb[i]]), rotations=True)[:, :3]
             assert R.T @ M[i] @ R == pytest.approx(0.7 * length[i] * np.eye(3), abs=1e-12)
@@ -147,7 +150,7 @@ def test_coupled_mass_of_a_cantilever(structure):
 
 
 def test_coupled_rod_mass_is_the_mean_of_lumped_and_consistent():
-    M = rod_mass(XA, XB, np.array([3.0]), coupled=True)[0] / (3.0 * L)
+    M = rod_mass(np.stack([XA, XB], axis=1), np.array([3.0]), coupled=True)[0] / (3.0 * L)
     assert M[0, 0] == pytest.approx(5 / 12)
     assert M[0, 6] == pytest.approx(1 / 12)
     assert M[1, 1] == pytest.approx(1 / 2)
@@ -157,7 +160,7 @@ def test_coupled_rod_mass_is_the_mean_of_lumped_and_consistent():
 def test_rod_carries_axial_force_and_torsion_only():
     x = np.array([[3.0, 4.0, 0.0]])
     one = np.ones(1)
-    K = rod_stiffness(XA, x, 10 * one, 2 * one, 5 * one, one)[0]
+    K = rod_stiffness(np.stack([XA, x], axis=1), 10 * one, 2 * one, 5 * one, one)[0]
     t = x[0] / 5
     assert K[:3, :3] == pytest.approx(4.0 * np.outer(t, t))
     assert K[3:6, 9:] == pytest.approx(-1.0 * np.outer(t, t))

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from trueup.core.elements import HEXA20, PENTA15, PYRAMID13, TETRA10, TRIA6_EDGES, tria6_mass
-from trueup.core.elements.lumping import to_middle_nodes
+from trueup.core.elements.curved_shell import TRIA6
+from trueup.core.elements.hexa import HEXA20
+from trueup.core.elements.middle_nodes import to_middle_nodes
+from trueup.core.elements.penta import PENTA15
+from trueup.core.elements.pyramid import PYRAMID13
 from trueup.core.elements.solid import solid_mass
+from trueup.core.elements.tetra import TETRA10
 
 CORNERS = {
     20: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
@@ -53,8 +57,8 @@ def test_mass_and_centre_of_gravity_stay(solid, bend):
 
 def test_flat_triangle():
     corner = np.array([[0.0, 0, 0], [3.0, 0, 0], [0.0, 1.0, 0]])
-    xyz = np.concatenate([corner, [0.5 * (corner[i] + corner[j]) for i, j in TRIA6_EDGES]])
-    m = np.diag(tria6_mass(xyz[None], np.array([2.0]), False)[0])[::6]
+    xyz = np.concatenate([corner, [0.5 * (corner[i] + corner[j]) for i, j in TRIA6.edges]])
+    m = np.diag(TRIA6.mass(xyz[None], np.array([2.0]), False)[0])[::6]
     assert m.sum() == pytest.approx(3.0)
     np.testing.assert_allclose(m @ xyz / 3.0, corner.mean(axis=0), atol=1e-12)
 

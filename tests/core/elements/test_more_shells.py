@@ -3,23 +3,13 @@
 import numpy as np
 import pytest
 import scipy.linalg
+from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements import (
-    QUAD8_EDGES,
-    TRIA6_EDGES,
-    ShellSection,
-    drop_middle_nodes,
-    fill_middle_nodes,
-    isotropic_section,
-    quad8_mass,
-    quad8_stiffness,
-    quadr_stiffness,
-    shear_panel_mass,
-    shear_panel_stiffness,
-    tria6_mass,
-    tria6_stiffness,
-    triar_stiffness,
-)
+from trueup.core.elements.curved_shell import QUAD8, TRIA6
+from trueup.core.elements.middle_nodes import spread
+from trueup.core.elements.quadr import QUADR, TRIAR
+from trueup.core.elements.section import ShellSection
+from trueup.core.elements.shear import SHEAR_PANEL, shear_panel_stiffness
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
 WARPED = np.array([[0, 0, 0.1], [1.6, 0.2, 0], [1.4, 1.1, 0.2], [-0.1, 0.9, -0.1]])
@@ -34,10 +24,10 @@ def with_middles(corner, edges):
 
 
 CASES = [
-    (quadr_stiffness, lambda c: c),
-    (triar_stiffness, lambda c: c[:3]),
-    (quad8_stiffness, lambda c: with_middles(c, QUAD8_EDGES)),
-    (tria6_stiffness, lambda c: with_middles(c[:3], TRIA6_EDGES)),
+    (QUADR.stiffness, lambda c: c),
+    (TRIAR.stiffness, lambda c: c[:3]),
+    (QUAD8.stiffness, lambda c: with_middles(c, QUAD8.edges)),
+    (TRIA6.stiffness, lambda c: with_middles(c[:3], TRIA6.edges)),
 ]
 
 
@@ -84,11 +74,11 @@ def residual(K, element):
 
 
 def test_quadr_makes_msc_grid_point_forces(msc):
-    assert residual(quadr_stiffness(msc[24].xyz[None], sections(1))[0], msc[24]) < 2e-6
+    assert residual(QUADR.stiffness(msc[24].xyz[None], sections(1))[0], msc[24]) < 2e-6
 
 
 def test_triar_nearly_makes_msc_grid_point_forces(msc):
-    assert residual(triar_stiffness(msc[25].xyz[None], sections(1))[0], msc[25]) < 0.015
+    assert residual(TRIAR.stiffness(msc[25].xyz[None], sections(1))[0], msc[25]) < 0.015
 
 
 def test_shear_panel_makes_msc_grid_point_forces(msc):
@@ -97,8 +87,8 @@ def test_shear_panel_makes_msc_grid_point_forces(msc):
 
 
 SECOND_ORDER = [
-    (60, [0, 1, 2, 3, None, 4, 5, 6], quad8_stiffness, QUAD8_EDGES, 0.15),
-    (61, [0, 1, 2, None, 3, 4], tria6_stiffness, TRIA6_EDGES, 0.25),
+    (60, [0, 1, 2, 3, None, 4, 5, 6], QUAD8.stiffness, QUAD8.edges, 0.15),
+    (61, [0, 1, 2, None, 3, 4], TRIA6.stiffness, TRIA6.edges, 0.25),
 ]
 
 
@@ -110,16 +100,10 @@ def test_second_order_shells_in_msc(msc, eid, slots, stiffness, edges, loose):
     5 % here made thin plates 7 % too soft (see the plate below).
     """
     element = msc[eid]
-    at = [i is not None for i in slots]
-    xyz, u, f = (np.zeros((len(slots), *a.shape[1:])) for a in (element.xyz, element.u, element.f))
-    kept = [i for i in slots if i is not None]
-    for out, values in ((xyz, element.xyz), (u, element.u), (f, element.f)):
-        out[at] = values[kept]
-    present = np.array([at[len(edges) :]])
-    filled = fill_middle_nodes(xyz[None], edges, present)
-    K = drop_middle_nodes(stiffness(filled, sections(1, t=0.25, ratio=0.8333333)), edges, present)[
-        0
-    ]
+    T = spread(edges, np.array([i is not None for i in slots]))
+    full, u, f = np.kron(T, np.eye(6)), element.u, element.f
+    K = stiffness(T @ element.xyz[None], sections(1, t=0.25, ratio=0.8333333))[0]
+    K = full.T @ K @ full
     made = -(K @ u.reshape(len(K), -1)).reshape(u.shape)
     in_plane = np.abs(made - f)[:, [0, 2]].max() / np.abs(f[:, [0, 2]]).max()
     assert in_plane < 1e-11
@@ -157,8 +141,8 @@ def test_warped_shear_panel_keeps_rigid_motions(structure):
 @pytest.mark.parametrize("coupled", [False, True])
 def test_mass(structure, coupled):
     for corners, edges, mass, area in (
-        (SQUARE, QUAD8_EDGES, quad8_mass, 1.0),
-        (SQUARE[:3], TRIA6_EDGES, tria6_mass, 0.5),
+        (SQUARE, QUAD8.edges, QUAD8.mass, 1.0),
+        (SQUARE[:3], TRIA6.edges, TRIA6.mass, 0.5),
     ):
         xyz = with_middles(corners, edges)
         M = mass(xyz[None], np.array([3.0]), coupled)[0]
@@ -168,7 +152,7 @@ def test_mass(structure, coupled):
         if not coupled:
             share = 3.0 * area / len(edges)
             assert np.diag(M)[6 * len(edges) :: 6] == pytest.approx(np.full(len(edges), share))
-    panel = shear_panel_mass(SQUARE[None], np.array([3.0]), coupled)[0]
+    panel = SHEAR_PANEL.mass(SQUARE[None], np.array([3.0]), coupled)[0]
     assert panel[::6, ::6].sum() == pytest.approx(3.0)
 
 
@@ -190,9 +174,9 @@ def test_scordelis_lo_roof_of_eight_node_shells(structure, n, within):
         a = np.radians(40) * s
         return np.column_stack([25 * np.sin(a), 25 * t, 25 * np.cos(a)])
 
-    points, conn = curved(structure, n, roof, quad8_stiffness)
+    points, conn = curved(structure, n, roof, QUAD8.stiffness)
     section = isotropic_section(np.full(len(conn), 4.32e8), 0.0, 2.16e8, 0.25, 1.0, 5 / 6)
-    K = structure.assemble(len(points), conn, quad8_stiffness(points[conn], section))
+    K = structure.assemble(len(points), conn, QUAD8.stiffness(points[conn], section))
     used = np.unique(conn)
     i = np.arange(len(points))
     s, t = i % (2 * n + 1), i // (2 * n + 1)
@@ -207,7 +191,7 @@ def test_scordelis_lo_roof_of_eight_node_shells(structure, n, within):
         r = slice(6 * k + 3, 6 * k + 6)
         K[r, r] = K[r, r].toarray() + 1e3 * np.outer(normal[k], normal[k])
     f = np.zeros(K.shape[0])
-    mass = quad8_mass(points[conn], np.full(len(conn), 90.0), True)
+    mass = QUAD8.mass(points[conn], np.full(len(conn), 90.0), True)
     M = structure.assemble(len(points), conn, mass)
     down = np.zeros(K.shape[0])
     down[2::6] = -1.0
@@ -217,7 +201,7 @@ def test_scordelis_lo_roof_of_eight_node_shells(structure, n, within):
     assert -u[6 * edge + 2] / 0.3024 == pytest.approx(1.0, abs=within)
 
 
-@pytest.mark.parametrize("stiffness", [quad8_stiffness, tria6_stiffness])
+@pytest.mark.parametrize("stiffness", [QUAD8.stiffness, TRIA6.stiffness])
 def test_second_order_shells_do_not_lock(structure, stiffness):
     """A thin cantilever strip under an end moment and an end load."""
     n, L = 4, 8.0
@@ -226,7 +210,7 @@ def test_second_order_shells_do_not_lock(structure, stiffness):
     node = np.arange(len(points)).reshape(3, -1)
     at = [(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0)]
     conn = np.array([[node[b, 2 * i + a] for b, a in at] for i in range(n)])
-    if stiffness is tria6_stiffness:
+    if stiffness is TRIA6.stiffness:
         centre = node[1, 1::2]
         low = conn[:, [0, 1, 2, 4, 5]]
         high = conn[:, [0, 2, 3, 6, 7]]
@@ -251,8 +235,8 @@ def test_second_order_shells_do_not_lock(structure, stiffness):
 @pytest.mark.parametrize(
     ("stiffness", "mass", "edges", "within"),
     [
-        (quad8_stiffness, quad8_mass, QUAD8_EDGES, 0.005),
-        (tria6_stiffness, tria6_mass, TRIA6_EDGES, 0.03),
+        (QUAD8.stiffness, QUAD8.mass, QUAD8.edges, 0.005),
+        (TRIA6.stiffness, TRIA6.mass, TRIA6.edges, 0.03),
     ],
 )
 @pytest.mark.parametrize("coupled", [False, True])
@@ -289,7 +273,7 @@ def test_thin_plate_vibrates_as_kirchhoff_says(structure, stiffness, mass, edges
 def test_quadr_cantilever_bends_in_its_plane(structure):
     points, conn = structure.grid(6, 1, lambda s, t: np.column_stack([6 * s, 0.2 * t, 0 * s]))
     section = isotropic_section(np.full(6, 1e7), 0.3, 1e7 / 2.6, 0.1, 1.0, 5 / 6)
-    K = structure.assemble(14, conn, quadr_stiffness(points[conn], section))
+    K = structure.assemble(14, conn, QUADR.stiffness(points[conn], section))
     fixed = np.concatenate([np.arange(6), 42 + np.arange(6)])
     tip = np.array([6, 13])
     for direction, target in ((1, 0.1081), (2, 0.4321)):

@@ -2,31 +2,21 @@
 
 import numpy as np
 import pytest
+from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements import (
-    bar_mass,
-    bar_stiffness,
-    hexa8_mass,
-    hexa8_stiffness,
-    isotropic_section,
-    isotropic_solid,
-    penta6_mass,
-    penta6_stiffness,
-    quad4_mass,
-    quad4_stiffness,
-    rod_mass,
-    rod_stiffness,
-    tetra4_mass,
-    tetra4_stiffness,
-    tria3_mass,
-    tria3_stiffness,
-)
+from trueup.core.elements.bar import bar_mass, bar_stiffness, rod_mass, rod_stiffness
+from trueup.core.elements.hexa import HEXA8
+from trueup.core.elements.penta import PENTA6
+from trueup.core.elements.quad4 import QUAD4
+from trueup.core.elements.solid import isotropic_solid
+from trueup.core.elements.tetra import TETRA4
+from trueup.core.elements.tria3 import TRIA3
 
 E, NU, G, RHO = 2.9e7, 0.32, 1.1e7, 0.283
 THICKNESS = {**dict.fromkeys((6, 7, 8, 9, 10, 11), 0.25), **dict.fromkeys((16, 18, 19), 1.0)}
 THICKNESS |= dict.fromkeys((17, 20, 21), 1.5)
-SOLIDS = {1: hexa8_stiffness, 2: penta6_stiffness, 3: penta6_stiffness}
-SOLIDS |= {4: tetra4_stiffness, 5: tetra4_stiffness}
+SOLIDS = {1: HEXA8.stiffness, 2: PENTA6.stiffness, 3: PENTA6.stiffness}
+SOLIDS |= {4: TETRA4.stiffness, 5: TETRA4.stiffness}
 
 
 def deviation(matrix, reference):
@@ -35,7 +25,7 @@ def deviation(matrix, reference):
 
 def shell(xyz, t, shear_ratio):
     section = isotropic_section(E, NU, G, t, 1.0, shear_ratio)
-    function = quad4_stiffness if len(xyz) == 4 else tria3_stiffness
+    function = QUAD4.stiffness if len(xyz) == 4 else TRIA3.stiffness
     return function(xyz[None], section)[0]
 
 
@@ -73,9 +63,8 @@ def test_bar_is_nx(nx):
 
 @pytest.mark.parametrize("eid", [14, 15])
 def test_rod_is_nx(nx, eid):
-    xa, xb = nx.xyz[eid][:, None]
     one = np.ones(1)
-    K = rod_stiffness(xa, xb, E * one, 0.1 * one, G * one, 0.0088021 * one)[0]
+    K = rod_stiffness(nx.xyz[eid][None], E * one, 0.1 * one, G * one, 0.0088021 * one)[0]
     # the reference stands in the rod's own axes, axial first
     axial, torsion = nx.K[eid][0, 0], nx.K[eid][3, 3]
     assert K[2, 2] == pytest.approx(axial, rel=1e-7)
@@ -86,11 +75,11 @@ def test_rod_is_nx(nx, eid):
 @pytest.mark.parametrize(
     ("eids", "mass"),
     [
-        ((6, 7, 16, 17), quad4_mass),
-        ((8, 9, 18, 19, 20, 21), tria3_mass),
-        ((1,), hexa8_mass),
-        ((2, 3), penta6_mass),
-        ((4, 5), tetra4_mass),
+        ((6, 7, 16, 17), QUAD4.mass),
+        ((8, 9, 18, 19, 20, 21), TRIA3.mass),
+        ((1,), HEXA8.mass),
+        ((2, 3), PENTA6.mass),
+        ((4, 5), TETRA4.mass),
     ],
 )
 def test_lumped_mass_is_nx(nx, eids, mass):
@@ -105,11 +94,11 @@ def test_lumped_mass_is_nx(nx, eids, mass):
 
 
 def test_lumped_mass_of_lines_is_nx(nx):
-    for eid, area, mass in ((13, 0.25, bar_mass), (14, 0.1, rod_mass)):
-        xa, xb = nx.xyz[eid][:, None]
-        v = (np.array([[0.0, 1.0, 0.0]]),) if mass is bar_mass else ()
-        M = mass(xa, xb, *v, np.array([RHO * area]), coupled=False)[0]
-        assert deviation(M, nx.M[eid]) < 1e-7
+    across, one = np.array([[0.0, 1.0, 0.0]]), np.ones(1)
+    bar_ = bar_mass(*nx.xyz[13][:, None], across, RHO * 0.25 * one, coupled=False)[0]
+    rod = rod_mass(nx.xyz[14][None], RHO * 0.1 * one, coupled=False)[0]
+    assert deviation(bar_, nx.M[13]) < 1e-7
+    assert deviation(rod, nx.M[14]) < 1e-7
 
 
 MSC_SHELLS = {6: 0.25, 7: 0.25, 8: 0.25, 9: 0.25, 10: 0.25, 11: 0.25, 23: 1.0} | {

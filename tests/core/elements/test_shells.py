@@ -6,22 +6,12 @@ accuracy*, Finite Elements in Analysis and Design 1, 3-20, gives the problems an
 
 import numpy as np
 import pytest
+from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements import (
-    ShellSection,
-    corner_normals,
-    grid_normals,
-    isotropic_section,
-    quad4_axes,
-    quad4_corner_jacobians,
-    quad4_mass,
-    quad4_stiffness,
-    rotate_section,
-    tria3_area,
-    tria3_axes,
-    tria3_mass,
-    tria3_stiffness,
-)
+from trueup.core.elements.normals import corner_normals, grid_normals
+from trueup.core.elements.quad4 import QUAD4, quad4_axes, quad4_corner_jacobians
+from trueup.core.elements.section import ShellSection, rotate_section
+from trueup.core.elements.tria3 import TRIA3, tria3_area, tria3_axes
 
 QUADS = [
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
@@ -40,7 +30,7 @@ def stiffness(points, conn, E=1e7, nu=0.3, t=0.1, k6rot=100.0, snorm=0.0):
     normals = None
     if snorm:
         normals = grid_normals(conn.ravel(), corner_normals(axes, m), len(points), snorm)[conn]
-    function = quad4_stiffness if m == 4 else tria3_stiffness
+    function = QUAD4.stiffness if m == 4 else TRIA3.stiffness
     return function(xyz, sections(len(conn), E, nu, t), k6rot, normals=normals)
 
 
@@ -64,7 +54,7 @@ def test_six_rigid_motions_and_no_more(structure, corners, nodes, with_normals):
     rng = np.random.default_rng(1)
     xyz = np.array([corners], dtype=float)[:, :nodes]
     xyz = xyz @ np.linalg.qr(rng.standard_normal((3, 3)))[0]
-    function = quad4_stiffness if nodes == 4 else tria3_stiffness
+    function = QUAD4.stiffness if nodes == 4 else TRIA3.stiffness
     normals = tilted(rng, xyz) if with_normals else None
     K = function(xyz, sections(1), offset=0.07, normals=normals)[0]
     R = structure.rigid_motions(xyz[0], rotations=True)
@@ -76,8 +66,8 @@ def test_six_rigid_motions_and_no_more(structure, corners, nodes, with_normals):
 
 def test_stiffness_does_not_depend_on_where_numbering_starts():
     xyz = np.array([QUADS[2]], dtype=float)
-    K = quad4_stiffness(xyz, sections(1))[0].reshape(4, 6, 4, 6)
-    turned = quad4_stiffness(np.roll(xyz, -1, axis=1), sections(1))[0].reshape(4, 6, 4, 6)
+    K = QUAD4.stiffness(xyz, sections(1))[0].reshape(4, 6, 4, 6)
+    turned = QUAD4.stiffness(np.roll(xyz, -1, axis=1), sections(1))[0].reshape(4, 6, 4, 6)
     back = np.roll(turned, (1, 1), axis=(0, 2))
     assert np.abs(back - K).max() < 1e-9 * np.abs(K).max()
 
@@ -283,7 +273,7 @@ def test_thin_plate_does_not_lock(structure):
 
 def test_rigid_transverse_shear_is_the_limit_of_a_stiff_one():
     xyz = np.array([QUADS[1]], dtype=float)
-    for nodes, function in ((4, quad4_stiffness), (3, tria3_stiffness)):
+    for nodes, function in ((4, QUAD4.stiffness), (3, TRIA3.stiffness)):
         rigid = function(xyz[:, :nodes], isotropic_section(1e7, 0.3, 4e6, 0.1, 1.0, np.inf))
         stiff = function(xyz[:, :nodes], isotropic_section(1e7, 0.3, 4e6, 0.1, 1.0, 1e7))
         assert rigid == pytest.approx(stiff, rel=1e-4, abs=1e-4 * np.abs(stiff).max())
@@ -294,8 +284,8 @@ def test_offset_equals_coupling_of_the_laminate():
     xyz = np.array([QUADS[0]], dtype=float)
     h, plate = 0.3, sections(1)
     moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S, plate.drilling)
-    by_arms = quad4_stiffness(xyz, plate, 0.0, offset=h)[0]
-    by_laminate = quad4_stiffness(xyz, moved, 0.0)[0]
+    by_arms = QUAD4.stiffness(xyz, plate, 0.0, offset=h)[0]
+    by_laminate = QUAD4.stiffness(xyz, moved, 0.0)[0]
     curvature = np.zeros((4, 6))
     curvature[:, 4] = xyz[0, :, 0]
     curvature[:, 2] = -(xyz[0, :, 0] ** 2) / 2
@@ -309,7 +299,7 @@ def test_membrane_only_and_bending_only():
     full = sections(1)
     membrane = ShellSection(full.A, zero, zero, full.S, full.drilling)
     bending = ShellSection(zero, zero, full.D, full.S, 0 * full.drilling)
-    for nodes, function in ((4, quad4_stiffness), (3, tria3_stiffness)):
+    for nodes, function in ((4, QUAD4.stiffness), (3, TRIA3.stiffness)):
         corners = xyz[:, :nodes]
         total = function(corners, membrane) + function(corners, bending)
         assert total == pytest.approx(function(corners, full), rel=1e-9, abs=1e-4)
@@ -337,7 +327,7 @@ def test_rotated_section_turns_the_material_not_the_energy():
 @pytest.mark.parametrize("coupled", [False, True])
 def test_mass_is_density_times_area(structure, coupled):
     xyz = np.array([QUADS[1], QUADS[0]], dtype=float)
-    for nodes, mass in ((4, quad4_mass), (3, tria3_mass)):
+    for nodes, mass in ((4, QUAD4.mass), (3, TRIA3.mass)):
         corners = xyz[:, :nodes]
         areas = tria3_area(corners)
         if nodes == 4:

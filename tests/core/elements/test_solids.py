@@ -4,29 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from tests.core.elements.plates_and_volumes import volume
 
-from trueup.core.elements import (
-    HEXA8,
-    HEXA20,
-    PENTA6,
-    PENTA15,
-    PYRAMID5,
-    PYRAMID13,
-    TETRA4,
-    TETRA10,
-    hexa8_stiffness,
-    hexa20_stiffness,
-    isotropic_solid,
-    penta6_stiffness,
-    penta15_stiffness,
-    pyramid5_stiffness,
-    pyramid13_stiffness,
-    rotate_material,
-    solid_volume,
-    tetra4_stiffness,
-    tetra10_stiffness,
-)
-from trueup.core.elements.solid import solid_mass
+from trueup.core.elements.hexa import HEXA8, HEXA20
+from trueup.core.elements.penta import PENTA6, PENTA15
+from trueup.core.elements.pyramid import PYRAMID5, PYRAMID13
+from trueup.core.elements.solid import isotropic_solid, rotate_material, solid_mass
+from trueup.core.elements.tetra import TETRA4, TETRA10
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 TRIANGLE = SQUARE[[0, 1, 3]]
@@ -45,14 +29,14 @@ CORNERS = {
 }
 VOLUME = {"hexa": 1.0, "penta": 0.5, "tetra": 1 / 6, "pyramid": 1 / 3}
 ALL = [
-    ("hexa", HEXA8, hexa8_stiffness),
-    ("hexa", HEXA20, hexa20_stiffness),
-    ("penta", PENTA6, penta6_stiffness),
-    ("penta", PENTA15, penta15_stiffness),
-    ("tetra", TETRA4, tetra4_stiffness),
-    ("tetra", TETRA10, tetra10_stiffness),
-    ("pyramid", PYRAMID5, pyramid5_stiffness),
-    ("pyramid", PYRAMID13, pyramid13_stiffness),
+    ("hexa", HEXA8, HEXA8.stiffness),
+    ("hexa", HEXA20, HEXA20.stiffness),
+    ("penta", PENTA6, PENTA6.stiffness),
+    ("penta", PENTA15, PENTA15.stiffness),
+    ("tetra", TETRA4, TETRA4.stiffness),
+    ("tetra", TETRA10, TETRA10.stiffness),
+    ("pyramid", PYRAMID5, PYRAMID5.stiffness),
+    ("pyramid", PYRAMID13, PYRAMID13.stiffness),
 ]
 NAMES = [f"{kind}{solid.nodes}" for kind, solid, _ in ALL]
 STEEL = isotropic_solid(2.0e5, 0.3)
@@ -100,13 +84,13 @@ def test_brick_patch(structure, integration):
     conn = [list(range(8, 16))]
     for face in FACES:
         brick = [*face, *(i + 8 for i in face)]
-        volume = solid_volume(HEXA8, points[brick][None])[0]
-        conn.append(brick if volume > 0 else [*brick[4:], *brick[:4]])
+        outward = volume(HEXA8, points[brick][None])[0] > 0
+        conn.append(brick if outward else [*brick[4:], *brick[:4]])
     conn = np.array(conn)
-    assert solid_volume(HEXA8, points[conn]).sum() == pytest.approx(1.0)
+    assert volume(HEXA8, points[conn]).sum() == pytest.approx(1.0)
     x, y, z = points.T
     exact = 1e-3 * np.column_stack([2 * x + y + z, x + 2 * y + z, x + y + 2 * z]) / 2
-    Ke = hexa8_stiffness(points[conn], np.repeat(isotropic_solid(1e6, 0.25), 7, 0), integration)
+    Ke = HEXA8.stiffness(points[conn], np.repeat(isotropic_solid(1e6, 0.25), 7, 0), integration)
     K = structure.assemble(16, conn, Ke, 3)
     u = structure.solve(K, np.zeros(48), np.arange(24), exact[:8].ravel())
     assert u.reshape(16, 3) == pytest.approx(exact, abs=1e-9)
@@ -136,7 +120,7 @@ def bar_of_bricks(kind, n=6):
 def test_bricks_bend_as_in_the_paper(structure, kind, in_plane, out_of_plane):
     """MacNeal and Harder's straight beam; HEXA(8) there: 0.978, 0.624, 0.047 in the plane."""
     points, conn = bar_of_bricks(kind)
-    Ke = hexa8_stiffness(points[conn], np.repeat(isotropic_solid(1e7, 0.3), 6, 0))
+    Ke = HEXA8.stiffness(points[conn], np.repeat(isotropic_solid(1e7, 0.3), 6, 0))
     K = structure.assemble(28, conn, Ke, 3)
     fixed = np.flatnonzero(np.repeat(np.arange(28) % 7 == 0, 3))
     tip = np.array([6, 13, 20, 27])
@@ -160,7 +144,7 @@ def test_brick_locks_only_with_full_integration(structure):
     C = np.repeat(isotropic_solid(1e7, 0.3), 6, 0)
     deflection = {}
     for integration in ("bubble", "reduced", "full"):
-        K = structure.assemble(28, conn, hexa8_stiffness(points[conn], C, integration), 3)
+        K = structure.assemble(28, conn, HEXA8.stiffness(points[conn], C, integration), 3)
         deflection[integration] = structure.solve(K, f, fixed)[3 * tip + 2].mean() / 0.4321
     assert deflection["full"] < 0.1
     assert 0.6 < deflection["reduced"] < 0.9
@@ -211,12 +195,12 @@ def test_anisotropic_material_turns_with_the_body(structure, kind, solid, stiffn
 
 def test_inside_out_brick_has_negative_volume():
     xyz = CORNERS["hexa"][[4, 5, 6, 7, 0, 1, 2, 3]]
-    assert solid_volume(HEXA8, xyz[None])[0] == pytest.approx(-1.0)
+    assert volume(HEXA8, xyz[None])[0] == pytest.approx(-1.0)
 
 
 def test_the_five_points_of_the_tetrahedron_are_exact_to_third_order():
     """Nastran's rule: on straight edges it sees what any better one does."""
-    points, weights = TETRA10.points, TETRA10.weights
+    points, weights = TETRA10.rules["full"]
     for powers in ((0, 0, 0), (1, 0, 0), (1, 1, 1), (2, 1, 0), (3, 0, 0)):
         exact = np.prod([math.factorial(k) for k in powers]) / math.factorial(3 + sum(powers))
         assert weights @ np.prod(points ** np.array(powers), axis=1) == pytest.approx(exact)

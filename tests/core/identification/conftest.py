@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,16 +5,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from trueup.core.identification.bands import cmif, peaks, split
-from trueup.core.identification.candidates import complete_blocks
+from trueup.core.identification.poles.pole_candidates import complete_blocks
 from trueup.core.identification.quality import (
     correlation,
     multivariate_indicator,
     phase_collinearity,
     phase_deviation,
 )
-from trueup.core.identification.survey import prepare
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
+from trueup.core.identification.survey.mode_indicator import cmif, peaks, split
+from trueup.core.identification.survey.survey_data import prepare
 
 
 def test_cmif_is_the_singular_values_line_by_line():

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
+from trueup.core.data.dofs import Dofs
 from trueup.core.identification import identify
-from trueup.core.identification.model_error import CHAIN
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
+from trueup.core.identification.uncertainty.uncertainty_numbers import UNCERTAINTY
 
 
 def subspace_mac(a, b):
@@ -196,7 +196,7 @@ def test_a_response_listed_twice_and_one_reversed(survey):
 
 def test_a_line_without_modes_gives_none():
     """The mass line of a free body with 1 % noise: no mode, and it says so."""
-    from trueup.core.frfs import Frfs
+    from trueup.core.data.frfs import Frfs
 
     f = np.linspace(10.0, 100.0, 600)
     rng = np.random.default_rng(0)
@@ -243,11 +243,11 @@ def test_functions_without_noise_are_no_better_than_a_measuring_chain(survey):
     frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000, noise=0.0)
     result = identify(frfs)
     order = np.argsort(truth.frequencies_hz)
-    best = CHAIN * truth.damping[order]
+    best = UNCERTAINTY.chain * truth.damping[order]
     assert (result.frequency_std >= 0.99 * best * truth.frequencies_hz[order]).all()
     assert (result.damping_std >= 0.99 * best).all()
     assert result.frequency_std.max() < 1e-4 * truth.frequencies_hz.max()
-    assert result.shape_std.min() >= CHAIN
+    assert result.shape_std.min() >= UNCERTAINTY.chain
     assert any("seem computed" in w for w in result.warnings)
     noisy = identify(survey(11, n_mode=6, n_response=20, n_line=1000, noise=0.001)[0])
     assert not any("seem computed" in w for w in noisy.warnings)

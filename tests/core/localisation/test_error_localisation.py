@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck
-from trueup.adapters.nastran.structure import build_structure
-from trueup.core.comparison import compare, place_test
-from trueup.core.correlate import Criteria
-from trueup.core.disagreement import agrees, disagreement
-from trueup.core.dofs import Dofs
-from trueup.core.eigen import modes_of, solve
+from trueup.adapters.nastran.discovery.build_structure import build_structure
+from trueup.core.correlation.comparison import compare, place_test
+from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.measurement import Measurement
+from trueup.core.data.modes import Modes
+from trueup.core.eigen.normal_modes import modes_of, solve
 from trueup.core.errors import InputError
-from trueup.core.geometry import Geometry
-from trueup.core.measurement import Measurement
-from trueup.core.modes import Modes
+from trueup.core.localisation.error_localisation import agrees, disagreement
 
 NX, NY = 12, 8
 SIZE = np.array([0.9, 0.6])

@@ -5,17 +5,17 @@ import pytest
 import scipy.linalg
 import scipy.sparse as sp
 
-from trueup.core.correlate import Criteria, correlate
+from trueup.core.correlation.mode_pairing import Criteria, correlate
 from trueup.core.errors import InputError
-from trueup.core.evidence import (
+from trueup.core.localisation.first_order_maps import (
     linearise,
     mass_evidence,
     patches_of,
     root_of,
     stiffness_evidence,
 )
-from trueup.core.misfit import paired_shapes
-from trueup.core.noise import given_noise
+from trueup.core.localisation.shape_misfit import paired_shapes
+from trueup.core.localisation.shape_noise import given_noise
 
 N = 30  # a free chain of uneven masses and springs
 RNG = np.random.default_rng(3)

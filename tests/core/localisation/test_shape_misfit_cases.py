@@ -7,16 +7,16 @@ import pytest
 
 from trueup.adapters.nastran import build_model, read_deck
 from trueup.adapters.universal import read_universal
-from trueup.core.correlate import correlate
-from trueup.core.eigen import modes_of, solve
-from trueup.core.evidence import linearise, mass_evidence, stiffness_evidence
-from trueup.core.measured import measured_directions
-from trueup.core.misfit import misfit, paired_shapes, spread
-from trueup.core.noise import estimate_noise
-from trueup.core.observation import observe
-from trueup.core.transform import Transform
+from trueup.core.correlation.mode_pairing import correlate
+from trueup.core.eigen.normal_modes import modes_of, solve
+from trueup.core.localisation.first_order_maps import linearise, mass_evidence, stiffness_evidence
+from trueup.core.localisation.shape_misfit import misfit, paired_shapes, spread
+from trueup.core.localisation.shape_noise import estimate_noise
+from trueup.core.sensors.measured_directions import measured_directions
+from trueup.core.sensors.rigid_transform import Transform
+from trueup.core.sensors.sensor_map import observe
 
-CASES = Path(__file__).parents[3] / "shared" / "data" / "cases"
+CASES = Path(__file__).parents[4] / "shared" / "data" / "cases"
 pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="the cases in ../shared/data are absent")
 
 
@@ -75,13 +75,11 @@ def linearised(name):
 def test_maps_of_the_soft_panel_cover_the_structure():
     model, _, obs, shapes, test, found, noise = compared("panel_stiffness")
     got = misfit(found, paired_shapes(found, shapes, test.shapes), noise)
-    assert got.chi_square > 3 * got.degrees_of_freedom
+    assert np.mean(got.by_mode**2) > 3.0
     # The close pair near 62 and 64 Hz mixes; the others are changed little.
     assert set(np.argsort(got.by_mode)[-2:]) == {3, 4}
     assert np.median(got.by_mode) < 2.0
-    drawn, support = spread(got.by_sensor, obs.xyz, model.geometry.xyz)
-    assert np.isfinite(drawn).all()
-    assert support.max() < 3.0
+    assert np.isfinite(spread(got.by_sensor, obs.xyz, model.geometry.xyz)).all()
 
 
 def test_hidden_ground_spring_is_where_the_map_of_springs_peaks():

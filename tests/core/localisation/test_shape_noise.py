@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.core.errors import InputError
-from trueup.core.noise import estimate_noise, given_noise
+from trueup.core.localisation.shape_noise import estimate_noise, given_noise
 
 N, MODES = 45, 40
 RNG = np.random.default_rng(12)
@@ -42,7 +42,6 @@ def test_noise_is_found_within_a_fifth_whatever_the_model_error(noise, mixing):
     assert found.relative == pytest.approx(noise, rel=0.3)
     assert not found.outlier.any()
     np.testing.assert_allclose(found.gain, 1.0, atol=6 * noise)
-    assert found.source == "estimated"
 
 
 def test_noise_of_many_draws_is_right_on_average():
@@ -100,7 +99,6 @@ def test_given_noise():
     test = measured(0.02)[3]
     noise = given_noise(test, 0.03)
     np.testing.assert_allclose(noise.sigma, 0.03 * np.sqrt((test**2).mean(axis=0)))
-    assert noise.source == "given"
     assert not noise.outlier.any()
     with pytest.raises(InputError, match="share above 0"):
         given_noise(test, 0.0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core.factor import factorise
-from trueup.core.lanczos import BlockLanczos
+from trueup.core.numerics.block_lanczos import BlockLanczos
+from trueup.core.numerics.factorisation import factorise
 
 
 def run(K, M, wanted, room, steps, locked=None, width=4):

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core import factor as factor_module
 from trueup.core.errors import CheckError, InputError
-from trueup.core.factor import NotDefinite, best_backend, factorise, upper_triangle
-from trueup.core.pardiso import library
+from trueup.core.numerics import factorisation as factor_module
+from trueup.core.numerics.factorisation import NotDefinite, best_backend, factorise, upper_triangle
+from trueup.core.numerics.pardiso import library
 
 
 def _in_a_gap(values, index):
@@ -131,7 +131,7 @@ def test_bad_input_is_refused_in_words():
 
 def test_a_missing_mkl_falls_back_and_is_named_when_asked_for(monkeypatch):
     monkeypatch.setattr(factor_module, "library", lambda: None)
-    monkeypatch.setattr("trueup.core.pardiso.library", lambda: None)
+    monkeypatch.setattr("trueup.core.numerics.pardiso.library", lambda: None)
     assert best_backend() == "superlu"
     assert factorise(sp.identity(3)).backend == "superlu"
     with pytest.raises(InputError, match="mkl package is not installed"):

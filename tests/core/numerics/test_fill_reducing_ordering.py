@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from trueup.core.ordering import nodal_order
+from trueup.core.numerics.fill_reducing_ordering import nodal_order
 
 
 def _grid(nx, ny, per_node, rng=None):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.core.errors import CheckError
-from trueup.core.expansion import expand
+from trueup.core.numerics.interpolative_expansion import expand
 
 LOW, HIGH = np.array([0.2, 0.5]), np.array([5.0, 2.0])
 

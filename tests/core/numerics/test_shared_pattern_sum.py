@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.sparse as sp
 
-from trueup.core.sparse_sum import same_pattern, select, shared, weighted_sum
+from trueup.core.numerics.shared_pattern_sum import same_pattern, select, shared, weighted_sum
 
 
 def _matrices():

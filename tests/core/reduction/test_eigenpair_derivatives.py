@@ -7,11 +7,11 @@ import pytest
 import scipy.sparse as sp
 from scipy.linalg import polar
 
-from trueup.core import shape_derivatives
-from trueup.core.eigen import solve
+from trueup.core.data.parametric_model import Factor, Model
+from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
-from trueup.core.model import Factor, Model
-from trueup.core.sensitivity import cluster_derivatives, clusters, sensitivities
+from trueup.core.reduction import eigenvector_derivatives
+from trueup.core.reduction.eigenpair_derivatives import clusters, sensitivities
 
 STEP = 1e-3
 
@@ -153,8 +153,9 @@ def test_cluster_matrix_holds_the_branches_and_the_rotated_slopes(sectored_ring)
     p = model.deck_point
     solution = precise(model, 20, p)
     pair = next(c for c in clusters(np.eye(20), solution) if len(c) == 2)
-    G = cluster_derivatives(model, p, solution, pair, [0, 1])
-    assert G.shape == (2, 2, 2)
+    X, lam = solution.vectors[:, pair], solution.eigenvalues[pair]
+    g = [X.T @ model.dK(k, p) @ X - (X.T @ model.dM(k, p) @ X) * lam for k in (0, 1)]
+    G = np.array([(m + m.T) / 2.0 for m in g])
     by_position = sensitivities(model, p, solution, pair, [0, 1]).slopes
     np.testing.assert_allclose(np.linalg.eigvalsh(G).T, by_position, rtol=1e-9)
     a = 0.6
@@ -242,7 +243,7 @@ def test_threefold_eigenvalue(frame):
 @pytest.mark.parametrize("route", [1, 10_000])
 def test_large_model_by_both_factors(sectored_ring, backend, monkeypatch, route):
     """The factor of the solution, or one next to each cluster: the same derivatives."""
-    monkeypatch.setattr(shape_derivatives, "_OWN_FACTOR", route)
+    monkeypatch.setattr(eigenvector_derivatives, "_OWN_FACTOR", route)
     model = sectored_ring(120, fixed=[(0, c) for c in range(1, 7)])
     p = model.deck_point
     solution = solve(model, 16, p=p, backend=backend, tolerance=1e-11, keep_factor=True)

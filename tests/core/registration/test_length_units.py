@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.length_units import METRES, length_factor, to_length_unit
+from trueup.core.data.modes import Modes
 from trueup.core.errors import InputError
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
-from trueup.core.units import METRES, length_factor, reconcile_units, to_length_unit
+from trueup.core.registration.length_units import reconcile_units
 
 
 def plate(unit=None, side=900.0, n=10):

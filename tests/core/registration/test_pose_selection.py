@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from trueup.core.frame_choice import choose
-from trueup.core.geometry import Geometry
-from trueup.core.poses import Poses
-from trueup.core.rigid_fit import cloud_of
-from trueup.core.surface import surface_of
+from trueup.core.data.geometry import Geometry
+from trueup.core.registration.pose_selection import choose
+from trueup.core.registration.poses import Poses
+from trueup.core.registration.surface_registration import cloud_of
+from trueup.core.sensors.outer_surface import surface_of
 
 
 def test_points_that_lie_exactly_on_the_surface_are_judged_by_no_quotient_of_zeros():

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from trueup.core.correlate import Criteria, correlate
-from trueup.core.dofs import Dofs
-from trueup.core.modes import Modes
-from trueup.core.parameter import Parameter
-from trueup.core.results import correlation_tables, gap, history_tables, parameter_tables
-from trueup.core.updating import Iteration, Updated
+from trueup.core.correlation.mode_pairing import Criteria, correlate
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.modes import Modes
+from trueup.core.data.parameter import Parameter
+from trueup.core.errors import InputError
+from trueup.core.results.correlation import CorrelateTables, Gap, compared, gap
+from trueup.core.results.plain import plain, typed
+from trueup.core.results.update import iteration_rows, parameter_rows
+from trueup.core.updating.update import Iteration, Reason, Stop, Updated
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 
@@ -29,6 +33,19 @@ def found():
     dofs = Dofs(np.arange(24), np.ones(24, int))
     c = correlate(hz, shapes, test_hz, test, Criteria())
     return c, Modes(test_hz, test, dofs), Modes(hz, shapes, dofs)
+
+
+def correlation_tables(c, test, analysis):
+    nobody = SimpleNamespace(node=[], directions=[], axis=[])
+    seen = SimpleNamespace(sensors=nobody, xyz=[], nearest_grid=[], distance=[])
+    move = SimpleNamespace(rotation=np.eye(3), translation=np.zeros(3), rms=0.1)
+    tables = compared(
+        SimpleNamespace(
+            correlation=c, test=test, analysis=analysis, warnings=("one",), alignment=move,
+            observation=seen, placed=SimpleNamespace(length_factor=1000.0),
+        )
+    )  # fmt: skip
+    return CorrelateTables(**vars(tables), deck_file="a.bdf", test_files=("a.unv",)).to_dict()
 
 
 def test_modes_count_from_one(found):
@@ -51,6 +68,10 @@ def test_the_tables_are_plain_and_keep_every_digit(found):
     tables = correlation_tables(c, test, analysis)
     back = json.loads(json.dumps(tables, allow_nan=False))
     assert back == tables
+    again = CorrelateTables.from_dict(back)
+    assert again.to_dict() == tables
+    assert (again.deck_file, again.test_files, again.pairs[0].test) == ("a.bdf", ("a.unv",), 1)
+    np.testing.assert_array_equal(again.mac_rotated.values, c.mac_rotated)
     np.testing.assert_array_equal(back["mac_rotated"]["values"], c.mac_rotated)
     np.testing.assert_array_equal(back["test_hz"], test.frequencies_hz)
 
@@ -59,39 +80,51 @@ def test_the_gap_in_four_figures(found):
     c, _, _ = found
     off = [abs(p.deviation_percent) for p in c.pairs]
     told = gap(c)
-    assert told["pairs"] == 4
-    assert told["mean_abs_deviation_percent"] == pytest.approx(np.mean(off))
-    assert told["worst_deviation_percent"] == max(off)
-    assert told["mean_mac"] == pytest.approx(1.0)
+    assert told.pairs == 4
+    assert told.mean_abs_deviation_percent == pytest.approx(np.mean(off))
+    assert told.worst_deviation_percent == max(off)
+    assert told.mean_mac == pytest.approx(1.0)
 
 
 def test_the_gap_without_pairs_is_empty_not_zero(found):
     _, test, analysis = found
     none = correlate(analysis.frequencies_hz, analysis.shapes, 9 * test.frequencies_hz, test.shapes)
-    assert gap(none) == {
-        "pairs": 0, "mean_abs_deviation_percent": None, "worst_deviation_percent": None,
-        "mean_mac": None,
-    }  # fmt: skip
+    assert gap(none) == Gap(0, None, None, None)
 
 
 def test_parameters_and_history_in_words_of_the_deck(found):
     history = (Iteration(0, 0, 5.0, np.array([1.0, 1.0]), np.array([3.0, np.nan])),)
     done = Updated(
         np.array([1.5, 0.2]), np.array([0.1, np.nan]), np.array([False, True]), None, None,
-        history, 3, "", (),
+        history, 3, Stop(Reason.SETTLED, "settled"), (),
     )  # fmt: skip
     parameters = (
         Parameter("ring", ("PBAR 11 I1", "PBAR 11 I2"), (9000.0, 8000.0)),
         Parameter("skin", ("PSHELL 1 T",), (1.6,)),
     )
-    rows = parameter_tables(parameters, done, [[13500.0, 12000.0], [0.32]])
+    rows = parameter_rows(parameters, done, [[13500.0, 12000.0], [0.32]]).to_dict()
     assert rows[0] == {
         "name": "ring", "cards": ["PBAR 11 I1", "PBAR 11 I2"], "initial": [9000.0, 8000.0],
         "updated": [13500.0, 12000.0], "factor": 1.5, "standard_error": 0.1, "at_bound": False,
     }  # fmt: skip
     assert rows[1]["standard_error"] is None
     assert rows[1]["at_bound"] is True
-    assert history_tables(history) == [
+    assert iteration_rows(history).to_dict() == [
         {"iteration": 0, "stage": 1, "objective": 5.0, "factors": [1.0, 1.0],
          "deviations_percent": [3.0, None]},
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [(int, 1.5), (str, 3), (float, "x"), (tuple[int, ...], 3), (Gap, [1]), (Gap, {"pairs": "x"})],
+)
+def test_a_value_of_another_type_is_refused(kind, value):
+    with pytest.raises(InputError):
+        typed(kind, value, "place")
+
+
+def test_what_is_no_number_is_none():
+    assert plain({"a": np.array([1.0, np.nan]), "b": (np.int64(3), True)}) == {
+        "a": [1.0, None], "b": [3, True],
+    }  # fmt: skip

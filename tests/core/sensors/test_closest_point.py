@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from trueup.core.data.geometry import Geometry
 from trueup.core.errors import InputError
-from trueup.core.geometry import Geometry
-from trueup.core.placement import place
-from trueup.core.surface import LINE, POINT, QUAD, TRIA, shape_functions, surface_of
+from trueup.core.sensors.closest_point import place
+from trueup.core.sensors.outer_surface import LINE, POINT, QUAD, TRIA, shape_functions, surface_of
 
 
 def geometry(xyz, **elements):

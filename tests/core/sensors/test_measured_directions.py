@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from trueup.core.dofs import Dofs
-from trueup.core.measured import measured_directions
-from trueup.core.modes import Modes
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.modes import Modes
+from trueup.core.sensors.measured_directions import measured_directions
 
 
 def modes_of(vectors, axis=None, component=None):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.core.sensing import MESHES, geometry, plate, read, sensors_on, six_a_grid, triaxial
 
-from trueup.core.observation import observe
+from trueup.core.sensors.sensor_map import observe
 
 
 @pytest.mark.parametrize("name", MESHES)

@@ -8,16 +8,18 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core import objective, orders
-from trueup.core.correlate import Criteria
-from trueup.core.dofs import Dofs
-from trueup.core.eigen import solve
+from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parameter import Parameter
+from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
-from trueup.core.geometry import Geometry
-from trueup.core.model import Model, Term, proportional
-from trueup.core.parameter import Parameter
-from trueup.core.residuals import Weights
-from trueup.core.updating import Stage, Target, update
+from trueup.core.reduction import full_or_reduced
+from trueup.core.updating import objective
+from trueup.core.updating.residuals import Weights
+from trueup.core.updating.residuals.shapes import SHAPES
+from trueup.core.updating.update import Reason, Stage, Target, update
 
 N = 8
 
@@ -91,7 +93,8 @@ def test_about_five_iterations_are_enough():
     done = update(model, measured(model, truth), [Stage((0, 1))], n_modes=8)
     assert len(done.history) - 1 <= 5
     np.testing.assert_allclose(done.factors, truth, rtol=1e-3)
-    assert done.stopped == "factors moved less than 0.001"
+    assert done.stopped.reason is Reason.SETTLED
+    assert str(done.stopped) == "factors moved less than 0.001"
 
 
 def test_a_ring_of_repeated_modes_is_updated_through_its_clusters(ring):
@@ -134,7 +137,7 @@ def test_one_step_of_one_spring_is_that_of_equation_four(regularisation, weight)
     model = replace(model, parameters=(replace(model.parameters[0], weight=weight),))
     target, p_t, sigma = measured(model, [1.2], slice(0, 1)), 1.2, 0.02
     done = update(model, target, [Stage((0,), "frequencies", 1)], n_modes=1,
-                  weights=Weights(sigma, 0.1, regularisation))  # fmt: skip
+                  weights=Weights({"frequency_sigma": sigma}, regularisation))  # fmt: skip
     g = 1.0 / (2.0 * sigma * p_t)
     step = g**2 * (p_t - 1.0) / (g**2 + regularisation * weight)
     assert done.factors[0] == pytest.approx(1.0 + step, rel=1e-6)
@@ -198,6 +201,7 @@ def test_a_pair_lost_at_the_mac_limit_does_not_stop_the_others(monkeypatch):
 def test_an_update_that_has_not_settled_says_so():
     model = chain(HALVES)
     done = update(model, measured(model, [1.3, 0.8]), [Stage((0, 1), "both", 1)], n_modes=8)
+    assert done.stopped.reason is Reason.MOST_ITERATIONS
     assert any("had not settled after 1 iterations" in w for w in done.warnings)
 
 
@@ -239,7 +243,7 @@ def test_every_full_order_solve_is_counted(monkeypatch):
         calls.append(1)
         return solve(*words, **options)
 
-    monkeypatch.setattr(orders, "solve", counted)
+    monkeypatch.setattr(full_or_reduced, "solve", counted)
     model = chain(HALVES)
     done = update(model, measured(model, [1.3, 0.8]), [Stage((0, 1))], n_modes=8)
     assert done.eigensolutions == len(calls)
@@ -325,11 +329,11 @@ def test_residuals_and_objective_speak_of_the_same_shapes(ring, rotate):
     """The squared residuals of a linearisation add up to the objective of its pairs."""
     model = ring(20, parameters=[("E", [0, 1, 2, 9, 10]), ("rho", [4, 5, 6])])
     target = measured(model, [1.25, 1.3], slice(6, 18))
-    full = orders.FullOrder(model, target.sensors, 24)
+    full = full_or_reduced.FullOrder(model, target.sensors, 24)
     what = objective.Objective(
         model.parameters, target, Criteria(rotate=rotate, mac_min=0.3), Weights()
     )
-    state = what.at(full, np.ones(2), "shapes")
+    state = what.at(full, np.ones(2), [SHAPES])
     missing = 12 - len(state.correlation.pairs)
-    lin = what.linearise(full, state, [0, 1], "shapes")
+    lin = what.linearise(full, state, [0, 1], [SHAPES])
     assert np.sum(lin.values**2) + missing * 0.7 / 0.1**2 == pytest.approx(state.objective)

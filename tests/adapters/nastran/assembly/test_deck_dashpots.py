@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, write_deck
-from trueup.adapters.nastran.adopt import adopt
-from trueup.adapters.nastran.damping import damping_matrix
-from trueup.adapters.nastran.structure import free_damping
+from trueup.adapters.nastran.assembly.deck_dashpots import damping_matrix
+from trueup.adapters.nastran.discovery.build_structure import free_damping
+from trueup.adapters.nastran.discovery.write_effect import adopt
 from trueup.core.discovery.findings import Finding
 
 GRIDS = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nSPOINT,9\n"

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trueup.adapters.nastran import build_model, read_deck
-from trueup.adapters.nastran.cards import fields_of, to_float
+from trueup.adapters.nastran.deck.bulk import fields_of
+from trueup.adapters.nastran.text.real_numbers import parse_real
 from trueup.core.errors import InputError
 
 BAR = """\
@@ -33,8 +34,8 @@ class TestFiles:
         assert [f.name for f in deck.files] == ["main.bdf", "grids.bdf", "two.bdf", "rod.bdf"]
         assert deck.counts == {"GRID": 2, "CROD": 1, "PROD": 1, "MAT1": 1}
         deep = tmp_path / "parts" / "deep"
-        assert deck.bulk.place("GRID", 2) == f"GRID 2 ({deep / 'two.bdf'} line 1)"
-        assert deck.bulk.place("PROD", 1) == f"PROD 1 ({deep / 'rod.bdf'} line 2)"
+        assert str(deck.bulk.place("GRID", 2)) == f"GRID 2 ({deep / 'two.bdf'} line 1)"
+        assert str(deck.bulk.place("PROD", 1)) == f"PROD 1 ({deep / 'rod.bdf'} line 2)"
 
     @pytest.mark.parametrize(
         ("text", "message"),
@@ -149,14 +150,14 @@ class TestFields:
     def test_reals_as_nastran_writes_them(self, value):
         text = f"{value:.16e}"
         mantissa, exponent = text.split("e")
-        assert to_float(text) == value
-        assert to_float(f"{mantissa}D{exponent}") == value
-        assert to_float(f"{mantissa}{exponent}") == value
+        assert parse_real(text) == value
+        assert parse_real(f"{mantissa}D{exponent}") == value
+        assert parse_real(f"{mantissa}{exponent}") == value
 
     @pytest.mark.parametrize("text", ["", "1_000", "1.2.3", "abc", "--1", "1.+"])
     def test_what_is_no_number(self, text):
         with pytest.raises(ValueError):  # noqa: PT011
-            to_float(text)
+            parse_real(text)
 
 
 @pytest.mark.parametrize(

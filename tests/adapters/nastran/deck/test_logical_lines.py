@@ -36,13 +36,13 @@ def test_continuations_of_a_sorted_deck_go_back_to_their_cards(tmp_path: Path) -
         "+M8,0.25,,,,,,,,+M9\n"
     )
     masses = read_deck(tmp_path / "a.bdf").bulk.table("CONM2")
-    assert masses[7].I[0] == 0.5
-    assert masses[8].I[0] == 0.25
+    assert masses[7].i[0] == 0.5
+    assert masses[8].i[0] == 0.25
 
 
 def test_a_label_that_fits_nowhere_continues_the_card_above(tmp_path: Path) -> None:
     (tmp_path / "a.bdf").write_text("GRID,1\nCONM2,8,1,,3.,,,,,+OLD\n+NEW,0.25\n")
-    assert read_deck(tmp_path / "a.bdf").bulk.table("CONM2")[8].I[0] == 0.25
+    assert read_deck(tmp_path / "a.bdf").bulk.table("CONM2")[8].i[0] == 0.25
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 """The elements of a deck one by one."""
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.structure import build_structure
-from trueup.core.discovery.kinds.bars import bars_of
+from trueup.adapters.nastran.discovery.build_structure import build_structure
+from trueup.core.discovery.effects.bar_members import bars_of
 
 DECK = """CEND
 BEGIN BULK
@@ -23,6 +23,6 @@ def test_a_bushing_is_no_bar_that_could_lose_a_part_of_its_stiffness(tmp_path):
     path = tmp_path / "deck.bdf"
     path.write_text(DECK)
     structure = build_structure(read_deck(path))
-    assert {m.card: m.shape for m in structure.members}["CBUSH"] == "point"
+    assert {m.card: m.element.dimension for m in structure.members}["CBUSH"] == 0
     places = {tuple(structure.members[p.member].ids[p.rows]) for p in bars_of(structure, 2.0)}
     assert places == {(1,)}

@@ -3,7 +3,11 @@
 import pytest
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.concentrated import alike, concentrated_parameters, joined
+from trueup.adapters.nastran.discovery.concentrated_parameters import (
+    alike,
+    concentrated_parameters,
+    joined,
+)
 
 DECK = """CEND
 BEGIN BULK

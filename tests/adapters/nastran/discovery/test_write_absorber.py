@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, write_deck
-from trueup.adapters.nastran.adopt import adopt
-from trueup.core import eigen
+from trueup.adapters.nastran.discovery.write_effect import adopt
 from trueup.core.discovery.findings import Finding
+from trueup.core.eigen import normal_modes
 
 K, M = 4.0e4, 0.01
 F0 = np.sqrt(K / M) / (2.0 * np.pi)
@@ -57,7 +57,7 @@ def completed(folder, text, what):
     done = adopt(read, read_deck(folder / "deck.bdf"), what)
     top = write_deck(done.deck, folder / "out")
     model = build_model(read_deck(top))
-    return done, model, eigen.solve(model, n_modes=min(8, model.n_free))
+    return done, model, normal_modes.solve(model, n_modes=min(8, model.n_free))
 
 
 def hz(solution):

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, weight, write_deck
-from trueup.adapters.nastran.adopt import adopt
-from trueup.core import eigen
+from trueup.adapters.nastran.discovery.write_effect import adopt
 from trueup.core.discovery.findings import Finding
+from trueup.core.eigen import normal_modes
 from trueup.core.errors import InputError
 
 WTMASS = 0.00259
@@ -82,7 +82,7 @@ def completed(folder, text, what):
     done = adopt(read, read_deck(folder / "deck.bdf"), what)
     deck = read_deck(write_deck(done.deck, folder / "out"))
     model = build_model(deck)
-    found = eigen.solve(model, n_modes=min(3, model.n_free))
+    found = normal_modes.solve(model, n_modes=min(3, model.n_free))
     return deck, np.sqrt(np.abs(found.eigenvalues)) / (2.0 * np.pi)
 
 

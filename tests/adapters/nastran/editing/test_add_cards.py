@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.adapters.nastran.cards import fields_of, to_float
-from trueup.adapters.nastran.editing.add import add_cards
-from trueup.adapters.nastran.editing.decktext import DeckText, read_deck_text
-from trueup.adapters.nastran.editing.find import find_card
-from trueup.adapters.nastran.editing.numbers import writable
-from trueup.adapters.nastran.editing.rewrite import format_card
+from trueup.adapters.nastran.deck.bulk import fields_of
+from trueup.adapters.nastran.editing.add_cards import add_cards
+from trueup.adapters.nastran.editing.find_cards import find_card
+from trueup.adapters.nastran.editing.rewrite_fields import format_card
+from trueup.adapters.nastran.text.deck_text import DeckText, read_deck_text
+from trueup.adapters.nastran.text.real_numbers import parse_real, writable
 from trueup.core.errors import InputError
 
 
@@ -112,7 +112,7 @@ def test_what_is_added_reads_back(values):
     assert words[0] == "CARD"
     for value, word in zip(values, words[2:], strict=False):
         if isinstance(value, float):
-            assert to_float(word) == writable(value)
+            assert parse_real(word) == writable(value)
         else:
             assert word == (None if value is None else str(value))
 

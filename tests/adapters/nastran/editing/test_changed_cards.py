@@ -3,10 +3,10 @@
 import pytest
 
 from trueup.adapters.nastran import read_deck_text
-from trueup.adapters.nastran.editing.add import add_cards
-from trueup.adapters.nastran.editing.edit import set_values
-from trueup.adapters.nastran.editing.written import written_cards
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.editing.add_cards import add_cards
+from trueup.adapters.nastran.editing.changed_cards import written_cards
+from trueup.adapters.nastran.editing.set_values import set_values
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
 
 DECK = """CEND
 BEGIN BULK

@@ -18,10 +18,10 @@ from tests.adapters.nastran.editing.written_decks import (
     references,
 )
 
-from trueup.adapters.nastran.editing.edit import read_value, set_values
-from trueup.adapters.nastran.editing.find import find_card
-from trueup.adapters.nastran.editing.numbers import parse_real, writable
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.editing.find_cards import find_card
+from trueup.adapters.nastran.editing.set_values import read_value, set_values
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
+from trueup.adapters.nastran.text.real_numbers import parse_real, writable
 from trueup.core.errors import InputError
 
 
@@ -331,4 +331,4 @@ def test_the_text_that_was_read_is_not_changed():
     deck = as_read(b"PROD,3,1,1.\n")
     set_values(deck, {FieldRef("PROD", 3, "A"): 2.0})
     assert deck.files[0].data == b"PROD,3,1,1.\n"
-    assert deck.value(FieldRef("PROD", 3, "A")) == 1.0
+    assert read_value(deck, FieldRef("PROD", 3, "A")) == 1.0

@@ -2,11 +2,11 @@
 
 import pytest
 
-from trueup.adapters.nastran.editing.decktext import DeckText, read_deck_text
-from trueup.adapters.nastran.editing.diff import unified_diff
-from trueup.adapters.nastran.editing.edit import read_value, set_values
-from trueup.adapters.nastran.editing.split import split_property
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.editing.deck_diff import unified_diff
+from trueup.adapters.nastran.editing.set_values import read_value, set_values
+from trueup.adapters.nastran.editing.split_property import split_property
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
+from trueup.adapters.nastran.text.deck_text import DeckText, read_deck_text
 from trueup.core.errors import InputError
 
 DECK = """\

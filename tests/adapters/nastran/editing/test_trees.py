@@ -13,15 +13,15 @@ from hypothesis import strategies as st
 from tests.adapters.nastran.editing import written_decks
 
 from trueup.adapters.nastran import read_deck_text, split_property, write_deck, write_in_place
-from trueup.adapters.nastran.cards import cut, fields_of
-from trueup.adapters.nastran.editing.add import add_cards
-from trueup.adapters.nastran.editing.diff import unified_diff
-from trueup.adapters.nastran.editing.edit import read_value, set_values
-from trueup.adapters.nastran.editing.find import find_card, free_id, has_card
-from trueup.adapters.nastran.editing.numbers import writable
-from trueup.adapters.nastran.editing.write import names_in_tree
-from trueup.adapters.nastran.lines import read_sections
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.deck.bulk import cut, fields_of
+from trueup.adapters.nastran.deck.logical_lines import read_sections
+from trueup.adapters.nastran.editing.add_cards import add_cards
+from trueup.adapters.nastran.editing.deck_diff import unified_diff
+from trueup.adapters.nastran.editing.find_cards import find_card, free_id
+from trueup.adapters.nastran.editing.set_values import read_value, set_values
+from trueup.adapters.nastran.editing.write_deck import names_in_tree
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
+from trueup.adapters.nastran.text.real_numbers import writable
 
 CARDS = [
     *written_decks.CARDS,
@@ -192,7 +192,8 @@ def test_new_cards_stand_in_one_block_beside_their_neighbour(tree, data):
         kinds = {"property": free_id(deck, "property"), "material": free_id(deck, "material"),
                  "element": free_id(deck, "element")}  # fmt: skip
         for name, number in (("PSHELL", "property"), ("MAT1", "material"), ("CONM2", "element")):
-            assert not has_card(deck, name, kinds[number])
+            held = {n for segment in deck.segments for _, n in deck.rows_in(segment, name)}
+            assert kinds[number] not in held
         mine = [
             ["MAT1", kinds["material"], 7.1e4, None, 0.33],
             ["PSHELL", kinds["property"], kinds["material"], 0.1 + 0.2],

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from trueup.adapters.nastran.editing import write as writing
-from trueup.adapters.nastran.editing.decktext import DeckText, read_deck_text
-from trueup.adapters.nastran.editing.edit import read_value, set_values
-from trueup.adapters.nastran.editing.write import write_deck, write_in_place
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.editing import write_deck as writing
+from trueup.adapters.nastran.editing.set_values import read_value, set_values
+from trueup.adapters.nastran.editing.write_deck import write_deck, write_in_place
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
+from trueup.adapters.nastran.text.deck_text import DeckText, read_deck_text
 from trueup.core.errors import InputError
 
 AREA = FieldRef("PROD", 1, "A")

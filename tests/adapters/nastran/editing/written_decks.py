@@ -3,14 +3,15 @@
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import strategies as st
 
-from trueup.adapters.nastran.cards import cut, fields_of
-from trueup.adapters.nastran.editing.decktext import DeckText, read_deck_text
-from trueup.adapters.nastran.editing.find import find_card
-from trueup.adapters.nastran.fields import LAYOUTS, STRIDES
-from trueup.adapters.nastran.lines import read_sections
-from trueup.adapters.nastran.parameters import FieldRef
+from trueup.adapters.nastran.cards import definitions
+from trueup.adapters.nastran.deck.bulk import cut, fields_of
+from trueup.adapters.nastran.deck.logical_lines import read_sections
+from trueup.adapters.nastran.editing.find_cards import find_card
+from trueup.adapters.nastran.fields.parameter_references import FieldRef
+from trueup.adapters.nastran.text.deck_text import DeckText, read_deck_text
 
 # Cards with at least two lines of fields: name, then data fields ("" blank).
 CARDS = [
@@ -115,6 +116,7 @@ def by_our_reader(data: bytes) -> list[list[str | None]]:
 
 def by_pynastran(deck: DeckText, name: str, number: int) -> list[str]:
     """Fields of one card as pyNastran cuts its lines."""
+    pytest.importorskip("pyNastran")
     from pyNastran.bdf.bdf_interface.utils import to_fields
 
     lines = [
@@ -125,11 +127,11 @@ def by_pynastran(deck: DeckText, name: str, number: int) -> list[str]:
 
 def references(card: list[str]) -> list[tuple[FieldRef, int]]:
     """All values of a card, with the place of each in the card's list of fields."""
-    name, stride = card[0], STRIDES.get(card[0], 0)
+    name, stride = card[0], definitions()[card[0]].several
     found = []
     for shift in range(0, len(card) - 1, stride or len(card)):
-        for field, position in LAYOUTS[name].values.items():
-            at = 8 * (position // 10) + position % 10 - 1 + shift
+        for field, index in definitions()[name].reals.items():
+            at = 1 + index + shift
             found.append((FieldRef(name, int(card[1 + shift]), field), at))
     return found
 

@@ -2,7 +2,11 @@
 
 import pytest
 
-from trueup.adapters.nastran.parameters import FieldRef, ParameterSpec, parse_parameter
+from trueup.adapters.nastran.fields.parameter_references import (
+    FieldRef,
+    ParameterSpec,
+    parse_parameter,
+)
 from trueup.core.errors import InputError
 
 

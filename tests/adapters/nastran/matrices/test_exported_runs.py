@@ -25,8 +25,8 @@ from trueup.adapters.nastran import (
     write_op4,
     write_runs,
 )
+from trueup.core.data.parametric_model import Model
 from trueup.core.errors import InputError
-from trueup.core.model import Model
 
 BEAM = """SOL 103
 CEND
@@ -148,7 +148,7 @@ def test_only_the_moved_values_and_the_request_differ(tmp_path: Path) -> None:
     assert added in first
     kept = [x for x in second.splitlines() if x in first.splitlines()]
     assert len(kept) == len(first.splitlines()) - 1
-    value = read_deck(folder / index["runs"][1]["deck"]).bulk.table("PBAR")[12].A
+    value = read_deck(folder / index["runs"][1]["deck"]).bulk.table("PBAR")[12].a
     assert value == pytest.approx(50.0 * factor, rel=1e-11)
 
 

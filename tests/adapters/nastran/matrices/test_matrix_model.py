@@ -21,7 +21,7 @@ from trueup.adapters.nastran import (
     stiffness_and_mass,
     write_op4,
 )
-from trueup.core import eigen
+from trueup.core.eigen import normal_modes
 from trueup.core.errors import InputError
 
 PRINTED = {
@@ -41,7 +41,7 @@ def test_punched_stiffness_and_mass_give_the_frequencies_of_the_f06(data: Path, 
     base = data / "matrices" / name
     K, M = stiffness_and_mass(read_matrices(base.with_suffix(".pch1")))
     model = model_of_matrices([K], [M], read_deck(base.with_suffix(".bdf")))
-    solution = eigen.solve(model, n_modes=rigid + len(printed))
+    solution = normal_modes.solve(model, n_modes=rigid + len(printed))
     assert solution.rigid_body_modes == rigid
     np.testing.assert_allclose(solution.frequencies_hz[rigid:], printed, rtol=3e-6)
 
@@ -51,7 +51,7 @@ def test_the_shapes_of_a_punched_model_are_those_of_the_f06(data: Path) -> None:
     K, M = stiffness_and_mass(read_matrices(base.with_suffix(".pch1")))
     deck = read_deck(base.with_suffix(".bdf"))
     model = model_of_matrices([K], [M], deck)
-    modes = eigen.modes_of(model, eigen.solve(model, n_modes=10))
+    modes = normal_modes.modes_of(model, normal_modes.solve(model, n_modes=10))
     printed = read_modes(base.with_suffix(".f06"), deck)
     assert modes.dofs.labels == printed.dofs.labels
     a, b = modes.shapes[:, 2:], printed.shapes[:, 2:]
@@ -68,7 +68,7 @@ def test_two_external_superelements_make_the_whole_structure(data: Path) -> None
         stiffness.append(K)
         mass.append(M)
     model = model_of_matrices(stiffness, mass, read_deck(there / "inboard.asm"))
-    solution = eigen.solve(model, n_modes=16)
+    solution = normal_modes.solve(model, n_modes=16)
     assert solution.rigid_body_modes == 6
     np.testing.assert_allclose(solution.frequencies_hz[6:], SPACE_TRUSS, rtol=5e-6)
 
@@ -94,10 +94,10 @@ def test_an_assembled_deck_exported_and_read_again_has_the_same_modes(
     write_op4(tmp_path / "m.op4", model_matrices(model))
     K, M = stiffness_and_mass(read_matrices(tmp_path / "m.op4"))
     again = model_of_matrices([K], [M], deck)
-    a, b = eigen.solve(model, n_modes=12), eigen.solve(again, n_modes=12)
+    a, b = normal_modes.solve(model, n_modes=12), normal_modes.solve(again, n_modes=12)
     assert a.rigid_body_modes == b.rigid_body_modes
     np.testing.assert_allclose(a.frequencies_hz, b.frequencies_hz, rtol=1e-9, atol=1e-5)
-    shapes = [eigen.modes_of(m, s).shapes[:, a.rigid_body_modes :]
+    shapes = [normal_modes.modes_of(m, s).shapes[:, a.rigid_body_modes :]
               for m, s in ((model, a), (again, b))]  # fmt: skip
     np.testing.assert_allclose(abs(shapes[0]), abs(shapes[1]), atol=1e-6 * abs(shapes[0]).max())
 
@@ -130,7 +130,7 @@ def test_matrices_on_different_degrees_of_freedom_are_added_over_their_union() -
     expected = CHAIN + np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
     np.testing.assert_array_equal(model.K().toarray(), expected)
     np.testing.assert_allclose(
-        (2 * np.pi * eigen.solve(model, n_modes=3).frequencies_hz) ** 2,
+        (2 * np.pi * normal_modes.solve(model, n_modes=3).frequencies_hz) ** 2,
         np.linalg.eigvalsh(expected), rtol=1e-12,
     )  # fmt: skip
 

@@ -35,6 +35,17 @@ def test_an_f06_holds_the_modes_of_the_binary_file(f06: str, binary: str) -> Non
         np.testing.assert_allclose(a.generalized_mass, b.generalized_mass, rtol=2e-6)
 
 
+@pytest.mark.parametrize(
+    "banner",
+    ["* *   N A S T R A N   * *", "* *   M S C   N a s t r a n   * *", "a page cut off"],
+)
+def test_an_f06_is_known_by_its_banner_or_by_its_name(tmp_path: Path, banner: str) -> None:
+    (tmp_path / "a.f06").write_text(f"1\n   {banner}\n   FLUTTER  SUMMARY\n")
+    assert describe_results(tmp_path / "a.f06")["format"] == "Nastran F06"
+    with pytest.raises(InputError, match="holds no eigenvectors"):
+        read_modes(tmp_path / "a.f06")
+
+
 @needs_data
 def test_an_f06_without_eigenvectors_says_so() -> None:
     told = describe_results(DATA / "ten_bar" / "modes.f06")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.adapters.nastran.editing.numbers import (
+from trueup.adapters.nastran.text.real_numbers import (
     format_exact,
     format_field,
     format_real,
@@ -91,6 +91,7 @@ def test_eight_columns_are_never_a_rounded_value(value):
 
 @given(REALS)
 def test_pynastran_reads_the_same(value):
+    pytest.importorskip("pyNastran")
     from pyNastran.bdf.bdf_interface.assign_type import double
     from pyNastran.bdf.bdf_interface.bdf_card import BDFCard
 

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from trueup.adapters.report.scene import Mark, scene
-from trueup.adapters.report.surface import (
+from trueup.adapters.report.pictures.scene import Mark, scene
+from trueup.adapters.report.pictures.seen_surface import (
     Surface,
     _keys,
     coarsened,
@@ -21,7 +21,7 @@ from trueup.adapters.report.surface import (
     surface,
     with_neighbours,
 )
-from trueup.core.geometry import Geometry
+from trueup.core.data.geometry import Geometry
 
 
 def block(n: int) -> Geometry:

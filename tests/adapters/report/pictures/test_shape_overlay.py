@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,12 @@ import pytest
 import scipy.sparse as sp
 
 from trueup.adapters.report import make_report, overlay
-from trueup.core.dofs import Dofs
-from trueup.core.geometry import Geometry
-from trueup.core.modes import Modes
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.modes import Modes
+from trueup.core.results.correlation import Compared
+from trueup.core.results.plain import Table
+from trueup.verbs.report import answer_of
 
 RNG = np.random.default_rng(7)
 ALL = Dofs(np.repeat(np.arange(1, 9), 6), np.tile(np.arange(1, 7), 8))
@@ -38,13 +42,15 @@ def measured(transformation: np.ndarray[Any, Any]) -> Modes:
 
 
 @pytest.fixture
-def run(correlation: dict[str, Any]) -> dict[str, Any]:
-    for pair in correlation["pairs"]:
-        pair["mac"] = 1.0
-    return correlation
+def run(correlation: dict[str, Any]) -> Compared:
+    return answer_of(correlation).final
 
 
-def test_a_perfect_pair_lies_on_itself(run: dict[str, Any], cube: Geometry) -> None:
+def turned(run: Compared, side: str) -> Compared:
+    return replace(run, criteria=replace(run.criteria, rotate=side))
+
+
+def test_a_perfect_pair_lies_on_itself(run: Compared, cube: Geometry) -> None:
     found = overlay(run, cube, ANALYSIS, measured(turn(0.6)), SEEN, turn(0.6))
     assert found is not None
     np.testing.assert_allclose(found.test, found.model, atol=1e-12)
@@ -53,51 +59,43 @@ def test_a_perfect_pair_lies_on_itself(run: dict[str, Any], cube: Geometry) -> N
     np.testing.assert_allclose(found.shapes, moved / largest[:, None, None])
 
 
-def test_without_the_turn_the_shapes_are_those_of_the_deck(
-    run: dict[str, Any], cube: Geometry
+def test_where_nothing_is_turned_the_shapes_are_those_of_the_deck(
+    run: Compared, cube: Geometry
 ) -> None:
-    found = overlay(run, cube, ANALYSIS, measured(np.eye(4)), SEEN, turn(0.6))
+    found = overlay(turned(run, "none"), cube, ANALYSIS, measured(np.eye(4)), SEEN, turn(0.6))
     assert found is not None
     np.testing.assert_allclose(found.test, found.model, atol=1e-12)
 
 
-def test_a_turned_test_is_shown_turned(run: dict[str, Any], cube: Geometry) -> None:
+def test_a_turned_test_is_shown_turned(run: Compared, cube: Geometry) -> None:
     test = measured(np.eye(4))
     length = np.linalg.norm(np.real(test.shapes * np.exp(-0.4j)), axis=0)
     swap = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     raw = Modes(test.frequencies_hz, test.shapes @ swap, SENSORS)
-    found = overlay(run, cube, ANALYSIS, raw, SEEN, swap * length[:, None] / length)
+    found = overlay(turned(run, "test"), cube, ANALYSIS, raw, SEEN, swap * length[:, None] / length)
     assert found is not None
     np.testing.assert_allclose(np.abs(found.test), np.abs(found.model), atol=1e-12)
 
 
-def test_sensors_stand_at_their_nearest_grids_unless_told(
-    run: dict[str, Any], cube: Geometry
-) -> None:
+def test_sensors_stand_where_the_alignment_puts_them(run: Compared, cube: Geometry) -> None:
     found = overlay(run, cube, ANALYSIS, measured(np.eye(4)), SEEN)
     assert found is not None
     np.testing.assert_array_equal(found.sensors, cube.xyz[[0, 0, 7]])
-    for k, row in enumerate(run["alignment"]["sensors"]):
-        row["xyz"] = [float(k), 0.0, 0.5]
-    found = overlay(run, cube, ANALYSIS, measured(np.eye(4)), SEEN)
-    assert found is not None
-    np.testing.assert_array_equal(found.sensors, [[0, 0, 0.5], [1, 0, 0.5], [2, 0, 0.5]])
 
 
-def test_shapes_that_do_not_belong_to_the_run_are_left_out(
-    run: dict[str, Any], cube: Geometry
+def test_without_pairs_or_sensor_map_there_is_nothing_to_show(
+    run: Compared, cube: Geometry
 ) -> None:
     test = measured(np.eye(4))
     assert overlay(run, cube, ANALYSIS, test, None) is None
-    assert overlay(run, cube, ANALYSIS, test, SEEN[:2]) is None
-    assert overlay(run, cube, ANALYSIS.take(np.array([0])), test, SEEN) is None
-    assert overlay(run | {"pairs": []}, cube, ANALYSIS, test, SEEN) is None
-    del run["alignment"]
-    assert overlay(run, cube, ANALYSIS, test, SEEN) is None
+    assert overlay(replace(run, pairs=Table()), cube, ANALYSIS, test, SEEN) is None
 
 
-def test_the_page_carries_the_shapes_and_a_still(run: dict[str, Any], cube: Geometry) -> None:
-    found = overlay(run, cube, ANALYSIS, measured(np.eye(4)), SEEN)
+def test_the_page_carries_the_shapes_and_a_still(
+    correlation: dict[str, Any], cube: Geometry
+) -> None:
+    run = answer_of(correlation)
+    found = overlay(run.final, cube, ANALYSIS, measured(np.eye(4)), SEEN)
     assert found is not None
     html = make_report(run, None, cube, shapes=found)
     data = dict(re.findall(r'data-(\w+)="([^"]*)"', html.split('class="viewer"')[1]))
@@ -105,6 +103,6 @@ def test_the_page_carries_the_shapes_and_a_still(run: dict[str, Any], cube: Geom
     np.testing.assert_allclose(carried, found.shapes, atol=0.5 / 127 + 1e-9)
     faces = np.frombuffer(base64.b64decode(data["faces"]), "<u2").reshape(-1, 4)
     np.testing.assert_array_equal(faces, found.mesh.faces)
-    assert data["labels"].startswith("test 1 (10.00 Hz) and analysis 2 (9.00 Hz), −10.0 %, MAC 100")
+    assert data["labels"].startswith("test 1 (10.00 Hz) and analysis 2 (9.00 Hz), −10.0 %, MAC 81")
     assert '<div class="stage"><svg class="scene"' in html
     assert "figure.viewer" not in make_report(run, None, cube)

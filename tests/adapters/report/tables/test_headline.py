@@ -7,20 +7,21 @@ from typing import Any
 import pytest
 
 from trueup.adapters.report import headline
-from trueup.adapters.report.headline import figures, story
+from trueup.adapters.report.tables.headline import figures, story
+from trueup.verbs.report import answer_of
 
 
 def test_correlation_counts_pairs_and_names_the_worst_and_the_lonely(
     correlation: dict[str, Any],
 ) -> None:
-    assert headline(correlation) == (
+    assert headline(answer_of(correlation)) == (
         "2 of 3 test modes pair with the model; frequencies are 6.2 % off on average, 10.0 % at"
         " worst (test mode 1). Test mode 3 has no partner."
     )
 
 
 def test_update_tells_now_and_before(update: dict[str, Any]) -> None:
-    assert headline(update) == (
+    assert headline(answer_of(update)) == (
         "After updating 2 parameters, 3 of 3 test modes pair with the model (2 before) and"
         " frequencies are 0.8 % off on average (6.2 % before). One parameter stopped at a bound:"
         " skin."
@@ -28,27 +29,29 @@ def test_update_tells_now_and_before(update: dict[str, Any]) -> None:
 
 
 def test_discovery_leads_with_its_own_sentence(discovery: dict[str, Any]) -> None:
-    first, *rest = story(discovery)
+    first, *rest = story(answer_of(discovery))
     assert first == "About 0.62 kg is missing near grid 8."
     assert rest[0] == "1 further finding below."
     assert rest[1].startswith("With that adopted, 3 test modes pair with the completed model (2")
 
 
 def test_an_undecided_run_says_so_before_its_best_explanation(discovery: dict[str, Any]) -> None:
-    first, second, *_ = story(discovery | {"verdict": "undecided"})
+    first, second, *_ = story(answer_of(discovery | {"verdict": "undecided"}))
     assert first == "The data do not decide what is missing."
     assert second == "The best explanation so far: About 0.62 kg is missing near grid 8."
 
 
 def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(
-    discovery: dict[str, Any],
+    discovery: dict[str, Any], update: dict[str, Any]
 ) -> None:
     moved = [
-        {"name": "PSHELL 1 T", "factor": 1.1, "significant": True},
-        {"name": "MAT1 1 E", "factor": 3.0, "significant": False},
-        {"name": "CONM2 7 M", "factor": 0.5, "significant": True},
-    ]
-    told = story(discovery | {"verdict": "parameters_only", "findings": [], "parameters": moved})
+        update["parameters"][0] | {"name": name, "factor": factor, "significant": clear}
+        for name, factor, clear in (
+            ("PSHELL 1 T", 1.1, True), ("MAT1 1 E", 3.0, False), ("CONM2 7 M", 0.5, True),
+        )
+    ]  # fmt: skip
+    discovery |= {"verdict": "parameters_only", "findings": [], "parameters": moved}
+    told = story(answer_of(discovery))
     assert told[1] == (
         "CONM2 7 M is 0.5 times the deck's value; PSHELL 1 T is 1.1 times the deck's value."
     )
@@ -65,21 +68,21 @@ def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(
 )
 def test_every_verdict_has_a_sentence(discovery: dict[str, Any], verdict: str, said: str) -> None:
     discovery |= {"verdict": verdict, "findings": []}
-    assert said in story(discovery)[0]
+    assert said in story(answer_of(discovery))[0]
 
 
 def test_nothing_pairs(correlation: dict[str, Any]) -> None:
     correlation |= {"pairs": [], "unpaired_test": [1, 2, 3]}
-    assert headline(correlation) == "None of the 3 test modes pairs with the model."
+    assert headline(answer_of(correlation)) == "None of the 3 test modes pairs with the model."
 
 
-@pytest.mark.parametrize("result", [{}, {"schema": "trueup/update/1"}, {"pairs": None}])
-def test_an_empty_run_claims_nothing(result: dict[str, Any]) -> None:
-    assert headline(result) == "The run holds no correlation of test and analysis."
+def test_a_test_without_modes_claims_nothing(correlation: dict[str, Any]) -> None:
+    correlation |= {"pairs": [], "unpaired_test": []}
+    assert headline(answer_of(correlation)) == "The test holds no modes to pair."
 
 
 def test_key_figures_stand_beside_their_former_values(update: dict[str, Any]) -> None:
-    assert figures(update) == [
+    assert figures(answer_of(update)) == [
         ("pairs", "3 of 3", "2 of 3"),
         ("mean frequency deviation", "0.77 %", "6.25 %"),
         ("worst frequency deviation", "1.00 %", "10.00 %"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.adapters.universal import read_universal
-from trueup.adapters.universal.legacy_floats import IBM, VAX, decode
+from trueup.adapters.universal.text.legacy_floats import IBM, VAX, decode
 from trueup.core.errors import InputError
 
 N = 7

@@ -9,7 +9,7 @@ import pyuff
 from trueup.adapters.universal import Function, read_universal, write_universal
 from trueup.core.errors import InputError
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 DATA = ROOT.parent / "shared" / "data" / "uff"
 FILES = [p for p in sorted(DATA.glob("*")) if p.suffix != ".mail"] if DATA.is_dir() else []
 N = 37

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.adapters.universal.digits import print_lines
-from trueup.adapters.universal.fields import NotANumber, floats, integers, table, text
-from trueup.adapters.universal.fixed import block
-from trueup.adapters.universal.printing import tight
+from trueup.adapters.universal.text.number_fields import NotANumber, floats, integers, table, text
+from trueup.adapters.universal.text.print_columns import print_lines
+from trueup.adapters.universal.text.printing import tight
+from trueup.adapters.universal.text.read_columns import block
 
 
 @pytest.mark.parametrize(

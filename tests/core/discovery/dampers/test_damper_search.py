@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.discovery.dampers import DampingEvidence, find_damper
-from trueup.core.discovery.damping import Oriented, complex_modes, ratios
-from trueup.core.discovery.kinds.local_damper import PEAKS
-from trueup.core.discovery.ratios import levels_for, log_likelihood, marginal
+from trueup.core.discovery.dampers.damper_search import DampingEvidence, find_damper
+from trueup.core.discovery.dampers.damping_ratios import levels_for, log_likelihood, marginal
+from trueup.core.discovery.effects.local_damper import PEAKS
+from trueup.core.discovery.likelihood.complex_modes import Oriented, complex_modes, ratios
 
 N, COUNT, C = 14, 10, 1.0
 X = np.linspace(0.025, 1.0, 40)

@@ -5,10 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trueup.core.discovery.kinds import bars
-from trueup.core.discovery.kinds.bars import _chains, _stretches, bars_of
-from trueup.core.discovery.structure import Members, Structure
-from trueup.core.geometry import Geometry
+from trueup.core.data.geometry import Geometry
+from trueup.core.discovery.effects.bar_members import _chains, _stretches, bars_of
+from trueup.core.discovery.effects.effect_numbers import EFFECTS
+from trueup.core.discovery.reduction.elements_and_supports import Members, Structure
+from trueup.core.elements.bar import BAR
+from trueup.core.elements.lumped import MASS
 
 
 def test_elements_between_two_joints_are_one_bar():
@@ -47,8 +49,8 @@ def line_of(n, members=1):
     first = np.concatenate([np.arange(n) + line * (n + 1) for line in range(members)])
     corners = np.stack([first, first + 1], axis=1)
     block = SimpleNamespace(width=6)
-    member = Members("CBAR", "line", np.arange(len(corners)) + 1, corners, block)
-    mass = Members("CONM2", "point", np.array([900]), np.array([[n // 2]]), block)
+    member = Members("CBAR", BAR, np.arange(len(corners)) + 1, corners, block)
+    mass = Members("CONM2", MASS, np.array([900]), np.array([[n // 2]]), block)
     return Structure(SimpleNamespace(geometry=geometry), (member, mass), None)
 
 
@@ -66,4 +68,4 @@ def test_of_a_frame_whole_bars_are_scanned_first_and_a_mass_on_a_grid_ends_none(
 @pytest.mark.parametrize("members", [30, 200])
 def test_places_stay_bounded_on_a_large_frame(members):
     found = bars_of(line_of(12, members=members), 2000.0)
-    assert len(found) <= members + bars._MOST
+    assert len(found) <= members + EFFECTS.bar_stretches

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from trueup.core.discovery.laws import ReleaseLaw, directions
+from trueup.core.discovery.effects.effect_laws import ReleaseLaw, directions
 
 RNG = np.random.default_rng(8)
-MESH = np.zeros(1)
+NO_PARAMETERS = np.zeros(0)
 
 
 def _definite(n: int) -> np.ndarray:
@@ -37,7 +37,7 @@ def test_a_release_on_a_basis_that_lacks_flexibility_is_the_release_of_the_whole
     basis, rest = vectors[:, :4], vectors[:, 4:] / np.sqrt(values[4:])
     law = ReleaseLaw(d[None], np.zeros((1, q, 0)), np.zeros(0), free)
     beyond = R @ rest
-    law, W = law.coupled(np.zeros(1, int), (beyond @ beyond.T)[None], MESH)
+    law, W = law.coupled(np.zeros(1, int), (beyond @ beyond.T)[None], NO_PARAMETERS)
     change = law.value(np.log([[k]]), np.zeros(1, int))[0]
     U = W[0] @ R @ basis
     soft = np.linalg.inv(np.diag(values[:4]) + (U.T * change) @ U)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trueup.core.discovery.kinds.patches import root_of
+from trueup.core.discovery.effects.element_patches import root_of
 
 
 def test_a_root_leaves_next_to_nothing_of_a_patch():

@@ -1,9 +1,9 @@
 """Ends of members that may be soft: those of members that bend."""
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.structure import build_structure
-from trueup.core.discovery.kinds.joint_flexibility import candidates
-from trueup.core.discovery.kinds.scale import Scale
+from trueup.adapters.nastran.discovery.build_structure import build_structure
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.effect_scale import Scale
 
 DECK = """CEND
 BEGIN BULK
@@ -22,7 +22,7 @@ def joints(tmp_path, members):
     path = tmp_path / "deck.bdf"
     path.write_text(DECK.format(members=members))
     structure = build_structure(read_deck(path))
-    made = candidates(structure, Scale(1e-3, 130.0, 1e6, (100.0, 900.0)))
+    made = KINDS["joint_flexibility"].places(structure, Scale(1e-3, 130.0, 1e6, (100.0, 900.0)))
     return [w["elements"] for c in made for w in c.where]
 
 

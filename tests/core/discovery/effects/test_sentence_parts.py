@@ -3,13 +3,16 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.mass_unit import mass_unit
-from trueup.core.discovery.candidates import Suspect
+from trueup.adapters.nastran.discovery.mass_unit import mass_unit
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.sentence_parts import MassUnit, mode_ranges, odds
 from trueup.core.discovery.findings import Alternative
-from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.judge import explained
-from trueup.core.discovery.story import MassUnit, mode_ranges, odds
-from trueup.core.discovery.wording import sentence_of
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.narrative.sentences import sentence_of
+from trueup.core.discovery.search.model_selection import explained
+
+MASS = KINDS["point_mass"]
 
 
 @pytest.mark.parametrize(
@@ -89,16 +92,17 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
     ],
 )
 def test_the_next_best_is_named_by_its_place_where_it_is_of_the_same_kind(kinds, said):
-    other = Alternative(kinds, (), 3.0, "point mass near grid 7: 3 times less likely")
-    text = sentence_of("point_mass", {"mass": 1.0}, "here", (0.9, 1.1), [1], MassUnit(), other)
+    other = Alternative(kinds, (), 3.0, "point mass near grid 7", "3 times less likely")
+    text = sentence_of(MASS, {"mass": 1.0}, "here", (0.9, 1.1), [1], MassUnit(), other)
     assert said in text
 
 
 def test_the_same_effect_at_the_same_place_without_the_others_is_called_alone():
-    other = Alternative(("point_mass",), (), 3.0, "point mass near grid 7: 3 times less likely")
-    text = sentence_of(
-        "point_mass", {"mass": 1.0}, "near grid 7", (0.9, 1.1), [1], MassUnit(), other
+    place = "near grid 7"
+    other = Alternative(
+        ("point_mass",), (), 3.0, f"point mass {place}", "3 times less likely", (place,)
     )
+    text = sentence_of(MASS, {"mass": 1.0}, place, (0.9, 1.1), [1], MassUnit(), other)
     assert "next best, point mass there alone, is 3 times less likely" in text
 
 
@@ -106,7 +110,7 @@ def test_a_mass_explains_the_modes_that_move_where_it_sits():
     """A bead at the middle of a string moves in every other mode: 1, 3, 5, ..."""
     s = searcher(hidden(masses=[(15, 0.5), (16, 0.5)]), scatter=(0.0, 0.0))
     null = s.null()
-    best = fit(s.problem, 0.0 * null.log_p, (Suspect(0, 15, (0.0,)),), (0,), 20)
+    best = fit(s.problem, 0.0 * null.nuisance, (Suspect(0, 15, (0.0,)),), (0,), 20)
     modes = np.array(explained(s, best, 0, 1.0)) + 1
     assert len(modes) >= 4
     assert set(modes % 2) == {1}

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.structure import build_structure
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.kinds import support_flexibility
-from trueup.core.discovery.kinds.edges import edges_of
-from trueup.core.discovery.kinds.scale import Scale
-from trueup.core.discovery.stretching import beside
+from trueup.adapters.nastran.discovery.build_structure import build_structure
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.effect_scale import Scale
+from trueup.core.discovery.effects.shell_edges import edges_of
+from trueup.core.discovery.effects.stretches import beside
 
 N = 4
 DECK = """CEND
@@ -52,7 +52,7 @@ def test_an_edge_goes_on_without_a_bend_and_knows_its_direction_and_normal(struc
 
 def _kinds(structure):
     size = structure.model.geometry.size
-    return support_flexibility.candidates(structure, Scale(1e-3, size, 1e6, (100.0, 900.0)))
+    return KINDS["support_flexibility"].places(structure, Scale(1e-3, size, 1e6, (100.0, 900.0)))
 
 
 def _row(kinds, grids, components, free=None):

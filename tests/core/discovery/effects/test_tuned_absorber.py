@@ -7,13 +7,13 @@ import pytest
 import scipy.linalg as la
 from tests.core.discovery.strings import K, M, N, hidden, searcher
 
-from trueup.core.discovery.candidates import Suspect, changed, magnitudes
-from trueup.core.discovery.fitting import _normal_equations, evaluate, fit
-from trueup.core.discovery.judge import cost, judge, price, with_unseen
-from trueup.core.discovery.laws import TunedLaw
-from trueup.core.discovery.paths import searched
-from trueup.core.discovery.scanning import _attached, scan
-from trueup.core.discovery.tuning import promising
+from trueup.core.discovery.effects.candidates import Suspect, changed, magnitudes
+from trueup.core.discovery.effects.effect_laws import TunedLaw
+from trueup.core.discovery.likelihood.map_fit import _normal_equations, evaluate, fit
+from trueup.core.discovery.search.exact_scan import _attached, scan
+from trueup.core.discovery.search.model_selection import cost, judge, price, with_unseen
+from trueup.core.discovery.search.secular_screening import promising
+from trueup.core.discovery.search.strategy import searched
 
 RIGID = TunedLaw(np.zeros((1, 1)), 0.0)
 FIRST = np.zeros(1, np.int64)
@@ -59,12 +59,12 @@ def test_the_gradient_of_a_fit_is_that_of_its_objective():
     e = replace(e, noise=replace(e.noise, robust=1e9, mixing=1e-9))
     p = replace(s.problem, evidence=e, modes=N + 1)
     at = Suspect(2, 11, (np.log(0.8) + 0.02, np.log(3.0) + 0.004))
-    log_p = np.array([0.003, 0.0])
-    _, g = _normal_equations(p, evaluate(p, log_p, (at,)), (0,))
+    nuisance = np.array([0.003, 0.0])
+    _, g = _normal_equations(p, evaluate(p, nuisance, (at,)), (0,))
 
     def objective(x):
         moved = changed(p.catalogue, (at,), x[1:])
-        return evaluate(p, log_p + np.array([x[0], 0.0]), moved).objective
+        return evaluate(p, nuisance + np.array([x[0], 0.0]), moved).objective
 
     h = 1e-6
     numeric = [(objective(h * d) - objective(-h * d)) / (4.0 * h) for d in np.eye(3)]
@@ -90,7 +90,7 @@ def test_an_absorber_is_found_beside_a_wrong_tension(bead, mass, hz):
     found = searched(s)
     verdict = judge(s, found)
     (suspect,) = found.levels[verdict.accepted].suspects
-    assert s.problem.catalogue[suspect.kind].kind == "tuned_absorber"
+    assert s.problem.catalogue[suspect.kind].kind.name == "tuned_absorber"
     assert suspect.row == bead
     assert np.exp(suspect.theta) == pytest.approx([mass, hz], rel=0.1)
     assert np.exp(suspect.theta[1]) == pytest.approx(hz, rel=0.02)
@@ -102,7 +102,7 @@ def test_a_mass_beside_an_absorber_is_found_too():
     s = searcher(hidden(masses=[(22, 2.0)], absorbers=[(9, 0.8, 2.4)]))
     found = searched(s)
     best = found.levels[judge(s, found).accepted]
-    named = {(s.problem.catalogue[q.kind].kind, q.row) for q in best.suspects}
+    named = {(s.problem.catalogue[q.kind].kind.name, q.row) for q in best.suspects}
     assert named == {("point_mass", 22), ("tuned_absorber", 9)}
 
 
@@ -110,7 +110,9 @@ def test_tuned_far_above_the_band_it_is_told_as_the_mass_that_it_is():
     s = searcher(hidden(absorbers=[(9, 2.0, 30.0 * STRING_HZ[11])]))
     found = searched(s)
     best = found.levels[judge(s, found).accepted]
-    assert [(s.problem.catalogue[q.kind].kind, q.row) for q in best.suspects] == [("point_mass", 9)]
+    assert [(s.problem.catalogue[q.kind].kind.name, q.row) for q in best.suspects] == [
+        ("point_mass", 9)
+    ]
 
 
 def test_a_mode_that_the_test_should_have_seen_speaks_against_an_absorber():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trueup.core.discovery.damping import (
+from trueup.core.discovery.likelihood.complex_modes import (
     added,
     complex_modes,
     imaginary,
@@ -14,7 +14,7 @@ from trueup.core.discovery.damping import (
     predicted,
     ratios,
 )
-from trueup.core.discovery.evidence import Evidence, Noise
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 
 K = np.array([[300.0, -100.0], [-100.0, 150.0]])
 M = np.diag([1.0, 0.5])

@@ -10,12 +10,11 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from tests.core.discovery.strings import SEEN, K, M, N, hidden, searcher
 
-from trueup.core.discovery.beam import Found
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.hearing import misfit_of_responses, turned_state
-from trueup.core.discovery.judge import judge, with_unseen
-from trueup.core.discovery.responses import (
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.frf_evidence import misfit_of_responses, turned_state
+from trueup.core.discovery.likelihood.frf_likelihood import (
     Responses,
     State,
     frac,
@@ -26,8 +25,9 @@ from trueup.core.discovery.responses import (
     ratios_of,
     synthesised,
 )
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.search.beam_search import Found
+from trueup.core.discovery.search.model_selection import judge, with_unseen
 
 DRIVEN = np.array([4, 17])
 ZETA = 0.006
@@ -146,7 +146,7 @@ def listening(truth, noise=0.05):
 def test_the_right_place_is_heard_and_a_wrong_one_is_not():
     s, null = listening(hidden(masses=[(7, 2.0)]))
     right, wrong = (
-        fit(s.problem, null.log_p, (Suspect(0, bead, (0.7,)),), (0,), 20) for bead in (7, 19)
+        fit(s.problem, null.nuisance, (Suspect(0, bead, (0.7,)),), (0,), 20) for bead in (7, 19)
     )
     heard_right, heard_wrong, heard_null = (
         misfit_of_responses(s.problem, f) for f in (right, wrong, null)
@@ -163,7 +163,7 @@ def test_the_right_place_is_heard_and_a_wrong_one_is_not():
 
 def test_responses_of_a_string_that_lacks_nothing_name_nothing():
     s, null = listening(hidden())
-    light = fit(s.problem, null.log_p, (Suspect(0, 7, (-3.0,)),), (0,), 20)
+    light = fit(s.problem, null.nuisance, (Suspect(0, 7, (-3.0,)),), (0,), 20)
     assert judge(s, Found((null, light), ((), ()))).accepted == 0
     gained = misfit_of_responses(s.problem, null) - misfit_of_responses(s.problem, light)
     assert abs(gained) < 10.0

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 
-from trueup.core.discovery.evidence import (
+from trueup.core.correlation.mode_errors import ModeErrors
+from trueup.core.discovery.likelihood.hypothesis import Prior, Problem, softened
+from trueup.core.discovery.likelihood.mode_likelihood import (
     Evidence,
     Noise,
     joint_macs,
@@ -13,8 +15,6 @@ from trueup.core.discovery.evidence import (
     mode_costs,
     noise_of,
 )
-from trueup.core.discovery.problem import Prior, Problem, softened
-from trueup.core.weighting import ModeErrors
 
 RNG = np.random.default_rng(0)
 SHAPES = np.linalg.qr(RNG.normal(size=(30, 4)))[0]

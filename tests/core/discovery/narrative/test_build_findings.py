@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from trueup.core.alignment import Alignment
-from trueup.core.discovery.telling import frame_needed
+from trueup.core.discovery.narrative.build_findings import frame_needed
+from trueup.core.registration.alignment import Alignment
 
 
 def placed(decided):

@@ -9,26 +9,26 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core.discovery.dampers import DamperFound
-from trueup.core.discovery.damping import Oriented
+from trueup.core.data.geometry import Geometry
+from trueup.core.discovery.dampers.damper_evidence import Weighed, moved
+from trueup.core.discovery.dampers.damper_search import DamperFound
+from trueup.core.discovery.effects.structure_points import Axes
 from trueup.core.discovery.findings import Discovery, Finding
-from trueup.core.discovery.kinds.local_damper import Dashpots
-from trueup.core.discovery.telling_dampers import with_damper
-from trueup.core.discovery.weighing_dampers import Weighed, moved
-from trueup.core.geometry import Geometry
+from trueup.core.discovery.likelihood.complex_modes import Oriented
+from trueup.core.discovery.narrative.damper_findings import with_damper
 
 XYZ = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11), np.zeros(11)])
 REQUEST = Request(
     structure=Request(model=Request(geometry=Geometry(np.arange(1, 12), XYZ))),
     numbers=np.arange(1, 100),
 )
-PLACES = Dashpots(
+PLACES = Axes(
     XYZ,
     sp.identity(11, format="csr"),
     tuple({"grids": [i + 1], "components": [3]} for i in range(11)),
 )
 LEVEL = np.full(3, 0.01)
-QUIET = Discovery("no_gap", (), (), (), 1.0, (), 0.0, 1.0, 0.0, (), (), (), (), ())
+QUIET = Discovery("no_gap", (), (), (), 1.0, 0.0, 1.0, 0.0, (), (), (), (), ())
 
 
 def weighed(exists, weights, omega=(10.0, 10.5, 20.0, 30.0), c=0.2):

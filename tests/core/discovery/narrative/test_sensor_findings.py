@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from trueup.core.data.dofs import Dofs
 from trueup.core.discovery.faults import Fault
-from trueup.core.discovery.sensors import Verdicts
-from trueup.core.discovery.telling_sensors import accusations, remarks
-from trueup.core.dofs import Dofs
-from trueup.core.observation import Observation
+from trueup.core.discovery.narrative.sensor_findings import accusations, remarks
+from trueup.core.discovery.sensor_faults.diagnosis import Verdicts
+from trueup.core.sensors.sensor_map import Observation
 
 
 def seen():

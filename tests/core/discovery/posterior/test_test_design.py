@@ -4,16 +4,16 @@ import numpy as np
 import scipy.sparse as sp
 from tests.core.discovery.strings import SEEN, N, X, hidden, searcher
 
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.deciding import (
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parametric_model import Dofs, Model
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.posterior.test_design import (
     _differences,
     _Forecast,
     further_modes,
     further_sensors,
 )
-from trueup.core.discovery.fitting import fit
-from trueup.core.geometry import Geometry
-from trueup.core.model import Dofs, Model
 
 GRIDS = np.arange(1, N + 1)
 MODES = np.arange(1, 13)
@@ -29,7 +29,7 @@ def model():
 def two(first, second):
     s = searcher(hidden(masses=[(7, 2.0)]))
     null = s.null()
-    fits = [fit(s.problem, null.log_p, q, (0,), 20) for q in (first, second)]
+    fits = [fit(s.problem, null.nuisance, q, (0,), 20) for q in (first, second)]
     return s.problem, fits
 
 

@@ -7,10 +7,13 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.basis import Basis, ReducedSum
-from trueup.core.discovery.mesh_error import lumping, with_consistent_bars
-from trueup.core.elements.bar import bar_mass, bar_stiffness
-from trueup.core.model import Term
+from trueup.core.data.parametric_model import Term
+from trueup.core.discovery.reduction.discretisation_error import lumping, with_consistent_bars
+from trueup.core.discovery.reduction.search_basis import Basis
+from trueup.core.elements.bar import BAR, bar_mass, bar_stiffness
+from trueup.core.elements.curved_shell import QUAD8
+from trueup.core.elements.quad4 import QUAD4
+from trueup.core.reduction.reduced_sum import ReducedSum
 
 
 def membrane(n, lumped=True):
@@ -24,7 +27,7 @@ def membrane(n, lumped=True):
     if not lumped:
         M[:, 0, 6] = M[:, 6, 0] = 0.1
     member = SimpleNamespace(
-        shape="quad",
+        element=QUAD4,
         ids=np.arange(n),
         corners=corners,
         block=SimpleNamespace(width=6),
@@ -75,7 +78,7 @@ def cantilever(n, pins=False):
     M = bar_mass(*ends, one, False)
     at = (6 * corners[:, :, None] + np.arange(6)).reshape(n, 12)
     member = SimpleNamespace(
-        shape="line",
+        element=BAR,
         ids=np.arange(n),
         corners=corners,
         block=SimpleNamespace(width=6),
@@ -131,3 +134,10 @@ def test_the_whole_mass_stays():
 def test_a_pinned_bar_stays_lumped():
     structure, basis, _ = cantilever(4, pins=True)
     assert with_consistent_bars(structure, basis) is basis
+
+
+def test_an_element_that_declares_no_linear_mass_has_none():
+    """Second-order shells: their mesh error follows another law."""
+    structure = membrane(6)
+    structure.members[0].element = QUAD8
+    assert lumping(structure, np.ones((14, 1))) == pytest.approx(0.0)

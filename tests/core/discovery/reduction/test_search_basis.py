@@ -7,9 +7,13 @@ import pytest
 import scipy.sparse as sp
 from numpy.polynomial import chebyshev
 
-from trueup.core.discovery.basis import reduced_sum
-from trueup.core.discovery.compliance import Compliance, Flexibility, SharedFlexibility
-from trueup.core.model import Factor, Term, proportional
+from trueup.core.data.parametric_model import Factor, Term, proportional
+from trueup.core.discovery.reduction.residual_flexibility import (
+    Compliance,
+    Flexibility,
+    SharedFlexibility,
+)
+from trueup.core.reduction.reduced_sum import reduced_sum
 
 RNG = np.random.default_rng(4)
 V = RNG.normal(size=(30, 6))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
-from trueup.cli.completing import borne_out
+from trueup.core.discovery.screening.completed_model import borne_out
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.core.assembly import ElementBlock
-from trueup.core.discovery.noticing import MOST, noticeable, shifts, tied
-from trueup.core.discovery.structure import Members, Structure
-from trueup.core.dofs import Dofs
-from trueup.core.eigen import Eigensolution
-from trueup.core.geometry import Geometry
-from trueup.core.model import Model, Term, proportional
-from trueup.core.parameter import Parameter
+from trueup.core.assembly.element_assembly import ElementBlock
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parameter import Parameter
+from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.discovery.reduction.elements_and_supports import Members, Structure
+from trueup.core.discovery.screening.parameter_screening import noticeable, shifts, tied
+from trueup.core.discovery.screening.screening_numbers import SCREENING
+from trueup.core.eigen.normal_modes import Eigensolution
+from trueup.core.elements.lumped import SPRING
 
 BOUNDS = (0.25, 4.0)
 
@@ -65,7 +67,7 @@ def test_values_alike_that_are_too_small_alone_move_together():
 def test_of_many_only_those_with_the_largest_shifts_move():
     slopes = np.linspace(0.1, 0.5, 40)[:, None]
     every = [(k,) for k in range(40)]
-    assert noticeable(slopes, every, 0.4) == every[-MOST:]
+    assert noticeable(slopes, every, 0.4) == every[-SCREENING.most :]
 
 
 def test_nothing_measured_means_nothing_noticed():
@@ -79,7 +81,7 @@ def test_tied_parameters_move_alike_and_the_others_not_at_all():
         return np.full((len(rows), 1, 1), p[0] + 10.0 * p[1] + 100.0 * p[2]), None
 
     block = ElementBlock(np.array([[0]]), 1, evaluate, ((0, 2),))
-    member = Members("SPRING", "line", np.array([7]), np.array([[0]]), block)
+    member = Members("SPRING", SPRING, np.array([7]), np.array([[0]]), block)
     whole = Structure(model, (member,), sp.csr_matrix([[1.0]]))
     own = tied(whole, [(1, 2)], ["both"])
     (parameter,) = own.model.parameters

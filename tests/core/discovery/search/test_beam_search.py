@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from tests.core.discovery.strings import hidden, searcher
 
-from trueup.core.discovery.beam import _near
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import evaluate
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import evaluate
+from trueup.core.discovery.search.beam_search import _near
 
 MASS, SPRING = 0, 1
 

@@ -1,17 +1,19 @@
 """The first look at every place of a kind."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from tests.core.discovery.strings import N, hidden, searcher
 
-from trueup.core.discovery import looking
-from trueup.core.discovery.fitting import evaluate
-from trueup.core.discovery.laws import FactorLaw, MassLaw
-from trueup.core.discovery.looking import every_other, look
-from trueup.core.discovery.problem import softened
-from trueup.core.discovery.scanning import scan
+from trueup.core.discovery.effects.effect_laws import FactorLaw, MassLaw
+from trueup.core.discovery.likelihood.hypothesis import softened
+from trueup.core.discovery.likelihood.map_fit import evaluate
+from trueup.core.discovery.search import coarse_scan
+from trueup.core.discovery.search.coarse_scan import every_other, look
+from trueup.core.discovery.search.exact_scan import scan
+from trueup.core.discovery.search.search_numbers import SEARCH
 
 
 @pytest.mark.parametrize(
@@ -39,8 +41,8 @@ def test_what_comes_back_is_exact_and_the_best_of_all_is_in_it(kind, truth, monk
         evaluated.append(out.size)
         return out
 
-    monkeypatch.setattr(looking, "_AT_LEAST", 3)
-    monkeypatch.setattr(looking, "scan", counted)
+    monkeypatch.setattr(coarse_scan, "SEARCH", replace(SEARCH, every_size_least=3))
+    monkeypatch.setattr(coarse_scan, "scan", counted)
     s = searcher(hidden(**truth))
     small, here = s.local(evaluate(s.problem, np.zeros(2), ()))
     small, rows, c = softened(small), np.arange(N), s.problem.catalogue[kind]

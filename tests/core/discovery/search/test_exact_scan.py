@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 
-from trueup.core.discovery.scanning import _attached, _changed, best_apart
+from trueup.core.discovery.search.exact_scan import _attached, _changed, best_apart
 
 RNG = np.random.default_rng(1)
 LAM = np.sort(RNG.uniform(1.0, 50.0, 12))

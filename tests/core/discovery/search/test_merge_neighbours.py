@@ -5,16 +5,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.merging import merged
-from trueup.core.discovery.problem import Fit
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.hypothesis import Fit
+from trueup.core.discovery.search.merge_neighbours import merged
 
 XYZ = np.array([[0.0, 0, 0], [50.0, 0, 0], [500.0, 0, 0]])
 
 
 def searcher():
     catalogue = [
-        SimpleNamespace(kind=kind, xyz=XYZ, where=tuple({"components": [3]} for _ in XYZ))
+        SimpleNamespace(kind=KINDS[kind], xyz=XYZ, where=tuple({"components": [3]} for _ in XYZ))
         for kind in ("point_mass", "distributed_mass", "local_stiffness", "ground_spring")
     ]
     return SimpleNamespace(problem=SimpleNamespace(catalogue=catalogue), size=1000.0)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
-from trueup.core.discovery.beam import Found, grown
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.credible import Place, between, credible_places
-from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.judge import cost, enough, instead, judge, with_unseen
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.posterior.credible_places import Place, between, credible_places
+from trueup.core.discovery.search.beam_search import Found, grown
+from trueup.core.discovery.search.model_selection import cost, enough, instead, judge, with_unseen
 
 
 def found_in(s):
@@ -19,7 +19,7 @@ def found_in(s):
 
 
 def kinds(s, f):
-    return [s.problem.catalogue[q.kind].kind for q in f.suspects]
+    return [s.problem.catalogue[q.kind].kind.name for q in f.suspects]
 
 
 @pytest.mark.parametrize("bead", [5, 11])
@@ -30,7 +30,7 @@ def test_a_bead_heavier_than_it_should_be_is_found_beside_a_wrong_tension(bead):
     assert kinds(s, best) == ["point_mass"]
     assert best.suspects[0].row == bead
     assert np.exp(best.suspects[0].theta[0]) == pytest.approx(2.0, rel=0.05)
-    assert np.exp(best.log_p[0]) == pytest.approx(1.1, rel=0.01)
+    assert np.exp(best.nuisance[0]) == pytest.approx(1.1, rel=0.01)
     assert verdict.posterior > 0.5
     assert verdict.foretold > 0.0
 
@@ -55,8 +55,8 @@ def test_where_nothing_is_missing_nothing_is_named(tension, seed):
 def test_an_effect_that_does_not_foretell_what_was_held_out_loses_what_it_gained():
     s = searcher(hidden(masses=[(7, 2.0)]), modes_out=(1, 4, 7, 10))
     null = s.null()
-    right = fit(s.problem, null.log_p, (Suspect(0, 7, (0.7,)),), (0,), 20)
-    wrong = fit(s.problem, null.log_p, (Suspect(0, 20, (0.7,)),), (0,), 20)
+    right = fit(s.problem, null.nuisance, (Suspect(0, 7, (0.7,)),), (0,), 20)
+    wrong = fit(s.problem, null.nuisance, (Suspect(0, 20, (0.7,)),), (0,), 20)
     assert with_unseen(s, right).unseen < with_unseen(s, null).unseen
     rich = replace(wrong, objective=right.objective, misfit=right.misfit)
     assert cost(s, rich, 1.0) > cost(s, right, 1.0) + 10.0
@@ -84,7 +84,7 @@ def test_a_place_is_as_credible_as_it_is_once_all_else_followed():
     (one,) = best.suspects
     by_hand = np.array(
         [
-            fit(s.problem, best.log_p, (replace(one, row=row),), s.active, 20).objective
+            fit(s.problem, best.nuisance, (replace(one, row=row),), s.active, 20).objective
             for row in range(len(s.problem.catalogue[one.kind]))
         ]
     )
@@ -103,9 +103,9 @@ def test_sizes_that_differ_between_places_widen_the_interval():
 def test_a_rival_of_another_kind_that_fits_as_well_is_told():
     s = searcher(hidden(masses=[(7, 1.0)]))
     null = s.null()
-    best = fit(s.problem, null.log_p, (Suspect(0, 7, (0.0,)),), (0,), 20)
+    best = fit(s.problem, null.nuisance, (Suspect(0, 7, (0.0,)),), (0,), 20)
     rival = replace(
-        fit(s.problem, null.log_p, (Suspect(1, 7, (5.0,)),), (0,), 20),
+        fit(s.problem, null.nuisance, (Suspect(1, 7, (5.0,)),), (0,), 20),
         objective=best.objective + 2.0,
         unseen=0.0,
     )

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import evaluate, fit, promised
-from trueup.core.discovery.search import Effort
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.likelihood_numbers import Effort
+from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
 
 MASS, SPRING, ABSORBER = range(3)
 
@@ -37,7 +37,7 @@ def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
     s = searcher(hidden(tension=1.1, masses=[(9, 2.0)]))
     near = (Suspect(MASS, 9, (np.log(1.98),)),)
     best = fit(s.problem, np.zeros(2), near, s.active, 25, 1e-6)
-    start = np.array([best.log_p[0] + 0.001, 0.0])
+    start = np.array([best.nuisance[0] + 0.001, 0.0])
     here = evaluate(s.problem, start, near).objective
     assert fit(s.problem, start, near, s.active, 25, 1e-6).objective == pytest.approx(
         best.objective, rel=1e-6
@@ -45,7 +45,7 @@ def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
     hope = promised(s.problem, start, near, s.active)
     assert here > 1.05 * best.objective
     assert hope == pytest.approx(best.objective, rel=0.02)
-    stays = promised(s.problem, best.log_p, best.suspects, s.active)
+    stays = promised(s.problem, best.nuisance, best.suspects, s.active)
     assert stays == pytest.approx(best.objective, abs=1e-3)
 
 

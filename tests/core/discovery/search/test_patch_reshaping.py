@@ -7,17 +7,21 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.basis import Basis, ReducedSum
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.evidence import Evidence, Noise
-from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.kinds.patches import Patch, PatchCandidates
-from trueup.core.discovery.laws import FactorLaw
-from trueup.core.discovery.problem import Prior, Problem
-from trueup.core.discovery.search import Effort, Searcher
-from trueup.core.discovery.shaping import reshaped, variants
-from trueup.core.discovery.structure import Structure
-from trueup.core.model import Term
+from trueup.core.data.parametric_model import Term
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.effect_laws import FactorLaw
+from trueup.core.discovery.effects.element_patches import Patch, on_patches
+from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
+from trueup.core.discovery.likelihood.likelihood_numbers import Effort
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.reduction.elements_and_supports import Structure
+from trueup.core.discovery.reduction.search_basis import Basis
+from trueup.core.discovery.search.moves import Searcher
+from trueup.core.discovery.search.patch_reshaping import reshaped, variants
+from trueup.core.elements.quad4 import QUAD4
+from trueup.core.reduction.reduced_sum import ReducedSum
 
 NX, NY = 11, 8
 FACTOR = 0.4
@@ -53,7 +57,7 @@ def membrane(property_of=None):
     )
     at = (6 * corners[:, :, None] + np.arange(6)).reshape(n, 24)
     member = SimpleNamespace(
-        shape="quad",
+        element=QUAD4,
         ids=np.arange(1, n + 1),
         corners=corners,
         block=SimpleNamespace(
@@ -91,17 +95,13 @@ def suspecting(structure, soft, start):
         ReducedSum((Term(sp.identity(n, format="csr")),), np.eye(n)[None]),
     )
     middle = structure.centroids(structure.members[0])[start].mean(axis=0)
-    catalogue = PatchCandidates(
-        kind="local_stiffness",
-        xyz=middle[None],
-        law=FactorLaw(),
-        trials=np.log([[0.3], [0.6]]),
-        root=sp.csr_matrix((0, n)),
-        rows_each=0,
-        where=({"elements": (start + 1).tolist()},),
-        typical=np.zeros(1),
-        spread=np.array([1.2]),
-        extra={"structure": structure, "patches": [Patch(0, start, middle, 1.0, True)]},
+    (catalogue,) = on_patches(
+        KINDS["local_stiffness"],
+        structure,
+        [Patch(0, start, middle, True)],
+        FactorLaw(),
+        np.log([[0.3], [0.6]]),
+        (np.zeros(1), np.array([1.2])),
     )
     prior = Prior(np.ones(1), -np.ones(1), np.ones(1))
     none = np.zeros((n, n))
@@ -134,7 +134,7 @@ def test_a_patch_that_is_right_stays():
 def test_rows_are_taken_on_each_side():
     structure = membrane()
     own = box((4, 6), (3, 5))
-    found = {tuple(p.rows) for p in variants(structure, Patch(0, own, np.zeros(3), 1.0, True))}
+    found = {tuple(p.rows) for p in variants(structure, Patch(0, own, np.zeros(3), True))}
     for x, y in (
         ((3, 6), (3, 5)), ((4, 7), (3, 5)), ((4, 6), (2, 5)), ((4, 6), (3, 6)),
         ((5, 6), (3, 5)), ((4, 6), (3, 4)), ((3, 7), (2, 6)),
@@ -145,7 +145,7 @@ def test_rows_are_taken_on_each_side():
 def test_a_patch_may_end_with_its_property():
     left = np.tile(np.arange(NX) >= 5, NY).astype(int)
     own = box((3, 7), (2, 5))
-    found = variants(membrane(left), Patch(0, own, np.zeros(3), 1.0, True))
+    found = variants(membrane(left), Patch(0, own, np.zeros(3), True))
     shapes = {tuple(p.rows) for p in found}
     assert tuple(box((3, 5), (2, 5))) in shapes
     assert tuple(box((5, 7), (2, 5))) in shapes

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
-from trueup.core.discovery.beam import Found
-from trueup.core.discovery.candidates import Suspect
-from trueup.core.discovery.fitting import fit
-from trueup.core.discovery.judge import judge
-from trueup.core.discovery.paths import searched, simplified
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.search.beam_search import Found
+from trueup.core.discovery.search.model_selection import judge
+from trueup.core.discovery.search.strategy import searched, simplified
 
 
 def told(s):
     found = searched(s)
     verdict = judge(s, found)
     best = found.levels[verdict.accepted]
-    return [s.problem.catalogue[q.kind].kind for q in best.suspects], best
+    return [s.problem.catalogue[q.kind].kind.name for q in best.suspects], best
 
 
 @pytest.mark.parametrize("bead", [5, 11])
@@ -48,10 +48,10 @@ def test_a_quiet_string_has_neither(seed):
 def test_an_absorber_at_its_limit_is_told_as_what_it_is_there(truth, theta, kind):
     s = searcher(hidden(**truth), modes_out=(4, 10))
     null = s.null()
-    tuned = fit(s.problem, null.log_p, (Suspect(2, 9, theta),), (0,), 20)
+    tuned = fit(s.problem, null.nuisance, (Suspect(2, 9, theta),), (0,), 20)
     found = simplified(s, Found((null, tuned), ((), ())))
     (suspect,) = found.levels[1].suspects
-    assert (s.problem.catalogue[suspect.kind].kind, suspect.row) == (kind, 9)
+    assert (s.problem.catalogue[suspect.kind].kind.name, suspect.row) == (kind, 9)
     assert found.rivals[1][0] is tuned
 
 
@@ -60,13 +60,13 @@ def test_an_absorber_that_gains_little_more_than_a_mass_is_told_as_one():
     s = searcher(hidden(absorbers=[(9, 2.0, 6.6)]), modes_out=(4, 10))
     null = s.null()
     tuned, mass = (
-        fit(s.problem, null.log_p, (Suspect(kind, 9, theta),), (0,), 20)
+        fit(s.problem, null.nuisance, (Suspect(kind, 9, theta),), (0,), 20)
         for kind, theta in ((2, (0.7, 1.9)), (0, (0.7,)))
     )
     assert tuned.objective < mass.objective - 20.0
     found = simplified(s, Found((null, tuned), ((), ())))
     (suspect,) = found.levels[1].suspects
-    assert (s.problem.catalogue[suspect.kind].kind, suspect.row) == ("point_mass", 9)
+    assert (s.problem.catalogue[suspect.kind].kind.name, suspect.row) == ("point_mass", 9)
     assert found.rivals[1] == ()
 
 

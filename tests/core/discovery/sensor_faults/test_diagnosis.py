@@ -5,8 +5,8 @@ import pytest
 from tests.core.discovery.rings import judged, planar, radial, read, survey, vibrating
 
 from trueup.core.discovery.faults import corrected, lost
-from trueup.core.discovery.sensors import judge_sensors
-from trueup.core.discovery.turning import rotation
+from trueup.core.discovery.sensor_faults.diagnosis import judge_sensors
+from trueup.core.discovery.sensor_faults.misalignment import rotation
 
 
 def faults(readings, axes=None):

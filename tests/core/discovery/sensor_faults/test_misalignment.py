@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from trueup.core.discovery.turning import about, anyhow, maps_of, rotation, tilted, vector_of
+from trueup.core.discovery.sensor_faults.misalignment import (
+    about,
+    anyhow,
+    maps_of,
+    rotation,
+    tilted,
+    vector_of,
+)
 
 MOTION = np.random.default_rng(0).normal(size=(12, 3))
 SIGMA = 0.02

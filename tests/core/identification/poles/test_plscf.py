@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from trueup.core.identification.plscf import poles_by_order
-from trueup.core.identification.stabilisation import stabilise
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.identification.poles.plscf import poles_by_order
+from trueup.core.identification.poles.pole_stabilisation import stabilise
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 
 
 def functions(frequencies, damping, n_output=12, n_input=2, seed=0, lines=None):

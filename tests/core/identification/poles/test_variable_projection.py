@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from trueup.core.identification.moments import band_data, basis, reduced_normal
-from trueup.core.identification.refinement import (
+from trueup.core.identification.poles.moments import band_data, basis, reduced_normal
+from trueup.core.identification.poles.variable_projection import (
     fit_shapes,
     free_columns,
     refine,
     solve_shapes,
     system_at,
 )
-from trueup.core.identification.synthesis import poles_from
+from trueup.core.identification.survey.modal_synthesis import poles_from
 
 
 @pytest.fixture
@@ -92,7 +92,7 @@ def test_fixed_modes_stay(problem):
 
 def test_refinement_takes_the_bias_out_of_the_linear_estimate(survey):
     """30 % noise: the linear estimate's damping is off, the refined one is not."""
-    from trueup.core.identification.plscf import poles_by_order
+    from trueup.core.identification.poles.plscf import poles_by_order
 
     frfs, truth = survey(
         5, frequencies=[50.0], damping=(0.01, 0.01), noise=0.3, band=(40, 60), outside=False

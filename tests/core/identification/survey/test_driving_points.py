@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
-from trueup.core.geometry import Geometry
-from trueup.core.identification.scaling import driving_points, scale
-from trueup.core.identification.shapes import (
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
+from trueup.core.identification.survey.driving_points import driving_points, scale
+from trueup.core.identification.survey.modal_synthesis import poles_from
+from trueup.core.identification.survey.real_shapes import (
     known_components,
     real_shapes,
     turned_to_principal_phase,
 )
-from trueup.core.identification.synthesis import poles_from
 
 POLES = poles_from(np.array([10.0, 17.0, 31.0]), np.array([0.01, 0.02, 0.005]))
 MASS = np.array([2.0, 0.5, 7.0])

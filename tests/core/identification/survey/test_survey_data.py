@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
+from trueup.core.data.dofs import Dofs
 from trueup.core.errors import InputError
 from trueup.core.identification import identify
-from trueup.core.identification.survey import noise_levels, prepare
+from trueup.core.identification.survey.survey_data import noise_levels, prepare
 
 
 @pytest.fixture(scope="module")

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from trueup.core.dofs import Dofs
-from trueup.core.frfs import Frfs
-from trueup.core.geometry import Geometry
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
+from trueup.core.data.geometry import Geometry
 from trueup.core.identification import identify
-from trueup.core.identification.rigid import rigid_share
-from trueup.core.identification.synthesis import modal_response, poles_from
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
+from trueup.core.identification.survey.suspension import rigid_share
 
 NODES = np.arange(1, 13)
 XYZ = np.random.default_rng(4).uniform(-1.0, 1.0, (12, 3))

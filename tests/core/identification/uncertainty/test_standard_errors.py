@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from trueup.core.identification.moments import band_data
-from trueup.core.identification.refinement import refine
-from trueup.core.identification.synthesis import poles_from
-from trueup.core.identification.uncertainty import errors, frequency_and_damping_errors
+from trueup.core.identification.poles.moments import band_data
+from trueup.core.identification.poles.variable_projection import refine
+from trueup.core.identification.survey.modal_synthesis import poles_from
+from trueup.core.identification.uncertainty.standard_errors import (
+    errors,
+    frequency_and_damping_errors,
+)
 
 REFERENCES = [0, 15]
 

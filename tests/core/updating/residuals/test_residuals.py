@@ -7,13 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import polar
+from tests.core.updating.weighing import eigenvalue_residuals, shape_residuals
 
-from trueup.core.correlate import Pair
-from trueup.core.correlation import mac
-from trueup.core.eigen import solve
+from trueup.core.correlation.mac import mac
+from trueup.core.correlation.mode_pairing import Pair
+from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
-from trueup.core.residuals import Weights, eigenvalue_residuals, shape_residuals
-from trueup.core.sensitivity import sensitivities
+from trueup.core.reduction.eigenpair_derivatives import sensitivities
+from trueup.core.updating.residuals import Weights
 
 
 def pair(test_hz: float, analysis_hz: float) -> Pair:
@@ -131,8 +132,11 @@ def test_residuals_of_a_ring_agree_with_central_differences(ring, spin):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"frequency": 0.0}, {"shape": -1.0}, {"frequency": np.nan}, {"regularisation": -1.0}]
+    "sigmas",
+    [{"frequency_sigma": 0.0}, {"shape_sigma": -1.0}, {"frequency_sigma": np.nan}, {"sigma": 1.0}],
 )
-def test_weights_that_make_no_sense_are_refused(wrong):
+def test_weights_that_make_no_sense_are_refused(sigmas):
     with pytest.raises(InputError):
-        Weights(**wrong)
+        Weights(sigmas)
+    with pytest.raises(InputError):
+        Weights(regularisation=-1.0)

@@ -1,0 +1,67 @@
+"""The list of residuals, and one that is added to it from outside the package."""
+
+import numpy as np
+import pytest
+from tests.core.updating.test_update import N, chain, measured
+
+from trueup.core.errors import InputError
+from trueup.core.updating.residuals import (
+    RESIDUALS,
+    Weights,
+    register_residual,
+    residuals_named,
+)
+from trueup.core.updating.update import Stage, update
+
+ALL = [range(N), range(N)]
+TRUTH = [1.2, 0.9]
+
+
+@pytest.fixture
+def weighing(documented):
+    """What docs/extending.md adds, gone again after the test."""
+    before = list(RESIDUALS)
+    yield documented("A residual")
+    RESIDUALS[:] = before
+
+
+def test_names_are_one_residual_several_or_both():
+    assert [r.name for r in residuals_named("both")] == ["frequencies", "shapes"]
+    assert [r.name for r in residuals_named("shapes, frequencies")] == ["shapes", "frequencies"]
+    assert [r.name for r in residuals_named("both, shapes")] == ["frequencies", "shapes"]
+    with pytest.raises(InputError, match="residuals is 'mass'; give one of frequencies, shapes"):
+        residuals_named("mass")
+
+
+def test_a_name_or_key_that_is_taken_is_refused():
+    with pytest.raises(InputError, match="'shapes'"):
+        register_residual(RESIDUALS[1])
+
+
+def test_each_has_its_own_default_and_key(weighing):
+    assert Weights({"shape_sigma": 0.2}).all == {
+        "frequency_sigma": 0.01, "shape_sigma": 0.2, "mass_sigma": 0.001,
+    }  # fmt: skip
+
+
+def test_a_mass_that_was_weighed_sets_the_scale_that_frequencies_leave_open(weighing):
+    model = chain(ALL, ["k", "m"])
+    target = measured(model, TRUTH)
+    assert weighing["moving_along_x"](model, model.M(np.array(TRUTH))) == pytest.approx(14.4)
+    alone = update(model, target, [Stage((0, 1), "frequencies")], n_modes=8)
+    both = update(model, target, [Stage((0, 1), "frequencies, mass", 20)], n_modes=8,
+                  weights=Weights(regularisation=0.0), tolerance=1e-7)  # fmt: skip
+    assert np.isnan(alone.standard_error).all()
+    assert abs(alone.factors - TRUTH).max() > 0.05
+    np.testing.assert_allclose(both.factors, TRUTH, rtol=1e-6)
+    assert np.isfinite(both.standard_error).all()
+
+
+def test_one_step_of_the_mass_alone_is_that_of_equation_four(weighing):
+    """16 p against 14.4: g = 16/(14.4 σ), Δp = −g r/(g² + w) with r = g (p − 0.9)."""
+    model = chain(ALL[:1], ["m"])
+    done = update(model, measured(model, [0.9]), [Stage((0,), "mass", 1)], n_modes=8,
+                  weights=Weights({"mass_sigma": 0.1}, 50.0))  # fmt: skip
+    g = 16.0 / 14.4 / 0.1
+    assert done.factors[0] == pytest.approx(1.0 - 0.1 * g**2 / (g**2 + 50.0), rel=1e-9)
+    assert done.history[0].objective == pytest.approx((0.1 * g) ** 2, rel=1e-9)

@@ -1,0 +1,125 @@
+"""`trueup.correlate`: files or objects in, the tables of result.json out, typed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trueup
+
+DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
+FILES = (DUCT / "duct.bdf", DUCT / "duct_test.unv")
+
+
+@pytest.fixture(scope="module")
+def found() -> trueup.Correlated:
+    return trueup.correlate(*FILES, deck_length_unit="mm")
+
+
+def test_objects_give_what_files_give(found: trueup.Correlated) -> None:
+    deck, test = trueup.read_deck(str(FILES[0])), trueup.read_test([FILES[1]])
+    same = trueup.correlate(deck, test, deck_length_unit="mm")
+    assert same.to_dict() == found.to_dict()
+    assert same.study.test == (FILES[1],)
+
+
+def test_a_run_of_objects_says_what_it_can_be_run_again_with(tmp_path: Path) -> None:
+    test = replace(trueup.read_test(FILES[1]), files=())
+    modes = trueup.solve(FILES[0], 12)
+    found = trueup.correlate(FILES[0], test, deck_length_unit="mm", modes=modes)
+    assert len(found.analysis_hz) == len(modes.shapes)
+    assert "test =" not in (found.save(tmp_path / "run") / "study.toml").read_text()
+
+
+def test_its_tables_are_typed(found: trueup.Correlated) -> None:
+    first = found.pairs[0]
+    assert (first.test, first.mac > 0.7) == (1, True)
+    assert found.mac.values.shape == (len(found.test_hz), len(found.analysis_hz))
+    assert found.summary.pairs == len(found.pairs)
+    assert found.alignment.sensors[0].direction
+    assert found.alignment.scale == pytest.approx(1000.0)
+
+
+def test_what_is_saved_is_opened_again(found: trueup.Correlated, tmp_path: Path) -> None:
+    folder = found.save(tmp_path / "run")
+    again = trueup.read(folder)
+    assert isinstance(again, trueup.Correlated)
+    assert again.to_dict() == found.to_dict() == json.loads((folder / "result.json").read_text())
+    shapes = found.content.modes["analysis"].shapes
+    assert np.array_equal(again.content.modes["analysis"].shapes, shapes)
+    assert again.study.deck_length_unit == "mm"
+    again.save(tmp_path / "again")
+    names = {str(p.relative_to(folder)) for p in folder.rglob("*.*")}
+    assert {"tables/pairs.csv", "tables/mac.csv", "tables/alignment_sensors.csv"} < names
+    for name in names - {"result.h5", "study.toml"}:
+        assert (folder / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name
+
+
+def test_a_run_folder_is_not_replaced_unless_asked(
+    found: trueup.Correlated, tmp_path: Path
+) -> None:
+    found.save(tmp_path / "run")
+    with pytest.raises(trueup.InputError, match="exists"):
+        found.save(tmp_path / "run")
+    found.save(tmp_path / "run", force=True)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mac_mim": 0.7}, "correlate: unknown key 'mac_mim'; did you mean 'mac_min'"),
+        ({"residuals": "both"}, "correlate: unknown key 'residuals'"),
+        ({"mac_min": "high"}, "'mac_min' has a value of the wrong type: 'high'"),
+        ({"mac_min": 1.5}, "mac_min is 1.5; give a value above 0"),
+        ({"rotate": "both"}, "rotate is 'both'"),
+        ({"deck_length_unit": "cm"}, "deck_length_unit is 'cm'"),
+        ({"study": 3}, "study is 3"),
+        ({"parameters": "nothing"}, "nothing"),
+        ({"parameters": ["PBAR 999 I1"]}, "PBAR 999"),
+        ({"modes": 3}, "modes is given as int"),
+    ],
+)
+def test_options_that_are_none_are_named(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(trueup.InputError, match=said):
+        trueup.correlate(*FILES, **given)
+
+
+@pytest.mark.parametrize(
+    ("deck", "test", "said"),
+    [
+        (3, FILES[1], "a deck is given as int"),
+        (None, FILES[1], "give a deck and a test"),
+        (FILES[0], None, "give a deck and a test"),
+        (FILES[0], 3.0, "a test is given as float"),
+        (FILES[0], [], "no file of a test is given"),
+        (FILES[0], [FILES[1], None], "a test is given as NoneType"),
+        (FILES[0], "nowhere.unv", "nowhere.unv does not exist"),
+        ("nowhere.bdf", FILES[1], "nowhere.bdf"),
+        (FILES[1], FILES[1], "duct_test.unv"),
+    ],
+)
+def test_sources_that_are_none_are_named(deck: Any, test: Any, said: str) -> None:
+    with pytest.raises(trueup.InputError, match=said):
+        trueup.correlate(deck, test)
+
+
+def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(trueup.InputError, match="not a run folder"):
+        trueup.open_run(tmp_path)
+    (tmp_path / "result.json").write_text('{"schema": "trueup/correlate/1"}')
+    with pytest.raises(trueup.InputError, match=r"no result\.h5"):
+        trueup.open_run(tmp_path)
+
+
+def test_a_result_that_lacks_a_key_is_refused(found: trueup.Correlated, tmp_path: Path) -> None:
+    path = found.save(tmp_path / "run") / "result.json"
+    values = json.loads(path.read_text())
+    values["pairs"][3].pop("mac")
+    path.write_text(json.dumps(values))
+    with pytest.raises(trueup.InputError, match=r"result\.json: 'pairs\[3\]\.mac' is missing"):
+        trueup.open_run(tmp_path / "run")
