@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import reprlib
 import types
 import typing
 from collections.abc import Iterable, Iterator, Mapping
@@ -202,7 +203,7 @@ def typed(kind: type[T], value: object, where: str = "") -> T:
 
 
 def _typed(kind: Any, value: object, where: str) -> Any:
-    origin, inner = typing.get_origin(kind), typing.get_args(kind)
+    origin, inner = _parts(kind)
     if origin in (Union, types.UnionType):
         if value is None and type(None) in inner:
             return None
@@ -226,7 +227,14 @@ def _typed(kind: Any, value: object, where: str) -> Any:
         return math.nan if value is None else value
     elif kind is Any or (isinstance(kind, type) and isinstance(value, kind)):
         return value
-    raise InputError(f"'{where}' is {value!r}, which is no {getattr(kind, '__name__', kind)}")
+    shown = reprlib.repr(value)
+    raise InputError(f"'{where}' is {shown}, which is no {getattr(kind, '__name__', kind)}")
+
+
+def _parts(kind: Any) -> tuple[Any, tuple[Any, ...]]:
+    origin, inner = typing.get_origin(kind), typing.get_args(kind)
+    alias = getattr(origin, "__value__", None)  # numpy 2.5 makes NDArray a `type` statement
+    return (origin, inner) if alias is None else _parts(alias[inner])
 
 
 def _is_number(value: object) -> bool:
