@@ -17,9 +17,8 @@ from ..adapters.report.tables.number_formats import MISSING, fixed, general, hz,
 if TYPE_CHECKING:
     from ..adapters.report.tables import table as report_table
     from ..core.results.correlation import Compared, RunTables
-    from ..core.results.identification import IdentifiedRow
     from ..core.results.inspection import FileRow
-    from ..core.results.solution import SolveTables
+    from ..core.results.modes import IdentifiedRow, SolveTables
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side

@@ -22,8 +22,7 @@ from ..core.discovery.screening.completed_model import (
     upheld,
     written_factor,
 )
-from ..core.discovery.screening.reference_modes import reference_modes
-from ..core.discovery.screening.suspension_modes import said_of_others, vibrating
+from ..core.discovery.screening.mode_selection import reference_modes, said_of_others, vibrating
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import InputError
 from ..core.localisation.error_localisation import Disagreement, agrees, disagreement

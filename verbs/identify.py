@@ -15,7 +15,7 @@ from ..adapters.universal.universal_content import Skipped, Units
 from ..core.data.frfs import Frfs
 from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
-from ..core.results.identification import IdentifyTables, identified
+from ..core.results.modes import IdentifyTables, identified
 from ..core.results.plain import BESIDE
 from .options import Say, checked_call, unheard
 from .run import Folder

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.errors import InputError, Place, path_of
 from ..core.results.correlation import CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
-from ..core.results.identification import IdentifyTables
+from ..core.results.modes import IdentifyTables
 from ..core.results.update import UpdateTables
 from .open_run import read_content, read_diff, read_result
 

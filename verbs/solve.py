@@ -13,8 +13,8 @@ from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.eigen import normal_modes
 from ..core.errors import InputError, Place, naming, path_of
+from ..core.results.modes import Checks, ModeRow, SolveTables
 from ..core.results.plain import BESIDE, Table
-from ..core.results.solution import Checks, ModeRow, SolveTables
 from .options import Say, checked_call, unheard
 from .run import Folder
 from .sources import Source, geometry_of, read_deck

@@ -6,7 +6,7 @@ from functools import partial
 from io import BytesIO
 from typing import Any
 
-from ...core.optional import optional
+from ...core.late_imports import optional
 
 INK, FAINT, MESH = "#333333", "#8a8a8a", "#c8ccd2"
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.optional import optional
+from ...core.late_imports import optional
 from ...core.results.correlation import Compared
 from .figure import FAINT, INK, figure
 

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...core.arrays import Floats, Ints
-from ...core.optional import optional
+from ...core.late_imports import optional
 from ...core.results.correlation import PairRow
 from .figure import FAINT, INK, MESH, figure
 

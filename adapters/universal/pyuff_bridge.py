@@ -17,7 +17,7 @@ from typing import Any
 from ...core.data.frfs import Frfs
 from ...core.data.measurement import Measurement
 from ...core.errors import InputError
-from ...core.optional import optional
+from ...core.late_imports import optional
 from .write_universal import write_universal
 
 SAID = "pyuff's sets"

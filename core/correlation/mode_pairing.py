@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from ..arrays import Bools, Floats, Numbers, frozen
 from ..errors import InputError
 from ..noun import Noun
-from .assignment import assign
 from .mac import mac, realised
-from .mode_clusters import clusters_by_bandwidth
-from .subspace_rotation import ClusterRotation, rotate_cluster, subspace_mac
+from .subspace_rotation import ClusterRotation, clusters_by_bandwidth, rotate_cluster, subspace_mac
 
 SIDES = ("analysis", "test", "none")
 
@@ -258,3 +257,30 @@ def _pair(
         cluster,
         angle,
     )
+
+
+def assign(score: Floats, allowed: Bools) -> tuple[tuple[int, int], ...]:
+    """One-to-one assignment of rows to columns that maximises the summed score.
+
+    Parameters
+    ----------
+    score : (n_row, n_col) float
+        For modes: the MAC.
+    allowed : (n_row, n_col) bool
+        Pairs that may be formed at all; the assignment forms as many of these as add to the
+        sum and never another.
+
+    Returns
+    -------
+    tuple of (row, column)
+        By rising row.
+
+    References
+    ----------
+    Kuhn (1955), the Hungarian method, in scipy's implementation.
+    """
+    if score.size == 0:
+        return ()
+    gain = np.where(allowed, np.maximum(score, 0.0), 0.0)
+    rows, cols = linear_sum_assignment(gain, maximize=True)
+    return tuple((int(r), int(c)) for r, c in zip(rows, cols, strict=True) if allowed[r, c])

@@ -16,8 +16,8 @@ from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates
+from .effects.effect_kind import Scale
 from .effects.effect_laws import ReleaseLaw
-from .effects.effect_scale import Scale
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
@@ -45,7 +45,7 @@ from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import polished
 from .search.strategy import searched
-from .sensor_faults.sensor_check import Bench
+from .sensor_faults.diagnosis import Bench
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:

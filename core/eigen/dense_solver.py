@@ -10,8 +10,7 @@ from ..data.parametric_model import Model
 from ..errors import InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from .mechanisms import diagnose
-from .pencil import Pencil
-from .solver_result import Spectrum
+from .pencil import Pencil, Spectrum
 
 _NO_MASS = 1e-12
 

@@ -16,12 +16,10 @@ from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.factorisation import Backend, Factorisation, best_backend, factorise
 from .dense_solver import dense_modes
-from .linkages import refuse_linkage
-from .mechanisms import Massless, hold, mechanism, strain_free
-from .pencil import Pencil
+from .mechanisms import Massless, hold, mechanism, refuse_linkage, strain_free
+from .pencil import Pencil, Spectrum
 from .rigid_body_modes import RigidBody, rigid_body
 from .shift_invert_solver import Request, sparse_modes
-from .solver_result import Spectrum
 
 _DENSE = 600
 _DEFAULT_MODES = 10

@@ -1,7 +1,8 @@
-"""The matrices of K x = lambda M x, aligned so that K - sigma M keeps one sparsity pattern."""
+"""K x = lambda M x: its matrices, aligned for K - sigma M, and what a solver hands back."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,7 +11,9 @@ import scipy.sparse as sp
 from ..arrays import Floats, Ints, require_finite
 from ..data.parametric_model import Model
 from ..errors import InputError
+from ..noun import Noun
 from ..numerics.block_lanczos import NEGATIVE_MASS
+from ..numerics.factorisation import Factorisation
 
 _ROUNDING = 1e-12
 """Mass over stiffness, beside that of most, below which a mass is rounding of a rotation."""
@@ -203,3 +206,37 @@ def refuse_indefinite_mass(pencil: Pencil) -> None:
         q = image - Q @ T[:, j]
     if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -1e-6:
         raise InputError(NEGATIVE_MASS)
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum(Noun):
+    """Modes besides the rigid-body modes that were known beforehand.
+
+    Parameters
+    ----------
+    values : (n_mode,) float
+        Ascending.
+    vectors : (n, n_mode) float
+        M-orthonormal, and M-orthogonal to the known ones.
+    residual : (n_mode,) float
+        ||x - (lambda - sigma) A^-1 M x||_M with A = K - sigma M.
+    sigma : float
+        The shift.
+    complete : bool
+        Whether these are all modes that the mass matrix allows.
+    missed : int or None
+        Eigenvalues that the inertia count shows but that are not here; None without a count.
+    factor : Factorisation or None
+        Of K - sigma M.
+    ahead : (n,) float
+        Rough values of the next eigenvalues, to find a gap.
+    """
+
+    values: Floats
+    vectors: Floats
+    residual: Floats
+    sigma: float
+    complete: bool
+    missed: int | None
+    factor: Factorisation | None = None
+    ahead: Floats = field(default_factory=lambda: np.zeros(0))

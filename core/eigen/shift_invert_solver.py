@@ -13,8 +13,7 @@ from ..errors import CheckError, InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS, BlockLanczos
 from ..numerics.factorisation import Backend, Factorisation, NotDefinite, factorise
 from .mechanisms import diagnose, refuse_unresisted
-from .pencil import Pencil, refuse_indefinite_mass
-from .solver_result import Spectrum
+from .pencil import Pencil, Spectrum, refuse_indefinite_mass
 
 _FIRST_SHIFT_HZ = 20.0  # a guess, bettered when the first Ritz values are seen
 _SHIFTS = 6  # guesses at most

@@ -9,11 +9,10 @@ from __future__ import annotations
 from ..errors import InputError
 from .bar import BAR, ROD
 from .beam import BEAM
-from .bush import BUSH, GROUNDED_BUSH
 from .curved_shell import QUAD8, TRIA6
 from .element import Element
 from .hexa import HEXA8, HEXA20
-from .lumped import MASS, SPRING
+from .lumped import BUSH, GROUNDED_BUSH, MASS, SPRING
 from .penta import PENTA6, PENTA15
 from .pyramid import PYRAMID5, PYRAMID13
 from .quad4 import QUAD4

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import InputError, path_of
-from ..optional import optional
+from ..late_imports import optional
 
 _UNITS = {"hz": "Hz", "percent": "%", "deg": "°"}
 """Units of the keys of result.json, by the last word of the key."""

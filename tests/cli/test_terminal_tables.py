@@ -12,10 +12,9 @@ from rich.console import Console, RenderableType
 
 from trueup.cli import terminal_tables
 from trueup.core.results.correlation import Compared, RunTables
-from trueup.core.results.identification import IdentifiedRow
 from trueup.core.results.inspection import FileRow, SkippedRow
+from trueup.core.results.modes import Checks, IdentifiedRow, ModeRow, SolveTables
 from trueup.core.results.plain import Table
-from trueup.core.results.solution import Checks, ModeRow, SolveTables
 from trueup.verbs.report import answer_of
 
 

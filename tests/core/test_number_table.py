@@ -16,7 +16,7 @@ FORMULAS: dict[str, set[float]] = {
     "element_patches.py": {4},
     "joint_flexibility.py": {4, 5},
     "support_flexibility.py": {4, 5, 7},
-    "region_names.py": {360.0},
+    "sentences.py": {360.0},
     "moments.py": {4, 5},
     "pole_stabilisation.py": {4},
     "significance.py": {4, 70.0},

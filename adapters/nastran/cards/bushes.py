@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices
-from ....core.elements.bush import BUSH, GROUNDED_BUSH, bush_stiffness
+from ....core.elements.lumped import BUSH, GROUNDED_BUSH, bush_stiffness
 from ....core.errors import Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, FieldError, Fields, Known, Values, take

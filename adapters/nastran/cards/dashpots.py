@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....core.arrays import Ints, Matrices
-from ....core.elements.bush import BUSH, bush_stiffness
+from ....core.elements.lumped import BUSH, bush_stiffness
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card
 from ..deck.movable_values import Moves

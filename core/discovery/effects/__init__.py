@@ -19,7 +19,7 @@ from .effect_kind import MASS as MASS
 from .effect_kind import STIFFNESS as STIFFNESS
 from .effect_kind import EffectKind as EffectKind
 from .effect_kind import Magnitude as Magnitude
-from .effect_scale import Scale as Scale
+from .effect_kind import Scale as Scale
 
 KINDS: dict[str, EffectKind] = {
     k.name: k

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates
-from .effect_kind import MASS, EffectKind, Words
+from .effect_kind import MASS, EffectKind, Scale, Words
 from .effect_laws import MassLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .element_patches import PatchCandidates, area_of, on_patches, patches_of
 
 

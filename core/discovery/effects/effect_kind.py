@@ -1,4 +1,4 @@
-"""A kind of effect: all that is particular about it, in one declaration."""
+"""A kind of effect: all that is particular about it, in one declaration; what is large or small."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 
 if TYPE_CHECKING:
     from .candidates import Candidates
@@ -109,3 +110,34 @@ class EffectKind:
     def joins(self, other: EffectKind) -> bool:
         """Whether two effects side by side may be one."""
         return self.nature == other.nature != ""
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """What is large and small on this structure.
+
+    Parameters
+    ----------
+    mass : float
+        Of the whole structure.
+    size : float
+        Diagonal of its box.
+    omega2 : float
+        (rad/s)² in the middle of the measured band.
+    band_hz : (float, float)
+        Lowest and highest frequency that was measured.
+    """
+
+    mass: float
+    size: float
+    omega2: float
+    band_hz: tuple[float, float]
+
+    def masses(self, count: int = EFFECTS.trials) -> Floats:
+        """Trial masses, ln, (count, 1)."""
+        return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
+
+    def springs(self, count: int = EFFECTS.trials) -> Floats:
+        """Trial stiffnesses, ln, (count, 1)."""
+        stiffness = self.mass * self.omega2 * np.geomspace(*EFFECTS.spring_trials, count)
+        return np.asarray(np.log(stiffness))[:, None]

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates
-from .effect_kind import STIFFNESS, EffectKind
+from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import SpringLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .structure_points import along_axes, points_of
 
 

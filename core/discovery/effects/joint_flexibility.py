@@ -8,10 +8,9 @@ import scipy.sparse as sp
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure, shelled
 from .candidates import Candidates
-from .effect_kind import STIFFNESS, EffectKind
+from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:

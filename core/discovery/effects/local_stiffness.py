@@ -7,10 +7,9 @@ import numpy as np
 from ..reduction.elements_and_supports import Structure
 from .bar_members import bars_of
 from .candidates import Candidates
-from .effect_kind import FACTOR, EffectKind
+from .effect_kind import FACTOR, EffectKind, Scale
 from .effect_laws import FactorLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .element_patches import on_patches, patches_of
 
 

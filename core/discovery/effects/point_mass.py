@@ -9,10 +9,9 @@ import numpy as np
 
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates
-from .effect_kind import MASS, EffectKind
+from .effect_kind import MASS, EffectKind, Scale
 from .effect_laws import MassLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .element_patches import Patch, on_patches, patches_of
 from .structure_points import points_of, translations
 

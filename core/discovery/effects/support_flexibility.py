@@ -12,10 +12,9 @@ from scipy.spatial import cKDTree
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Structure, Supports, thinned
 from .candidates import Candidates, Ends
-from .effect_kind import STIFFNESS, EffectKind
+from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .shell_edges import Edge, edges_of
 
 _TOGETHER = ((4, 5, 6), (1, 2, 3))

@@ -8,10 +8,9 @@ from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
 from . import ground_spring, point_mass
 from .candidates import Candidates
-from .effect_kind import EffectKind, Magnitude
+from .effect_kind import EffectKind, Magnitude, Scale
 from .effect_laws import TunedLaw
 from .effect_numbers import EFFECTS
-from .effect_scale import Scale
 from .structure_points import along_axes, points_of
 
 

@@ -29,9 +29,8 @@ from ..search.model_selection import (
 from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
 from .narrative_numbers import NARRATIVE
-from .region_names import region
 from .sensor_findings import accusations, remarks
-from .sentences import magnitude_of, sentence_of
+from .sentences import magnitude_of, region, sentence_of
 
 
 def build_discovery(

@@ -20,7 +20,7 @@ from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.request import Request
 from ..search.model_selection import times
 from .narrative_numbers import NARRATIVE
-from .region_names import region
+from .sentences import region
 
 
 def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discovery:

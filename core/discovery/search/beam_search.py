@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from itertools import islice
 
 from ..effects.candidates import Suspect
-from ..likelihood.hypothesis import Fit, softened
+from ..likelihood.hypothesis import Fit, distinct, softened
 from ..likelihood.map_fit import evaluate, fit
 from .moves import Searcher
-from .same_hypothesis import distinct
 from .search_numbers import SEARCH
 
 

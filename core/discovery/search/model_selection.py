@@ -10,11 +10,10 @@ import numpy as np
 from ...arrays import Bools, Floats
 from ..effects.candidates import Suspect
 from ..likelihood.frf_evidence import misfit_of_responses
-from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
 from .beam_search import Found
 from .moves import Searcher
-from .same_hypothesis import unmatched
 from .search_numbers import SEARCH
 
 

@@ -15,9 +15,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..effects.candidates import Candidates, Suspect
-from ..likelihood.hypothesis import Fit
+from ..likelihood.hypothesis import Fit, softened
+from ..likelihood.map_fit import fit
 from .beam_search import Found, grown
-from .graduated_nonconvexity import guided
 from .model_selection import cost, enough, noise_scale, with_unseen
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -168,3 +168,25 @@ def _joined(best: Found, other: Found) -> Found:
         if k:
             rivals[k].append(f)
     return Found(best.levels, tuple(tuple(level) for level in rivals))
+
+
+def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
+    """Return what grows from the hypotheses that a search by a wider noise finds.
+
+    Two effects may each explain nothing alone: the shapes are as wrong with one as with none, and
+    a misfit that levels off for what is far away does not tell that one of them is right. By
+    several times the noise it does (graduated non-convexity: Blake and Zisserman 1987, chapter 3).
+    """
+    wide = replace(searcher, problem=softened(searcher.problem))
+    found = grown(wide, enough(wide), progress)
+    levels = [_by_the_test(searcher, f) for f in found.levels]
+    best = int(np.argmin([f.objective for f in levels]))
+    if not best:
+        return Found(tuple(levels[:1]), ((),))
+    return grown(searcher, enough(searcher), progress, levels[: best + 1])
+
+
+def _by_the_test(searcher: Searcher, f: Fit) -> Fit:
+    """Return a fit by the noise of the test, every suspect at its best neighbour."""
+    start = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
+    return searcher.refined(start) if f.suspects else start

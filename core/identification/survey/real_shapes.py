@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Bools, Floats, Numbers
-from ...correlation.mode_clusters import clusters_by_bandwidth
+from ...correlation.subspace_rotation import clusters_by_bandwidth
 from .survey_numbers import SURVEY
 
 

@@ -1,6 +1,6 @@
 import numpy as np
 
-from trueup.core.correlation.assignment import assign
+from trueup.core.correlation.mode_pairing import assign
 
 
 def test_the_assignment_is_best_in_sum_not_greedy():

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trueup.core.correlation.mode_clusters import clusters_by_bandwidth
+from trueup.core.correlation.subspace_rotation import clusters_by_bandwidth
 
 
 def test_a_pair_is_a_cluster_and_a_lone_mode_is_not():

@@ -5,7 +5,7 @@ import pytest
 
 from trueup.core.elements.bar import bar_mass, bar_stiffness
 from trueup.core.elements.beam import BeamSections, beam_mass, beam_stiffness
-from trueup.core.elements.bush import bush_stiffness
+from trueup.core.elements.lumped import bush_stiffness
 
 E, G, L = 2.0e5, 8.0e4, 30.0
 XA, XB, V = np.zeros((1, 3)), np.array([[L, 0.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from trueup.core.errors import InputError
-from trueup.core.optional import optional
+from trueup.core.late_imports import optional
 from trueup.core.results.correlation import MacTable
 from trueup.core.results.plain import Table, Tables
 

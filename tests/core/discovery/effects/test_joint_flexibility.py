@@ -3,7 +3,7 @@
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.discovery.build_structure import build_structure
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.effects.effect_scale import Scale
+from trueup.core.discovery.effects.effect_kind import Scale
 
 DECK = """CEND
 BEGIN BULK

@@ -6,10 +6,9 @@ import pytest
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.discovery.build_structure import build_structure
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.effects.effect_scale import Scale
+from trueup.core.discovery.effects.candidates import Suspect, beside
+from trueup.core.discovery.effects.effect_kind import Scale
 from trueup.core.discovery.effects.shell_edges import edges_of
-from trueup.core.discovery.effects.stretches import beside
 
 N = 4
 DECK = """CEND

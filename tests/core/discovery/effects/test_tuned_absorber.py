@@ -10,9 +10,9 @@ from tests.core.discovery.strings import K, M, N, hidden, searcher
 from trueup.core.discovery.effects.candidates import Suspect, changed, magnitudes
 from trueup.core.discovery.effects.effect_laws import TunedLaw
 from trueup.core.discovery.likelihood.map_fit import _normal_equations, evaluate, fit
+from trueup.core.discovery.search.coarse_scan import promising
 from trueup.core.discovery.search.exact_scan import _attached, scan
 from trueup.core.discovery.search.model_selection import cost, judge, price, with_unseen
-from trueup.core.discovery.search.secular_screening import promising
 from trueup.core.discovery.search.strategy import searched
 
 RIGID = TunedLaw(np.zeros((1, 1)), 0.0)

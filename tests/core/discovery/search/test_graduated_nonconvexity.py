@@ -9,8 +9,8 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search.beam_search import grown
-from trueup.core.discovery.search.graduated_nonconvexity import guided
 from trueup.core.discovery.search.model_selection import enough
+from trueup.core.discovery.search.strategy import guided
 
 MASSES = [(8, 3.0), (22, 5.0)]
 

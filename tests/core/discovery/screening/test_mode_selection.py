@@ -4,7 +4,7 @@ from types import SimpleNamespace as Of
 
 import numpy as np
 
-from trueup.core.discovery.screening.suspension_modes import elastic
+from trueup.core.discovery.screening.mode_selection import elastic
 
 X = np.linspace(-1.0, 1.0, 9)
 RIGID = np.column_stack([np.ones(9), X])

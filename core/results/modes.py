@@ -1,4 +1,4 @@
-"""The tables of an identification."""
+"""The tables of modes: identified, and solved for."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TypedDict
 
 import numpy as np
 
+from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..identification.result import Identification
-from .plain import Table, Tables
+from .plain import Table, Tables, key
 
 _HZ = {"unit": "Hz"}
 
@@ -124,3 +125,37 @@ def _places(dofs: Dofs) -> Table[PlaceRow]:
 
 def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """A normal mode; its generalised mass belongs to the scale in which its shape is given."""
+
+    frequency_hz: float = field(metadata={"unit": "Hz"})
+    generalized_mass: float
+
+
+@dataclass(frozen=True)
+class Checks:
+    """What an eigensolution was checked by; `missed` by the Sturm count, None: not counted."""
+
+    residual: float
+    orthonormality: float
+    missed: int | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SolveTables(Tables):
+    """What ``solve`` answers; `mass` and `centre_of_gravity` (3,) are those of a deck."""
+
+    verb = "solve"
+    deck_file: str = field(metadata=key("deck"))
+    modes: Table[ModeRow]
+    rigid_body_modes: int
+    mass: float | None
+    centre_of_gravity: Floats | None
+    checks: Checks
+    degrees_of_freedom: int
+    backend: str
+    seconds: float
+    warnings: tuple[str, ...]

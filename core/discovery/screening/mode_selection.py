@@ -1,4 +1,4 @@
-"""Modes of the test that are no vibration of the structure: it swings on its suspension."""
+"""Which modes take part: those of the model as it is, and of the test those that are elastic."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from ...arrays import Bools, Floats, Ints
 from ...correlation.comparison import Placed
 from ...correlation.mac import realised
 from ...data.parametric_model import Model
+from ...eigen import normal_modes
 from ...eigen.normal_modes import Eigensolution
 from ...errors import InputError
 from .screening_numbers import SCREENING
@@ -67,3 +68,20 @@ def said_of_others(numbers: Ints) -> tuple[str, ...]:
         f"{subject} of the structure as a whole (at 0 Hz, or on its suspension), and no evidence "
         "of what the model lacks",
     )
+
+
+def reference_modes(model: Model, top_hz: float) -> Eigensolution:
+    """Solve a model for a discovery; the factor is kept.
+
+    Parameters
+    ----------
+    model : Model
+    top_hz : float
+        Up to where modes may pair with the test.
+    """
+    fmax = SCREENING.modes_above * top_hz / SCREENING.usual
+    solution = normal_modes.solve(model, fmax=fmax, keep_factor=True)
+    least = SCREENING.modes_least
+    if len(solution.eigenvalues) < least < model.n_free // SCREENING.modes_times:
+        solution = normal_modes.solve(model, n_modes=least, keep_factor=True)
+    return solution
