@@ -1,10 +1,11 @@
-"""How the nouns show themselves: one line, never their arrays."""
+"""How the nouns show themselves: one line, never their arrays; what stands in tables."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sized
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,17 @@ _SHORT = 40
 """Characters of one value in it."""
 _FEW = 3
 """Members of a tuple that are shown themselves."""
+
+ROLE = "table"
+OPTIONAL = MappingProxyType({ROLE: "optional"})
+"""Metadata of a field whose key in result.json is absent where the value is None."""
+BESIDE = MappingProxyType({ROLE: None})
+"""Metadata of a field that is no part of the table."""
+
+
+def key(name: str) -> Mapping[str, str]:
+    """Return the metadata of a field whose key differs from its name."""
+    return {ROLE: f"key {name}"}
 
 
 class Noun:

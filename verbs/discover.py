@@ -29,8 +29,6 @@ from ..core.localisation.error_localisation import Disagreement, agrees, disagre
 from ..core.results.correlation import compared
 from ..core.results.discovery import (
     JudgementTable,
-    alternative_rows,
-    finding_rows,
     gap_table,
 )
 from ..core.results.evidence import damping_table, misfit_table, response_table
@@ -129,8 +127,10 @@ def discover(
         input_deck=str(deck.path),
         test_files=tuple(map(str, side.files)),
         verdict=found.verdict,
-        findings=finding_rows(found, done.cards),
-        alternatives=alternative_rows(found),
+        findings=Table(
+            replace(f, cards=tuple(own)) for f, own in zip(found.findings, done.cards, strict=True)
+        ),
+        alternatives=Table(found.alternatives),
         gap=gap_table(found, before, after),
         parameters=_parameters(known.specs, structure.model, found),
         would_decide=found.would_decide,

@@ -15,8 +15,8 @@ from ..adapters.universal.universal_content import Skipped, Units
 from ..core.data.frfs import Frfs
 from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
-from ..core.results.modes import IdentifyTables, identified
-from ..core.results.plain import BESIDE
+from ..core.noun import BESIDE
+from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_rows
 from .options import Say, checked_call, unheard
 from .run import Folder
 from .sources import Source, existing, files_of
@@ -142,10 +142,16 @@ def identify(
     progress("identifying")
     found = find(read.frfs, fmin=fmin, fmax=fmax, max_order=max_order, geometry=read.geometry)
     warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
-    name = ", ".join(p.name for p in files)
+    name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
     return Identified(
         frf=tuple(map(str, files)),
-        **identified(found),
+        modes=mode_rows(found),
+        references=place_rows(found.references),
+        responses=place_rows(found.modes.dofs),
+        bands=band_rows(found),
+        quantity=found.quantity,
+        lines=len(hz),
+        range_hz=(float(hz[0]), float(hz[-1])),
         warnings=warnings,
         content=StoreContent(
             geometry=read.geometry,

@@ -11,10 +11,12 @@ from ..adapters.nastran.editing.changed_deck import ChangedDeck
 from ..adapters.store import StoreContent
 from ..core.correlation.comparison import Comparison
 from ..core.errors import path_of
+from ..core.noun import BESIDE
 from ..core.results.correlation import Compared, CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
-from ..core.results.plain import BESIDE, Table, Tables
-from ..core.results.update import ChangingTables, InPlace, IterationRow, UpdateTables
+from ..core.results.plain import Table, Tables
+from ..core.results.update import ChangingTables, InPlace, UpdateTables
+from ..core.updating.stages import Iteration
 from .study import Study, read_study, study_toml
 
 if TYPE_CHECKING:
@@ -167,7 +169,7 @@ def content_of(
     before: Comparison,
     final: Compared,
     after: Comparison | None = None,
-    history: Sequence[IterationRow] = (),
+    history: Sequence[Iteration] = (),
 ) -> StoreContent:
     """Return the neutral model of a run.
 
@@ -179,7 +181,7 @@ def content_of(
         Tables of `after`, or of `before` where nothing was changed.
     after : Comparison, optional
         Of the changed deck.
-    history : sequence of IterationRow
+    history : sequence of Iteration
         Of an update.
     """
     last = after or before

@@ -13,8 +13,9 @@ from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.eigen import normal_modes
 from ..core.errors import InputError, Place, naming, path_of
+from ..core.noun import BESIDE
 from ..core.results.modes import Checks, ModeRow, SolveTables
-from ..core.results.plain import BESIDE, Table
+from ..core.results.plain import Table
 from .options import Say, checked_call, unheard
 from .run import Folder
 from .sources import Source, geometry_of, read_deck

@@ -14,7 +14,8 @@ from ..core.data.parametric_model import Model
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import CheckError, InputError
 from ..core.results.correlation import compared
-from ..core.results.update import iteration_rows, parameter_rows, weights_table
+from ..core.results.plain import Table
+from ..core.results.update import parameter_rows, weights_table
 from ..core.updating import update as core
 from .analysis import Analysis, both_given, correlated, named, read_analysis
 from .options import Files, Say, UpdateOptions, study_of, unheard
@@ -98,7 +99,7 @@ def update(
     before, after = (comparison(s) for s in states if isinstance(s, Eigensolution))
     progress("writing the updated deck and solving it again")
     changed, values = _written(analysis, done)
-    history = iteration_rows(done.history)
+    history = Table(done.history)
     final = replace(compared(after), warnings=())
     assert analysis.deck is not None
     return Updated(

@@ -2,63 +2,82 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
 
+from ..arrays import Floats
+from ..noun import BESIDE, OPTIONAL
 from .faults import Fault
 
 VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Where:
+    """Where something is: what is there, `xyz` in deck units, `region` in words.
+
+    A place that explains the data about as well has the `kind` that would explain them there, and
+    `weight`, its share of the probability.
+    """
+
+    grids: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    elements: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    sensors: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    free_components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    xyz: tuple[float, ...]
+    region: str | None = field(default=None, metadata=OPTIONAL)
+    directions: tuple[str, ...] | None = field(default=None, metadata=OPTIONAL)
+    weight: float | None = field(default=None, metadata=OPTIONAL)
+    kind: str | None = field(default=None, metadata=OPTIONAL)
+
+    @classmethod
+    def of(cls, place: Mapping[str, Sequence[Any]], xyz: Floats, **more: Any) -> Self:
+        """Return a place as candidates describe it: see `Candidates.where`."""
+        named: dict[str, Any] = {k: tuple(v) for k, v in place.items()}
+        return cls(**named, xyz=tuple(xyz.tolist()), **more)
+
+    @property
+    def size(self) -> int:
+        """Number of grids, elements or sensors that it names; at least 1."""
+        return max(len(self.grids or ()), len(self.elements or ()), len(self.sensors or ()), 1)
 
 
 @dataclass(frozen=True)
 class Finding:
     """Something that is missing in the model or wrong in the test.
 
-    Parameters
-    ----------
-    side : {"model", "test"}
-    kind : str
-        One of the fixed words.
-    where : dict
-        ``grids``, ``elements`` or ``sensors``, ``xyz`` in deck units, ``region`` in words.
-    magnitude : dict
-    interval : tuple of float
-        95 %, of the first magnitude.
-    credible_set : tuple of dict
-        Places that explain the data about as well: ``grids`` or ``elements``, ``xyz``, ``weight``.
-    confidence : float
-        0 to 1.
-    sentence : str
+    `side` is ``model`` or ``test``; `magnitude` holds the words of its kind; `interval` is that of
+    the first, 95 %; `credible_set` are places that explain the data about as well; `confidence` is
+    from 0 to 1; `cards` stand as written to the deck.
     """
 
     side: str
     kind: str
-    where: dict[str, Any]
+    where: Where
     magnitude: dict[str, Any]
     interval: tuple[float, float] | None
-    credible_set: tuple[dict[str, Any], ...]
+    credible_set: tuple[Where, ...]
     confidence: float
+    cards: tuple[str, ...] = field(default=(), kw_only=True)
     sentence: str
 
 
 @dataclass(frozen=True)
 class Alternative:
-    """What else was considered: `where`, and how many times less likely it is, `odds` in words.
+    """What else was considered: `where`, how many times less likely it is, and `odds` in words.
 
-    `regions` are the places in words, one a kind.
+    `sentence` is both in one; `xyz` and `regions` are the places, one a kind.
     """
 
     kinds: tuple[str, ...]
-    places: tuple[tuple[float, ...], ...]
+    xyz: tuple[tuple[float, ...], ...]
     times_less_likely: float
-    where: str
-    odds: str
-    regions: tuple[str, ...] = ()
-
-    @property
-    def sentence(self) -> str:
-        """Both in one."""
-        return f"{self.where}: {self.odds}"
+    sentence: str
+    where: str = ""
+    odds: str = ""
+    regions: tuple[str, ...] = field(default=(), metadata=BESIDE)
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.mode_pairing import Correlation, Criteria
-from ..noun import Noun
+from ..noun import Noun, key
 from . import export
-from .plain import Table, Tables, key
+from .plain import Table, Tables
 
 _SHOWN = 12
 """Modes of either side of a MAC matrix on a page."""
@@ -145,23 +145,28 @@ class RunTables(Tables):
 
     @property
     def sources(self) -> tuple[str, tuple[str, ...]]:
-        """The deck and the files of the test that were compared."""
+        """The deck as it came and the files of the test that were compared."""
+        raise NotImplementedError
+
+    @property
+    def states(self) -> tuple[Compared, ...]:
+        """The correlations in turn: of the deck as it came, and as changed where it was."""
         raise NotImplementedError
 
     @property
     def final(self) -> Compared:
         """The correlation that counts: of the changed deck where there is one."""
-        raise NotImplementedError
+        return self.states[-1]
 
     @property
     def initial(self) -> Compared | None:
         """The correlation of the deck as it came, where the verb changed it."""
-        return None
+        return self.states[0] if len(self.states) > 1 else None
 
     @property
     def all_warnings(self) -> tuple[str, ...]:
         """Warnings of the run and of its correlations, each once."""
-        raise NotImplementedError
+        return tuple(dict.fromkeys([*self.warnings, *(w for s in self.states for w in s.warnings)]))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,14 +183,9 @@ class CorrelateTables(Compared, RunTables):
         return self.deck_file, self.test_files
 
     @property
-    def final(self) -> Compared:
+    def states(self) -> tuple[Compared, ...]:
         """The correlation itself."""
-        return self
-
-    @property
-    def all_warnings(self) -> tuple[str, ...]:
-        """Its warnings."""
-        return self.warnings
+        return (self,)
 
 
 def compared(c: Comparison) -> Compared:
@@ -243,29 +243,11 @@ def _mac(values: Floats) -> MacTable:
 
 def _alignment(c: Comparison) -> AlignmentTable:
     move, seen = c.alignment, c.observation
-    rows = zip(
-        seen.sensors.node,
-        seen.sensors.directions,
-        seen.sensors.axis,
-        seen.xyz,
-        seen.nearest_grid,
-        seen.distance,
-        strict=True,
+    at = seen.sensors
+    columns = (at.node, at.directions, at.axis, seen.xyz, seen.nearest_grid, seen.distance)
+    sensors = Table(
+        SensorRow(int(node), way, tuple(axis.tolist()), tuple(xyz.tolist()), int(grid), float(off))
+        for node, way, axis, xyz, grid, off in zip(*columns, strict=True)
     )
-    return AlignmentTable(
-        move.rotation,
-        move.translation,
-        c.placed.length_factor,
-        move.rms,
-        Table(
-            SensorRow(
-                int(node),
-                direction,
-                tuple(axis.tolist()),
-                tuple(xyz.tolist()),
-                int(grid),
-                float(distance),
-            )
-            for node, direction, axis, xyz, grid, distance in rows
-        ),
-    )
+    scale = c.placed.length_factor
+    return AlignmentTable(move.rotation, move.translation, scale, move.rms, sensors)

@@ -119,16 +119,9 @@ class MisfitTable(Noun):
 def damping_table(
     found: Discovery, measured: Floats, elastic: Bools, before: SolvedModel, after: SolvedModel
 ) -> DampingTable | None:
-    """Return measured damping ratios beside those foretold; None where no dashpot is about.
+    """Return damping ratios `measured` (n_test,) beside those foretold before and after.
 
-    Parameters
-    ----------
-    found : Discovery
-    measured : (n_test,) float
-    elastic : (n_test,) bool
-        Modes that were weighed.
-    before, after : SolvedModel
-        The deck as it was and as completed.
+    None where no dashpot is about; `elastic` (n_test,) are the modes that were weighed.
     """
     if found.damping is None or (before.damping is None and after.damping is None):
         return None
@@ -146,13 +139,8 @@ def damping_table(
         for j, z in enumerate(measured)
         if np.isfinite(z) and z > 0.0
     )
-    return DampingTable(
-        rows,
-        BeforeAfter(
-            _typical([(r.before, r.measured) for r in rows]),
-            _typical([(r.after, r.measured) for r in rows]),
-        ),
-    )
+    sides = ([(r.before, r.measured) for r in rows], [(r.after, r.measured) for r in rows])
+    return DampingTable(rows, BeforeAfter(*map(_typical, sides)))
 
 
 def _typical(ratios: Sequence[tuple[float | None, float]]) -> float | None:
@@ -176,20 +164,15 @@ def response_table(found: ResponseGap | None) -> ResponseTable | None:
 
 def misfit_table(c: Comparison, found: Disagreement) -> MisfitTable:
     """Return the maps of a misfit: at grids, by mode and by sensor."""
-    ids = c.geometry.ids[found.places]
+    ids, xyz = c.geometry.ids[found.places], c.geometry.xyz[found.places]
     maps = {"mass": found.mass, "stiffness": found.stiffness, "ground": found.ground}
-    told = found.misfit
+    told, labels = found.misfit, c.observation.sensors.labels
     return MisfitTable(
         tuple(ids.tolist()),
         found.motion,
         **maps,
         peaks=Table(
-            PeakRow(
-                name,
-                int(ids[k]),
-                tuple(c.geometry.xyz[found.places[k]].tolist()),
-                float(values[k]),
-            )
+            PeakRow(name, int(ids[k]), tuple(xyz[k].tolist()), float(values[k]))
             for name, values in maps.items()
             for k in [int(np.argmax(values))]
         ),
@@ -199,8 +182,6 @@ def misfit_table(c: Comparison, found: Disagreement) -> MisfitTable:
         ),
         sensors=Table(
             SensorMisfit(label, float(m), float(k))
-            for label, m, k in zip(
-                c.observation.sensors.labels, told.by_sensor, told.comac, strict=True
-            )
+            for label, m, k in zip(labels, told.by_sensor, told.comac, strict=True)
         ),
     )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .plain import OPTIONAL, Json, Table, Tables
+from ..noun import OPTIONAL
+from .plain import Json, Table, Tables
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TypedDict
 
 import numpy as np
 
 from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..identification.result import Identification
-from .plain import Table, Tables, key
+from ..noun import key
+from .plain import Table, Tables
 
 _HZ = {"unit": "Hz"}
 
@@ -66,19 +66,8 @@ class IdentifyTables(Tables):
     warnings: tuple[str, ...]
 
 
-class _Told(TypedDict):
-    modes: Table[IdentifiedRow]
-    references: Table[PlaceRow]
-    responses: Table[PlaceRow]
-    bands: Table[BandRow]
-    quantity: str
-    lines: int
-    range_hz: tuple[float, float]
-
-
-def identified(found: Identification) -> _Told:
-    """Return the tables of an identification, by field of `IdentifyTables`."""
-    hz = found.cmif.frequencies_hz
+def mode_rows(found: Identification) -> Table[IdentifiedRow]:
+    """Return one row an identified mode."""
     each = {
         "frequency_hz": found.modes.frequencies_hz,
         "damping_ratio": found.modes.damping,
@@ -90,37 +79,27 @@ def identified(found: Identification) -> _Told:
         "quality": found.quality,
         "generalized_mass": found.real_modes.generalized_mass,
     }
-    return {
-        "modes": Table(
-            (
-                IdentifiedRow(
-                    close_pair_possible=bool(found.close_pair_possible[k]),
-                    rigid_body_share=_finite(found.rigid_share[k]),
-                    suspension=bool(found.suspension[k]),
-                    remark=found.remarks[k],
-                    **{name: float(values[k]) for name, values in each.items()},
-                )
-                for k in range(len(found.modes))
-            ),
-            IdentifiedRow,
-        ),
-        "references": _places(found.references),
-        "responses": _places(found.modes.dofs),
-        "bands": Table((BandRow(b.band.low, b.band.high) for b in found.bands), BandRow),
-        "quantity": found.quantity,
-        "lines": len(hz),
-        "range_hz": (float(hz[0]), float(hz[-1])),
-    }
-
-
-def _places(dofs: Dofs) -> Table[PlaceRow]:
-    return Table(
-        (
-            PlaceRow(int(node), direction)
-            for node, direction in zip(dofs.node, dofs.directions, strict=True)
-        ),
-        PlaceRow,
+    rows = (
+        IdentifiedRow(
+            close_pair_possible=bool(found.close_pair_possible[k]),
+            rigid_body_share=_finite(found.rigid_share[k]),
+            suspension=bool(found.suspension[k]),
+            remark=found.remarks[k],
+            **{name: float(values[k]) for name, values in each.items()},
+        )
+        for k in range(len(found.modes))
     )
+    return Table(rows, IdentifiedRow)
+
+
+def place_rows(dofs: Dofs) -> Table[PlaceRow]:
+    """Return one row a degree of freedom."""
+    return Table(map(PlaceRow, dofs.node.tolist(), dofs.directions), PlaceRow)
+
+
+def band_rows(found: Identification) -> Table[BandRow]:
+    """Return one row a band."""
+    return Table((BandRow(b.band.low, b.band.high) for b in found.bands), BandRow)
 
 
 def _finite(value: float) -> float | None:

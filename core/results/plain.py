@@ -15,23 +15,12 @@ from typing import Any, ClassVar, Self, SupportsIndex, TypeAlias, TypeVar, Union
 import numpy as np
 
 from ..errors import InputError, path_of
-from ..noun import Noun
+from ..noun import ROLE, Noun
 from . import export
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 Row = TypeVar("Row")
 T = TypeVar("T")
-
-_ROLE = "table"
-OPTIONAL = types.MappingProxyType({_ROLE: "optional"})
-"""Metadata of a field whose key is absent where the value is None."""
-BESIDE = types.MappingProxyType({_ROLE: None})
-"""Metadata of a field that is no part of the table."""
-
-
-def key(name: str) -> Mapping[str, str]:
-    """Return the metadata of a field whose key differs from its name."""
-    return {_ROLE: f"key {name}"}
 
 
 class Table(tuple[Row, ...]):
@@ -182,7 +171,7 @@ def _record(value: object) -> dict[str, Json]:
 
 def _keys(kind: type | None) -> list[tuple[dataclasses.Field[Any], str, bool]]:
     fields = dataclasses.fields(kind) if kind is not None else ()
-    roles = [(f, f.metadata.get(_ROLE, "")) for f in fields]
+    roles = [(f, f.metadata.get(ROLE, "")) for f in fields]
     return [
         (f, role.removeprefix("key ") if role.startswith("key ") else f.name, role == "optional")
         for f, role in roles

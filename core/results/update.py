@@ -10,10 +10,10 @@ import numpy as np
 from ..arrays import Floats
 from ..correlation.mode_errors import ModeErrors
 from ..data.parameter import Parameter
-from ..noun import Noun
+from ..noun import OPTIONAL, Noun, key
 from ..updating.update import Iteration, Updated
 from .correlation import Compared, PairRow, RunTables
-from .plain import OPTIONAL, Table, key
+from .plain import Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,17 +32,6 @@ class ParameterRow:
     standard_error: float | None
     at_bound: bool
     significant: bool | None = field(default=None, metadata=OPTIONAL)
-
-
-@dataclass(frozen=True, eq=False)
-class IterationRow(Noun):
-    """One iteration; `deviations_percent` (n_test,) is NaN for a test mode without partner."""
-
-    iteration: int
-    stage: int
-    objective: float
-    factors: Floats
-    deviations_percent: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,20 +71,9 @@ class ChangingTables(RunTables):
         return self.input_deck, self.test_files
 
     @property
-    def final(self) -> Compared:
-        """The correlation of the changed deck."""
-        return self.after
-
-    @property
-    def initial(self) -> Compared | None:
-        """The correlation of the deck as it came."""
-        return self.before
-
-    @property
-    def all_warnings(self) -> tuple[str, ...]:
-        """Its warnings and those of both correlations, each once."""
-        every = (*self.warnings, *self.before.warnings, *self.after.warnings)
-        return tuple(dict.fromkeys(every))
+    def states(self) -> tuple[Compared, ...]:
+        """The correlations of the deck as it came and as changed."""
+        return self.before, self.after
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,7 +81,7 @@ class UpdateTables(ChangingTables):
     """What ``update`` answers."""
 
     verb = "update"
-    history: Table[IterationRow]
+    history: Table[Iteration]
     weights: WeightsTable | None
     eigensolutions: int
     stopped: str
@@ -118,27 +96,12 @@ def parameter_rows(
     parameters: Sequence[Parameter], done: Updated, written: Sequence[Sequence[float | None]]
 ) -> Table[ParameterRow]:
     """Return one row a parameter; `written` are the values of its fields as in the new deck."""
+    error = [None if np.isnan(e) else e for e in done.standard_error.tolist()]
     return Table(
-        ParameterRow(
-            q.name,
-            q.handle,
-            q.deck_values,
-            tuple(values),
-            float(factor),
-            None if np.isnan(error) else float(error),
-            bool(bound),
+        ParameterRow(q.name, q.handle, q.deck_values, tuple(values), f, e, bound)
+        for q, f, e, bound, values in zip(
+            parameters, done.factors.tolist(), error, done.at_bound.tolist(), written, strict=True
         )
-        for q, factor, error, bound, values in zip(
-            parameters, done.factors, done.standard_error, done.at_bound, written, strict=True
-        )
-    )
-
-
-def iteration_rows(history: Sequence[Iteration]) -> Table[IterationRow]:
-    """Return one row an iteration."""
-    return Table(
-        IterationRow(h.iteration, h.stage + 1, h.objective, h.factors, h.deviations_percent)
-        for h in history
     )
 
 

@@ -62,7 +62,10 @@ class Stop:
 
 @dataclass(frozen=True, eq=False)
 class Iteration(Noun):
-    """One entry of the history; `deviations_percent` by test mode (NaN where unpaired)."""
+    """One entry of the history; stages count from 1.
+
+    `deviations_percent` (n_test,) is NaN for a test mode without partner.
+    """
 
     iteration: int
     stage: int

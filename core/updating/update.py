@@ -241,7 +241,7 @@ def _entry(iteration: int, stage: int, s: State, n_test: int) -> Iteration:
     deviations = np.full(n_test, np.nan)
     for q in s.correlation.pairs:
         deviations[q.test] = q.deviation_percent
-    return Iteration(iteration, stage, s.objective, s.factors, frozen(deviations))
+    return Iteration(iteration, stage + 1, s.objective, s.factors, frozen(deviations))
 
 
 def _lost_pairs(before: State, after: State) -> tuple[str, ...]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from ....core.discovery.effects import KINDS as EFFECTS
 from ....core.discovery.faults import FAULTS
-from ....core.results.discovery import DiscoverTables, FindingRow
+from ....core.discovery.findings import Finding
+from ....core.results.discovery import DiscoverTables
 from ....core.results.plain import Json
 from ..html.html_table import html_table
 from ..html.markup import esc, tag
@@ -56,7 +57,7 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
     return [Table("Findings", columns, rows)] if rows else []
 
 
-def _magnitude(finding: FindingRow) -> str:
+def _magnitude(finding: Finding) -> str:
     """Return the magnitudes, the first with its 95 % interval."""
     said = [f"{k.replace('_', ' ')} {_value(v)}" for k, v in finding.magnitude.items()]
     if said and finding.interval is not None:

@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 
 from ....core.arrays import Floats
 from ....core.data.geometry import Geometry
+from ....core.discovery.findings import Finding
 from ....core.results.correlation import SensorRow
-from ....core.results.discovery import FindingRow
 from ..pictures.scene import Mark
 from ..tables.number_formats import general
 
@@ -32,7 +32,7 @@ def sensors(
 
 
 def findings(
-    found: Sequence[FindingRow], geometry: Geometry, sensor_marks: Sequence[Mark]
+    found: Sequence[Finding], geometry: Geometry, sensor_marks: Sequence[Mark]
 ) -> list[Mark]:
     """Return effects and faults at their places, numbered, after the places that do as well."""
     at_sensor = {m.name: m.xyz for m in sensor_marks}

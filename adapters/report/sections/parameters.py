@@ -10,7 +10,8 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.results.discovery import DiscoverTables
-from ....core.results.update import ChangingTables, IterationRow, ParameterRow, UpdateTables
+from ....core.results.update import ChangingTables, ParameterRow, UpdateTables
+from ....core.updating.stages import Iteration
 from ..html.html_table import html_table
 from ..html.markup import tag
 from ..pictures import charts
@@ -149,7 +150,7 @@ def _by_stage(
 
 
 def _counted_through(
-    steps: Sequence[IterationRow],
+    steps: Sequence[Iteration],
 ) -> tuple[list[float], list[tuple[float, str]]]:
     """Return the x of each step, and where a new stage begins.
 

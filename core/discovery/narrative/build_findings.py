@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ...arrays import Bools, Floats
 from ...registration.alignment import Alignment
 from ..effects.candidates import Suspect
-from ..effects.sentence_parts import odds
-from ..findings import Alternative, Discovery, Finding, MovedParameter
+from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.credible_places import Place, between, credible_places
@@ -30,7 +28,7 @@ from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
 from .narrative_numbers import NARRATIVE
 from .sensor_findings import accusations, remarks
-from .sentences import magnitude_of, region, sentence_of
+from .sentences import alternative, magnitude_of, region, sentence_of
 
 
 def build_discovery(
@@ -125,8 +123,7 @@ def _finding(
     spread = np.hypot(np.hypot(deviation, error), between(places))
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
-    where = {**c.where[s.row], "xyz": c.xyz[s.row].tolist()}
-    where["region"] = region(geometry, c.xyz[s.row])
+    spot = region(geometry, c.xyz[s.row])
     magnitude = magnitude_of(c, s.row, sizes, intervals, request.masses)
     first = intervals[0] * (request.masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
@@ -135,31 +132,27 @@ def _finding(
     return Finding(
         "model",
         c.kind.name,
-        where,
+        Where.of(c.where[s.row], c.xyz[s.row], region=spot),
         magnitude,
         interval,
         _credible(searcher, found, verdict, number, places),
         _confidence(verdict),
-        sentence_of(c.kind, magnitude, where["region"], interval, modes, request.masses, next_best),
+        sentence_of(c.kind, magnitude, spot, interval, modes, request.masses, next_best),
     )
 
 
 def _credible(
     searcher: Searcher, found: Found, verdict: Judgement, number: int, places: Sequence[Place]
-) -> tuple[dict[str, Any], ...]:
+) -> tuple[Where, ...]:
     """Places, and effects of other kinds, that explain the data about as well as one finding."""
     catalogue = searcher.problem.catalogue
     own = [(p.suspect.kind, p.suspect.row, p.weight) for p in places]
     others = [(s.kind, s.row, w) for s, w in instead(searcher, found, verdict, number)]
     total = sum(w for _, _, w in (*own, *others))
     return tuple(
-        {
-            **catalogue[kind].where[row],
-            "xyz": catalogue[kind].xyz[row].tolist(),
-            "weight": w / total,
-            "kind": catalogue[kind].kind.name,
-        }
+        Where.of(c.where[row], c.xyz[row], weight=w / total, kind=c.kind.name)
         for kind, row, w in (*own, *others)
+        for c in [catalogue[kind]]
     )
 
 
@@ -218,12 +211,11 @@ def _alternatives(
         said = " and ".join(
             f"{k.replace('_', ' ')} {r}" for k, r in zip(kinds, regions, strict=True)
         )
-        ratio = times(behind(f))
-        places = tuple(tuple(float(v) for v in x) for x in xyz)
-        out.append(Alternative(kinds, places, ratio, said, odds(ratio), regions))
+        out.append(alternative(kinds, xyz, times(behind(f)), said, regions))
     if verdict.accepted:
-        ratio = times(behind(found.levels[0]))
-        out.append(Alternative((), (), ratio, "the known parameters alone", odds(ratio)))
+        out.append(
+            alternative((), (), times(behind(found.levels[0])), "the known parameters alone")
+        )
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
 
 

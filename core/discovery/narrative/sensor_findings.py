@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ...sensors.sensor_map import Observation
 from ..faults import FAULTS, Fault
-from ..findings import Finding
+from ..findings import Finding, Where
 from ..sensor_faults.diagnosis import Verdicts
 from .narrative_numbers import NARRATIVE
 
@@ -40,15 +41,13 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
     nodes, labels = seen.sensors.node, seen.sensors.labels
     sensors = list(dict.fromkeys(int(nodes[i]) for i in f.sensors))
     rows = np.count_nonzero(np.isin(nodes, sensors))
-    where: dict[str, Any] = {
-        "sensors": sensors,
-        "xyz": seen.xyz[f.sensors[0]].tolist(),
-        "region": f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}",
-    }
-    names: list[str] = list(map(str, sensors))
+    spot = f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}"
+    where = Where.of({"sensors": sensors}, seen.xyz[f.sensors[0]], region=spot)
+    names = list(map(str, sensors))
     kind = FAULTS[f.kind]
     if len(f.sensors) < rows or (kind.exchanges and len(sensors) == 1):
-        names = where["directions"] = [labels[i] for i in f.sensors]
+        names = [labels[i] for i in f.sensors]
+        where = replace(where, directions=tuple(names))
     half = len(names) // 2 if kind.exchanges else len(names)
     first, other = ", ".join(names[:half]), ", ".join(names[half:])
     said = kind.sentence.format(sensors=first, others=other, size=f.factor)
@@ -58,13 +57,4 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
         magnitude = {kind.magnitude: f.factor, **({"axis": list(f.axis)} if f.axis else {})}
         off = NARRATIVE.interval * f.deviation
         interval = (f.factor - off, f.factor + off)
-    return Finding(
-        "test",
-        f.kind,
-        where,
-        magnitude,
-        interval,
-        (),
-        f.confidence,
-        f"{said}.",
-    )
+    return Finding("test", f.kind, where, magnitude, interval, (), f.confidence, f"{said}.")

@@ -16,6 +16,19 @@ from ..findings import Alternative
 from .narrative_numbers import NARRATIVE
 
 
+def alternative(
+    kinds: tuple[str, ...],
+    places: Sequence[Floats],
+    ratio: float,
+    where: str,
+    regions: tuple[str, ...] = (),
+    other: str = "",
+) -> Alternative:
+    """Return what is `ratio` times less likely than what was found, or than some `other`."""
+    xyz, said = tuple(tuple(x.tolist()) for x in places), odds(ratio, other)
+    return Alternative(kinds, xyz, ratio, f"{where}: {said}", where, said, regions)
+
+
 def magnitude_of(
     c: Candidates, row: int, sizes: Floats, intervals: Floats, masses: MassUnit
 ) -> dict[str, Any]:

@@ -14,8 +14,8 @@ from trueup.core.data.modes import Modes
 from trueup.core.data.parameter import Parameter
 from trueup.core.errors import InputError
 from trueup.core.results.correlation import CorrelateTables, Gap, compared, gap
-from trueup.core.results.plain import plain, typed
-from trueup.core.results.update import iteration_rows, parameter_rows
+from trueup.core.results.plain import Table, plain, typed
+from trueup.core.results.update import parameter_rows
 from trueup.core.updating.update import Iteration, Reason, Stop, Updated
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
@@ -93,7 +93,7 @@ def test_the_gap_without_pairs_is_empty_not_zero(found):
 
 
 def test_parameters_and_history_in_words_of_the_deck(found):
-    history = (Iteration(0, 0, 5.0, np.array([1.0, 1.0]), np.array([3.0, np.nan])),)
+    history = (Iteration(0, 1, 5.0, np.array([1.0, 1.0]), np.array([3.0, np.nan])),)
     done = Updated(
         np.array([1.5, 0.2]), np.array([0.1, np.nan]), np.array([False, True]), None, None,
         history, 3, Stop(Reason.SETTLED, "settled"), (),
@@ -109,7 +109,7 @@ def test_parameters_and_history_in_words_of_the_deck(found):
     }  # fmt: skip
     assert rows[1]["standard_error"] is None
     assert rows[1]["at_bound"] is True
-    assert iteration_rows(history).to_dict() == [
+    assert Table(history).to_dict() == [
         {"iteration": 0, "stage": 1, "objective": 5.0, "factors": [1.0, 1.0],
          "deviations_percent": [3.0, None]},
     ]  # fmt: skip

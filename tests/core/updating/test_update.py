@@ -170,10 +170,10 @@ def test_stages_move_their_own_parameters_in_order():
     )  # fmt: skip
     assert tuple(seen) == done.history
     assert [h.iteration for h in done.history] == list(range(len(seen)))
-    assert {h.stage for h in done.history} == {0, 1}
-    first = [h for h in done.history if h.stage == 0]
+    assert {h.stage for h in done.history} == {1, 2}
+    first = [h for h in done.history if h.stage == 1]
     assert all(h.factors[0] == 1.0 for h in first)
-    assert all(h.factors[1] == first[-1].factors[1] for h in done.history if h.stage == 1)
+    assert all(h.factors[1] == first[-1].factors[1] for h in done.history if h.stage == 2)
     assert done.factors[0] != 1.0
 
 

@@ -9,5 +9,5 @@ from .site import Site
 
 def write(text: DeckText, site: Site) -> DeckText:
     """Put a coincident grid at a beam's end: rigid in translation, sprung in rotation."""
-    elements = [int(e) for e in site.finding.where["elements"]]
+    elements = site.elements
     return detached(text, site, elements, site.grids[0])

@@ -12,7 +12,7 @@ from .site import Site
 
 def write(text: DeckText, site: Site) -> DeckText:
     """Give the elements materials whose moduli are those of the deck times the factor."""
-    elements = site.finding.where["elements"]
+    elements = site.elements
     for (card, pid), own in by_property(text, site.deck, elements).items():
         split = split_property(text, card, pid, own, site.note)
         values = {}

@@ -35,7 +35,12 @@ class Site:
     @property
     def grids(self) -> list[int]:
         """Grids of the effect."""
-        return list(self.finding.where["grids"])
+        return list(self.finding.where.grids or ())
+
+    @property
+    def elements(self) -> list[int]:
+        """Elements of the effect."""
+        return list(self.finding.where.elements or ())
 
     @property
     def components(self) -> list[int]:

@@ -9,7 +9,7 @@ from trueup.adapters.nastran import build_model, read_deck, read_deck_text, writ
 from trueup.adapters.nastran.assembly.deck_dashpots import damping_matrix
 from trueup.adapters.nastran.discovery.build_structure import free_damping
 from trueup.adapters.nastran.discovery.write_effect import adopt
-from trueup.core.discovery.findings import Finding
+from trueup.core.discovery.findings import Finding, Where
 
 GRIDS = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nSPOINT,9\n"
 BARS = "CBAR,1,1,1,2,0.,1.,0.\nPBAR,1,1,1.,1.,1.,1.\nMAT1,1,1.,,0.3,1.\nSPC1,1,123456,1\n"
@@ -66,7 +66,7 @@ def _finding(component: int) -> Finding:
     return Finding(
         "model",
         "local_damper",
-        {"grids": [2], "xyz": [2.0, 0.0, 0.0], "region": "near grid 2"},
+        Where(grids=(2,), xyz=(2.0, 0.0, 0.0), region="near grid 2"),
         {"damping": 0.5, "components": [component]},
         (0.4, 0.6),
         (),

@@ -5,7 +5,7 @@ import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, write_deck
 from trueup.adapters.nastran.discovery.write_effect import adopt
-from trueup.core.discovery.findings import Finding
+from trueup.core.discovery.findings import Finding, Where
 from trueup.core.eigen import normal_modes
 
 K, M = 4.0e4, 0.01
@@ -42,7 +42,7 @@ def finding(grids, component, mass, hz):
     return Finding(
         "model",
         "tuned_absorber",
-        {"grids": grids, "xyz": [0.0, 0.0, 0.0], "region": "near grid 1"},
+        Where(grids=tuple(grids), xyz=(0.0, 0.0, 0.0), region="near grid 1"),
         {"mass": mass, "frequency_hz": hz, "components": [component]},
         (0.9 * mass, 1.1 * mass),
         (),

@@ -8,7 +8,7 @@ import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, weight, write_deck
 from trueup.adapters.nastran.discovery.write_effect import adopt
-from trueup.core.discovery.findings import Finding
+from trueup.core.discovery.findings import Finding, Where
 from trueup.core.eigen import normal_modes
 from trueup.core.errors import InputError
 
@@ -71,7 +71,7 @@ ENDDATA
 
 
 def finding(kind, magnitude, **where):
-    place = {"xyz": [0.0, 0.0, 0.0], "region": "near grid 1", **where}
+    place = Where.of(where, np.zeros(3), region="near grid 1")
     return Finding("model", kind, place, magnitude, (0.9, 1.1), (), 0.9, "Something is missing.")
 
 

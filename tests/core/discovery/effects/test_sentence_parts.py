@@ -7,9 +7,8 @@ from trueup.adapters.nastran.discovery.mass_unit import mass_unit
 from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.effects.sentence_parts import MassUnit, mode_ranges, odds
-from trueup.core.discovery.findings import Alternative
 from trueup.core.discovery.likelihood.map_fit import fit
-from trueup.core.discovery.narrative.sentences import sentence_of
+from trueup.core.discovery.narrative.sentences import alternative, sentence_of
 from trueup.core.discovery.search.model_selection import explained
 
 MASS = KINDS["point_mass"]
@@ -92,16 +91,14 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
     ],
 )
 def test_the_next_best_is_named_by_its_place_where_it_is_of_the_same_kind(kinds, said):
-    other = Alternative(kinds, (), 3.0, "point mass near grid 7", "3 times less likely")
+    other = alternative(kinds, (), 3.0, "point mass near grid 7")
     text = sentence_of(MASS, {"mass": 1.0}, "here", (0.9, 1.1), [1], MassUnit(), other)
     assert said in text
 
 
 def test_the_same_effect_at_the_same_place_without_the_others_is_called_alone():
     place = "near grid 7"
-    other = Alternative(
-        ("point_mass",), (), 3.0, f"point mass {place}", "3 times less likely", (place,)
-    )
+    other = alternative(("point_mass",), (), 3.0, f"point mass {place}", (place,))
     text = sentence_of(MASS, {"mass": 1.0}, place, (0.9, 1.1), [1], MassUnit(), other)
     assert "next best, point mass there alone, is 3 times less likely" in text
 

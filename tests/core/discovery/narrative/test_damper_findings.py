@@ -13,7 +13,7 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.discovery.dampers.damper_evidence import Weighed, moved
 from trueup.core.discovery.dampers.damper_search import DamperFound
 from trueup.core.discovery.effects.structure_points import Axes
-from trueup.core.discovery.findings import Discovery, Finding
+from trueup.core.discovery.findings import Discovery, Finding, Where
 from trueup.core.discovery.likelihood.complex_modes import Oriented
 from trueup.core.discovery.narrative.damper_findings import with_damper
 
@@ -58,7 +58,7 @@ def at(*pairs):
 
 
 def spring(x):
-    where = {"grids": [1], "xyz": [x, 0.0, 0.0], "region": "near grid 1"}
+    where = Where(grids=(1,), xyz=(x, 0.0, 0.0), region="near grid 1")
     magnitude = {"stiffness": 5.0, "components": [3]}
     return Finding("model", "ground_spring", where, magnitude, (4.0, 6.0), (), 0.9, "A spring.")
 
@@ -67,7 +67,7 @@ def test_a_sure_dashpot_is_an_effect_with_its_place_and_size():
     said = with_damper(REQUEST, weighed(0.99, at((4, 1.0))), QUIET)
     assert said.verdict == "effect"
     (f,) = said.findings
-    assert (f.kind, f.where["grids"], f.magnitude["components"]) == ("local_damper", [5], [3])
+    assert (f.kind, f.where.grids, f.magnitude["components"]) == ("local_damper", (5,), [3])
     assert f.magnitude["damping"] == pytest.approx(0.2)
     low, high = f.interval
     assert low < 0.2 < high
@@ -80,7 +80,7 @@ def test_one_that_may_sit_anywhere_is_undecided_and_says_what_would_decide():
     assert said.verdict == "undecided"
     (f,) = said.findings
     assert f.confidence < 0.5
-    assert {p["grids"][0] for p in f.credible_set} == {2, 6, 10}
+    assert {p.grids[0] for p in f.credible_set} == {2, 6, 10}
     assert said.would_decide
 
 

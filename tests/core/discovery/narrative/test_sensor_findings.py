@@ -36,7 +36,7 @@ def told(*faults):
 
 def test_a_gain_is_told_with_factor_and_interval():
     (f,) = told(fault("sensor_gain", (2, 3), 1.5, 0.1))
-    assert (f.side, f.kind, f.where["sensors"]) == ("test", "sensor_gain", [12])
+    assert (f.side, f.kind, f.where.sensors) == ("test", "sensor_gain", (12,))
     assert f.magnitude == {"factor": 1.5}
     assert f.interval == pytest.approx((1.304, 1.696))
     assert "Sensor 12 reads 1.50 times" in f.sentence
@@ -46,23 +46,23 @@ def test_a_turned_sensor_is_told_with_angle_and_axis():
     (f,) = told(fault("sensor_axis", (2, 3), 30.0, 1.0, (0.0, 0.0, 1.0)))
     assert f.magnitude == {"angle_deg": 30.0, "axis": [0.0, 0.0, 1.0]}
     assert "turned by 30°" in f.sentence
-    assert f.where["xyz"] == [3.0, 4.0, 5.0]
+    assert f.where.xyz == (3.0, 4.0, 5.0)
 
 
 def test_a_swap_names_both_nodes_and_one_direction_is_said_to_be_one():
     whole, one = told(fault("sensor_swap", (0, 1, 4, 5)), fault("sensor_polarity", (3,), -1.0))
-    assert whole.where["sensors"] == [11, 13]
-    assert "directions" not in whole.where
+    assert whole.where.sensors == (11, 13)
+    assert whole.where.directions is None
     assert "Sensors 11 and 13 are swapped" in whole.sentence
-    (direction,) = one.where["directions"]
+    (direction,) = one.where.directions
     assert "12" in direction
     assert direction in one.sentence
 
 
 def test_exchanged_directions_of_one_node_are_told_as_such():
     (f,) = told(fault("sensor_swap", (2, 3)))
-    assert f.where["sensors"] == [12]
-    first, second = f.where["directions"]
+    assert f.where.sensors == (12,)
+    first, second = f.where.directions
     assert f"{first} and {second} are swapped" in f.sentence
 
 
