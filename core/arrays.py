@@ -32,6 +32,13 @@ def frozen(values: npt.ArrayLike, dtype: npt.DTypeLike = None) -> Numbers:
     return array
 
 
+def skew(r: Floats) -> Floats:
+    """Return the matrices [r x], (..., 3, 3), of the vectors `r`, (..., 3)."""
+    out = np.zeros((*r.shape[:-1], 3, 3))
+    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -r[..., 2], r[..., 1], -r[..., 0]
+    return np.asarray(out - np.swapaxes(out, -1, -2))
+
+
 def require_finite(values: Numbers, what: str) -> None:
     """Raise `InputError` when an array holds NaN or infinity."""
     bad = int(values.size - np.count_nonzero(np.isfinite(values)))

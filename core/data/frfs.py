@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..arrays import Floats, Ints, Numbers, frozen, require_finite, require_shape
 from ..noun import Noun
 from .dofs import Dofs
 
@@ -44,3 +44,10 @@ class Frfs(Noun):
         shape = (len(self.responses), len(self.references), len(self.frequencies_hz))
         require_shape(self.values, shape, "frequency responses")
         require_finite(self.frequencies_hz, "the frequency axis")
+
+    def at(self, rows: Ints, columns: Ints | None = None) -> Frfs:
+        """Return the functions of some responses, and of some references."""
+        columns = np.arange(len(self.references)) if columns is None else columns
+        own = self.responses.take(rows), self.references.take(columns)
+        values = self.values[np.ix_(rows, columns)]
+        return Frfs(self.frequencies_hz, *own, values, self.quantity, self.source)

@@ -40,13 +40,7 @@ class Massless(InputError):
 
 
 def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
-    """Which vectors have a strain energy that is rounding of the stiffness, (n_mode,) bool.
-
-    Parameters
-    ----------
-    X : (n, n_mode) float
-    energy : (n_mode,) float
-        x^T K x of each.
+    """Which vectors X (n, n_mode) have an `energy` x^T K x that is rounding of the stiffness.
 
     Raises
     ------
@@ -144,11 +138,9 @@ def mechanism(
     """
     if rigid is not None and rigid.shape[1]:
         X = _least_motion(X, rigid, _lengths(model, pencil.n))
-    count = X.shape[1]
-    motions = "a motion" if count == 1 else f"{count} motions"
     without = "neither stiffness nor mass" if massless else "no stiffness"
     message = (
-        f"the model is a mechanism: {motions} with {without} besides the rigid-body modes, at "
+        f"the model is a mechanism: {_motions(X)} with {without} besides the rigid-body modes, at "
         f"{where(model, pencil, X)}; constrain these directions or give them stiffness"
     )
     return Massless(message, X) if massless else InputError(message)
@@ -157,33 +149,30 @@ def mechanism(
 def hold(
     model: Model | None, pencil: Pencil, X: Floats, rigid: Floats
 ) -> tuple[Pencil, Floats, str]:
-    """Hold motions that have neither stiffness nor mass; nothing else changes by it.
+    """Hold motions X (n, n_motion) that have neither stiffness nor mass.
 
     One degree of freedom of each is sprung to ground. Every other motion can leave it at rest by
     a part of X that costs nothing, so no mode and no frequency notices (MSC Nastran's MECHFIX).
-
-    Parameters
-    ----------
-    X : (n, n_motion) float
-        The motions.
-    rigid : (n, n_rigid) float
-        Rigid-body modes.
-
-    Returns
-    -------
-    Pencil, (n, n_rigid) float, str
-        With the springs, the rigid-body modes that leave them at rest, and what to tell the user.
+    Returned are the pencil with the springs, the rigid-body modes (n, n_rigid) that leave them
+    at rest, and what to tell the user.
     """
     X = np.linalg.qr(X)[0]
     held = sl.qr(X.T, mode="r", pivoting=True)[1][: X.shape[1]]
     rigid = rigid - X @ np.linalg.solve(X[held], rigid[held])
-    count = "a motion" if len(held) == 1 else f"{len(held)} motions"
     note = (
-        f"{count} with neither stiffness nor mass, at {where(model, pencil, X)}, held at "
-        + ", ".join(pencil.name(int(r)) for r in held[:_NAMED])
-        + ("" if len(held) <= _NAMED else f" and {len(held) - _NAMED} more")
+        f"{_motions(X)} with neither stiffness nor mass, at {where(model, pencil, X)}, held at "
+        f"{_named(pencil, held)}"
     )
     return pencil.sprung(held), rigid, note
+
+
+def _motions(X: Floats) -> str:
+    return "a motion" if X.shape[1] == 1 else f"{X.shape[1]} motions"
+
+
+def _named(pencil: Pencil, rows: Ints) -> str:
+    more = f" and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
+    return ", ".join(pencil.name(int(r)) for r in rows[:_NAMED]) + more
 
 
 def _least_motion(X: Floats, rigid: Floats, lengths: Floats) -> Floats:
@@ -208,8 +197,7 @@ def where(model: Model | None, pencil: Pencil, X: Floats) -> str:
     motion = (motion / motion.max(axis=0)).max(axis=1)
     rows = np.flatnonzero(motion > 0.3)
     rows = rows[np.argsort(-motion[rows], kind="stable")]
-    names = ", ".join(pencil.name(int(r)) for r in rows[:_NAMED])
-    return names + (f" and {len(rows) - _NAMED} more" if len(rows) > _NAMED else "")
+    return _named(pencil, rows)
 
 
 def _lengths(model: Model | None, n: int) -> Floats:
@@ -248,11 +236,11 @@ def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
         return
     moving = [k for k in range(modes.shape[1]) if _turns(model, still, modes[:, k])]
     if moving:
-        count = "a motion" if len(moving) == 1 else f"{len(moving)} motions"
+        X = modes[:, moving]
         raise InputError(
-            f"the model is a mechanism: {count} of parts that are held elsewhere, without "
-            f"stiffness, at {where(model, pencil, modes[:, moving])}; constrain these directions "
-            "or give them stiffness"
+            f"the model is a mechanism: {_motions(X)} of parts that are held elsewhere, without "
+            f"stiffness, at {where(model, pencil, X)}; constrain these directions or give them "
+            "stiffness"
         )
 
 
@@ -280,7 +268,5 @@ def _neighbours(model: Model, grids: Ints) -> Ints:
     """Grid rows on elements that have any of the given ones."""
     moved = np.zeros(len(model.geometry.ids), bool)
     moved[grids] = True
-    rows = [
-        corners[moved[corners].any(axis=1)].ravel() for corners in model.geometry.elements.values()
-    ]
-    return np.unique(np.concatenate(rows)) if rows else np.zeros(0, np.int64)
+    rows = [c[moved[c].any(axis=1)].ravel() for c in model.geometry.elements.values()]
+    return np.asarray(np.unique(np.concatenate([np.zeros(0, np.int64), *rows])))

@@ -155,10 +155,8 @@ def solve(
     held: list[str] = []
     while True:
         try:
-            if small:
-                spectrum = dense_modes(owner, pencil, rigid)
-            else:
-                spectrum = sparse_modes(owner, pencil, rigid, request)
+            known = (owner, pencil, rigid)
+            spectrum = dense_modes(*known) if small else sparse_modes(*known, request)
             break
         except Massless as found:
             if len(held) == _HELD:
@@ -200,28 +198,11 @@ def solve(
     )
 
 
-def modes_of(model: Model, solution: Eigensolution, source: str = "analysis") -> Modes:
-    """Expand an eigensolution to all degrees of freedom of the model.
-
-    Parameters
-    ----------
-    model : Model
-    solution : Eigensolution
-    source : str
-        Where the modes came from.
-
-    Returns
-    -------
-    Modes
-        Shapes (n_dof, n_mode) in basic axes, modal mass 1.
-    """
-    return Modes(
-        solution.frequencies_hz,
-        np.asarray(model.expansion @ solution.vectors),
-        model.dofs,
-        generalized_mass=np.ones(len(solution.eigenvalues)),
-        source=source,
-    )
+def modes_of(model: Model, solution: Eigensolution) -> Modes:
+    """Expand an eigensolution to all dofs of the model, basic axes, modal mass 1."""
+    shapes, mass = model.expansion @ solution.vectors, np.ones(len(solution.eigenvalues))
+    hz = solution.frequencies_hz
+    return Modes(hz, np.asarray(shapes), model.dofs, generalized_mass=mass, source="analysis")
 
 
 def _without_strain(pencil: Pencil, spectrum: Spectrum) -> int:

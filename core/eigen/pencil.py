@@ -128,11 +128,8 @@ class Pencil:
                 raise InputError(f"the {what} matrix has shape {matrix.shape}, expected square")
             require_finite(matrix.data, f"the {what} matrix")
             probe = np.random.default_rng(1).standard_normal(self.n)
-            size = sp.csr_matrix((np.abs(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
-            skew = np.abs(matrix @ probe - matrix.T @ probe) > 1e-6 * (size @ np.abs(probe)).max(
-                initial=0.0
-            )
-            if skew.any():
+            size = (magnitudes(matrix) @ np.abs(probe)).max(initial=0.0)
+            if (np.abs(matrix @ probe - matrix.T @ probe) > 1e-6 * size).any():
                 raise InputError(f"the {what} matrix is not symmetric")
 
     def _check(self) -> None:
@@ -158,6 +155,11 @@ class Pencil:
             raise InputError(
                 f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
             )
+
+
+def magnitudes(matrix: sp.csr_matrix) -> sp.csr_matrix:
+    """Return a matrix of absolute values on the same pattern."""
+    return sp.csr_matrix((np.abs(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
 
 
 def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:

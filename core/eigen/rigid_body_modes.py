@@ -14,7 +14,7 @@ from ..arrays import Floats, Ints, Numbers
 from ..data.parametric_model import Model
 from ..errors import CheckError
 from ..numerics.factorisation import factorise
-from .pencil import Pencil
+from .pencil import Pencil, magnitudes
 
 _ROUNDING = 1e-13
 """Row forces this small beside the sum of the magnitudes that make them are rounding."""
@@ -73,25 +73,18 @@ class RigidBody:
 
 
 def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
-    """Find the rigid-body motions that cost no strain energy.
+    """Find the rigid-body motions of a model that cost no strain energy by its `pencil`.
 
     Each piece of the model (connected through K or M) is given the six motions of a rigid body
     as far as its free degrees of freedom can follow; those combinations u count for which every
     row of K u is rounding beside |K| |u|. So a suspension of any softness is stiffness, and a
     body on a hinge line keeps one motion.
-
-    Parameters
-    ----------
-    model : Model
-    pencil : Pencil
-        Its K and M.
     """
     U, scalar = _geometric(model)
     label = _pieces(model, pencil)
     _follow(pencil, U, scalar & np.isin(label, label[~scalar]))
-    size = sp.csr_matrix((np.abs(pencil.K.data), pencil.K.indices, pencil.K.indptr), pencil.K.shape)
-    force = pencil.K @ U
-    noise = max(_ROUNDING, 4.0 * pencil.precision) * (size @ np.abs(U).sum(axis=1))
+    force, size = pencil.K @ U, magnitudes(pencil.K) @ np.abs(U).sum(axis=1)
+    noise = max(_ROUNDING, 4.0 * pencil.precision) * size
     mass = pencil.M @ U
     modes: list[tuple[Ints, Floats]] = []
     motions: list[tuple[Ints, Floats]] = []
@@ -100,20 +93,16 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     for rows in _groups(label):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
-        found = _strain_free(u, mu, ku, noise[rows])
-        if found.shape[1]:
+        free = _strain_free(u, mu, ku, noise[rows])
+        if free.shape[1]:
             pieces.append(rows)
         else:
             held += 1
-        modes.append((rows, found))
+        modes.append((rows, free))
         if (np.abs(ku[:, :3]) <= noise[rows, None]).all():
             motions.append((rows, _orthonormal(u, mu)))
-    return RigidBody(
-        _assembled(modes, pencil.n),
-        _assembled(motions, pencil.n),
-        tuple(sorted(pieces, key=len)),
-        held,
-    )
+    found, moved = (_assembled(parts, pencil.n) for parts in (modes, motions))
+    return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held)
 
 
 def _assembled(parts: Sequence[tuple[Ints, Floats]], n: int) -> Floats:

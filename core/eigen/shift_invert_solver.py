@@ -265,12 +265,7 @@ def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> 
 
 
 def _with_missed(
-    pencil: Pencil,
-    rigid: Floats,
-    found: Spectrum,
-    missed: int,
-    request: Request,
-    attempt: int,
+    pencil: Pencil, rigid: Floats, found: Spectrum, missed: int, request: Request, attempt: int
 ) -> Spectrum:
     """Search again, M-orthogonally to all that was found: another start, as wide as needed."""
     factor = found.factor or _definite(None, pencil, found.sigma, request.backend)
@@ -284,7 +279,6 @@ def _with_missed(
     X = np.hstack([found.vectors, further.vectors])
     values = np.concatenate([found.values, further.values])
     order = np.argsort(values)
-    joined = _polished(
-        pencil, rigid, found.sigma, factor, X[:, order], 1.0 / (values[order] - found.sigma)
-    )
+    theta = 1.0 / (values[order] - found.sigma)
+    joined = _polished(pencil, rigid, found.sigma, factor, X[:, order], theta)
     return replace(joined, complete=further.complete, ahead=further.ahead)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Floats, Numbers
 from ..data.shapes import LINE
-from .batch import congruent, skew, symmetric, transpose, unit
+from .batch import arms, congruent, symmetric, transpose, unit
 from .element import Element
 
 _RELEASED = 1e-10
@@ -38,11 +38,7 @@ def offset_transform(wa: Floats, wb: Floats) -> Floats:
     With T of the offsets `wa` and `wb`, (n, 3), from grids to ends, basic frame, a matrix K of
     the ends becomes T^T K T on the grids.
     """
-    T = np.zeros((len(wa), 12, 12))
-    T[:, np.arange(12), np.arange(12)] = 1.0
-    T[:, 0:3, 3:6] = -skew(wa)
-    T[:, 6:9, 9:12] = -skew(wb)
-    return T
+    return arms(np.broadcast_to(np.eye(3), (len(wa), 3, 3)), np.stack([wa, wb], axis=1))
 
 
 def bar_stiffness(
@@ -95,7 +91,7 @@ def bar_stiffness(
     V, R = bending_modes(L)
     K += transpose(V) @ antisymmetric @ V + transpose(R) @ (EI / L[:, None, None]) @ R
     K = release(K, np.concatenate([pins_a, pins_b], axis=1))
-    return congruent(K, axes4(bar_axes(xa, xb, v)))
+    return from_axes(K, xa, xb, v)
 
 
 def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
@@ -113,7 +109,7 @@ def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled
     """
     L = np.linalg.norm(xb - xa, axis=1)
     if not coupled:
-        return _lumped(mass_per_length * L)
+        return lumped_ends(np.stack([0.5 * mass_per_length * L] * 2, axis=1))
     M = np.zeros((len(xa), 12, 12))
     for i, j, m in ((0, 0, 175.0), (6, 6, 175.0), (0, 6, 35.0), (6, 0, 35.0)):
         M[:, i, j] = m
@@ -121,7 +117,7 @@ def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled
         rows = np.array([w, r, w + 6, r + 6])
         M[:, rows[:, None], rows] = _hermite_mass(sign * L)
     M *= (mass_per_length * L / 420.0)[:, None, None]
-    return congruent(M, axes4(bar_axes(xa, xb, v)))
+    return from_axes(M, xa, xb, v)
 
 
 def rod_stiffness(xyz: Floats, E: Floats, A: Floats, G: Floats, J: Floats) -> Floats:
@@ -160,7 +156,7 @@ def rod_mass(xyz: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
     """
     x, L = _along(xyz)
     mass = mass_per_length * L
-    M = _lumped(mass)
+    M = lumped_ends(np.stack([0.5 * mass] * 2, axis=1))
     if coupled:
         twelfth = (mass / 12.0)[:, None, None] * x[:, :, None] * x[:, None, :]
         M[:, 0:3, 0:3] -= twelfth
@@ -215,22 +211,21 @@ def release(K: Floats, pins: Numbers) -> Floats:
     return K
 
 
-def axes4(axes: Floats) -> Floats:
-    """Turn the four triples of two ends to the axes, (n, 12, 12)."""
-    T = np.zeros((len(axes), 4, 3, 4, 3))
-    for i in range(4):
-        T[:, i, :, i, :] = axes
-    return T.reshape(-1, 12, 12)
+def from_axes(K: Floats, xa: Floats, xb: Floats, v: Floats) -> Floats:
+    """Turn matrices (n, 12, 12) of two ends from element axes to the basic frame."""
+    return congruent(K, arms(bar_axes(xa, xb, v), np.zeros((len(K), 2, 3))))
 
 
 def _symmetric2(a: Floats, b: Floats, c: Floats) -> Floats:
     return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
 
 
-def _lumped(mass: Floats) -> Floats:
+def lumped_ends(mass: Floats) -> Floats:
+    """Masses (n, 2) at the ends, translations only, (n, 12, 12)."""
     M = np.zeros((len(mass), 12, 12))
-    for i in (0, 1, 2, 6, 7, 8):
-        M[:, i, i] = 0.5 * mass
+    for end, first in ((0, 0), (1, 6)):
+        for i in range(3):
+            M[:, first + i, first + i] = mass[:, end]
     return M
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import Floats, Ints
+from ..arrays import Floats, Ints, skew
 
 CHUNK = 256
 
@@ -45,15 +45,6 @@ def symmetric(a: Floats) -> Floats:
 def congruent(K: Floats, T: Floats) -> Floats:
     """Return T^T K T of each element, symmetric to the last bit."""
     return symmetric(transpose(T) @ K @ T)
-
-
-def skew(r: Floats) -> Floats:
-    """Return the matrices [r x], (..., 3, 3), of the vectors `r`, (..., 3)."""
-    out = np.zeros((*r.shape[:-1], 3, 3))
-    out[..., 0, 1], out[..., 0, 2] = -r[..., 2], r[..., 1]
-    out[..., 1, 0], out[..., 1, 2] = r[..., 2], -r[..., 0]
-    out[..., 2, 0], out[..., 2, 1] = -r[..., 1], r[..., 0]
-    return out
 
 
 def unit(v: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Floats, Numbers, frozen, require_shape
 from ..data.shapes import LINE
-from .bar import add_spring, axes4, bar_axes, release
+from .bar import add_spring, from_axes, lumped_ends, release
 from .batch import congruent, symmetric, transpose
 from .element import Element
 
@@ -120,7 +120,7 @@ def beam_stiffness(
     bending[dead] = 0.0
     K = congruent(K + symmetric(bending), _neutral_axis(neutral_a, neutral_b))
     K = release(K, np.concatenate([pins_a, pins_b], axis=1))
-    return congruent(K, axes4(bar_axes(xa, xb, v)))
+    return from_axes(K, xa, xb, v)
 
 
 def beam_mass(
@@ -179,13 +179,12 @@ def beam_mass(
         x = np.broadcast_to(_X, line.shape)
         if coupled:
             N = _hermite(x, weight * line, 0.0 * line, 0.0 * line, L)
-            add = _lumped(np.zeros((len(L), 2)), _ends(x, spin))
-            N = N + add
+            N += _lumped(zero, _ends(x, spin))
         else:
             N = _lumped(_ends(x, weight * line), _ends(x, spin))
         arms = _arms(zero if nsm_a is None else nsm_a, zero if nsm_b is None else nsm_b)
         M = M + congruent(N, arms)
-    return congruent(M, axes4(bar_axes(xa, xb, v)))
+    return from_axes(M, xa, xb, v)
 
 
 def _series(w: Floats, stiffness: Floats) -> Floats:
@@ -207,8 +206,7 @@ def _tip_motion(L: Floats) -> Floats:
 
 def _neutral_axis(a: Floats, b: Floats) -> Floats:
     """Axial motion of the neutral axis from the motions of the shear centre, (n, 12, 12)."""
-    T = np.zeros((len(a), 12, 12))
-    T[:, np.arange(12), np.arange(12)] = 1.0
+    T = np.tile(np.eye(12), (len(a), 1, 1))
     for first, at in ((0, a), (6, b)):
         T[:, first, first + 4] = at[:, 1]
         T[:, first, first + 5] = -at[:, 0]
@@ -234,11 +232,8 @@ def _ends(x: Floats, amount: Floats) -> Floats:
 
 
 def _lumped(mass: Floats, spin: Floats) -> Floats:
-    M = np.zeros((len(mass), 12, 12))
-    for end, first in ((0, 0), (1, 6)):
-        for i in range(3):
-            M[:, first + i, first + i] = mass[:, end]
-        M[:, first + 3, first + 3] = spin[:, end]
+    M = lumped_ends(mass)
+    M[:, 3, 3], M[:, 9, 9] = spin.T
     return M
 
 
@@ -254,19 +249,14 @@ def _hermite(x: Floats, m: Floats, i1: Floats, i2: Floats, L: Floats) -> Floats:
     M[:, ends[:, None] + 3, ends + 3] = np.einsum("ng,ngi,ngj->nij", i1 + i2, linear, linear)
     for w, r, sign, spin in ((1, 5, 1.0, i1), (2, 4, -1.0, i2)):
         s = (sign * L)[:, None]
-        shapes = [1 - 3 * x**2 + 2 * x**3, s * (x - 2 * x**2 + x**3)]
+        shapes = [1.0 - 3 * x**2 + 2 * x**3, s * (x - 2 * x**2 + x**3)]
         shapes += [3 * x**2 - 2 * x**3, s * (x**3 - x**2)]
-        slopes = [
-            6 * (x**2 - x),
-            s * (1 - 4 * x + 3 * x**2),
-            6 * (x - x**2),
-            s * (3 * x**2 - 2 * x),
-        ]
+        slopes = [6.0 * (x * x - x), s * (1 - 4 * x + 3 * x**2)]
+        slopes += [6.0 * (x - x * x), s * (3 * x**2 - 2 * x)]
         N, D = np.stack(shapes, axis=-1), np.stack(slopes, axis=-1) / L[:, None, None]
         rows = np.array([w, r, w + 6, r + 6])
-        M[:, rows[:, None], rows] = np.einsum("ng,ngi,ngj->nij", m, N, N) + np.einsum(
-            "ng,ngi,ngj->nij", spin, D, D
-        )
+        parts = (np.einsum("ng,ngi,ngj->nij", a, f, f) for a, f in ((m, N), (spin, D)))
+        M[:, rows[:, None], rows] = sum(parts)
     return M
 
 

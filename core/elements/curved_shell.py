@@ -8,52 +8,28 @@ from functools import partial
 
 import numpy as np
 
-from ..arrays import Floats
+from ..arrays import Floats, skew
 from ..data.shapes import QUAD, TRIA, Shape
-from .batch import arms, congruent, skew, symmetric, translations, transpose, unit
+from .batch import arms, congruent, symmetric, translations, transpose, unit
 from .element import Element
-from .middle_nodes import to_middle_nodes
+from .middle_nodes import quadratic, serendipity, to_middle_nodes
 from .quad4 import quad4_sound
 from .quadrature import gauss_tria
 from .section import ShellSection, finite_shear, shell_stiffness
+from .solid import area_coordinates
 from .tria3 import tria3_sound
 
 _G = 1.0 / np.sqrt(3.0)
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-_MIDDLES = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
 # share of the direct strain that two points do not see, found in MSC Nastran's forces
 _HOURGLASS = 0.25
 _TRIA_RESIDUAL = 1.0 / 24.0
 _CHUNK = 1024
 
 
-def quad8_shape(p: Floats) -> tuple[Floats, Floats]:
-    """Serendipity shape functions (m, 8) and derivatives (m, 2, 8) at points (m, 2)."""
-    N, dN = np.empty((len(p), 8)), np.empty((len(p), 2, 8))
-    a, b = _CORNERS.T
-    x, y = p[:, 0:1], p[:, 1:2]
-    u, v = 1.0 + a * x, 1.0 + b * y
-    N[:, :4] = u * v * (a * x + b * y - 1.0) / 4.0
-    dN[:, 0, :4] = a * v * (2.0 * a * x + b * y) / 4.0
-    dN[:, 1, :4] = b * u * (2.0 * b * y + a * x) / 4.0
-    for k, (a, b) in enumerate(_MIDDLES):
-        if a == 0.0:
-            N[:, 4 + k] = 0.5 * ((1.0 - x**2) * (1.0 + b * y))[:, 0]
-            dN[:, 0, 4 + k], dN[:, 1, 4 + k] = (-x * (1 + b * y))[:, 0], (b * (1 - x**2) / 2)[:, 0]
-        else:
-            N[:, 4 + k] = 0.5 * ((1.0 - y**2) * (1.0 + a * x))[:, 0]
-            dN[:, 0, 4 + k], dN[:, 1, 4 + k] = (a * (1 - y**2) / 2)[:, 0], (-y * (1 + a * x))[:, 0]
-    return N, dN
-
-
 def tria6_shape(p: Floats) -> tuple[Floats, Floats]:
     """Quadratic shape functions (m, 6) and derivatives (m, 2, 6) at points (m, 2)."""
-    L = np.column_stack([1.0 - p.sum(axis=1), p])
-    d = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
-    i, j = np.array([0, 1, 2]), np.array([1, 2, 0])
-    N = np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, i] * L[:, j]], axis=1)
-    middle = 4.0 * (d[:, i] * L[:, None, j] + d[:, j] * L[:, None, i])
-    return N, np.concatenate([d * (4.0 * L - 1.0)[:, None], middle], axis=2)
+    return quadratic(*area_coordinates(p), np.array(TRIA.sides))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +41,10 @@ class _Rule:
     weights: Floats
 
 
+_SIDES = np.array(QUAD.sides)
 _QUAD = _Rule(
-    quad8_shape,
-    np.concatenate([_CORNERS, _MIDDLES]),
+    partial(serendipity, _CORNERS, _SIDES),
+    np.concatenate([_CORNERS, _CORNERS[_SIDES].mean(axis=1)]),
     np.zeros((1, 2)),
     _G * _CORNERS,
     np.ones(4),
@@ -281,7 +258,7 @@ QUAD8 = Element(
     name="quad8",
     shape=QUAD,
     freedoms=6,
-    edges=np.array(QUAD.sides),
+    edges=_SIDES,
     stiffness=shell_stiffness(partial(_offset, _QUAD, _quad8), _CHUNK),
     mass=partial(_mass, _QUAD, QUAD, _NINE, np.outer(_W, _W).ravel()),
     axes=partial(_axes, _QUAD),

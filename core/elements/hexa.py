@@ -6,16 +6,10 @@ import numpy as np
 
 from ..arrays import Floats
 from ..data.shapes import HEXA
-from .batch import condense, symmetric, transpose
+from .batch import unit
+from .middle_nodes import serendipity
 from .quadrature import gauss_hexa, gauss_line
-from .solid import (
-    Solid,
-    displacement_gradients,
-    energy,
-    stacked_edges,
-    strain_operator,
-    strain_transform,
-)
+from .solid import Solid, energy, in_basis, stacked_edges, strains, with_bubbles
 
 SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 _HEXA = np.column_stack([np.tile(SQUARE, (2, 1)), np.repeat([-1.0, 1.0], 4)])
@@ -35,24 +29,7 @@ def hexa8(p: Floats) -> tuple[Floats, Floats]:
 
 def hexa20(p: Floats) -> tuple[Floats, Floats]:
     """Serendipity shape functions of the 20-node brick."""
-    middle = np.array([0.5 * (_HEXA[i] + _HEXA[j]) for i, j in _EDGES])
-    N, dN = np.empty((len(p), 20)), np.empty((len(p), 3, 20))
-    f = 1.0 + _HEXA * p[:, None, :]
-    s = (_HEXA * p[:, None, :]).sum(axis=2) - 2.0
-    N[:, :8] = f.prod(axis=2) * s / 8.0
-    for k in range(3):
-        pair = f[:, :, k - 2] * f[:, :, k - 1]
-        dN[:, k, :8] = _HEXA[:, k] * pair * (s + f[:, :, k]) / 8.0
-    for m, at in enumerate(middle):
-        along = int(np.flatnonzero(at == 0.0)[0])
-        i, j = (along + 1) % 3, (along + 2) % 3
-        a, b = 1.0 + at[i] * p[:, i], 1.0 + at[j] * p[:, j]
-        c = 1.0 - p[:, along] ** 2
-        N[:, 8 + m] = a * b * c / 4.0
-        dN[:, along, 8 + m] = -0.5 * p[:, along] * a * b
-        dN[:, i, 8 + m] = at[i] * b * c / 4.0
-        dN[:, j, 8 + m] = at[j] * a * c / 4.0
-    return N, dN
+    return serendipity(_HEXA, _EDGES, p)
 
 
 def _bubbles(p: Floats) -> Floats:
@@ -73,7 +50,6 @@ def _bubbles(p: Floats) -> Floats:
 
 _AT_CENTRE = hexa8(np.zeros((1, 3)))[1]
 _BUBBLES = _bubbles(_TWO[0])
-_OUTER, _INNER = np.arange(24), np.arange(24, 39)
 
 
 def _hexa8(xyz: Floats, C: Floats, integration: str) -> Floats:
@@ -86,11 +62,10 @@ def _hexa8(xyz: Floats, C: Floats, integration: str) -> Floats:
     after MacNeal (1987), *The shape sensitivity of isoparametric elements*, and Taylor,
     Beresford, Wilson (1976) for the internal modes.
     """
-    T, C = centre_basis(xyz, C, _AT_CENTRE)
+    T, C = _in_centre_basis(xyz, C, _AT_CENTRE)
     points = _TWO[0]
-    _, derivatives = hexa8(points)
-    _, detJ, g = displacement_gradients(xyz, derivatives)
-    B = T[:, None] @ strain_operator(g)
+    B, detJ = strains(xyz, hexa8, points)
+    B = T[:, None] @ B
     for row, kept in _KEPT.items():
         for side in (-1.0, 1.0):
             at = np.flatnonzero(points[:, kept] * side > 0.0)
@@ -99,25 +74,12 @@ def _hexa8(xyz: Floats, C: Floats, integration: str) -> Floats:
     if integration == "reduced":
         return energy(B, C, detJ)
     ratio = (np.linalg.det(_AT_CENTRE @ xyz[:, None])[:, 0, None] / detJ)[..., None, None]
-    both = np.concatenate([B, _BUBBLES * ratio], axis=3)
-    return condense(energy(both, C, detJ), _OUTER, _INNER)
+    return with_bubbles(B, _BUBBLES * ratio, C, detJ)
 
 
-def centre_basis(xyz: Floats, C: Floats, at_centre: Floats) -> tuple[Floats, Floats]:
-    """Strains and elastic matrices in the basis of the Jacobian at the centre (unit vectors).
-
-    Returns
-    -------
-    T : (n, 6, 6) float
-        Strains in the basis from Cartesian strains.
-    C : (n, 6, 6) float
-        Elastic matrices for those strains.
-    """
-    basis = (at_centre @ xyz[:, None])[:, 0]
-    basis = basis / np.linalg.norm(basis, axis=2, keepdims=True)
-    T = strain_transform(basis)
-    inverse = np.linalg.inv(T)
-    return T, symmetric(transpose(inverse) @ C @ inverse)
+def _in_centre_basis(xyz: Floats, C: Floats, at_centre: Floats) -> tuple[Floats, Floats]:
+    """Strains and elastic matrices in the basis of the Jacobian at the centre (unit vectors)."""
+    return in_basis(C, unit((at_centre @ xyz[:, None])[:, 0]))
 
 
 def _reduction(row: int) -> tuple[Floats, Floats]:
@@ -144,15 +106,13 @@ _REDUCTIONS = {row: _reduction(row) for row in _KEPT}
 
 def _hexa20(xyz: Floats, C: Floats, _integration: str) -> Floats:
     """Stiffness of twenty-node bricks, shears sampled at 2x2 points of their plane."""
-    T, C = centre_basis(xyz, C, hexa20(np.zeros((1, 3)))[1])
+    T, C = _in_centre_basis(xyz, C, hexa20(np.zeros((1, 3)))[1])
     points, point_weights = _THREE
-    _, derivatives = hexa20(points)
-    _, detJ, g = displacement_gradients(xyz, derivatives)
-    B = T[:, None] @ strain_operator(g)
+    B, detJ = strains(xyz, hexa20, points)
+    B = T[:, None] @ B
     for row, (samples, weights) in _REDUCTIONS.items():
-        _, _, g = displacement_gradients(xyz, hexa20(samples)[1])
-        sampled = (T[:, None, row : row + 1] @ strain_operator(g))[:, :, 0]
-        B[:, :, row] = weights @ sampled
+        sampled = T[:, None, row : row + 1] @ strains(xyz, hexa20, samples)[0]
+        B[:, :, row] = weights @ sampled[:, :, 0]
     return energy(B, C, detJ * point_weights)
 
 

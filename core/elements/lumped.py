@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Floats
+from ..arrays import Floats, skew
 from ..data.shapes import LINE, POINT
 from .bar import offset_transform
-from .batch import congruent, skew
+from .batch import congruent
 from .element import Element
 
 _PAIR = np.array([[1.0, -1.0], [-1.0, 1.0]])

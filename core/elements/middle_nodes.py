@@ -1,4 +1,4 @@
-"""Second-order elements: middle nodes left out, and lumped mass, all of it at middle nodes."""
+"""Second-order elements: interpolation, middle nodes left out, lumped mass all at middle nodes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,35 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Ints
 from .batch import transpose
+
+
+def serendipity(corners: Floats, edges: Ints, p: Floats) -> tuple[Floats, Floats]:
+    """Shape functions (m, n) and derivatives (m, d, n) at points (m, d) of a square or cube.
+
+    Its `corners` (k, d), at -1 and 1, come first, then the middles of the `edges`.
+    """
+    nodes = np.concatenate([corners, corners[edges].mean(axis=1)])
+    k, d = corners.shape
+    x = p[:, None]
+    across = nodes == 0.0  # the direction of the edge of a middle node
+    f = np.where(across, 1.0 - x**2, 1.0 + nodes * x)
+    df = np.where(across, -2.0 * x, nodes)
+    part = np.where(across.any(axis=1), 2.0, 1.0) / 2**d
+    N = f.prod(axis=2) * part
+    dN = [df[..., a] * np.delete(f, a, axis=2).prod(axis=2) * part for a in range(d)]
+    s = (corners * x).sum(axis=2) - (d - 1)
+    for a in range(d):
+        dN[a][:, :k] = dN[a][:, :k] * s + N[:, :k] * corners[:, a]
+    N[:, :k] *= s
+    return N, np.stack(dN, axis=1)
+
+
+def quadratic(L: Floats, dL: Floats, edges: Ints) -> tuple[Floats, Floats]:
+    """Quadratic shape functions of a triangle or tetrahedron from its linear ones."""
+    a, b = np.asarray(edges).T
+    N = np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, a] * L[:, b]], axis=1)
+    middle = 4.0 * (dL[..., a] * L[:, None, b] + dL[..., b] * L[:, None, a])
+    return N, np.concatenate([dL * (4.0 * L - 1.0)[:, None], middle], axis=2)
 
 
 def spread(edges: Ints, kept: Bools) -> Floats | None:

@@ -85,7 +85,7 @@ def normal_map(slopes: Floats, gradients: Floats) -> Floats:
     (n, 6 m, 6 m) float
     """
     n, m = slopes.shape[:2]
-    T = _identity(n, m)
+    T = np.tile(np.eye(6 * m), (n, 1, 1)).reshape(n, m, 6, m, 6)
     half = 0.5 * gradients
     for i in range(m):
         p, q = slopes[:, i, 0], slopes[:, i, 1]
@@ -123,7 +123,7 @@ def warp_map(local: Floats, height: Floats, gradients: Floats) -> tuple[Floats, 
         Slopes h,x and h,y at the corners.
     """
     n = len(local)
-    T = _identity(n, 4)
+    T = np.tile(np.eye(24), (n, 1, 1)).reshape(n, 4, 6, 4, 6)
     tilt = np.einsum("nidj,nj->nid", gradients, height)
     for i in range(4):
         a, b = i % 2, i % 2 + 2
@@ -149,11 +149,3 @@ def is_warped(local: Floats, height: Floats) -> bool:
 def corner_normals(axes: Floats, m: int) -> Floats:
     """Repeat the normals of the elements for their corners, (n m, 3), for `grid_normals`."""
     return np.repeat(unit(axes[:, 2]), m, axis=0)
-
-
-def _identity(n: int, m: int) -> Floats:
-    T = np.zeros((n, m, 6, m, 6))
-    for i in range(m):
-        for k in range(6):
-            T[:, i, k, i, k] = 1.0
-    return T

@@ -6,16 +6,16 @@ import numpy as np
 
 from ..arrays import Floats
 from ..data.shapes import PENTA, TRIA
-from .batch import condense, symmetric, transpose, unit
+from .batch import transpose, unit
 from .quadrature import gauss_line, gauss_tria, gauss_wedge
 from .solid import (
     Solid,
     area_coordinates,
-    displacement_gradients,
     energy,
+    in_basis,
     stacked_edges,
-    strain_operator,
-    strain_transform,
+    strains,
+    with_bubbles,
 )
 
 _SIX, _TWENTY_ONE = gauss_wedge(3, 2), gauss_wedge(7, 3)
@@ -58,7 +58,6 @@ def penta15(p: Floats) -> tuple[Floats, Floats]:
 _AT_CENTRE = penta6(np.array([[1.0 / 3.0, 1.0 / 3.0, 0.0]]))[1][0]
 # middles of the three faces, edges 1-2, 2-3, 3-1
 _FACES = np.array([[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]])
-_OUTER, _INNER = np.arange(18), np.arange(18, 21)
 
 
 def _penta6(xyz: Floats, C: Floats, integration: str) -> Floats:
@@ -72,14 +71,11 @@ def _penta6(xyz: Floats, C: Floats, integration: str) -> Floats:
     """
     n = len(xyz)
     basis, T, C = _middle_basis(xyz, C)
-    _, derivatives = penta6(_SIX[0])
-    _, detJ, g = displacement_gradients(xyz, derivatives)
-    B = T[:, None] @ strain_operator(g)
-
+    B, detJ = strains(xyz, penta6, _SIX[0])
+    B = T[:, None] @ B
     corner = 0.5 * (xyz[:, :3] + xyz[:, 3:]) @ transpose(basis)[:, :, :2]
     t = unit(np.stack([corner[:, j] - corner[:, i] for i, j in TRIA.sides], axis=1))
-    _, _, g = displacement_gradients(xyz, penta6(_FACES)[1])
-    at_faces = T[:, None] @ strain_operator(g)
+    at_faces = T[:, None] @ strains(xyz, penta6, _FACES)[0]
     shear = at_faces[:, :, [5, 4]]  # zx, yz
     edge = np.einsum("nkd,nkdj->nkj", t, shear)
     field = np.linalg.solve(np.concatenate([t, np.ones((n, 3, 1))], axis=2), edge)
@@ -91,10 +87,8 @@ def _penta6(xyz: Floats, C: Floats, integration: str) -> Floats:
     weight = detJ * _SIX[1]
     if integration == "reduced":
         return energy(B, C, weight)
-    J0 = _AT_CENTRE @ xyz
-    ratio = np.linalg.det(J0)[:, None] / detJ
-    both = np.concatenate([B, _bubbles(corner) * ratio[..., None, None]], axis=3)
-    return condense(energy(both, C, weight), _OUTER, _INNER)
+    ratio = np.linalg.det(_AT_CENTRE @ xyz)[:, None] / detJ
+    return with_bubbles(B, _bubbles(corner) * ratio[..., None, None], C, weight)
 
 
 def _middle_basis(xyz: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
@@ -103,16 +97,14 @@ def _middle_basis(xyz: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     x = unit(J[:, 0])
     normal = unit(np.cross(J[:, 0], J[:, 1]))
     basis = np.stack([x, np.cross(normal, x), unit(J[:, 2])], axis=1)
-    T = strain_transform(basis)
-    inverse = np.linalg.inv(T)
-    return basis, T, symmetric(transpose(inverse) @ C @ inverse)
+    return basis, *in_basis(C, basis)
 
 
 def _bubbles(corner: Floats) -> Floats:
     """Strains of the internal modes at the points, (n, 6, 6, 3), from the middle triangle."""
     modes = np.zeros((len(corner), 6, 6, 3))
     p = _SIX[0]
-    L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])
+    L = area_coordinates(p)[0]
     edge = np.stack([corner[:, k - 1] - corner[:, k - 2] for k in range(3)], axis=1)
     area2 = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
     gradient = np.stack([-edge[..., 1], edge[..., 0]], axis=2) / area2[:, None, None]
@@ -128,8 +120,9 @@ def _samples() -> tuple[Floats, Floats]:
     tria, line = gauss_tria(3)[0], gauss_line(2)[0]
     samples = np.concatenate([np.column_stack([tria, np.full(3, z)]) for z in line])
     p = _TWENTY_ONE[0]
-    L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])
-    nodal = 2.0 * L - 1.0 / 3.0  # linear functions that are one at a sample, zero at the others
+    nodal = (
+        2.0 * area_coordinates(p)[0] - 1.0 / 3.0
+    )  # linear functions that are one at a sample, zero at the others
     axial = 0.5 * (1.0 + 3.0 * p[:, 2:3] * line)
     weights = np.concatenate([nodal * axial[:, k : k + 1] for k in range(2)], axis=1)
     return samples, weights
@@ -141,11 +134,9 @@ _SAMPLES, _WEIGHTS = _samples()
 def _penta15(xyz: Floats, C: Floats, _integration: str) -> Floats:
     """Stiffness of fifteen-node wedges, shears across the triangle sampled at 3 x 2 points."""
     _, T, C = _middle_basis(xyz[:, :6], C)
-    _, derivatives = penta15(_TWENTY_ONE[0])
-    _, detJ, g = displacement_gradients(xyz, derivatives)
-    B = T[:, None] @ strain_operator(g)
-    _, _, g = displacement_gradients(xyz, penta15(_SAMPLES)[1])
-    sampled = T[:, None, 4:6] @ strain_operator(g)
+    B, detJ = strains(xyz, penta15, _TWENTY_ONE[0])
+    B = T[:, None] @ B
+    sampled = T[:, None, 4:6] @ strains(xyz, penta15, _SAMPLES)[0]
     B[:, :, 4:6] = np.einsum("ps,nsrk->nprk", _WEIGHTS, sampled)
     return energy(B, C, detJ * _TWENTY_ONE[1])
 

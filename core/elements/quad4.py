@@ -225,7 +225,6 @@ def add_shear(
     Zb = np.stack(shares, axis=1) / area[:, None]
     C = symmetric(np.linalg.solve(np.eye(4) + H * Zb[:, None, :], H))
     C[~bends] = 0.0
-
     edge = np.stack([local[:, j] - local[:, i] for i, j in _EDGES], axis=1)
     ends = np.array([-1.0, 1.0, -1.0, 1.0])
     G = np.repeat(edge, 2, axis=2)
@@ -233,9 +232,7 @@ def add_shear(
     G[:, :2, 3] = 0.0
     G[:, 2:, 1] = 0.0
     G[:, 2:, 3] *= ends[2:]
-    V = np.linalg.solve(G, edge_shear_operator(edge, _EDGES, 4))
-    plate = np.concatenate([_NODE + 2, _NODE + 3, _NODE + 4])
-    K[:, plate[:, None], plate] += transpose(V) @ C @ V
+    add_plate(K, np.linalg.solve(G, edge_shear_operator(edge, _EDGES, 4)), C)
 
 
 def _strips(local: Floats) -> tuple[Floats, Floats]:
@@ -255,17 +252,28 @@ def edge_shear_operator(edge: Floats, ends: tuple[tuple[int, int], ...], n_node:
     return V
 
 
+def add_plate(K: Floats, V: Floats, C: Floats) -> None:
+    """Add V^T C V to w, rx and ry of the nodes."""
+    plate = np.concatenate([6 * np.arange(K.shape[1] // 6) + d for d in (2, 3, 4)])
+    K[:, plate[:, None], plate] += transpose(V) @ C @ V
+
+
 def _add_drilling(K: Floats, stiffness: Floats, local: Floats) -> None:
     """Penalty on the difference of the grids' rotation and that of the plane, at each node."""
     J = AT_NODES @ local[:, None]
-    area = 4.0 * np.linalg.det(J)
-    g = np.linalg.inv(J) @ AT_NODES
-    r = np.zeros((len(K), 4, 12))
-    r[:, :, :4] = 0.5 * g[:, :, 1]
-    r[:, :, 4:8] = -0.5 * g[:, :, 0]
-    r[:, np.arange(4), 8 + np.arange(4)] = 1.0
-    rows = np.concatenate([_NODE, _NODE + 1, _NODE + 5])
-    K[:, rows[:, None], rows] += transpose(r * (stiffness[:, None] * area)[..., None]) @ r
+    weight = stiffness[:, None] * (4.0 * np.linalg.det(J))
+    add_drilling(K, weight, np.linalg.inv(J) @ AT_NODES)
+
+
+def add_drilling(K: Floats, weight: Floats, g: Floats) -> None:
+    """Add penalties (n, m) at the nodes, with the gradients (n, m, 2, m) of the plane there."""
+    m = g.shape[-1]
+    r = np.zeros((len(K), m, 3 * m))
+    r[:, :, :m] = 0.5 * g[:, :, 1]
+    r[:, :, m : 2 * m] = -0.5 * g[:, :, 0]
+    r[:, np.arange(m), 2 * m + np.arange(m)] = 1.0
+    rows = np.concatenate([6 * np.arange(m) + d for d in (0, 1, 5)])
+    K[:, rows[:, None], rows] += transpose(r * weight[..., None]) @ r
 
 
 QUAD4 = Element(

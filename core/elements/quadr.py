@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..data.shapes import QUAD, TRIA
-from .batch import condense, congruent, symmetric, transpose
+from .batch import condense, congruent, transpose
 from .quad4 import (
     AT_CENTRE,
     AT_GAUSS,
@@ -18,12 +18,11 @@ from .quad4 import (
     XI,
     add_shear,
     corner_motions,
-    edge_shear_operator,
     flat,
     quad4_axes,
 )
 from .section import ShellSection, finite_shear, shell_stiffness, strip_stiffness
-from .tria3 import TRIA3, triangle
+from .tria3 import TRIA3, add_edge_shears, triangle
 
 # found in MSC Nastran's grid point forces of a square and of a right isosceles triangle
 _UNIFORM = 0.75  # residual bending flexibility of the quad, relative to the CQUAD4's
@@ -212,14 +211,7 @@ def _add_tria_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats
     Zs = np.linalg.inv(S)
     Z = Zs + (area * flexibility / 12.0)[:, None, None] * np.eye(2)
     uniform = 0.5 * np.einsum("nii->n", Zs) + 0.5 * area * flexibility
-    length = np.linalg.norm(edge, axis=2)
-    F = edge @ Z @ transpose(edge)
-    F = F + uniform[:, None, None] * (length[:, :, None] * length[:, None, :])
-    C = symmetric(np.linalg.inv(F)) * area[:, None, None]
-    C[~bends] = 0.0
-    V = edge_shear_operator(edge, TRIA.sides, 3)
-    rows = np.concatenate([_NODE3 + 2, _NODE3 + 3, _NODE3 + 4])
-    K[:, rows[:, None], rows] += transpose(V) @ C @ V
+    add_edge_shears(K, edge, area * bends, Z, uniform)
 
 
 QUADR = replace(QUAD4, name="quadr", stiffness=shell_stiffness(_quadr))

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Floats
 from ..data.shapes import QUAD
 from .bar import rod_stiffness
-from .batch import congruent, transpose
+from .batch import arms, congruent, transpose
 from .normals import warp_map
 from .quad4 import AT_CENTRE, AT_NODES, QUAD4, flat, quad4_axes
 
@@ -37,9 +37,8 @@ def shear_panel_stiffness(
     axes = quad4_axes(xyz)
     local, height = flat(xyz, axes)
     edge = np.stack([local[:, j] - local[:, i] for i, j in QUAD.sides], axis=1)
-    start = local
     # flows q: sum q e = 0 and sum q (x cross e) = 0, scaled to mean 1
-    moment = start[..., 0] * edge[..., 1] - start[..., 1] * edge[..., 0]
+    moment = local[..., 0] * edge[..., 1] - local[..., 1] * edge[..., 0]
     rows = np.concatenate([transpose(edge), moment[:, None]], axis=1)
     q = np.linalg.svd(rows)[2][:, 3]
     q = q / (np.array([1.0, -1.0, 1.0, -1.0]) * q).mean(axis=1, keepdims=True)
@@ -57,11 +56,8 @@ def shear_panel_stiffness(
     K = np.zeros((n, 4, 6, 4, 6))
     K[:, :, :2, :, :2] = f[:, :, :, None, None] * (f / flexibility[:, None, None])[:, None, None]
     gradients = np.linalg.inv(AT_NODES @ local[:, None]) @ AT_NODES
-    T = np.zeros((n, 4, 6, 4, 6))
-    for i in range(4):
-        T[:, i, :3, i, :3] = T[:, i, 3:, i, 3:] = axes
     W, _ = warp_map(local, height, gradients)
-    K = congruent(K.reshape(n, 24, 24), W @ T.reshape(n, 24, 24))
+    K = congruent(K.reshape(n, 24, 24), W @ arms(axes, np.zeros((n, 4, 3))))
     return K + _rods(xyz, E, t, f1, f2) if np.any(f1) or np.any(f2) else K
 
 

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from ..arrays import Bools, Floats, Ints
-from .batch import in_chunks, symmetric, translations, transpose
+from .batch import condense, in_chunks, symmetric, translations, transpose
 from .element import Element
 from .middle_nodes import to_middle_nodes
 
@@ -25,6 +25,10 @@ Rule = tuple[Floats, Floats]
 """Integration points (m, 3), natural coordinates, and weights (m,)."""
 
 
+Interpolation = Callable[[Floats], tuple[Floats, Floats]]
+"""(m, 3) natural coordinates -> shape functions (m, k), derivatives by them (m, 3, k)."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Solid(Element):
     """A solid element by its shape functions.
@@ -34,8 +38,7 @@ class Solid(Element):
 
     Parameters
     ----------
-    interpolation : callable
-        (m, 3) natural coordinates -> shape functions (m, nodes), derivatives (m, 3, nodes).
+    interpolation : Interpolation
     rules : mapping of str to Rule
         Plain isoparametric integrations of the stiffness by their words.
     mass_rule : Rule
@@ -44,7 +47,7 @@ class Solid(Element):
         ``kernel(xyz, C, word)`` for the words that are no plain integration.
     """
 
-    interpolation: Callable[[Floats], tuple[Floats, Floats]]
+    interpolation: Interpolation
     rules: Mapping[str, Rule]
     mass_rule: Rule
     kernel: Callable[[Floats, Floats, str], Floats] | None = None
@@ -58,28 +61,30 @@ class Solid(Element):
         object.__setattr__(self, "integrations", self.integrations or tuple(self.rules))
 
 
-def displacement_gradients(xyz: Floats, derivatives: Floats) -> tuple[Floats, Floats, Floats]:
-    """Jacobians (n, m, 3, 3), their determinants (n, m), and gradients (n, m, 3, k) of the shapes.
+def strains(xyz: Floats, interpolation: Interpolation, points: Floats) -> tuple[Floats, Floats]:
+    """Strains xx, yy, zz, xy, yz, zx from u v w of each node, and determinants of the Jacobian.
 
     Parameters
     ----------
     xyz : (n, k, 3) float
         Node positions.
-    derivatives : (m, 3, k) float
-        Of the shape functions, by the natural coordinates, at m points.
+    interpolation : Interpolation
+    points : (m, 3) float
+        Natural coordinates.
+
+    Returns
+    -------
+    (n, m, 6, 3 k) float, (n, m) float
     """
+    derivatives = interpolation(points)[1]
     J = derivatives @ xyz[:, None]
-    return J, np.linalg.det(J), np.linalg.inv(J) @ derivatives
-
-
-def strain_operator(g: Floats) -> Floats:
-    """Strains xx, yy, zz, xy, yz, zx from u v w of each node, (..., 6, 3 k)."""
+    g = np.linalg.inv(J) @ derivatives
     B = np.zeros((*g.shape[:-2], 6, 3 * g.shape[-1]))
     x, y, z = g[..., 0, :], g[..., 1, :], g[..., 2, :]
     B[..., 0, 0::3] = B[..., 3, 1::3] = B[..., 5, 2::3] = x
     B[..., 1, 1::3] = B[..., 3, 0::3] = B[..., 4, 2::3] = y
     B[..., 2, 2::3] = B[..., 4, 1::3] = B[..., 5, 0::3] = z
-    return B
+    return B, np.linalg.det(J)
 
 
 def energy(B: Floats, C: Floats, weight: Floats) -> Floats:
@@ -109,9 +114,8 @@ def solid_stiffness(solid: Solid, xyz: Floats, C: Floats, integration: str | Non
         if solid.kernel and word not in solid.rules:
             return solid.kernel(xyz[part], C[part], word)
         points, weights = solid.rules[word]
-        _, derivatives = solid.interpolation(points)
-        _, detJ, g = displacement_gradients(xyz[part], derivatives)
-        return energy(strain_operator(g), C[part], detJ * weights)
+        B, detJ = strains(xyz[part], solid.interpolation, points)
+        return energy(B, C[part], detJ * weights)
 
     return in_chunks(len(xyz), 3 * solid.nodes, matrices, _CHUNK // (1 + (solid.nodes > 10)))
 
@@ -203,6 +207,25 @@ def strain_transform(axes: Floats) -> Floats:
             else:
                 T[..., r, c] = 0.5 * double * (a[..., k] * b[..., m] + a[..., m] * b[..., k])
     return T
+
+
+def in_basis(C: Floats, basis: Floats) -> tuple[Floats, Floats]:
+    """Strains in a `basis` (n, 3, 3) from Cartesian ones, and elastic matrices for those strains.
+
+    Returns
+    -------
+    (n, 6, 6) float, (n, 6, 6) float
+    """
+    T = strain_transform(basis)
+    inverse = np.linalg.inv(T)
+    return T, symmetric(transpose(inverse) @ C @ inverse)
+
+
+def with_bubbles(B: Floats, bubbles: Floats, C: Floats, weight: Floats) -> Floats:
+    """Stiffness from strains of nodes and of internal modes, which are condensed."""
+    both = np.concatenate([B, bubbles], axis=3)
+    outer, every = B.shape[3], np.arange(both.shape[3])
+    return condense(energy(both, C, weight), every[:outer], every[outer:])
 
 
 def rotate_material(C: Floats, axes: Floats) -> Floats:

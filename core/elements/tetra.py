@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..data.shapes import TETRA
+from .middle_nodes import quadratic
 from .quadrature import gauss_tetra
 from .solid import Solid, pointed_edges
 
@@ -25,12 +26,7 @@ def tetra4(p: Floats) -> tuple[Floats, Floats]:
 
 def tetra10(p: Floats) -> tuple[Floats, Floats]:
     """Quadratic shape functions of the tetrahedron."""
-    L, dL = tetra4(p)
-    edges = _EDGES
-    a, b = edges[:, 0], edges[:, 1]
-    N = np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, a] * L[:, b]], axis=1)
-    middle = 4.0 * (dL[:, :, a] * L[:, None, b] + dL[:, :, b] * L[:, None, a])
-    return N, np.concatenate([dL * (4.0 * L - 1.0)[:, None], middle], axis=2)
+    return quadratic(*tetra4(p), _EDGES)
 
 
 TETRA4 = Solid(

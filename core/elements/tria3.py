@@ -11,7 +11,7 @@ from ..data.shapes import TRIA
 from .batch import arms, congruent, translations, transpose, unit
 from .element import Element
 from .normals import director_slopes, normal_map
-from .quad4 import edge_shear_operator
+from .quad4 import add_drilling, add_plate, edge_shear_operator
 from .section import (
     ShellSection,
     bending_scale,
@@ -137,7 +137,9 @@ def _stiffness(
     K = np.zeros((len(xyz), 18, 18))
     _add_plane(K, section, t.g, t.area)
     _add_shear(K, section, t.edge, t.area)
-    _add_drilling(K, section.drilling * k6rot * 1e-6 * 2.0 * t.area, t.g)
+    drilling = section.drilling * k6rot * 1e-6 * 2.0 * t.area
+    at_nodes = np.broadcast_to(t.g[:, None], (len(xyz), 3, 2, 3))
+    add_drilling(K, np.repeat(drilling[:, None], 3, axis=1), at_nodes)
     return congruent(K, t.corner_motions(offset, normals))
 
 
@@ -160,24 +162,15 @@ def _add_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats) -> 
     S = finite_shear(section, np.sqrt(area))
     S = np.where(bends[:, None, None], S, np.eye(2))
     Z = np.linalg.inv(S) + residual_flexibility(edge, scale)
+    add_edge_shears(K, edge, area * bends, Z, 0.5 * np.einsum("nii->n", Z))
+
+
+def add_edge_shears(K: Floats, edge: Floats, area: Floats, Z: Floats, uniform: Floats) -> None:
+    """Shears along three edges with the flexibility t Z t^T + uniform between unit edge strains."""
     length = np.linalg.norm(edge, axis=2)
-    uniform = 0.5 * np.einsum("nii->n", Z)[:, None, None]
-    F = edge @ Z @ transpose(edge) + uniform * (length[:, :, None] * length[:, None, :])
-    C = np.linalg.inv(F) * area[:, None, None]
-    C[~bends] = 0.0
-    V = edge_shear_operator(edge, TRIA.sides, 3)
-    plate = np.concatenate([_NODE + 2, _NODE + 3, _NODE + 4])
-    K[:, plate[:, None], plate] += transpose(V) @ C @ V
-
-
-def _add_drilling(K: Floats, stiffness: Floats, g: Floats) -> None:
-    """Penalty on the difference of each grid's rotation and that of the plane."""
-    r = np.zeros((len(K), 3, 9))
-    r[:, :, :3] = 0.5 * g[:, None, 1]
-    r[:, :, 3:6] = -0.5 * g[:, None, 0]
-    r[:, np.arange(3), 6 + np.arange(3)] = 1.0
-    rows = np.concatenate([_NODE, _NODE + 1, _NODE + 5])
-    K[:, rows[:, None], rows] += transpose(r * stiffness[:, None, None]) @ r
+    alike = uniform[:, None, None] * (length[:, :, None] * length[:, None, :])
+    C = np.linalg.inv(edge @ Z @ transpose(edge) + alike) * area[:, None, None]
+    add_plate(K, edge_shear_operator(edge, TRIA.sides, 3), C)
 
 
 TRIA3 = Element(

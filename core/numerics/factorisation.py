@@ -248,16 +248,9 @@ def upper_triangle(a: sp.spmatrix) -> sp.csr_matrix:
         return upper
     missing = rows[~stored]
     entries = upper.tocoo()
-    return sp.csr_matrix(
-        (
-            np.concatenate([entries.data, np.zeros(len(missing))]),
-            (
-                np.concatenate([entries.row, missing]),
-                np.concatenate([entries.col, missing]),
-            ),
-        ),
-        shape=upper.shape,
-    )
+    data = np.concatenate([entries.data, np.zeros(len(missing))])
+    where = [np.concatenate([at, missing]) for at in (entries.row, entries.col)]
+    return sp.csr_matrix((data, where), shape=upper.shape)
 
 
 def _scale(upper: sp.csr_matrix) -> Floats:

@@ -126,9 +126,8 @@ class ShapeDerivatives:
         z = np.zeros_like(r)
         for first in range(0, r.shape[1], _BLOCK):
             part = slice(first, first + _BLOCK)
-            z[:, part] = self._conjugate_gradients(
-                factor, r[:, part], lam[part] - s, least[part], cluster
-            )
+            some = r[:, part], lam[part] - s, least[part]
+            z[:, part] = self._conjugate_gradients(factor, *some, cluster)
         distance = np.einsum("ij,ij->j", z, r)
         size = np.einsum("ij,ij->j", z, self._pencil.M @ z)
         if (distance < REPEATED * np.abs(lam) * size).any():
@@ -143,11 +142,8 @@ class ShapeDerivatives:
         Energies r^T A^-1 r below `least` count as none.
         """
         M, X, MX = self._pencil.M, self._X, self._MX
-        z = np.zeros_like(r)
-        d = np.zeros_like(r)
-        Ad = np.zeros_like(r)
-        rho = np.ones(r.shape[1])
-        goal = np.zeros(r.shape[1])
+        z, d, Ad = (np.zeros_like(r) for _ in range(3))
+        rho, goal = np.ones(r.shape[1]), np.zeros(r.shape[1])
         for k in range(_ITERATIONS):
             s = factor.solve(r)
             s -= X @ (MX.T @ s)
@@ -183,11 +179,8 @@ class ShapeDerivatives:
         below = lam[low] - (lam[low - 1] if low else 2.0 * solution.sigma)
         above = lam[high + 1] - lam[high] if high + 1 < len(lam) else 0.0
         reach = 0.01 * (lam[high] - solution.sigma)
-        s = (
-            lam[high] + min(above / 2.0, reach)
-            if above > below
-            else lam[low] - min(below / 2.0, reach)
-        )
+        up = above > below
+        s = lam[high if up else low] + (1 if up else -1) * min(max(above, below) / 2.0, reach)
         if self._near is None:
             self._near = factorise(self._pencil.shifted(s), False)
         else:

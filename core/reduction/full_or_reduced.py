@@ -90,15 +90,9 @@ class ReducedOrder:
 def reduce_around(
     full: FullOrder, p: Floats, solution: Eigensolution, active: Sequence[int]
 ) -> ReducedOrder:
-    """Reduce a model around the factors `p`, where its modes are `solution`.
+    """Reduce a model around the factors `p` (n_parameter,), where its modes are `solution`.
 
-    Parameters
-    ----------
-    full : FullOrder
-    p : (n_parameter,) float
-    solution : Eigensolution
-    active : sequence of int
-        Parameters that will move.
+    `active` are the parameters that will move.
     """
     count = len(solution.eigenvalues)
     elastic = np.arange(min(solution.rigid_body_modes, count - 1), count)

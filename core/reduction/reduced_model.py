@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 import scipy.linalg as sl
@@ -16,11 +15,10 @@ from ..eigen.normal_modes import Eigensolution, solve
 from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..noun import Noun
-from ..numerics.factorisation import factorise
+from ..numerics.factorisation import Factorisation, factorise
 from .eigenpair_derivatives import Sensitivities, coefficients, differentiate
 from .eigenvector_derivatives import modal_part
 from .reduced_sum import ReducedSum, reduced_sum
-from .ritz_basis import static_answers
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +65,6 @@ class ReducedModel(Noun):
     ----------
     model : Model
         The full model.
-    p0 : (n_parameter,) float
-        Where the basis was made.
     Q : (n_free, n_basis) float
         Orthonormal with respect to K - sigma M at `p0`.
     stiffness, mass : ReducedSum
@@ -78,7 +74,6 @@ class ReducedModel(Noun):
     """
 
     model: Model
-    p0: Floats
     Q: Floats
     stiffness: ReducedSum
     mass: ReducedSum
@@ -88,22 +83,6 @@ class ReducedModel(Noun):
     def size(self) -> int:
         """Number of basis vectors."""
         return int(self.Q.shape[1])
-
-    def K(self, p: Floats) -> Floats:
-        """Return the reduced stiffness at `p`, (n_basis, n_basis)."""
-        return self.stiffness.at(p)
-
-    def M(self, p: Floats) -> Floats:
-        """Return the reduced mass at `p`, (n_basis, n_basis)."""
-        return self.mass.at(p)
-
-    def dK(self, parameter: int, p: Floats) -> Floats:
-        """Return the derivative of the reduced stiffness, (n_basis, n_basis)."""
-        return np.asarray(self.stiffness.slopes(p, [parameter])[0])
-
-    def dM(self, parameter: int, p: Floats) -> Floats:
-        """Return the derivative of the reduced mass, (n_basis, n_basis)."""
-        return np.asarray(self.mass.slopes(p, [parameter])[0])
 
     def project(self, vectors: sp.spmatrix | Floats) -> Floats:
         """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).
@@ -127,7 +106,7 @@ class ReducedModel(Noun):
         InputError
             Where K - sigma M is not positive definite: factors that make no structure.
         """
-        K, M = self.K(p), self.M(p)
+        K, M = self.stiffness.at(p), self.mass.at(p)
         n = self.size
         wanted = min(n, len(self.solution.eigenvalues) if n_modes is None else n_modes)
         sigma = self.solution.sigma
@@ -178,8 +157,13 @@ class ReducedModel(Noun):
         if given.ndim == 2:
             given = np.vstack([given, np.zeros((max(count - len(given), 0), given.shape[1]))])
         T, by_position = coefficients(given, count)
-        changes = [(self.dK(i, p), self.dM(i, p)) for i in parameters]
-        change_of = partial(_within_basis, everything, changes)
+        slopes = self.stiffness.slopes(p, parameters), self.mass.slopes(p, parameters)
+        changes = list(zip(*slopes, strict=True))
+
+        def change_of(cluster: Ints) -> Floats:
+            z, _, _ = modal_part(everything.vectors, everything.eigenvalues, cluster, changes)
+            return z.reshape(len(z), len(cluster), len(changes))
+
         return differentiate(T, by_position, everything, changes, sensors, change_of)
 
     def _finite(self, modes: ReducedModes) -> ReducedModes:
@@ -243,26 +227,77 @@ def build_reduced(
         raise InputError(f"mode {last + 1} is a target, the model has {len(solution.eigenvalues)}")
     pencil = Pencil.of(model, p0)
     factor = solution.factor or factorise(pencil.shifted(solution.sigma), True)
-    Q = np.hstack(
-        [
-            solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma),
-            static_answers(
-                model, p0, solution, factor, targets, parameters, max_static, least_energy
-            ),
-        ]
+    modes = solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma)
+    answers = static_answers(
+        model, p0, solution, factor, targets, parameters, max_static, least_energy
     )
-    return ReducedModel(
-        model,
-        np.array(p0, np.float64),
-        Q,
-        reduced_sum(model.stiffness, Q),
-        reduced_sum(model.mass, Q),
-        solution,
-    )
+    Q = np.hstack([modes, answers])
+    K, M = (reduced_sum(terms, Q) for terms in (model.stiffness, model.mass))
+    return ReducedModel(model, Q, K, M, solution)
 
 
-def _within_basis(
-    modes: ReducedModes, changes: Sequence[tuple[Floats, Floats]], cluster: Ints
+_DEPENDENT = 1e-10
+"""Energy beside the largest below which a direction is dependent on the others."""
+
+_BLOCK = 64
+
+
+def static_answers(
+    model: Model,
+    p0: Floats,
+    solution: Eigensolution,
+    factor: Factorisation,
+    targets: Sequence[int] | Ints,
+    parameters: Sequence[int],
+    most: int,
+    least: float,
 ) -> Floats:
-    z, _, _ = modal_part(modes.vectors, modes.eigenvalues, cluster, changes)
-    return z.reshape(len(z), len(cluster), len(changes))
+    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi.
+
+    Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
+    values, compare; of their principal directions those of largest energy are kept.
+
+    Parameters
+    ----------
+    model, p0, solution, targets, parameters
+        As in `reduced.build_reduced`.
+    factor : Factorisation
+        Of A = K - sigma M.
+    most : int
+        Most vectors kept.
+    least : float
+        Least energy of those kept, beside that of a mode, for a factor moved by one.
+
+    Returns
+    -------
+    (n_free, k) float
+        A-orthonormal, A-orthogonal to the modes, k <= `most`.
+    """
+    chosen = np.asarray(targets, np.int64)
+    span = solution.eigenvalues - solution.sigma
+    X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
+    weight = 1.0 / np.sqrt(span[chosen])
+    n, m = X.shape
+    group = max(1, _BLOCK // max(m, 1))
+    groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
+    ends = np.cumsum([0] + [m * len(g) for g in groups])
+
+    def loads(members: Sequence[int]) -> Floats:
+        parts = [model.dK(i, p0) @ X - (model.dM(i, p0) @ X) * lam for i in members]
+        return np.hstack([part * weight for part in parts])
+
+    S = np.empty((n, ends[-1]), order="F")
+    energy = np.zeros((ends[-1],) * 2)
+    modal = np.empty((len(span), ends[-1]))
+    for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
+        F = loads(members)
+        S[:, start:end] = factor.solve(F)
+        energy[:end, start:end] = S[:, :end].T @ F
+        energy[start:end, :start] = energy[:start, start:end].T
+        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
+    energy -= modal.T @ (span[:, None] * modal)
+    value, W = np.linalg.eigh((energy + energy.T) / 2.0)
+    best = np.argsort(-value)[:most]
+    best = best[value[best] > max(least, _DEPENDENT * value.max(initial=0.0))]
+    W = W[:, best] / np.sqrt(value[best])
+    return np.asarray(S @ W - solution.vectors @ (modal @ W))

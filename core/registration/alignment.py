@@ -152,20 +152,13 @@ def align(
             f"only {share:.0%} of the test nodes lie on the model in the best position (rms "
             f"{best.rms:.3g}); check that both are the same structure and not mirrored",
         )
+    candidates = tuple(
+        Candidate(Transform(c.pose.rotation[0], c.pose.translation[0], scale), c.rms, c.score)
+        for c in choice.candidates
+    )
+    move, told = candidates[0].transform, (choice.ambiguity, choice.decided, warnings)
     return Alignment(
-        best.pose.rotation[0],
-        best.pose.translation[0],
-        scale,
-        best.rms,
-        "fitted",
-        best.score,
-        tuple(
-            Candidate(Transform(c.pose.rotation[0], c.pose.translation[0], scale), c.rms, c.score)
-            for c in choice.candidates
-        ),
-        choice.ambiguity,
-        choice.decided,
-        warnings,
+        move.rotation, move.translation, scale, best.rms, "fitted", best.score, candidates, *told
     )
 
 
@@ -220,6 +213,5 @@ def _require_on_model(
             f"the test does not fit on the model in any position: in the best only {share:.0%} of "
             f"its {len(points)} nodes lie on it (rms distance {best.rms[0]:.3g}; the model spans "
             f"{surface.size:.4g}, the test {np.linalg.norm(np.ptp(points, axis=0)):.4g}); check "
-            "the "
-            "length units of deck and test, and that both are the same structure"
+            "the length units of deck and test, and that both are the same structure"
         )

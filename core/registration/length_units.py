@@ -106,9 +106,7 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     by = METRES[deck] / METRES[better] if better else 1 / ratio
     times = f"{_round(by)} times smaller" if by > 1 else f"{_round(1 / by)} times larger"
     said = f"the test is about {times} than the model ({_sizes(surface, test, deck, measured)})"
-    if low <= ratio <= high and not sure:
-        return replace(units, warnings=(f"{said}; check the length units of both",))
-    if better is None and low / 10 <= ratio < low:
+    if (low <= ratio <= high and not sure) or (better is None and low / 10 <= ratio < low):
         return replace(units, warnings=(f"{said}; check the length units of both",))
     advice = (
         f"if the deck is in {better}, say so with --deck-length-unit {better}; else the test's "
@@ -126,12 +124,8 @@ def _alike(surface: Surface, test: Geometry) -> Units:
             "neither the deck nor the test states its length unit and their sizes differ "
             f"({_sizes(surface, test, None, None)}); state the deck's with --deck-length-unit"
         )
-    return Units(
-        None,
-        None,
-        1.0,
-        ("neither the deck nor the test states its length unit; taken to be the same",),
-    )
+    said = "neither the deck nor the test states its length unit; taken to be the same"
+    return Units(None, None, 1.0, (said,))
 
 
 def _plausible(surface: Surface, test: Geometry, choices: dict[str, float]) -> str | None:

@@ -53,17 +53,9 @@ class Family:
 
 
 def family_of(surface: Surface, points: Floats, pose: Poses, limit: float) -> Family:
-    """Find how a test in a given pose can slide on the model.
+    """Find how points (n, 3) of a test, in one pose at rest, can slide on the model.
 
-    Parameters
-    ----------
-    surface : Surface
-    points : (n, 3) float
-        Of the test.
-    pose : Poses
-        One pose, at rest.
-    limit : float
-        Largest rms distance that still fits.
+    `limit` is the largest rms distance that still fits.
     """
     centre, radius = centre_and_radius(pose.apply(points))
     free = freedoms(surface, points, pose, STEP * surface.size, limit)
@@ -88,8 +80,8 @@ def _straightened(
     """Follow each motion for a share of the model's size and settle there: where that led to.
 
     The way from one resting pose to another that is far off tells an axis much better than the
-    surface beside the first. A motion that leads off the
-    model stays as it was, or is dropped where it `must` lead somewhere.
+    surface beside the first. A motion that leads off the model stays as it was, or is dropped
+    where it `must` lead somewhere.
     """
     if not len(motions):
         return motions
@@ -124,26 +116,12 @@ def _parted(free: Floats) -> tuple[Floats, Floats]:
 
 
 def freedoms(surface: Surface, points: Floats, pose: Poses, step: float, limit: float) -> Floats:
-    """Rigid motions that keep points on the surface.
+    """Rigid motions that keep points in one pose, at rest, on the surface, (d, 6), d from 0 to 6.
 
-    The squared distance is sampled a finite step away and fitted by a quadratic form: points at
-    the joints of a frame are held by a whisker in every direction, yet slide freely.
-
-    Parameters
-    ----------
-    surface, points
-        As for `polish`.
-    pose : Poses
-        One pose, at rest.
-    step : float
-        How far to move.
-    limit : float
-        A motion by `step` is free when it leaves the rms distance below this.
-
-    Returns
-    -------
-    (d, 6) float
-        Orthonormal motions scaled as in `jacobian`, d from 0 to 6.
+    Orthonormal, scaled as in `jacobian`; one is free when a motion by `step` leaves the rms
+    distance below `limit`. The squared distance is sampled a finite step away and fitted by a
+    quadratic form: points at the joints of a frame are held by a whisker in every direction, yet
+    slide freely.
     """
     x = pose.apply(points)
     centre, radius = centre_and_radius(x)
@@ -187,20 +165,9 @@ def members(family: Family, points: Floats, poses: Poses, surface: Surface) -> B
 
 
 def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses:
-    """Poses of a family that fit, about every two degrees of turn and 1 % of the size of slide.
+    """Poses of a family within the rms distance `limit` of points (n, 3), its own pose first.
 
-    Parameters
-    ----------
-    cloud : Cloud
-    points : (n, 3) float
-    family : Family
-    limit : float
-        Largest rms distance that still fits.
-
-    Returns
-    -------
-    Poses
-        The family's own pose first.
+    About every two degrees of turn and 1 % of the size of slide.
     """
     d = len(family.motions)
     if d == 0:
@@ -218,7 +185,7 @@ def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses
     if d == 1:
         poses = polish(cloud.surface, points, poses.rotation, poses.translation, rounds=3)
     poses = replace(poses, rms=rms_of(cloud.surface, points, poses))
-    return Poses.joined([family.pose, poses.take(np.flatnonzero(poses.rms <= limit))])
+    return family.pose.followed_by(poses.take(np.flatnonzero(poses.rms <= limit)))
 
 
 def step_of(family: Family, surface: Surface) -> Floats:

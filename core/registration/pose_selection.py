@@ -31,11 +31,15 @@ _EXACT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """One position: its pose, rms distance and score (None without shapes)."""
+    """One position: its pose and score (None without shapes)."""
 
     pose: Poses
-    rms: float
     score: float | None
+
+    @property
+    def rms(self) -> float:
+        """Root mean square distance from the surface."""
+        return float(self.pose.rms[0])
 
     @property
     def angle(self) -> float:
@@ -77,29 +81,18 @@ def margin_of(score: float) -> float:
 
 
 def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, poses: Poses) -> Choices:
-    """Rank the positions in which points lie on a surface.
+    """Rank the positions in which test nodes `points` (n, 3) lie on the surface of the analysis.
 
-    Geometry first: the poses that fit about as well as the best are sorted into families within
-    which the test slides (`sliding`). Every family is sampled and scored, its best refined.
-    Between candidates that score alike (`margin_of`) the smaller rotation is taken; without a
-    score, geometry and the smaller rotation decide.
-
-    Parameters
-    ----------
-    cloud : Cloud
-        Of the analysis surface.
-    points : (n, 3) float
-        Test nodes, analysis length unit, test frame.
-    scorer : Scorer or None
-    poses : Poses
-        What `rigid_fit.search` found, best first.
+    Geometry first: the poses that fit about as well as the best, as `search` found them, are
+    sorted into families within which the test slides. Every family is sampled and scored, its
+    best refined. Between candidates that score alike (`margin_of`) the smaller rotation is taken;
+    without a score, geometry and the smaller rotation decide.
     """
     surface = cloud.surface
     limit = max(1.5 * poses.rms[0], poses.rms[0] + 0.002 * surface.size)
     poses = poses.take(np.flatnonzero(poses.rms <= limit))
     few = points[farthest_points(points, _POINTS)]
-    floor = max(float(poses.rms[0]), _EXACT * surface.size)
-    judge = _Judge(cloud, points, scorer, floor, limit)
+    judge = _Judge(cloud, points, scorer, max(poses.rms[0], _EXACT * surface.size), limit)
     found: list[_Peak] = []
     for _ in range(_FAMILIES):
         family = family_of(surface, few, poses.take(np.array([0])), limit)
@@ -141,7 +134,7 @@ class _Judge:
         """Lay one pose on the surface and score it."""
         pose = polish(self.cloud.surface, self.points, pose.rotation, pose.translation, rounds=8)
         score = None if self.scorer is None else float(self.scorer.score(pose)[0])
-        return Choice(pose, float(pose.rms[0]), score)
+        return Choice(pose, score)
 
     def _rms(self, poses: Poses) -> Floats:
         return rms_of(self.cloud.surface, self.points, poses)
@@ -198,11 +191,7 @@ def _coordinates(family: Family, poses: Poses) -> Floats:
 
 
 def _climb(
-    family: Family,
-    start: Floats,
-    value: float,
-    step: Floats,
-    worth: Callable[[Poses], Floats],
+    family: Family, start: Floats, value: float, step: Floats, worth: Callable[[Poses], Floats]
 ) -> tuple[Floats, float]:
     """Find the nearest maximum along the motions by a pattern search with halved steps."""
     best, d = start, len(start)

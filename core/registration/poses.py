@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..arrays import Floats, Ints
+from ..arrays import Floats, Ints, skew
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +40,12 @@ class Poses:
             np.einsum("kij,nj->kni", self.rotation, points) + self.translation[:, None]
         )
 
-    @staticmethod
-    def joined(parts: list[Poses]) -> Poses:
-        """Return the poses of all parts, in turn."""
+    def followed_by(self, other: Poses) -> Poses:
+        """Return these poses, then others."""
         return Poses(
-            np.concatenate([p.rotation for p in parts]),
-            np.concatenate([p.translation for p in parts]),
-            np.concatenate([p.rms for p in parts]),
+            np.concatenate([self.rotation, other.rotation]),
+            np.concatenate([self.translation, other.translation]),
+            np.concatenate([self.rms, other.rms]),
         )
 
 
@@ -58,8 +57,7 @@ def jacobian(x: Floats, centre: Floats, radius: Floats) -> Floats:
     """
     a = (x - centre[:, None]) / radius[:, None, None]
     J = np.zeros((*x.shape, 6))
-    J[..., 0, 1], J[..., 0, 2], J[..., 1, 2] = a[..., 2], -a[..., 1], a[..., 0]
-    J[..., 1, 0], J[..., 2, 0], J[..., 2, 1] = -a[..., 2], a[..., 1], -a[..., 0]
+    J[..., :3] = -skew(a)
     J[..., [0, 1, 2], [3, 4, 5]] = 1.0
     return J
 
@@ -87,14 +85,8 @@ def displaced(pose: Poses, centre: Floats, radius: Floats, motions: Floats) -> P
     k = len(motions)
     turn = motions[:, :3] / radius
     shift = np.einsum("kij,kj->ki", _screw(turn), motions[:, 3:])
-    R, t = move(
-        np.repeat(pose.rotation, k, axis=0),
-        np.repeat(pose.translation, k, axis=0),
-        centre,
-        turn,
-        shift,
-    )
-    return Poses(R, t, np.full(k, np.nan))
+    R, t = np.repeat(pose.rotation, k, axis=0), np.repeat(pose.translation, k, axis=0)
+    return Poses(*move(R, t, centre, turn, shift), np.full(k, np.nan))
 
 
 def motion_between(pose: Poses, others: Poses, centre: Floats, radius: Floats) -> Floats:
@@ -113,7 +105,5 @@ def _screw(turn: Floats) -> Floats:
     a = np.where(small, 1.0, angle)
     first = np.where(small, 0.5, (1 - np.cos(a)) / a**2)
     second = np.where(small, 1 / 6, (a - np.sin(a)) / a**3)
-    K = np.zeros((len(turn), 3, 3))
-    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -turn[:, 2], turn[:, 1], -turn[:, 0]
-    K -= np.swapaxes(K, 1, 2)
+    K = skew(turn)
     return np.asarray(np.eye(3) + first[:, None, None] * K + second[:, None, None] * (K @ K))

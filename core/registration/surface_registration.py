@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from ..arrays import Floats, Ints
 from ..sensors.closest_point import place
-from ..sensors.outer_surface import LINE, POINT, TRIA, Surface, shape_functions
+from ..sensors.outer_surface import LINE, TRIA, Surface, shape_functions
 from .poses import Poses, centre_and_radius, jacobian, move
 
 CAP = 0.03
@@ -41,13 +41,8 @@ def cloud_of(surface: Surface) -> Cloud:
     """Sample a surface for a coarse search."""
     points, facets = surface.samples(_CLOUD)
     kind = surface.kind[facets]
-    xyz = surface.xyz[surface.corners[facets]]
-    _, Ns, Nt = shape_functions(kind, np.full(len(kind), 0.5), np.full(len(kind), 0.5))
-    gs, gt = np.einsum("nc,ncx->nx", Ns, xyz), np.einsum("nc,ncx->nx", Nt, xyz)
-    direction = np.where((kind >= TRIA)[:, None], np.cross(gs, gt), gs)
-    direction = np.where((kind == POINT)[:, None], 0.0, direction)
-    length = np.linalg.norm(direction, axis=1, keepdims=True)
-    direction = np.divide(direction, length, out=np.zeros_like(direction), where=length > 0)
+    half = np.full(len(kind), 0.5)
+    direction = surface.directions(facets, *shape_functions(kind, half, half)[1:])
     tree = cKDTree(points)
     spacing = float(np.median(tree.query(points[::50], k=2)[0][:, 1]))
     return Cloud(surface, points, direction, kind, tree, spacing)
@@ -95,7 +90,8 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = 40) -> Poses
 
 
 def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    base = principal_axes(cloud.points) @ _cube_rotations() @ principal_axes(points).T
+    cube = Rotation.create_group("O").as_matrix()
+    base = principal_axes(cloud.points) @ cube @ principal_axes(points).T
     random = Rotation.random(300, random_state=np.random.RandomState(rng.integers(2**31)))
     R = np.concatenate([base, random.as_matrix()])
     box, middle = cloud.surface.extent.mean(axis=0), (points.min(axis=0) + points.max(axis=0)) / 2
@@ -106,11 +102,6 @@ def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Flo
     centres = np.stack([points.mean(axis=0), middle, points.mean(axis=0)])
     t = anchors - np.einsum("kij,mj->mki", R, centres)
     return np.tile(R, (3, 1, 1)), t.reshape(-1, 3)
-
-
-def _cube_rotations() -> Floats:
-    """Return the 24 rotations that map a cube onto itself, (24, 3, 3)."""
-    return np.asarray(Rotation.create_group("O").as_matrix())
 
 
 def principal_axes(points: Floats) -> Floats:
@@ -160,15 +151,10 @@ def normal_space(r: Floats, direction: Floats, kind: Ints, slack: float) -> Floa
     beyond = np.linalg.norm(across, axis=-1)
     beyond_face = beyond > np.maximum(slack, 0.3 * np.linalg.norm(r, axis=-1))
     border = np.cross(direction, across)
-    border = np.divide(
-        border, beyond[..., None], out=np.zeros_like(border), where=beyond[..., None] > 0
-    )
+    border = border / np.where(beyond > 0, beyond, 1.0)[..., None]
     past_end = np.abs(np.einsum("...x,...x->...", r, direction)) > slack
-    on_face = np.where(
-        beyond_face[..., None, None],
-        np.eye(3) - border[..., :, None] * border[..., None, :],
-        outer,
-    )
+    along_border = border[..., :, None] * border[..., None, :]
+    on_face = np.where(beyond_face[..., None, None], np.eye(3) - along_border, outer)
     open_line = ((kind == LINE) & ~past_end)[..., None, None]
     return np.asarray(np.where(face, on_face, np.eye(3) - np.where(open_line, outer, 0.0)))
 
@@ -213,12 +199,8 @@ def polish(surface: Surface, points: Floats, R: Floats, t: Floats, rounds: int =
             break
         x, distance = x[gain], distance[gain]
         r = x - at.foot.reshape(*shape, 3)[gain]
-        W = normal_space(
-            r,
-            at.normal.reshape(*shape, 3)[gain],
-            at.kind.reshape(shape)[gain],
-            1e-9 * surface.size,
-        )
+        normal, kind = at.normal.reshape(*shape, 3)[gain], at.kind.reshape(shape)[gain]
+        W = normal_space(r, normal, kind, 1e-9 * surface.size)
         weight = robust_weights(distance, 1e-6 * surface.size)
         R[active], t[active] = _moved(R[active], t[active], x, r, W * weight[..., None, None])
     return best

@@ -79,7 +79,7 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
     N, Ns, Nt = shape_functions(kind, s, t)
     p = surface.xyz[corners]
     foot = np.einsum("nc,ncx->nx", N, p)
-    normal = _normals(kind, np.einsum("nc,ncx->nx", Ns, p), np.einsum("nc,ncx->nx", Nt, p))
+    normal = surface.directions(facets, Ns, Nt)
     away = np.linalg.norm(points - foot, axis=1)
     return Placement(points, facets, kind, corners, s, t, foot, normal, away)
 
@@ -213,10 +213,3 @@ def _ruling(a: Floats, b: Floats, c: Floats, d: Floats, y: Floats) -> tuple[Floa
     """Both ends of the line of the surface at y: from side a-d to side b-c."""
     y = y[:, None]
     return a * (1 - y) + d * y, b * (1 - y) + c * y
-
-
-def _normals(kind: Ints, gs: Floats, gt: Floats) -> Floats:
-    direction = np.where((kind >= TRIA)[:, None], np.cross(gs, gt), gs)
-    direction = np.where((kind == POINT)[:, None], 0.0, direction)
-    length = np.asarray(np.linalg.norm(direction, axis=1, keepdims=True))
-    return np.divide(direction, length, out=np.zeros_like(direction), where=length > 0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Numbers
+from ..arrays import Floats, Ints, Numbers, skew
 from ..noun import Noun
 from .closest_point import Placement
 from .outer_surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
@@ -56,19 +56,12 @@ def interpolate(surface: Surface, placement: Placement, rotating: Numbers) -> In
     turning = ((rotating[placement.corners] | ~real).all(axis=1)) & ~surface.solid[placement.facet]
     N, Ns, Nt = shape_functions(placement.kind, placement.s, placement.t)
     tu, tt = _turns(placement, xyz, N, Ns, Nt, turning)
-    lever = -_skew(placement.points - placement.foot)[:, None]
+    lever = -skew(placement.points - placement.foot)[:, None]
     uu = N[:, :, None, None] * np.eye(3) + lever @ tu
     ut = lever @ tt
     _add_faces(placement, xyz, turning, ut)
     _add_lines(placement, xyz, turning, uu, ut)
     return Interpolation(uu, ut, tu, tt)
-
-
-def _skew(v: Floats) -> Floats:
-    """Matrices of the cross product, v x a = skew(v) a: (..., 3, 3)."""
-    S = np.zeros((*v.shape, 3))
-    S[..., 0, 1], S[..., 0, 2], S[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
-    return S - np.swapaxes(S, -1, -2)
 
 
 def _outer(a: Floats, b: Floats) -> Floats:
@@ -94,7 +87,7 @@ def _turns(
     # Lines: the grids' rotations, or the turn of the line itself.
     d = xyz[:, 1] - xyz[:, 0]
     length2 = np.einsum("nx,nx->n", d, d)
-    turn = _skew(np.divide(d, length2[:, None], out=np.zeros_like(d), where=length2[:, None] > 0))
+    turn = skew(np.divide(d, length2[:, None], out=np.zeros_like(d), where=length2[:, None] > 0))
     bare = line & ~turning
     tu[bare, 0], tu[bare, 1] = -turn[bare], turn[bare]
     tt[line | point] = own[line | point]
@@ -138,7 +131,7 @@ def _add_lines(at: Placement, xyz: Floats, turning: Numbers, uu: Floats, ut: Flo
     s = at.s[rows, None, None]
     e = at.normal[rows]
     across = np.eye(3) - _outer(e, e)
-    slope = -_skew(xyz[rows, 1] - xyz[rows, 0])
+    slope = -skew(xyz[rows, 1] - xyz[rows, 0])
     ut[rows, 0] += s * (1 - s) ** 2 * slope
     ut[rows, 1] -= s**2 * (1 - s) * slope
     odd = s * (1 - s) * (1 - 2 * s) * across

@@ -62,6 +62,18 @@ class Surface(Noun):
         p = self.xyz[self.corners[facets]]
         return np.asarray(np.sqrt(((np.roll(p, -1, axis=1) - p) ** 2).sum(axis=2).max(axis=1)))
 
+    def directions(self, facets: Ints, Ns: Floats, Nt: Floats) -> Floats:
+        """Return unit normals of faces, directions of lines, zero for points, (n, 3).
+
+        Where derivatives of the shape functions are `Ns` and `Nt`, each (n, 4).
+        """
+        kind, p = self.kind[facets], self.xyz[self.corners[facets]]
+        gs, gt = np.einsum("nc,ncx->nx", Ns, p), np.einsum("nc,ncx->nx", Nt, p)
+        along = np.where((kind >= TRIA)[:, None], np.cross(gs, gt), gs)
+        along = np.where((kind == POINT)[:, None], 0.0, along)
+        length = np.asarray(np.linalg.norm(along, axis=1, keepdims=True))
+        return np.divide(along, length, out=np.zeros_like(along), where=length > 0)
+
     @property
     def extent(self) -> Floats:
         """Bounding box of the attached grids, (2, 3): smallest and largest coordinates."""

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....core.arrays import Floats
-from ....core.elements.batch import skew
+from ....core.arrays import Floats, skew
 from ....core.errors import Place
 from ..deck.card_definition import Card, FieldError, Fields, Known, Values, numbers, take
 from .grids import Points

@@ -25,40 +25,20 @@ from .request import Request
 def place_responses(
     frfs: Frfs | None, placed: Placed, geometry: Geometry, dofs: Dofs, motion: Numbers | sp.spmatrix
 ) -> tuple[Responses | None, tuple[str, ...]]:
-    """Lay the responses of a test onto a model.
+    """Lay the responses of a test onto a model; None where none lies on it, and why not.
 
-    Parameters
-    ----------
-    frfs : Frfs or None
-        In the test's length unit and frame.
-    placed : Placed
-        The modes of the same test.
-    geometry, dofs : Geometry, Dofs
-        Of the analysis.
-    motion : (n_dof, k) array or sparse
-        See `observation.grids_of`.
-
-    Returns
-    -------
-    responses : Responses or None
-        None where there are none, or none lies on the model.
-    warnings : tuple of str
-        Why not.
+    `frfs` are in the test's length unit and frame, `placed` are the modes of the same test,
+    `geometry` and `dofs` those of the analysis; for `motion` see `grids_of`.
     """
     if frfs is None:
         return None, ()
     own = replace(geometry, length_unit=placed.test_geometry.length_unit)
     try:
-        at, by = (
-            observe(
-                own,
-                dofs,
-                placed.test_geometry,
-                Dofs(d.node, d.component, placed.alignment.turn(d.axis)),
-                motion=motion,
-            )
+        both = (
+            Dofs(d.node, d.component, placed.alignment.turn(d.axis))
             for d in (frfs.responses, frfs.references)
         )
+        at, by = (observe(own, dofs, placed.test_geometry, d, motion=motion) for d in both)
     except InputError as error:
         return None, (f"the frequency responses do not count as evidence: {error}",)
     rows, columns = np.flatnonzero(at.within), np.flatnonzero(by.within)
@@ -67,27 +47,20 @@ def place_responses(
             "the frequency responses do not count as evidence: their "
             f"{'references' if len(rows) else 'sensors'} do not lie on the model",
         )
-    kept = Frfs(
-        frfs.frequencies_hz,
-        at.sensors.take(rows),
-        by.sensors.take(columns),
-        frfs.values[np.ix_(rows, columns)] * placed.length_factor,
-        frfs.quantity,
-        frfs.source,
+    whole = replace(
+        frfs,
+        responses=at.sensors,
+        references=by.sensors,
+        values=frfs.values * placed.length_factor,
     )
-    return Responses(kept, at.matrix[rows], by.matrix[columns]), ()
+    return Responses(whole.at(rows, columns), at.matrix[rows], by.matrix[columns]), ()
 
 
 def hearing(request: Request, problem: Problem, nuisance: Floats) -> Problem:
-    """Return the problem with the responses as evidence.
+    """Return the problem with the responses, at sensors that the test still has, as evidence.
 
-    Parameters
-    ----------
-    request : Request
-        Its responses at sensors that its placed test still has count.
-    problem : Problem
-    nuisance : (n_parameter + 1,) float
-        Of the known parameters fitted alone: what that leaves shows how lines go along.
+    `nuisance` (n_parameter + 1,) is that of the known parameters fitted alone: what that leaves
+    shows how lines go along.
     """
     if request.responses is None:
         return problem
@@ -137,36 +110,19 @@ def turned_state(problem: Problem, f: Fit, measured: Floats) -> State:
 def with_responses(problem: Problem, nuisance: Floats, best: Fit, said: Discovery) -> Discovery:
     """Add how well the responses are met before and after.
 
-    Parameters
-    ----------
-    problem : Problem
-    nuisance : (n_parameter + 1,) float
-        Of the known parameters fitted alone.
-    best : Fit
-        What was accepted, on the basis of the problem.
-    said : Discovery
+    `nuisance` (n_parameter + 1,) is that of the known parameters fitted alone, `best` what was
+    accepted, on the basis of the problem.
     """
     h = problem.heard
     if h is None:
         return said
-    fits = (
-        evaluate(problem, np.zeros_like(nuisance), ()),
-        evaluate(problem, nuisance, ()),
-        best,
-    )
-    states = [state_of(problem, f, h.ratios) for f in fits]
-    before, after = (_assurance(h, s) for s in (states[0], states[2]))
-    rms = tuple(h.rms(turned_state(problem, f, h.ratios)) for f in fits)
-    frfs = h.responses.frfs
-    gap = ResponseGap(
-        tuple(frfs.responses.labels),
-        tuple(frfs.references.labels),
-        len(frfs.frequencies_hz),
-        h.independent,
-        tuple(before),
-        tuple(after),
-        (rms[0], rms[1], rms[2]),
-    )
+    deck, known = (evaluate(problem, at, ()) for at in (np.zeros_like(nuisance), nuisance))
+    before, after = (tuple(_assurance(h, state_of(problem, f, h.ratios))) for f in (deck, best))
+    was, moved, now = (h.rms(turned_state(problem, f, h.ratios)) for f in (deck, known, best))
+    frfs, rms = h.responses.frfs, (was, moved, now)
+    names, by = tuple(frfs.responses.labels), tuple(frfs.references.labels)
+    lines = len(frfs.frequencies_hz)
+    gap = ResponseGap(names, by, lines, h.independent, before, after, rms)
     return replace(said, responses=gap)
 
 

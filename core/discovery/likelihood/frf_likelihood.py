@@ -46,16 +46,7 @@ class Responses:
     def at(self, nodes: Ints) -> Responses:
         """Return the responses at some nodes of the test."""
         rows = np.flatnonzero(np.isin(self.frfs.responses.node, nodes))
-        f = self.frfs
-        kept = Frfs(
-            f.frequencies_hz,
-            f.responses.take(rows),
-            f.references,
-            f.values[rows],
-            f.quantity,
-            f.source,
-        )
-        return replace(self, frfs=kept, observed=self.observed[rows])
+        return replace(self, frfs=self.frfs.at(rows), observed=self.observed[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,14 +81,8 @@ def synthesised(
 ) -> Numbers:
     """Return the responses of a hypothesis, (n_response, n_reference, n_line) complex.
 
-    Parameters
-    ----------
-    r : Responses
-    s : State
-    rest : (n_response, n_reference) float
-        Static flexibility that the modes of the state lack.
-    lines, rows : optional
-        Which lines and responses.
+    `rest` (n_response, n_reference) is the static flexibility that its modes lack; `lines` and
+    `rows` say which lines and responses are wanted, default all.
     """
     lines = np.arange(len(r.frfs.frequencies_hz)) if lines is None else lines
     rows = np.arange(len(r.frfs.responses)) if rows is None else rows
@@ -110,13 +95,7 @@ def synthesised(
 
 
 def frac(measured: Numbers, model: Numbers) -> Floats:
-    """Frequency response assurance of each function, over its lines, 0 to 1.
-
-    Parameters
-    ----------
-    measured, model : (..., n_line) complex
-        Lines that are not finite are left out.
-    """
+    """Frequency response assurance of functions (..., n_line), over finite lines, 0 to 1."""
     good = np.isfinite(measured)
     a, b = np.where(good, measured, 0.0), np.where(good, model, 0.0)
     cross = np.abs(np.sum(a * b.conj(), axis=-1)) ** 2
@@ -125,11 +104,9 @@ def frac(measured: Numbers, model: Numbers) -> Floats:
 
 
 def log_ratios(measured: Numbers, model: Numbers) -> Floats:
-    """Log ratios of magnitudes, one common factor taken out, far ones cut; NaN not measured.
+    """Log ratios of magnitudes (..., n_line), one common factor taken out, far ones cut.
 
-    Parameters
-    ----------
-    measured, model : (..., n_line) complex
+    NaN where nothing was measured.
     """
     good = np.isfinite(measured) & (np.abs(measured) > 0.0) & (np.abs(model) > 0.0)
     e = np.log(np.where(good, np.abs(model), 1.0) / np.where(good, np.abs(measured), 1.0))
@@ -143,11 +120,7 @@ def independent_lines(e: Floats) -> float:
 
     The number of lines over 1 + 2 Σ ρ_k, the autocorrelation summed up to its first zero
     (Geyer 1992, Statistical Science 7, 473-483: initial positive sequence), averaged over the
-    functions.
-
-    Parameters
-    ----------
-    e : (..., n_line) float
+    functions, `e` (..., n_line).
     """
     n = e.shape[-1]
     rows = np.nan_to_num(e.reshape(-1, n))
@@ -206,13 +179,8 @@ def heard(
 ) -> Heard:
     """Choose lines and count the independent ones by what one hypothesis leaves.
 
-    Parameters
-    ----------
-    responses : Responses
-    hz, ratios : (n_test,) float
-    rest : (n_response, n_reference) float
-    reference : State
-        A hypothesis that fits about as well as others will.
+    `hz` and `ratios` (n_test,) are those of the measured modes; `reference` is a hypothesis that
+    fits about as well as others will.
     """
     f = responses.frfs.frequencies_hz
     low, high = LIKELIHOOD.band_below * hz.min(), LIKELIHOOD.band_above * hz.max()
@@ -235,14 +203,8 @@ def lacking(
 ) -> Floats:
     """Return the static flexibility between responses and references that a basis lacks.
 
-    Parameters
-    ----------
-    observed, driven : (n_response, n_free), (n_reference, n_free) sparse
-    A : (n_free, n_free) sparse
-        K − σM, positive definite.
-    basis : (n_free, r) float
-    factor : Factorisation, optional
-        Of A.
+    Shapes: `observed` (n_response, n_free), `driven` (n_reference, n_free), `basis` (n_free, r);
+    A = K − σM is positive definite, `factor` its own.
     """
     factor = factor or factorise(A, definite=True)
     fewer = driven.shape[0] <= observed.shape[0]

@@ -51,13 +51,9 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     least = min(f.objective for f in tried)
     kept = [f for f in tried if f.objective - least < SEARCH.credible * scale]
     weight = np.exp([-0.5 * (f.objective - least) / scale for f in kept])
-    return sorted(
-        (
-            Place(f.suspects[number], float(w))
-            for f, w in zip(kept, weight / weight.sum(), strict=True)
-        ),
-        key=lambda p: -p.weight,
-    )
+    share = (weight / weight.sum()).tolist()
+    places = [Place(f.suspects[number], w) for f, w in zip(kept, share, strict=True)]
+    return sorted(places, key=lambda p: -p.weight)
 
 
 def between(places: Sequence[Place]) -> Floats:

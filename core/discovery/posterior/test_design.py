@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Floats, Ints
-from ...data.geometry import Geometry
 from ...data.parametric_model import Model
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import misfit, solve
@@ -23,30 +22,17 @@ class _Forecast:
     match: Ints
 
 
+Rivals = tuple[tuple[str, Fit], ...]
+"""Other explanations in words, most likely first."""
+
+
 def further_sensors(
-    problem: Problem,
-    model: Model,
-    best: Fit,
-    rivals: tuple[tuple[str, Fit], ...],
-    modes: Ints,
+    problem: Problem, model: Model, best: Fit, rivals: Rivals, modes: Ints
 ) -> tuple[str, ...]:
-    """Name the grids and directions where the explanations differ most.
+    """Name the grids of a model and directions where the explanations differ most.
 
-    Parameters
-    ----------
-    problem : Problem
-    model : Model
-        For its grids.
-    best : Fit
-    rivals : tuple of (str, Fit)
-        Others in words, most likely first.
-    modes : (n_test,) int
-        Numbers of the test modes of the evidence.
-
-    Returns
-    -------
-    tuple of str
-        At most three, apart from each other, of what all the rivals together gain.
+    At most three, apart from each other, by what all the rivals together gain; `modes` (n_test,)
+    are the numbers of the test modes of the evidence.
     """
     if not rivals:
         return ()
@@ -58,11 +44,12 @@ def further_sensors(
     out: list[str] = []
     chosen: list[Floats] = []
     g = model.geometry
+    at = g.index_of(model.dofs.node[rows])
     for d in np.argsort(-told, kind="stable"):
         rival, mode = np.unravel_index(int(np.argmax(apart[:, d])), (len(apart), a.shape[1]))
         if apart[rival, d, mode] < POSTERIOR.tells or len(out) == POSTERIOR.sensors:
             break
-        xyz = _xyz(g, int(model.dofs.node[rows[d]]))
+        xyz = g.xyz[at[d]]
         if any(np.linalg.norm(xyz - c) < POSTERIOR.sensors_apart * g.size for c in chosen):
             continue
         chosen.append(xyz)
@@ -75,24 +62,15 @@ def further_sensors(
     return tuple(out)
 
 
-def further_modes(
-    problem: Problem, model: Model, best: Fit, rivals: tuple[tuple[str, Fit], ...]
-) -> tuple[str, ...]:
-    """Name the mode that was not measured whose frequency differs most between explanations.
-
-    Parameters
-    ----------
-    problem, model, best, rivals
-        As for `further_sensors`.
-    """
+def further_modes(problem: Problem, model: Model, best: Fit, rivals: Rivals) -> tuple[str, ...]:
+    """Name the mode that was not measured whose frequency differs most between explanations."""
     if not rivals:
         return ()
     rows = np.flatnonzero(model.dofs.component <= 3)
     own = _forecast(problem, best, rows)
     top = POSTERIOR.band_above * float(problem.whole.frequencies_hz.max())
-    measured = np.zeros(len(own.hz), bool)
-    measured[own.match] = True
-    new = np.flatnonzero(~measured & (own.hz < top) & (own.hz > POSTERIOR.elastic * top))
+    within = np.flatnonzero((own.hz < top) & (own.hz > POSTERIOR.elastic * top))
+    new = np.setdiff1d(within, own.match)
     name, f = rivals[0]
     other = _forecast(problem, f, rows)
     if not len(new) or not len(other.hz):
@@ -134,7 +112,3 @@ def _differences(a: Floats, other: _Forecast) -> Floats:
         length = np.sqrt(np.mean(turned**2))
         out[:, j] = np.abs(a[:, j] - turned / max(length, np.finfo(float).tiny))
     return out
-
-
-def _xyz(g: Geometry, node: int) -> Floats:
-    return np.asarray(g.xyz[int(g.index_of(np.array([node]))[0])])

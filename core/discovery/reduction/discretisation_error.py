@@ -25,13 +25,7 @@ from .search_basis import Basis
 
 
 def lumping(structure: Structure, vectors: Floats) -> Floats:
-    """Return lumped minus consistent mass of all shells on a basis, (r, r).
-
-    Parameters
-    ----------
-    structure : Structure
-    vectors : (n_free, r) float
-    """
+    """Return lumped minus consistent mass of all shells on the basis `vectors` (n_free, r)."""
     motion = np.asarray(structure.model.expansion @ vectors)
     total = np.zeros((vectors.shape[1],) * 2)
     for m in structure.members:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from ...arrays import Floats
 from ...data.parametric_model import Model
 from ...eigen.normal_modes import Eigensolution
-from ...numerics.factorisation import factorise
+from ...numerics.factorisation import Factorisation, factorise
 from ...reduction.reduced_sum import ReducedSum, reduced_sum
 from .reduction_numbers import REDUCTION
 
@@ -58,36 +58,31 @@ class Basis:
 
 
 def build_basis(model: Model, solution: Eigensolution, targets: int) -> Basis:
-    """Make the basis: modes and the static response to every parameter.
+    """Make the basis: modes of the deck as it is and the static response to every parameter.
 
-    Parameters
-    ----------
-    model : Model
-        With the parameters that may move.
-    solution : Eigensolution
-        Of the deck as it is, its factor kept.
-    targets : int
-        The first so many modes get static responses A⁻¹ ∂K/∂p φ.
+    The first `targets` modes get static responses A⁻¹ ∂K/∂p φ.
     """
     K, M = model.K(), model.M()
-    phi = solution.vectors
-    p = model.deck_point
-    sides = [model.dK(k, p) @ phi[:, :targets] for k in range(len(model.parameters))]
-    V = np.asarray(phi)
-    if sides:
-        X = np.asarray(_solve(solution, K, M, np.hstack(sides)))
-        V = np.hstack([phi, beside(X, phi, M, REDUCTION.dependent)])
-    return Basis(
-        V,
-        np.asarray(model.expansion @ V),
-        reduced_sum(model.stiffness, V),
-        reduced_sum(model.mass, V),
-    )
-
-
-def _solve(solution: Eigensolution, K: sp.spmatrix, M: sp.spmatrix, B: Floats) -> Floats:
+    phi = np.asarray(solution.vectors)
     factor = solution.factor or factorise((K - solution.sigma * M).tocsr(), definite=True)
-    return np.asarray(factor.solve(np.ascontiguousarray(B)))
+    V = with_answers(model, model.deck_point, phi, phi[:, :targets], M, factor)
+    return basis_on(model, V, np.asarray(model.expansion @ V))
+
+
+def basis_on(model: Model, V: Floats, motion: Floats) -> Basis:
+    """Return the basis of vectors V (n_free, r) with their `motion` on all analysis dofs."""
+    return Basis(V, motion, reduced_sum(model.stiffness, V), reduced_sum(model.mass, V))
+
+
+def with_answers(
+    model: Model, p: Floats, V: Floats, modes: Floats, M: sp.spmatrix, factor: Factorisation
+) -> Floats:
+    """Return V with what A⁻¹ ∂K/∂p φ of some modes φ adds, A being what was factorised."""
+    sides = [model.dK(k, p) @ modes for k in range(len(model.parameters))]
+    if not sides:
+        return V
+    X = factor.solve(np.ascontiguousarray(np.hstack(sides)))
+    return np.hstack([V, beside(X, V, M, REDUCTION.dependent)])
 
 
 def _lengths(X: Floats, M: sp.spmatrix) -> Floats:

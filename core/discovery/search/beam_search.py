@@ -8,7 +8,7 @@ are grown again, until one more suspect no longer earns its place.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -29,6 +29,13 @@ class Found:
 
     levels: tuple[Fit, ...]
     rivals: tuple[tuple[Fit, ...], ...]
+
+    def with_rivals(self, fits: Iterable[Fit]) -> Found:
+        """Return the same with further rivals, each to those of as many suspects."""
+        rivals = [list(level) for level in self.rivals]
+        for f in fits:
+            rivals[len(f.suspects)].append(f)
+        return Found(self.levels, tuple(map(tuple, rivals)))
 
 
 def grown(

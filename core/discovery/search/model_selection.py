@@ -119,21 +119,21 @@ def with_unseen(searcher: Searcher, f: Fit) -> Fit:
 
 
 def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
-    """Return the rivals that say something else than the accepted hypothesis."""
+    """Return the rivals that lack an effect of the accepted hypothesis: that say something else."""
     best = found.levels[accepted]
-    return [f for level in found.rivals for f in level if not _alike(searcher, f, best)]
+    return [f for level in found.rivals for f in level if _unmatched(searcher, best, f)[0]]
 
 
 def with_rival(searcher: Searcher, found: Found, rival: Fit, fitted: Fit) -> Found:
     """Return what was found with a rival fitted anew; where it wins it changes places."""
     k = len(fitted.suspects)
-    levels, rivals = list(found.levels), [list(level) for level in found.rivals]
+    levels, rivals = list(found.levels), list(found.rivals)
     others = [f for f in rivals[k] if f is not rival]
     scale = noise_scale(searcher.problem, min(found.levels, key=lambda f: f.objective))
     if cost(searcher, fitted, scale) < cost(searcher, levels[k], scale):
         levels[k], fitted = fitted, levels[k]
-    rivals[k] = [fitted, *others]
-    return Found(tuple(levels), tuple(tuple(level) for level in rivals))
+    rivals[k] = (fitted, *others)
+    return Found(tuple(levels), tuple(rivals))
 
 
 def _foretold(searcher: Searcher, levels: Sequence[Fit], accepted: int) -> float:
@@ -158,11 +158,6 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
         return (previous.objective - best.objective) / scale < share * added
 
     return rule
-
-
-def _alike(searcher: Searcher, f: Fit, best: Fit) -> bool:
-    """Whether a rival says the same as the best, or the same and something more."""
-    return not _unmatched(searcher, best, f)[0]
 
 
 def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[Suspect]]:

@@ -17,38 +17,23 @@ from ...arrays import Bools, Floats
 from ...data.parametric_model import Model
 from ...eigen.normal_modes import solve
 from ...numerics.factorisation import factorise
-from ...reduction.reduced_sum import reduced_sum
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import fit, on_whole_test
 from ..likelihood.mode_likelihood import targets
 from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
-from ..reduction.reduction_numbers import REDUCTION
-from ..reduction.search_basis import Basis, beside
+from ..reduction.search_basis import Basis, basis_on, beside, with_answers
 from .search_numbers import SEARCH
 
 
 def polished(
-    structure: Structure,
-    observation: sp.csr_matrix,
-    seen: Bools,
-    problem: Problem,
-    state: Fit,
+    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
 ) -> Fit:
     """Return the fit with parameters and magnitudes fitted on a basis of its own.
 
-    Parameters
-    ----------
-    structure : Structure
-    observation : (n_sensor, n_free) sparse
-        All sensors.
-    seen : (n_sensor,) bool
-        Those of the evidence.
-    problem : Problem
-        Evidence, priors and catalogue, whose laws are not yet fitted to any basis.
-    state : Fit
-        From the search.
+    `observation` (n_sensor, n_free) is of all sensors, `seen` (n_sensor,) are those of the
+    evidence; the laws of the problem's catalogue are not yet fitted to any basis.
     """
     top = float(targets(problem.whole).max())
     basis, chosen, modes = _own_basis(structure.model, problem.catalogue, state, top)
@@ -126,16 +111,8 @@ def _own_basis(
     if local:
         X = A.solve(np.ascontiguousarray(np.hstack(local)))
         V = np.hstack([V, beside(X, V, M, SEARCH.own_dependent)])
-    sides = [model.dK(k, p) @ asked for k in range(len(model.parameters))]
-    if sides:
-        X = A.solve(np.ascontiguousarray(np.hstack(sides)))
-        V = np.hstack([V, beside(X, V, M, REDUCTION.dependent)])
-    basis = Basis(
-        V,
-        np.zeros((0, V.shape[1])),
-        reduced_sum(model.stiffness, V),
-        reduced_sum(model.mass, V),
-    )
+    V = with_answers(model, p, V, asked, M, A)
+    basis = basis_on(model, V, np.zeros((0, V.shape[1])))
     chosen = []
     for s in state.suspects:
         c = catalogue[s.kind]

@@ -24,14 +24,7 @@ from .search_numbers import SEARCH
 
 
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
-    """Search with simple kinds, and with all where a tuned one does clearly better.
-
-    Parameters
-    ----------
-    searcher : Searcher
-    progress : callable
-        Told what happens.
-    """
+    """Search with simple kinds, and with all where a tuned one does clearly better."""
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
     found = _simple(_with(searcher, [not t for t in tuned]), progress)
     if not any(tuned):
@@ -49,11 +42,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     if better or any(clearly) or (small and (best or scale > SEARCH.unexplained)):
         other = grown(searcher, enough(searcher), progress)
         return _better(searcher, found, simplified(searcher, other))
-    rivals = [list(level) for level in found.rivals]
-    for k, f in enumerate(beside[:-1]):
-        if f is not None:
-            rivals[k + 1].append(f)
-    return Found(found.levels, tuple(tuple(level) for level in rivals))
+    return found.with_rivals(f for f in beside[:-1] if f is not None)
 
 
 def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
@@ -73,8 +62,8 @@ def _small(searcher: Searcher) -> bool:
 def _better(searcher: Searcher, found: Found, other: Found) -> Found:
     """Return the likelier of two outcomes with the levels of the other among its rivals."""
     if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
-        return _joined(other, found)
-    return _joined(found, other)
+        found, other = other, found
+    return found.with_rivals(other.levels[1 : len(found.rivals)])
 
 
 def simplified(searcher: Searcher, found: Found) -> Found:
@@ -84,7 +73,7 @@ def simplified(searcher: Searcher, found: Found) -> Found:
     the band it does what neither can; where it hardly gains more it makes up for what is wrong with
     the structure under it.
     """
-    levels, rivals = list(found.levels), [list(level) for level in found.rivals]
+    levels, beaten = list(found.levels), []
     scale = _scale(searcher, found, found)
     for k, f in enumerate(found.levels):
         for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
@@ -96,10 +85,10 @@ def simplified(searcher: Searcher, found: Found) -> Found:
                 continue
             best = int(np.argmin(simple))
             if simple[best] < own:
-                rivals[k].append(levels[k])
+                beaten.append(levels[k])
             if simple[best] < own or without - own < SEARCH.clearly * (without - simple[best]):
                 levels[k] = fits[2 + best]
-    return Found(tuple(levels), tuple(tuple(level) for level in rivals))
+    return Found(tuple(levels), found.rivals).with_rivals(beaten)
 
 
 def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
@@ -159,15 +148,6 @@ def _clearly(found: Found, k: int, f: Fit) -> bool:
     """Whether a tuned kind beside a level does clearly better than the simple one that came."""
     here = found.levels[k].objective
     return here - f.objective > SEARCH.clearly * (here - found.levels[k + 1].objective)
-
-
-def _joined(best: Found, other: Found) -> Found:
-    """Return an outcome with the levels of another among its rivals."""
-    rivals = [list(level) for level in best.rivals]
-    for k, f in enumerate(other.levels[: len(rivals)]):
-        if k:
-            rivals[k].append(f)
-    return Found(best.levels, tuple(tuple(level) for level in rivals))
 
 
 def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import logsumexp
 
-from ...arrays import Floats
+from ...arrays import Floats, skew
 from .sensor_numbers import SENSORS
 
 
@@ -19,9 +19,7 @@ def rotation(vector: Floats) -> Floats:
     v = np.asarray(vector, dtype=float)
     angle = np.linalg.norm(v, axis=-1)
     u = v / np.where(angle > 0.0, angle, 1.0)[..., None]
-    W = np.zeros((*v.shape[:-1], 3, 3))
-    W[..., 0, 1], W[..., 0, 2], W[..., 1, 2] = -u[..., 2], u[..., 1], -u[..., 0]
-    W -= np.swapaxes(W, -1, -2)
+    W = skew(u)
     s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
     return np.asarray(np.eye(3) + s * W + (1.0 - c) * (W @ W))
 
