@@ -65,9 +65,7 @@ class Placed(Noun):
         """Return some of the test modes (indices or mask)."""
         errors = self.errors
         if errors is not None:
-            errors = replace(
-                errors, frequency=errors.frequency[modes], shape=errors.shape[:, modes]
-            )
+            errors = ModeErrors(errors.frequency[modes], errors.shape[:, modes])
         return replace(self, test=self.test.take(modes), errors=errors)
 
     def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
@@ -152,10 +150,7 @@ def place_test(
             f"all {len(measured.ids)} nodes of the test lie at one position: its geometry was "
             "not exported; export it again (dataset 15 or 2411)"
         )
-    declared = replace(
-        measurement.geometry,
-        length_unit=measurement.geometry.length_unit or measurement.length_unit,
-    )
+    declared = replace(measured, length_unit=measured.length_unit or measurement.length_unit)
     units = reconcile_units(geometry, declared, deck_length_unit)
     unit = units.deck
     own = replace(geometry, length_unit=unit)
@@ -176,14 +171,7 @@ def place_test(
         )
     rows = np.flatnonzero(seen.within)
     kept = seen.take(rows)
-    at_sensors = Modes(
-        test.frequencies_hz,
-        test.shapes[rows],
-        kept.sensors,
-        test.damping,
-        test.generalized_mass,
-        test.source,
-    )
+    at_sensors = replace(test, shapes=test.shapes[rows], dofs=kept.sensors)
     in_frame = replace(moved, xyz=alignment.apply(moved.xyz))
     # An undecided alignment warns of its ambiguity itself.
     ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
@@ -224,16 +212,7 @@ def compare(
     criteria: Criteria | None = None,
     rigid_body_modes: int = 0,
 ) -> Comparison:
-    """Correlate analysis modes with a placed test.
-
-    Parameters
-    ----------
-    geometry, analysis : Geometry, Modes
-    placed : Placed
-    criteria : Criteria
-    rigid_body_modes : int
-        The first so many analysis modes are rigid-body modes.
-    """
+    """Correlate analysis modes, the first so many of them rigid-body modes, with a placed test."""
     normalised = mass_normalised(analysis)
     found = correlate(
         analysis.frequencies_hz,
@@ -251,11 +230,5 @@ def mass_normalised(modes: Modes) -> Modes:
     mass = modes.generalized_mass
     known = np.isfinite(mass) & (mass > 0.0)
     scale = np.where(known, 1.0 / np.sqrt(np.where(known, mass, 1.0)), 1.0)
-    return Modes(
-        modes.frequencies_hz,
-        modes.shapes * scale,
-        modes.dofs,
-        modes.damping,
-        np.where(known, 1.0, mass),
-        modes.source,
-    )
+    unit = np.where(known, 1.0, mass)
+    return replace(modes, shapes=modes.shapes * scale, generalized_mass=unit)

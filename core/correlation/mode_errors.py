@@ -51,12 +51,7 @@ class ModeErrors(Noun):
 def mode_errors(frequencies_hz: Floats, shapes: Numbers, f_std: Floats, std: Floats) -> ModeErrors:
     """Relative standard errors from absolute ones.
 
-    Parameters
-    ----------
-    frequencies_hz, f_std : (n_test,) float
-    shapes : (n_sensor, n_test) float or complex
-    std : (n_sensor, n_test) float
-        In the scale of the shapes.
+    Of frequencies `f_std` (n_test,), of shapes (n_sensor, n_test) `std` in their scale.
     """
     rms = np.sqrt(np.mean(np.abs(shapes) ** 2, axis=0))
     return ModeErrors(f_std / frequencies_hz, std / np.maximum(rms, np.finfo(float).tiny))
@@ -82,12 +77,9 @@ def with_scatter(
     """
     if frequency < 0.0 or shape < 0.0:
         raise InputError("the scatter of a test is zero or more; correct it in the study")
-    given = ModeErrors(np.full(n_test, frequency), np.full((n_sensor, n_test), shape))
     if errors is None:
-        return given
-    return ModeErrors(
-        np.hypot(errors.frequency, given.frequency), np.hypot(errors.shape, given.shape)
-    )
+        errors = ModeErrors(np.zeros(n_test), np.zeros((n_sensor, n_test)))
+    return ModeErrors(np.hypot(errors.frequency, frequency), np.hypot(errors.shape, shape))
 
 
 def told(errors: ModeErrors, labels: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from .mac import mac, realised
 from .subspace_rotation import ClusterRotation, clusters_by_bandwidth, rotate_cluster, subspace_mac
 
 SIDES = ("analysis", "test", "none")
+Groups = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -97,14 +98,13 @@ class Correlation(Noun):
     @property
     def mean_abs_deviation_percent(self) -> float | None:
         """Mean of |deviation| over the pairs; None without pairs."""
-        return (
-            float(np.mean([abs(p.deviation_percent) for p in self.pairs])) if self.pairs else None
-        )
+        off = [abs(p.deviation_percent) for p in self.pairs]
+        return float(np.mean(off)) if off else None
 
     @property
     def worst_deviation_percent(self) -> float | None:
         """Largest |deviation| of the pairs; None without pairs."""
-        return float(np.max([abs(p.deviation_percent) for p in self.pairs])) if self.pairs else None
+        return max((abs(p.deviation_percent) for p in self.pairs), default=None)
 
     @property
     def mean_mac(self) -> float | None:
@@ -157,7 +157,7 @@ def correlate(
     )
     near &= elastic[None, :]
     real = realised(test_shapes)
-    groups: tuple[tuple[int, ...], ...] = ()
+    groups: Groups = ()
     if criteria.rotate == "analysis":
         hz = np.where(elastic, analysis_hz, 0.0)
         groups = clusters_by_bandwidth(hz, criteria.cluster_width)
@@ -174,10 +174,16 @@ def correlate(
         turned, rotated, matrix = [], measured, np.eye(len(analysis_hz))
     chosen = assign(rotated, (rotated >= criteria.mac_min) & near)
     clusters = [(g, r) for g, r in zip(groups, turned, strict=True) if len(g) > 1 and r.test]
-    pairs = [
-        _pair(t, a, test_hz, analysis_hz, rotated, clusters, matrix, criteria.rotate)
-        for t, a in chosen
-    ]
+
+    def pair(t: int, a: int) -> Pair:
+        member = a if criteria.rotate == "analysis" else t
+        cluster = next((k for k, (g, _) in enumerate(clusters) if member in g), None)
+        turn = np.degrees(np.arccos(np.clip(matrix[member, member], -1.0, 1.0)))
+        angle = None if cluster is None else float(turn)
+        hz = float(test_hz[t]), float(analysis_hz[a])
+        return Pair(t, a, *hz, float(rotated[t, a]), cluster, angle)
+
+    pairs = [pair(t, a) for t, a in chosen]
     return Correlation(
         tuple(pairs),
         tuple(sorted(set(range(len(test_hz))) - {p.test for p in pairs})),
@@ -194,11 +200,7 @@ def correlate(
 
 
 def _turn(
-    shapes: Floats,
-    targets: Floats,
-    groups: tuple[tuple[int, ...], ...],
-    near: Bools,
-    mac_min: float,
+    shapes: Floats, targets: Floats, groups: Groups, near: Bools, mac_min: float
 ) -> list[ClusterRotation]:
     """Assign targets to groups, at most one per member, and turn each group onto its own."""
     slots = [k for k, g in enumerate(groups) for _ in g]
@@ -218,9 +220,7 @@ def _turn(
     ]
 
 
-def _transformation(
-    n: int, groups: tuple[tuple[int, ...], ...], turned: list[ClusterRotation]
-) -> Floats:
+def _transformation(n: int, groups: Groups, turned: list[ClusterRotation]) -> Floats:
     """Block-orthogonal matrix whose columns keep the numbers of the modes they resemble most."""
     matrix = np.eye(n)
     for g, r in zip(groups, turned, strict=True):
@@ -231,32 +231,6 @@ def _transformation(
                 columns[:, member] = r.matrix[:, column]
             matrix[np.ix_(g, g)] = columns * np.where(np.diag(columns) < 0.0, -1.0, 1.0)
     return matrix
-
-
-def _pair(
-    test: int,
-    analysis: int,
-    test_hz: Floats,
-    analysis_hz: Floats,
-    mac_rotated: Floats,
-    clusters: list[tuple[tuple[int, ...], ClusterRotation]],
-    matrix: Floats,
-    side: str,
-) -> Pair:
-    member = analysis if side == "analysis" else test
-    cluster = next((k for k, (g, _) in enumerate(clusters) if member in g), None)
-    angle = None
-    if cluster is not None:
-        angle = float(np.degrees(np.arccos(np.clip(matrix[member, member], -1.0, 1.0))))
-    return Pair(
-        test,
-        analysis,
-        float(test_hz[test]),
-        float(analysis_hz[analysis]),
-        float(mac_rotated[test, analysis]),
-        cluster,
-        angle,
-    )
 
 
 def assign(score: Floats, allowed: Bools) -> tuple[tuple[int, int], ...]:

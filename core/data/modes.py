@@ -67,11 +67,6 @@ class Modes(Noun):
 
     def take(self, modes: Numbers) -> Modes:
         """Return the modes of the given columns (indices or mask)."""
-        return Modes(
-            self.frequencies_hz[modes],
-            self.shapes[:, modes],
-            self.dofs,
-            self.damping[modes],
-            self.generalized_mass[modes],
-            self.source,
-        )
+        by_mode = self.frequencies_hz[modes], self.shapes[:, modes]
+        known = self.damping[modes], self.generalized_mass[modes]
+        return Modes(*by_mode, self.dofs, *known, self.source)

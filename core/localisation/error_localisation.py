@@ -141,15 +141,10 @@ def disagreement(
     ground = np.max([np.where(e.size > 0.0, e.explained, 0.0) for e in springs], axis=0)
     stiffness = _stiffness(lin, groups, displacement, free_shapes, p, geometry, centres, radius)
     total = max(mass.total, float(np.finfo(float).tiny))
-    return Disagreement(
-        measured,
-        places,
-        frozen(motion),
-        frozen(mass.explained / total),
-        frozen(stiffness / total),
-        frozen(ground / total),
-        mass.total,
-    )
+    maps = (frozen(explained / total) for explained in (mass.explained, stiffness, ground))
+    by_mass, by_stiffness, by_ground = maps
+    motion = frozen(motion)
+    return Disagreement(measured, places, motion, by_mass, by_stiffness, by_ground, mass.total)
 
 
 def _noise(compared: Comparison, at_sensors: Floats) -> Noise:

@@ -130,41 +130,17 @@ def linearise(
     )
 
 
-def mass_evidence(
-    lin: Linearisation, motion: Floats, patches: sp.csr_matrix | None = None
-) -> Evidence:
-    """Map what a point mass at each place would explain; only added mass is allowed.
-
-    Parameters
-    ----------
-    lin : Linearisation
-    motion : (n_place, r, n_mode) float
-        Mass-normalised shapes of the directions in which each place carries mass: the three
-        translations of each grid.
-    patches : (n_patch, n_place) csr, optional
-        Weights of the places in patches (`patches_of`); the map is then by patch and `size` the
-        mass at unit weight.
-    """
-    return _evidence(lin, motion, patches, mass=True)
-
-
 def stiffness_evidence(
     lin: Linearisation, strain: Floats, patches: sp.csr_matrix | None = None
 ) -> Evidence:
-    """Map what more or less stiffness at each place would explain.
+    """Map what more or less stiffness at each place would explain; see `mass_evidence`.
 
-    Parameters
-    ----------
-    lin : Linearisation
-    strain : (n_place, r, n_mode) float
-        Any S with phi_k' K_place phi_j = sum over r of S_k S_j: the modes at a place times a
-        square root of its stiffness (`root_of`), or a displacement for a spring of unit
-        stiffness. `size` is then the relative change, negative for a loss; first order, so
-        below -1 for a loss that is nearly total.
-    patches : (n_patch, n_place) csr, optional
-        As for `mass_evidence`.
+    `strain` (n_place, r, n_mode) is any S with phi_k' K_place phi_j = sum over r of S_k S_j: the
+    modes at a place times a square root of its stiffness (`root_of`), or a displacement for a
+    spring of unit stiffness. `size` is then the relative change, negative for a loss; first
+    order, so below -1 for a loss that is nearly total.
     """
-    return _evidence(lin, strain, patches, mass=False)
+    return mass_evidence(lin, strain, patches, mass=False)
 
 
 def patches_of(centres: Floats, xyz: Floats, radius: float) -> sp.csr_matrix:
@@ -177,27 +153,33 @@ def patches_of(centres: Floats, xyz: Floats, radius: float) -> sp.csr_matrix:
 
 
 def root_of(matrices: Floats, modes: Floats) -> Floats:
-    """Strains of elements: square roots of their stiffness times their modes.
+    """Strains (n_place, m, n_mode) of elements: square roots of their stiffness times their modes.
 
-    Parameters
-    ----------
-    matrices : (n_place, m, m) float
-        Symmetric, positive semi-definite.
-    modes : (n_place, m, n_mode) float
-        Rows of the shapes that belong to each element.
-
-    Returns
-    -------
-    (n_place, m, n_mode) float
+    `matrices` (n_place, m, m) are symmetric and positive semi-definite, `modes`
+    (n_place, m, n_mode) the rows of the shapes that belong to each element.
     """
     value, vector = np.linalg.eigh((matrices + np.swapaxes(matrices, 1, 2)) / 2)
     root = np.sqrt(np.maximum(value, 0.0))[:, :, None] * np.swapaxes(vector, 1, 2)
     return np.asarray(root @ modes)
 
 
-def _evidence(
-    lin: Linearisation, motion: Floats, patches: sp.csr_matrix | None, mass: bool
+def mass_evidence(
+    lin: Linearisation, motion: Floats, patches: sp.csr_matrix | None = None, mass: bool = True
 ) -> Evidence:
+    """Map what a point mass at each place would explain; only added mass is allowed.
+
+    Parameters
+    ----------
+    lin : Linearisation
+    motion : (n_place, r, n_mode) float
+        Mass-normalised shapes of the directions in which each place carries mass: the three
+        translations of each grid.
+    patches : (n_patch, n_place) csr, optional
+        Weights of the places in patches (`patches_of`); the map is then by patch and `size` the
+        mass at unit weight.
+    mass : bool
+        Otherwise what is added is stiffness, of either sign.
+    """
     patches = sp.identity(len(motion), format="csr") if patches is None else patches.tocsr()
     n_patch, n_mode = patches.shape[0], motion.shape[2]
     n_pair, width = lin.residual.shape

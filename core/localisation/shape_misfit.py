@@ -66,13 +66,8 @@ def paired_shapes(
 ) -> PairedShapes:
     """Put the shapes of each pair side by side, the way the correlation turned them.
 
-    Parameters
-    ----------
-    found : Correlation
-    analysis_shapes : (n_sensor, n_analysis) float
-        As `correlate` had them.
-    test_shapes : (n_sensor, n_test) float or complex
-        Likewise.
+    As `correlate` had them: `analysis_shapes` (n_sensor, n_analysis), `test_shapes`
+    (n_sensor, n_test) real or complex.
     """
     test = realised(test_shapes)
     a, t = [p.analysis for p in found.pairs], [p.test for p in found.pairs]
@@ -81,16 +76,11 @@ def paired_shapes(
         length = np.linalg.norm(test, axis=0)
         scale = np.divide(1.0, length, out=np.zeros_like(length), where=length > 0)
         mixing = scale[:, None] * found.transformation[:, t]
-        chosen = analysis_shapes[:, a]
     elif found.criteria.rotate == "analysis":
-        chosen = (analysis_shapes @ found.transformation)[:, a]
-    else:
-        chosen = analysis_shapes[:, a]
-    turned = test @ mixing
-    power = np.sum(chosen**2, axis=0)
-    scale = np.divide(
-        np.sum(chosen * turned, axis=0), power, out=np.zeros_like(power), where=power > 0
-    )
+        analysis_shapes = analysis_shapes @ found.transformation
+    chosen, turned = analysis_shapes[:, a], test @ mixing
+    power, onto = np.sum(chosen**2, axis=0), np.sum(chosen * turned, axis=0)
+    scale = np.divide(onto, power, out=np.zeros_like(power), where=power > 0)
     return PairedShapes(frozen(chosen * scale), frozen(turned), frozen(mixing))
 
 
@@ -102,17 +92,9 @@ def misfit(
 ) -> Misfit:
     """Measure where paired shapes and frequencies disagree, in units of the noise.
 
-    Parameters
-    ----------
-    found : Correlation
-    shapes : PairedShapes
-        From `paired_shapes`.
-    noise : Noise
-        Of the test shapes: given or estimated (`noise`). Sensors that it calls outliers do not
-        count for `by_mode`; the maps by sensor cover all.
-    frequency_sigma : float or (n_pair,) float
-        Standard deviation of a relative frequency difference: of the measurement, and of what
-        the mesh cannot tell.
+    Sensors that the noise of the test shapes calls outliers do not count for `by_mode`; the maps
+    by sensor cover all. `frequency_sigma` (or one a pair) is the standard deviation of a relative
+    frequency difference: of the measurement, and of what the mesh cannot tell.
 
     Raises
     ------
@@ -139,18 +121,11 @@ def misfit(
 
 
 def comac(analysis: Floats, test: Floats) -> Floats:
-    """Coordinate modal assurance criterion of each sensor.
+    """Coordinate modal assurance criterion of each sensor, (n_sensor,).
 
-    Parameters
-    ----------
-    analysis, test : (n_sensor, n_pair) float
-        Paired shapes; each test shape is brought to unit length first, so that every pair counts
-        alike.
-
-    Returns
-    -------
-    (n_sensor,) float
-        (sum |a t|)^2 / (sum a^2 sum t^2), NaN where a sensor does not move.
+    (sum |a t|)^2 / (sum a^2 sum t^2) over paired shapes (n_sensor, n_pair), NaN where a sensor
+    does not move. Each test shape is brought to unit length first, so that every pair counts
+    alike.
 
     References
     ----------
@@ -172,18 +147,8 @@ def spread(values: Floats, sensor_xyz: Floats, grid_xyz: Floats) -> Floats:
     Watson, 1964), as wide as the median distance of a sensor position to its third nearest
     other. A map is a picture of where to look; it locates nothing.
 
-    Parameters
-    ----------
-    values : (n_sensor,) float
-        NaN where a sensor says nothing.
-    sensor_xyz : (n_sensor, 3) float
-    grid_xyz : (n_grid, 3) float
-        In the same frame and unit.
-
-    Returns
-    -------
-    (n_grid,) float
-        NaN where no sensor with a value is near.
+    Of values (n_sensor,), NaN where a sensor says nothing, come values (n_grid,), NaN where no
+    sensor with a value is near; `sensor_xyz` and `grid_xyz` are in the same frame and unit.
 
     Raises
     ------

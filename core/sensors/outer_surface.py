@@ -143,16 +143,9 @@ def surface_of(
     kinds = np.concatenate([np.full(len(c), k, np.int64) for c, k, _ in parts])
     solid = np.concatenate([np.full(len(c), s) for c, _, s in parts])
     attached = np.unique(corners)
-    return Surface(
-        xyz,
-        corners,
-        kinds,
-        solid,
-        attached,
-        float(np.linalg.norm(np.ptp(xyz[attached], axis=0))),
-        _levels(xyz, corners),
-        cKDTree(xyz[attached], balanced_tree=False, compact_nodes=False),
-    )
+    size = float(np.linalg.norm(np.ptp(xyz[attached], axis=0)))
+    tree = cKDTree(xyz[attached], balanced_tree=False, compact_nodes=False)
+    return Surface(xyz, corners, kinds, solid, attached, size, _levels(xyz, corners), tree)
 
 
 def shape_functions(kind: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:

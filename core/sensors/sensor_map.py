@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +20,7 @@ from .rigid_transform import IDENTITY, Transform
 FEWEST_ON_MODEL = 0.2
 """A test with a smaller share of its sensors on the model is refused."""
 _NAMED = 10
+_BY_SENSOR = ("xyz", "nearest_grid", "distance", "within", "tolerance")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class Observation(Noun):
     def __post_init__(self) -> None:
         n = len(self.sensors)
         require_shape(np.empty(self.matrix.shape[0]), (n,), "the sensor matrix")
-        for name in ("xyz", "nearest_grid", "distance", "within", "tolerance"):
+        for name in _BY_SENSOR:
             value = frozen(getattr(self, name))
             object.__setattr__(self, name, value)
             require_shape(value, (n, 3) if name == "xyz" else (n,), name)
@@ -71,16 +72,8 @@ class Observation(Noun):
 
     def take(self, rows: Numbers) -> Observation:
         """Return the sensors of the given rows (indices or mask)."""
-        return Observation(
-            self.matrix[rows],
-            self.sensors.take(rows),
-            self.xyz[rows],
-            self.nearest_grid[rows],
-            self.distance[rows],
-            self.within[rows],
-            self.tolerance[rows],
-            self.warnings,
-        )
+        own = {name: getattr(self, name)[rows] for name in _BY_SENSOR}
+        return replace(self, matrix=self.matrix[rows], sensors=self.sensors.take(rows), **own)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,21 +111,14 @@ class Grids:
         theta = np.einsum("nx,ncxy->ncy", axis, np.where(choose, by.tt, by.ut))
         columns = self.columns[placement.corners]
         dof_axis = self.axis[columns]
-        values = np.concatenate(
-            [
-                np.einsum("ncy,ncky->nck", u, dof_axis[:, :, :3]),
-                np.einsum("ncy,ncky->nck", theta, dof_axis[:, :, 3:]),
-            ],
-            axis=2,
-        )
+        sides = ((u, dof_axis[:, :, :3]), (theta, dof_axis[:, :, 3:]))
+        values = np.concatenate([np.einsum("ncy,ncky->nck", a, b) for a, b in sides], axis=2)
         values = np.where(columns >= 0, values, 0.0).reshape(len(placement), -1)
         rows = np.repeat(np.arange(len(placement)), values.shape[1])
         where = columns.reshape(len(placement), -1).ravel()
         keep = values.ravel() != 0.0
-        return sp.csr_matrix(
-            (values.ravel()[keep], (rows[keep], where[keep])),
-            shape=(len(placement), len(self.axis)),
-        )
+        shape = (len(placement), len(self.axis))
+        return sp.csr_matrix((values.ravel()[keep], (rows[keep], where[keep])), shape=shape)
 
 
 def grids_of(geometry: Geometry, dofs: Dofs, motion: Numbers | sp.spmatrix | None = None) -> Grids:
@@ -229,16 +215,11 @@ def observe(
     within = placement.distance <= limit
     if len(xyz) and within.mean() < FEWEST_ON_MODEL:
         raise InputError(_nowhere(surface, xyz, placement, within, limit))
-    return Observation(
-        grids.sensor_matrix(placement, axis, sensors.component > 3),
-        Dofs(sensors.node, sensors.component, axis),
-        xyz,
-        grids.ids[surface.nearest_grid(xyz)[0]],
-        placement.distance,
-        within,
-        limit,
-        _outside(sensors, placement, within, limit),
-    )
+    matrix = grids.sensor_matrix(placement, axis, sensors.component > 3)
+    turned = Dofs(sensors.node, sensors.component, axis)
+    nearest = grids.ids[surface.nearest_grid(xyz)[0]]
+    off, told = placement.distance, _outside(sensors, placement, within, limit)
+    return Observation(matrix, turned, xyz, nearest, off, within, limit, told)
 
 
 def _outside(sensors: Dofs, placement: Placement, within: Bools, limit: Floats) -> tuple[str, ...]:

@@ -103,20 +103,15 @@ class Objective:
         lin = self.linearise(order, state, active, residuals)
         free = list(active)
         lower, upper = self.bounds
-        prior = np.sqrt(
-            self.weights.regularisation * np.array([self.parameters[k].weight for k in free])
-        )
+        weight = np.array([self.parameters[k].weight for k in free])
+        prior = np.sqrt(self.weights.regularisation * weight)
         p = np.asarray(state.factors)[free]
-        step = lsq_linear(
-            np.vstack([lin.gradient, np.diag(prior)]),
-            np.concatenate([-lin.values, np.zeros(len(free))]),
-            bounds=(
-                np.maximum(lower[free] - p, -0.5 * p) - 1e-12,
-                np.minimum(upper[free] - p, p) + 1e-12,
-            ),
-        ).x
+        least = np.maximum(lower[free] - p, -0.5 * p) - 1e-12
+        most = np.minimum(upper[free] - p, p) + 1e-12
+        G = np.vstack([lin.gradient, np.diag(prior)])
         full = np.zeros(len(self.parameters))
-        full[free] = step
+        due = np.concatenate([-lin.values, np.zeros(len(free))])
+        full[free] = lsq_linear(G, due, bounds=(least, most)).x
         return full
 
     def linearise(
@@ -153,8 +148,9 @@ class Objective:
         names = [self.parameters[k].name for k in active]
         doubtful = []
         for direction in lost:
-            part = [names[i] for i in np.flatnonzero(np.abs(direction) > 0.1)]
-            error[[active[i] for i in np.flatnonzero(np.abs(direction) > 0.1)]] = np.nan
+            of = np.flatnonzero(np.abs(direction) > 0.1)
+            part = [names[i] for i in of]
+            error[[active[i] for i in of]] = np.nan
             doubtful.append(
                 f"the test does not determine {' and '.join(part)}: "
                 + ("a common change leaves" if len(part) > 1 else "a change leaves")

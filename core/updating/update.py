@@ -119,20 +119,11 @@ def update(
     there = objective.at(near, state.factors, last)
     error, doubtful = objective.standard_error(near, there, active, last)
     lower, upper = objective.bounds
-    at_bound = np.isclose(state.factors, lower, rtol=1e-6) | np.isclose(
-        state.factors, upper, rtol=1e-6
-    )
-    return Updated(
-        frozen(state.factors),
-        frozen(error),
-        frozen(at_bound),
-        before,
-        _without_factor(state),
-        tuple(history),
-        solves,
-        stopped,
-        (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1)),
-    )
+    bounds = (np.isclose(state.factors, bound, rtol=1e-6) for bound in (lower, upper))
+    moved = frozen(state.factors), frozen(error), frozen(np.any([*bounds], axis=0))
+    told = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
+    after = _without_factor(state)
+    return Updated(*moved, before, after, tuple(history), solves, stopped, told)
 
 
 def _work_off(
@@ -145,15 +136,8 @@ def _work_off(
 ) -> tuple[State, Order | None, int, Stop]:
     """Work off a stage.
 
-    Returns
-    -------
-    state : State
-        Where it ends, in full.
-    near : Order or None
-        Reduced model that was last used.
-    solves : int
-        Full solves that it took.
-    stop : Stop
+    Returned are where it ends, in full, the reduced model that was last used, how many full solves
+    it took, and why it stopped.
     """
     solves, left = 0, stage.max_iterations
     near: Order | None = None

@@ -29,8 +29,6 @@ class Weighed:
     modes : Oriented
     u : (n_place, n) float
         Motion of the places in the coordinates of `modes`.
-    motion : (n_dof, n) float
-        Of all analysis dofs.
     known : (n, n) float
         Dashpots of the deck on unit modal masses.
     """
@@ -39,21 +37,11 @@ class Weighed:
     places: Axes
     modes: Oriented
     u: Floats
-    motion: Floats
     known: Floats
 
 
 def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
-    """Weigh a dashpot, given a fit.
-
-    Parameters
-    ----------
-    request : Request
-        With the sensors that are sound.
-    problem : Problem
-        On whose basis the fit stands.
-    state : Fit
-    """
+    """Weigh a dashpot at sensors that are sound, given a fit on the basis of the problem."""
     structure, test = request.structure, request.placed.test
     V = state.vectors[: problem.basis.size]
     sensors = np.asarray(request.placed.observation.matrix @ (problem.basis.motion @ V))
@@ -70,27 +58,19 @@ def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
     known = np.zeros((len(modes.omega),) * 2)
     if structure.damping is not None:
         known = np.asarray(free.T @ (structure.damping @ free))
-    evidence = DampingEvidence(
-        test.damping, _imaginary(shapes, own[:, : modes.count]), e.noise.independent
-    )
+    imaginary = _imaginary(shapes, own[:, : modes.count])
+    evidence = DampingEvidence(test.damping, imaginary, e.noise.independent)
     found = find_damper(evidence, modes, u, own, known, np.log(PEAKS))
-    if found is None:
-        return None
-    return Weighed(found, places, modes, u, problem.basis.motion @ turn, known)
+    return None if found is None else Weighed(found, places, modes, u, known)
 
 
 def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
-    """Imaginary parts scaled as the real parts are to unit modal mass."""
+    """Imaginary parts scaled as the real parts are to unit modal mass, None of real shapes."""
     if not np.iscomplexobj(shapes):
         return None
-    return np.asarray(shapes.imag * _scale(shapes, own))
-
-
-def _scale(shapes: Numbers, own: Floats) -> Floats:
-    """Return the factors that bring the real parts of measured shapes to unit modal mass."""
     real = np.asarray(shapes.real)
     length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
-    return np.asarray(np.sum(own * real, axis=0) / length)
+    return np.asarray(shapes.imag * (np.sum(own * real, axis=0) / length))
 
 
 def moved(w: Weighed) -> Ints:

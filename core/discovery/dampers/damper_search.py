@@ -141,18 +141,10 @@ def find_damper(
 class _Weighing:
     """Dashpots of several sizes at every place against the measured ratios.
 
-    Parameters
-    ----------
-    measured, own : (n_mode,) float
-        Ratios as measured and what the deck's own dashpots give, of the modes `chosen`.
-    grid : Levels
-    gives, wrong : (n_place, n_mode) float
-        What unit damping gives the modes, first order, and the error of that.
-    sizes : (n_place, n_trial) float
-        c.
-    shapes : Gain
-    null : float
-        ln of the likelihood without a dashpot.
+    `measured` and `own` (n_mode,) are ratios as measured and what the deck's own dashpots give, of
+    the modes `chosen`; `gives` and `wrong` (n_place, n_mode) what unit damping gives them, first
+    order, and the error of that; `sizes` (n_place, n_trial) are c; `null` is ln of the likelihood
+    without a dashpot.
     """
 
     measured: Floats

@@ -52,30 +52,18 @@ def levels_for(measured: Floats, omega: Floats) -> Levels:
     course = np.array([share * x**e + (1.0 - share) * x**-e for e, share, _ in DAMPERS.courses])
     course = course / np.exp(np.mean(np.log(course), axis=1, keepdims=True))
     number = (len(size), len(course), len(DAMPERS.spreads))
-    levels = np.broadcast_to(
-        (size[:, None, None] * course)[:, :, None, :], (*number, len(x))
-    ).reshape(-1, len(x))
+    levels = np.broadcast_to((size[:, None, None] * course)[:, :, None], (*number, len(x)))
     weight = np.broadcast_to(np.array(DAMPERS.courses)[None, :, 2, None], number).ravel()
     spreads = np.broadcast_to(np.array(DAMPERS.spreads), number).ravel()
     which = np.broadcast_to(np.arange(len(course))[None, :, None], number).ravel()
-    return Levels(levels, spreads, np.log(weight / weight.sum()), which)
+    prior = np.log(weight / weight.sum())
+    return Levels(levels.reshape(-1, len(x)), spreads, prior, which)
 
 
 def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
-    """Return ln p of every ratio at every level.
+    """Return ln p of every ratio `measured` (n_mode,) at every level, (..., n_grid, n_mode).
 
-    Parameters
-    ----------
-    measured : (n_mode,) float
-    grid : Levels
-    part : (..., n_mode) float
-        What dashpots add to the ratios.
-    error : (..., n_mode) float
-        Standard deviation of `part`.
-
-    Returns
-    -------
-    (..., n_grid, n_mode) float
+    `part` (..., n_mode) is what dashpots add to the ratios, `error` its standard deviation.
     """
     a, da = part[..., None, :], error[..., None, :]
     mean = grid.levels + a

@@ -16,13 +16,7 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
     """Every bar of a frame, and stretches of it one element long and more.
 
     Bars are the line elements from one joint to the next, off the shells. The first scan looks at
-    whole bars, and at stretches of a bar that is itself most of the structure.
-
-    Parameters
-    ----------
-    structure : Structure
-    size : float
-        Of the structure.
+    whole bars, and at stretches of a bar that is itself most of the `size` of the structure.
     """
     own = _bars(structure)
     least = 1
@@ -94,17 +88,14 @@ def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
     They do so at nodes with nothing else.
     """
     n = len(ends)
-    rows, columns = [], []
     order = np.argsort(ends.ravel(), kind="stable")
     nodes = ends.ravel()[order]
     pairs = np.flatnonzero((nodes[1:] == nodes[:-1]) & through[nodes[1:]])
     along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
     along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
-    for k in pairs:
-        a, b = int(order[k] // 2), int(order[k + 1] // 2)
-        if abs(float(along[a] @ along[b])) > EFFECTS.bar_straight:
-            rows.append(a)
-            columns.append(b)
+    rows, columns = order[pairs] // 2, order[pairs + 1] // 2
+    straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.bar_straight
+    rows, columns = rows[straight], columns[straight]
     graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
     number, label = connected_components(graph, directed=False)
     neighbours = np.bincount([*rows, *columns], minlength=n)

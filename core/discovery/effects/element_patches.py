@@ -231,16 +231,9 @@ def on_patches(
     prior: tuple[Floats, Floats],
     described: Described = where_of,
 ) -> tuple[PatchCandidates, ...]:
-    """Return a kind of effect on patches, none where there are no patches.
+    """Return a kind of effect on patches, none where there are no patches; see `Candidates`.
 
-    Parameters
-    ----------
-    kind, structure, patches, law, trials
-        See `Candidates`.
-    prior : (1,) float, (1,) float
-        `typical` and `spread`.
-    described : callable
-        Says where patches are: their elements, by default.
+    `prior` are `typical` and `spread`, each (1,).
     """
     if not patches:
         return ()

@@ -40,13 +40,10 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         own.append(d)
         grids = m.corners[chosen[:, 0], chosen[:, 1]]
         xyz.append(structure.model.geometry.xyz[grids])
+        numbers = structure.model.geometry.ids[grids].tolist()
         where += [
-            {
-                "grids": [int(structure.model.geometry.ids[g])],
-                "elements": [int(e)],
-                "components": [4, 5, 6],
-            }
-            for g, e in zip(grids, m.ids[chosen[:, 0]], strict=True)
+            {"grids": [g], "elements": [e], "components": [4, 5, 6]}
+            for g, e in zip(numbers, m.ids[chosen[:, 0]].tolist(), strict=True)
         ]
     if not roots:
         return ()
@@ -96,12 +93,8 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
         for (a, b), direction in zip(m.corners, t, strict=True):
             along[a].append(direction)
             along[b].append(-direction)
-    kinked = np.array(
-        [
-            c == 2 and len(d) == 2 and float(d[0] @ d[1]) > -EFFECTS.joint_straight
-            for c, d in zip(count, along, strict=True)
-        ]
-    )
+    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.joint_straight for d in along])
+    kinked &= count == 2
     joint = ((count >= 3) | kinked) & ~shelled(structure)
     return [np.argwhere(joint[m.corners]) for m in beams]
 

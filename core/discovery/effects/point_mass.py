@@ -35,10 +35,8 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         typical=typical,
         spread=spread,
     )
-    feet = patches_of(structure, scale.size, EFFECTS.feet)
-    on_feet = on_patches(
-        KIND, structure, feet, MassLaw(), scale.masses(), (typical, spread), _grids
-    )
+    feet, prior = patches_of(structure, scale.size, EFFECTS.feet), (typical, spread)
+    on_feet = on_patches(KIND, structure, feet, MassLaw(), scale.masses(), prior, _grids)
     return (at_points, *on_feet)
 
 

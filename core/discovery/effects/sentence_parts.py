@@ -35,12 +35,7 @@ class MassUnit:
 def odds(ratio: float, other: str = "") -> str:
     """Say how many times less likely something is than what was found, or more.
 
-    Parameters
-    ----------
-    ratio : float
-        Likelihood of what was found over that of the other.
-    other : str
-        What was found, where it has to be said.
+    `ratio` is the likelihood of what was found, `other` where it has to be said, over its own.
     """
     if EFFECTS.alike > ratio > 1.0 / EFFECTS.alike:
         return "about as likely" + (other and f" as {other}")

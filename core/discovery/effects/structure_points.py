@@ -53,15 +53,10 @@ def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
     """Rows (3 n_point, n_free): the translations of points given by grid weights."""
     model = structure.model
     rows = model.geometry.index_of(model.dofs.node)
-    pick = []
+    shape, pick = (len(model.geometry.ids), len(model.dofs)), []
     for component in (1, 2, 3):
         which = np.flatnonzero((model.dofs.component == component) & (rows >= 0))
-        pick.append(
-            sp.csr_matrix(
-                (np.ones(len(which)), (rows[which], which)),
-                (len(model.geometry.ids), len(model.dofs)),
-            )
-        )
+        pick.append(sp.csr_matrix((np.ones(len(which)), (rows[which], which)), shape))
     stacked = sp.vstack([points @ S for S in pick]).tocsr()
     order = np.arange(3 * points.shape[0]).reshape(3, -1).T.ravel()
     return (stacked[order] @ model.expansion).tocsr()

@@ -148,13 +148,8 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))
         xyz.append(s.xyz[rows].mean(axis=0))
-        where.append(
-            {
-                "grids": [int(g) for g in grids],
-                "components": _components(s, p.sprung),
-                **({"free_components": _components(s, p.free)} if free else {}),
-            }
-        )
+        place = {"grids": grids.tolist(), "components": _components(s, p.sprung)}
+        where.append(place | ({"free_components": _components(s, p.free)} if free else {}))
     typical = float(np.median(np.log(own[:, free])))
     moves = s.component[places[0].sprung[0]] <= 3
     together = sum(turns[1:], turns[0])

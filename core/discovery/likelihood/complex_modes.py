@@ -50,16 +50,8 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
 
     Each measured shape is a combination of its partner and of the modes close to that in
     frequency (ridge regression, prior variance `mixing`), so that close modes lie as the test
-    found them; further modes stay as they are.
-
-    Parameters
-    ----------
-    e : Evidence
-    eigenvalues : (n_model,) float
-    sensors : (n_sensor, n_model) float
-        Shapes of unit modal mass at the sensors.
-    columns : int
-        The first so many modes may match.
+    found them; further modes stay as they are. `sensors` (n_sensor, n_model) are shapes of unit
+    modal mass, of which the first `columns` may match.
     """
     n = min(columns, len(eigenvalues))
     S = sensors[:, :n]
@@ -70,9 +62,8 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
     rest = np.setdiff1d(np.flatnonzero(eigenvalues < top), match)
     B = np.hstack([own, np.eye(len(eigenvalues))[:, rest]])
     U, _, Vt = np.linalg.svd(B, full_matrices=False)
-    omega = np.concatenate(
-        [2.0 * np.pi * e.frequencies_hz, np.sqrt(np.maximum(eigenvalues[rest], 0.0))]
-    )
+    own_omega = np.sqrt(np.maximum(eigenvalues[rest], 0.0))
+    omega = np.concatenate([2.0 * np.pi * e.frequencies_hz, own_omega])
     above = np.setdiff1d(np.flatnonzero(eigenvalues >= top), match)
     return Oriented(omega, U @ Vt, len(match), above)
 
@@ -135,16 +126,10 @@ def ratios(poles: Numbers) -> Floats:
 
 
 def predicted(omega: Floats, D: Floats, level: Floats) -> Floats:
-    """Return the damping ratios of modes with a level of their own and dashpots between them.
+    """Return the damping ratios of modes with a `level` of their own and dashpots between them.
 
-    Parameters
-    ----------
-    omega : (n,) float
-        rad/s; those of rigid-body modes may be 0, their ratio is NaN.
-    D : (n, n) float
-        Dashpots on unit modal masses.
-    level : (n,) float
-        Ratios without them.
+    Frequencies `omega` (n,) [rad/s] of rigid-body modes may be 0, their ratio is NaN; the
+    dashpots D (n, n) are on unit modal masses.
     """
     elastic = np.flatnonzero(omega > LIKELIHOOD.elastic * omega.max())
     own = D[np.ix_(elastic, elastic)] + np.diag(2.0 * level[elastic] * omega[elastic])
@@ -158,16 +143,8 @@ def of_pairs(
 ) -> dict[int, float]:
     """Return the damping ratios that a model foretells for the test modes that have a partner.
 
-    Parameters
-    ----------
-    eigenvalues : (n,) float
-        (rad/s)².
-    D : (n, n) float
-        Dashpots on unit modal masses.
-    level : (n_test,) float
-        Ratios of the test modes without dashpots.
-    pairs : sequence of (int, int)
-        Test mode and analysis mode.
+    By its `eigenvalues` (n,) [(rad/s)²], dashpots D (n, n) on unit modal masses, the `level`
+    (n_test,) of the test modes without dashpots, and pairs of test mode and analysis mode.
     """
     own = np.full(len(eigenvalues), float(np.exp(np.mean(np.log(level)))))
     for test, analysis in pairs:

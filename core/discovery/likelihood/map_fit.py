@@ -92,17 +92,8 @@ def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, nuisance, suspects)
     bad, match = misfit(problem, values, vectors)
-    return Fit(
-        bad + _prior(problem, nuisance, suspects),
-        bad,
-        nuisance,
-        tuple(suspects),
-        match,
-        values,
-        vectors,
-        np.zeros((0, 0)),
-        (),
-    )
+    total, none = bad + _prior(problem, nuisance, suspects), np.zeros((0, 0))
+    return Fit(total, bad, nuisance, tuple(suspects), match, values, vectors, none, ())
 
 
 def on_whole_test(problem: Problem, state: Fit) -> Fit:
@@ -135,18 +126,9 @@ def fit(
 ) -> Fit:
     """Minimise misfit plus prior over nuisance parameters and θ: Gauss-Newton, Levenberg's damping.
 
-    Parameters
-    ----------
-    problem : Problem
-    nuisance : (n_parameter + 1,) float
-        Start; see `Fit`.
-    suspects : sequence of Suspect
-        Start of the magnitudes; places stay.
-    active : sequence of int
-        Entries of `nuisance` that move.
-    iterations : int
-    tolerance : float
-        Smallest fall of the objective that counts, and that is looked for.
+    `nuisance` (n_parameter + 1,), see `Fit`, of which the `active` entries move, and the
+    magnitudes of the suspects are a start; places stay. `tolerance` is the smallest fall of the
+    objective that counts, and that is looked for.
     """
     now = evaluate(problem, np.array(nuisance), suspects)
     damping = 0.0
@@ -194,9 +176,8 @@ def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) ->
     nuisance = np.array(now.nuisance)
     nuisance[list(active)] += step[: len(active)]
     nuisance = np.clip(nuisance, problem.prior.lower, problem.prior.upper)
-    return evaluate(
-        problem, nuisance, changed(problem.catalogue, now.suspects, step[len(active) :])
-    )
+    suspects = changed(problem.catalogue, now.suspects, step[len(active) :])
+    return evaluate(problem, nuisance, suspects)
 
 
 def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:

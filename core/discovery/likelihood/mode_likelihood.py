@@ -49,22 +49,13 @@ class Noise:
 def noise_of(errors: ModeErrors | None, level: float) -> Noise:
     """Return the noise of a test: what its errors are, and what a model always leaves.
 
-    Parameters
-    ----------
-    errors : ModeErrors or None
-        Standard errors of the modes, identified or given.
-    level : float
-        Of a sound sensor besides those, over the rms of the shape.
+    `level` is that of a sound sensor besides the standard errors, over the rms of the shape.
     """
-    usual = Noise()
-    shape = float(np.hypot(level, LIKELIHOOD.placed))
+    usual = Noise(shape=float(np.hypot(level, LIKELIHOOD.placed)))
     if errors is None:
-        return replace(usual, shape=shape)
-    return replace(
-        usual,
-        frequency=np.hypot(usual.frequency, errors.frequency),
-        shape=np.hypot(shape, errors.length),
-    )
+        return usual
+    f, s = np.hypot(usual.frequency, errors.frequency), np.hypot(usual.shape, errors.length)
+    return replace(usual, frequency=f, shape=s)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,11 +169,6 @@ def mixing(eigenvalues: Floats, size: float) -> Floats:
 
 
 def matched(costs: Floats) -> tuple[float, Ints]:
-    """Return the smallest total misfit over one-to-one matches and the match of each test mode.
-
-    Parameters
-    ----------
-    costs : (n_test, n) float
-    """
+    """Return the smallest sum of `costs` (n_test, n) over one-to-one matches, and the match."""
     rows, columns = linear_sum_assignment(costs)
     return float(costs[rows, columns].sum()), columns

@@ -48,13 +48,7 @@ def upheld(
 ) -> tuple[Discovery, C]:
     """Complete the model; withdraw the verdict where that brings it no nearer to the test.
 
-    Parameters
-    ----------
-    found : Discovery
-    before : Comparison
-        Of the model as it came.
-    complete : callable
-        Gives the model completed by a discovery.
+    `before` is of the model as it came.
     """
     done = complete(found)
     if found.verdict in ADOPTED and no_nearer(before.correlation, done.after.compared.correlation):
@@ -102,21 +96,13 @@ def withdrawn(found: Discovery) -> Discovery:
 def sound_test(placed: Placed, found: Discovery, had: Dofs, has: Dofs) -> Placed:
     """Return the test as sound sensors would have read it, on a model with further grids.
 
-    Sensors of which that cannot be known are left out.
-
-    Parameters
-    ----------
-    placed : Placed
-        On the degrees of freedom `had`.
-    found : Discovery
-    had, has : Dofs
-        Of the model as it came and as completed.
+    Sensors of which that cannot be known are left out. The test was placed on the degrees of
+    freedom that the model `had` as it came; completed it `has` others.
     """
     if has.node.shape != had.node.shape:
         seen = placed.observation
-        placed = replace(
-            placed, observation=replace(seen, matrix=(seen.matrix @ _onto(had, has)).tocsr())
-        )
+        seen = replace(seen, matrix=(seen.matrix @ _onto(had, has)).tocsr())
+        placed = replace(placed, observation=seen)
     shapes = corrected(placed.test.shapes, found.corrected_sensors)
     left = ~lost(found.corrected_sensors, len(shapes))
     return replace(placed, test=replace(placed.test, shapes=shapes)).take(left)

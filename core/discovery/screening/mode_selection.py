@@ -18,15 +18,8 @@ def elastic(placed: Placed, solution: Eigensolution, motion: Floats) -> Bools:
     """Return which test modes are elastic, (n_test,).
 
     A mode at 0 Hz is not, nor one well below the first elastic mode of a free model whose shape
-    is a motion of the whole, nor one far below it.
-
-    Parameters
-    ----------
-    placed : Placed
-    solution : Eigensolution
-        Of the deck.
-    motion : (n_dof, n_mode) float
-        Its modes on all analysis dofs.
+    is a motion of the whole, nor one far below it. `motion` (n_dof, n_mode) are the modes of the
+    deck on all analysis dofs.
     """
     hz, n = placed.test.frequencies_hz, solution.rigid_body_modes
     moving = hz > 0.0
@@ -71,14 +64,7 @@ def said_of_others(numbers: Ints) -> tuple[str, ...]:
 
 
 def reference_modes(model: Model, top_hz: float) -> Eigensolution:
-    """Solve a model for a discovery; the factor is kept.
-
-    Parameters
-    ----------
-    model : Model
-    top_hz : float
-        Up to where modes may pair with the test.
-    """
+    """Solve a model for a discovery, modes up to `top_hz` may pair; the factor is kept."""
     fmax = SCREENING.modes_above * top_hz / SCREENING.usual
     solution = normal_modes.solve(model, fmax=fmax, keep_factor=True)
     least = SCREENING.modes_least

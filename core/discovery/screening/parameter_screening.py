@@ -32,16 +32,8 @@ def shifts(
 ) -> Floats:
     """Return ∂ln f/∂ln p of the modes in the measured band at the deck, (n, n_mode).
 
-    First order, each mode apart from all others (Fox and Kapoor 1968).
-
-    Parameters
-    ----------
-    model : Model
-    solution : Eigensolution
-        Of the deck as it is.
-    band_hz : (float, float)
-        Lowest and highest frequency measured.
-    parameters : sequence of int
+    First order, each mode apart from all others (Fox and Kapoor 1968); `solution` is that of the
+    deck as it is, `band_hz` the lowest and highest frequency measured.
     """
     hz = solution.frequencies_hz
     inside = (hz > band_hz[0] / SCREENING.around) & (hz < band_hz[1] * SCREENING.around)
@@ -86,13 +78,7 @@ def noticeable(slopes: Floats, alike: Groups, spread: float) -> list[tuple[int, 
 def tied(structure: Structure, groups: Groups, names: Sequence[str]) -> Structure:
     """Return the structure with parameters that each move some of the old ones alike.
 
-    Parameters
-    ----------
-    structure : Structure
-    groups : sequence of tuple of int
-        Old parameters in none of them stay at the deck's values.
-    names : sequence of str
-        Of the new parameters.
+    Old parameters in none of the groups stay at the deck's values; `names` are of the new ones.
     """
     model = structure.model
     new_of = {k: g for g, group in enumerate(groups) for k in group}

@@ -32,17 +32,7 @@ class Look:
 
 
 def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
-    """Evaluate the places `rows` of a kind.
-
-    Parameters
-    ----------
-    problem, state
-        See `scan`.
-    kind : int
-        Number in the catalogue.
-    rows : (n,) int
-        Places; those that promise nothing may be missing from the answer.
-    """
+    """Evaluate the places `rows` of a kind, see `scan`; some that promise nothing are left out."""
     c = problem.catalogue[kind]
     if len(c.trials) > SEARCH.sizes_many:
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)

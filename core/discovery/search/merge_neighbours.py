@@ -20,8 +20,7 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
     """Return a hypothesis with neighbours of one nature made one; the same if there are none.
 
     Masses and springs add up, at the place of the largest, a mass that is spread out in part as a
-    whole; of patches of stiffness the one that
-    changes most stays. Nothing is fitted again.
+    whole; of patches of stiffness the one that changes most stays. Nothing is fitted again.
     """
     left = list(state.suspects)
     kept: list[Suspect] = []
@@ -36,11 +35,9 @@ def merged(searcher: Searcher, state: Fit) -> Fit:
             first = max(spread or [first], key=lambda s: _size(searcher, s))
             first = first.moved(np.log(total))
         kept.append(first)
-    return (
-        state
-        if len(kept) == len(state.suspects)
-        else replace(state, suspects=tuple(kept), unseen=None, surplus=None, in_deck=None)
-    )
+    if len(kept) == len(state.suspects):
+        return state
+    return replace(state, suspects=tuple(kept), unseen=None, surplus=None, in_deck=None)
 
 
 def _of(searcher: Searcher, s: Suspect) -> Candidates:

@@ -205,11 +205,9 @@ class Searcher:
 
         The last of a new state was looked for just so, and is left out in the first round.
         """
-        moved = True
-        rounds = 0
-        while moved and rounds < SEARCH.anew_rounds:
-            moved, rounds = False, rounds + 1
-            for q in self._doubtful(state, rounds):
+        for number in range(SEARCH.anew_rounds):
+            moved = False
+            for q in self._doubtful(state, first=number == 0):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
                 without = self.fitted(state, others, SEARCH.steps_moved)
                 for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
@@ -219,17 +217,15 @@ class Searcher:
                     if trial.objective < state.objective - SEARCH.better_anew:
                         state, moved = trial, True
                         break
+            if not moved:
+                break
         return state
 
-    def _doubtful(self, state: Fit, rounds: int) -> list[int]:
+    def _doubtful(self, state: Fit, first: bool) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
-        older = list(range(len(state.suspects) - (rounds == 1)))
+        older = list(range(len(state.suspects) - first))
         if len(state.suspects) < SEARCH.anew_all:
             return older
-        left = [
-            evaluate(
-                self.problem, state.nuisance, state.suspects[:q] + state.suspects[q + 1 :]
-            ).objective
-            for q in older
-        ]
+        others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
+        left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
         return [older[int(np.argmin(left))]]

@@ -28,12 +28,7 @@ from .search_numbers import SEARCH
 def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
     """Return a hypothesis with patches of better shapes, and a searcher that knows them.
 
-    Parameters
-    ----------
-    searcher : Searcher
-    state : Fit
-    scale : float
-        How many times the assumed variance the noise has: a step has to gain that much more.
+    The noise has `scale` times the assumed variance: a step has to gain that much more.
     """
     for q in range(len(state.suspects)):
         for _ in range(SEARCH.reshape_steps):

@@ -60,15 +60,9 @@ class Verdicts:
 
 
 def judge_sensors(survey: Survey, span: Span) -> Verdicts:
-    """Find sensors that contradict all the others.
+    """Find sensors that contradict all the others, by the shapes of the best model there is.
 
     Nodes that turn out to be sound help to predict the others again.
-
-    Parameters
-    ----------
-    survey : Survey
-    span : Span
-        Shapes of the best model there is.
     """
     slots, n = survey.slots, len(survey.node)
     if len(slots) < SENSORS.fewest or survey.shapes.shape[1] < SENSORS.fewest_modes:
@@ -130,9 +124,8 @@ def _told(survey: Survey, i: int, a: Alternative, confidence: float) -> Fault:
         reads = seen @ axes.T if whole else None
     elif a.kind == SWAP.name:
         reads = np.eye(2)[::-1]
-    return Fault(
-        a.kind, tuple(int(r) for r in rows), reads, a.factor, a.deviation, axis, confidence
-    )
+    own = tuple(int(r) for r in rows)
+    return Fault(a.kind, own, reads, a.factor, a.deviation, axis, confidence)
 
 
 class Bench:

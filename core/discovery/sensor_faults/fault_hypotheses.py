@@ -73,12 +73,7 @@ class Before:
 def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Alternative]:
     """Return every alternative but swaps with other nodes.
 
-    Parameters
-    ----------
-    node : Node
-    axes : (k, 3) float or None
-        Directions of the rows; None where a row is a rotation.
-    before : Before
+    `axes` (k, 3) are the directions of the rows, None where a row is a rotation.
     """
     of = partial(evidence, node, shares=before.shares)
     k = node.reading.shape[1]
@@ -153,9 +148,8 @@ def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alte
         log, vector, spread = found
         angle = float(np.degrees(np.linalg.norm(vector)))
         log = log + prior + np.log(share)
-        return Alternative(
-            AXIS.name, log, rows, angle, float(np.degrees(spread)), tuple(map(float, vector))
-        )
+        turn = tuple(map(float, vector))
+        return Alternative(AXIS.name, log, rows, angle, float(np.degrees(spread)), turn)
 
     if k == 1:
         return [told(tilted(axes[0], of), SENSORS.lonely_axis)]

@@ -41,7 +41,12 @@ class Weighed:
 
     def shares(self, i: int) -> dict[str, float]:
         """Return how likely each kind of fault of a node is but for swaps with others."""
-        return _shares(self.alone[i])
+        every = self.alone[i]
+        total = logsumexp([a.log for a in every])
+        return {
+            k: float(np.exp(logsumexp([a.log for a in every if a.kind == k]) - total))
+            for k in {a.kind for a in every if a.faulty}
+        }
 
     @property
     def guilt(self) -> Floats:
@@ -54,24 +59,8 @@ class Weighed:
         return out
 
 
-def _shares(every: list[Alternative]) -> dict[str, float]:
-    total = logsumexp([a.log for a in every])
-    return {
-        k: float(np.exp(logsumexp([a.log for a in every if a.kind == k]) - total))
-        for k in {a.kind for a in every if a.faulty}
-    }
-
-
 def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
-    """Weigh what nodes may be that were set aside, all others taken as sound.
-
-    Parameters
-    ----------
-    survey : Survey
-    span : Span
-        As `Span.seen`.
-    aside : (n_node,) bool
-    """
+    """Weigh what nodes may be that were set `aside` (n_node,), all others taken as sound."""
     level, width = level_of(survey, span.along_only(), aside)
     sigma = float(LEVELS[level])
     said = predict(survey, span, sigma, width, aside)

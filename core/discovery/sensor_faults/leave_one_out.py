@@ -160,10 +160,8 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
         known = B[sound] / variance[sound, j, None]
         G = np.linalg.inv(np.eye(B.shape[1]) + known.T @ B[sound])
         w = G @ (known.T @ y[sound, j])
-        X = np.concatenate(
-            [np.where(there[..., None], B[slots], 0.0), span.around[:, :, used] * root[used]],
-            axis=1,
-        )
+        own, around = np.where(there[..., None], B[slots], 0.0), span.around[:, :, used]
+        X = np.concatenate([own, around * root[used]], axis=1)
         m, C = X @ w, (X @ G) @ X.transpose(0, 2, 1)
         cross = C[:, :, :k]
         T = -C[:, :k, :k]

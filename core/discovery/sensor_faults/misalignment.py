@@ -5,30 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 from scipy.special import logsumexp
 
-from ...arrays import Floats, skew
+from ...arrays import Floats
 from .sensor_numbers import SENSORS
 
 
 def rotation(vector: Floats) -> Floats:
-    """Return the rotation matrices of rotation vectors (..., 3) [rad], (..., 3, 3).
-
-    Rodrigues' formula.
-    """
+    """Return the rotation matrices of rotation vectors (..., 3) [rad], (..., 3, 3)."""
     v = np.asarray(vector, dtype=float)
-    angle = np.linalg.norm(v, axis=-1)
-    u = v / np.where(angle > 0.0, angle, 1.0)[..., None]
-    W = skew(u)
-    s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
-    return np.asarray(np.eye(3) + s * W + (1.0 - c) * (W @ W))
-
-
-def vector_of(Q: Floats) -> Floats:
-    """Return the rotation vector of a rotation matrix, length 0 to π."""
-    from scipy.spatial.transform import Rotation
-
-    return np.asarray(Rotation.from_matrix(Q).as_rotvec())
+    return np.asarray(Rotation.from_rotvec(v.reshape(-1, 3)).as_matrix()).reshape(*v.shape, 3)
 
 
 def maps_of(axes: Floats, Q: Floats) -> Floats:
@@ -62,17 +49,7 @@ def about(axes: Floats, axis: Floats, of: Evidence) -> tuple[float, Floats, floa
 def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, float] | None:
     """Turn in space: as `about`, by Laplace's approximation, all rotations as likely before.
 
-    Parameters
-    ----------
-    axes : (3, 3) float
-    start : (3, 3) float
-        A rotation near the best.
-    of : callable
-
-    Returns
-    -------
-    tuple or None
-        None where the readings do not hold the rotation.
+    `start` (3, 3) is a rotation near the best; None where the readings do not hold the rotation.
     """
     Q, h = start, SENSORS.turn_step
     steps = h * np.array([[0, 0, 0], *np.eye(3), *-np.eye(3)])
@@ -96,7 +73,7 @@ def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, fl
         if np.abs(step).max() < SENSORS.turn_done * h:
             break
     best = float(of(maps_of(axes, Q[None]))[0])
-    vector = vector_of(Q)
+    vector = np.asarray(Rotation.from_matrix(Q).as_rotvec())
     along = vector / max(float(np.linalg.norm(vector)), SENSORS.least_variance)
     log = best + 1.5 * np.log(2.0 * np.pi) - 0.5 * np.log(values).sum() - np.log(8.0 * np.pi**2)
     return float(log), vector, float(np.sqrt(along @ np.linalg.solve(-H, along)))

@@ -43,17 +43,10 @@ def node_of(said: Prediction, number: int, count: int) -> Node:
 
 
 def likelihood(node: Node, maps: Floats) -> Floats:
-    """Log likelihood of the readings of all modes for maps of motion to reading.
+    """Log likelihood of the readings of all modes for maps (n, k, k + 3) of motion to reading.
 
-    Parameters
-    ----------
-    node : Node
-    maps : (n, k, k + 3) float
-
-    Returns
-    -------
-    (n, n_local) float
-        For each size in `LOCAL` of what the model has wrong there in every mode by itself.
+    (n, n_local): for each size in `LOCAL` of what the model has wrong there in every mode by
+    itself.
     """
     mean = np.swapaxes(maps @ node.mean.T, 1, 2)
     part = maps[:, None] @ node.covariance
@@ -63,12 +56,7 @@ def likelihood(node: Node, maps: Floats) -> Floats:
 def likelihood_of(node: Node, mean: Floats, covariance: Floats) -> Floats:
     """Log likelihood of the readings if they should be as given, as `likelihood`.
 
-    Parameters
-    ----------
-    node : Node
-    mean : (n, n_mode, k) float
-    covariance : (n, n_mode, k, k) float
-        Without the noise of the readings.
+    Shapes: `mean` (n, n_mode, k), `covariance` (n, n_mode, k, k) without the readings' noise.
     """
     k = node.reading.shape[1]
     C = covariance + SENSORS.gain_scatter**2 * mean[..., :, None] * mean[..., None, :]
@@ -94,16 +82,13 @@ def _mixed(square: Floats, values: Floats) -> Floats:
     return out
 
 
-def local_shares(sound: Floats, rounds: int = SENSORS.local_rounds) -> Floats:
+def local_shares(sound: Floats) -> Floats:
     """Return the shares of the sizes `LOCAL` among nodes taken as sound (empirical Bayes).
 
-    Parameters
-    ----------
-    sound : (n_node, n_local) float
-        Log likelihoods.
+    `sound` (n_node, n_local) are log likelihoods.
     """
     shares = np.array(SENSORS.local_before)
-    for _ in range(rounds):
+    for _ in range(SENSORS.local_rounds):
         weight = sound + np.log(shares)
         each = np.exp(weight - logsumexp(weight, axis=1, keepdims=True))
         total = each.sum(axis=0) + SENSORS.local_weight * np.array(SENSORS.local_before)
@@ -118,6 +103,4 @@ def evidence(node: Node, maps: Floats, shares: Floats) -> Floats:
 
 def averaged(log: Floats, shares: Floats) -> Floats:
     """Log likelihoods (n, n_local) over all sizes of what a model has wrong, (n,)."""
-    weighted = log + np.log(shares)
-    top = weighted.max(axis=1)
-    return np.asarray(top + np.log(np.exp(weighted - top[:, None]).sum(axis=1)))
+    return np.asarray(logsumexp(log + np.log(shares), axis=1))

@@ -39,15 +39,7 @@ def swaps(
     alone: Mapping[int, Sequence[Alternative]],
     before: Before,
 ) -> list[Swap]:
-    """Return the possible swaps among some nodes, the likeliest first.
-
-    Parameters
-    ----------
-    nodes : mapping of int to Node
-    among : sequence of int
-    alone : mapping of int to sequence of Alternative
-    before : Before
-    """
+    """Return the possible swaps among some nodes, the likeliest first."""
     total = {i: float(logsumexp([a.log for a in alone[i]])) for i in among}
     n = len(nodes)
     prior = float(np.log(before.faulty * SENSORS.swapped / max(n - 1, 1)))

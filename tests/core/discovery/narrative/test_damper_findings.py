@@ -47,7 +47,7 @@ def weighed(exists, weights, omega=(10.0, 10.5, 20.0, 30.0), c=0.2):
     )
     modes = Oriented(np.array(omega), np.eye(4), 3)
     u = np.tile([1.0, 0.8, 0.3, 0.5], (11, 1))
-    return Weighed(found, PLACES, modes, u, np.zeros((66, 4)), np.zeros((4, 4)))
+    return Weighed(found, PLACES, modes, u, np.zeros((4, 4)))
 
 
 def at(*pairs):
