@@ -18,6 +18,12 @@ from typing import Any
 
 from .score import score
 
+_WORDS = """# Numbers
+
+Every tuned number of the core, a table for each part, with its unit, its meaning, and where it
+comes from: a publication, a physical reason, or the command that calibrates or checks it. Made by
+`python -m benchmarks.discovery.sensitivity`; what a number of discovery decides is told by the
+command beside it. The coefficients of exact formulas stand where they are used."""
 ROOT = Path(__file__).resolve().parents[2]
 _IMPORT = "number_table import"
 _RUN = f"from {__package__}.sensitivity import change; change({{!r}}, {{!r}})\n"
@@ -34,9 +40,8 @@ def tables() -> dict[str, Any]:
 
 
 def markdown() -> str:
-    """Return every number with unit, meaning and source, a line each, under the words there are."""
-    words = (ROOT / "docs" / "numbers.md").read_text(encoding="utf-8").split("\n## ")[0]
-    out = [words.rstrip()]
+    """Return every number with unit, meaning and source, a line each."""
+    out = [_WORDS]
     for room, table in tables().items():
         out += [
             f"\n## {room}\n",

@@ -15,13 +15,12 @@ from ..data.modes import Modes
 from ..errors import InputError
 from ..noun import Noun
 from ..registration.alignment import Alignment, align
-from ..registration.length_units import POSSIBLE, reconcile_units
+from ..registration.length_units import reconcile_units
+from ..registration.registration_numbers import ALIGN
 from ..sensors.sensor_map import Observation, observe
+from .correlation_numbers import CORRELATION
 from .mode_errors import ModeErrors, mode_errors, told
 from .mode_pairing import Correlation, Criteria, correlate
-
-_ON_MODEL = 0.9
-"""Share of the sensors on the model that proves a very small test to be a part of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +161,7 @@ def place_test(
         raise InputError("the test holds no modes")
     alignment = align(own, moved, analysis, test, seed=seed)
     seen = observe(own, analysis.dofs, moved, test.dofs, alignment, motion=motion)
-    if moved.size < POSSIBLE[0] * own.size and seen.within.mean() < _ON_MODEL:
+    if moved.size < ALIGN.possible[0] * own.size and seen.within.mean() < CORRELATION.on_model:
         raise InputError(
             f"the test is {own.size / moved.size:.3g} times smaller than the model and only "
             f"{seen.within.mean():.0%} of its sensors lie on it in the best position: the length "

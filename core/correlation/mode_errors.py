@@ -10,11 +10,7 @@ import numpy as np
 from ..arrays import Floats, Numbers, frozen
 from ..errors import InputError
 from ..noun import Noun
-
-_OF_SENSORS = 0.05
-"""Error of a reading besides that of the fit, over the rms reading: gain, place, model."""
-
-_LITTLE = 0.5  # weight below which a sensor is named
+from .correlation_numbers import CORRELATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +40,7 @@ class ModeErrors(Noun):
     @property
     def sensors(self) -> Floats:
         """Weight of each sensor, (n_sensor,): 1/σ² over that of the median sensor."""
-        variance = _OF_SENSORS**2 + np.mean(self.shape**2, axis=1)
+        variance = CORRELATION.reading**2 + np.mean(self.shape**2, axis=1)
         return np.asarray(np.median(variance) / variance) if len(variance) else variance
 
 
@@ -86,8 +82,9 @@ def told(errors: ModeErrors, labels: Sequence[str]) -> str:
     """Say in one sentence what is weighed by what."""
     f, s = 100.0 * errors.frequency, 100.0 * errors.length
     weight = errors.sensors
-    little = [labels[k] for k in np.flatnonzero(weight < _LITTLE)]
-    named = ", ".join(little[:8]) + (", ..." if len(little) > 8 else "")
+    little = [labels[k] for k in np.flatnonzero(weight < CORRELATION.little)]
+    more = ", ..." if len(little) > CORRELATION.named else ""
+    named = ", ".join(little[: CORRELATION.named]) + more
     less = f"; sensor(s) {named} count less than half" if little else ""
     return (
         "the identified modes weigh by their standard errors (frequencies "

@@ -10,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from ..arrays import Bools, Floats, Numbers, frozen
 from ..errors import InputError
 from ..noun import Noun
+from .correlation_numbers import CORRELATION
 from .mac import mac, realised
 from .subspace_rotation import ClusterRotation, clusters_by_bandwidth, rotate_cluster, subspace_mac
 
@@ -33,9 +34,9 @@ class Criteria:
         Which side's close modes are turned.
     """
 
-    mac_min: float = 0.7
-    frequency_tolerance: float = 0.3
-    cluster_width: float = 0.02
+    mac_min: float = CORRELATION.mac
+    frequency_tolerance: float = CORRELATION.frequency
+    cluster_width: float = CORRELATION.cluster
     rotate: str = "analysis"
 
     def __post_init__(self) -> None:
@@ -225,7 +226,7 @@ def _transformation(n: int, groups: Groups, turned: list[ClusterRotation]) -> Fl
     matrix = np.eye(n)
     for g, r in zip(groups, turned, strict=True):
         if len(g) > 1 and r.test:
-            resembles = assign(r.matrix.T**2 + 1e-9, np.ones((len(g), len(g)), bool))
+            resembles = assign(r.matrix.T**2 + CORRELATION.tie, np.ones((len(g), len(g)), bool))
             columns = np.empty_like(r.matrix)
             for column, member in resembles:
                 columns[:, member] = r.matrix[:, column]

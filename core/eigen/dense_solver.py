@@ -9,10 +9,9 @@ from ..arrays import Floats
 from ..data.parametric_model import Model
 from ..errors import InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS
+from .eigen_numbers import EIGEN
 from .mechanisms import diagnose
 from .pencil import Pencil, Spectrum
-
-_NO_MASS = 1e-12
 
 
 def dense_modes(model: Model | None, pencil: Pencil, rigid: Floats) -> Spectrum:
@@ -33,7 +32,7 @@ def dense_modes(model: Model | None, pencil: Pencil, rigid: Floats) -> Spectrum:
     high, high_vectors, high_residual = _condensed(K, M, rigid)
     if not len(high):
         return Spectrum(high, high_vectors, high, -small, complete=True, missed=0)
-    lowest = high[high > 1e-9 * high[-1]].min(initial=high[-1])
+    lowest = high[high > EIGEN.lowest * high[-1]].min(initial=high[-1])
     sigma = -max(0.5 * lowest, small)
     low, low_vectors, low_residual = _inverse(K, M, rigid, sigma, len(high))
     # errors are eps (lambda - sigma)^2 / (lambda_1 - sigma) below, eps lambda_max above
@@ -87,9 +86,9 @@ def _mass_range(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     massed = M.any(axis=1)
     d = 1.0 / np.sqrt(np.diag(M)[massed])
     value, Q = np.linalg.eigh(d[:, None] * M[np.ix_(massed, massed)] * d)
-    if value[0] < -1e-8 * value[-1]:
+    if value[0] < -EIGEN.negative_mass * value[-1]:
         raise InputError(NEGATIVE_MASS)
-    has = value > _NO_MASS * value[-1]
+    has = value > EIGEN.no_mass * value[-1]
     B = np.zeros((len(M), np.count_nonzero(has)))
     B[massed] = d[:, None] * (Q[:, has] / np.sqrt(value[has]))
     N = np.zeros((len(M), len(M) - B.shape[1]))

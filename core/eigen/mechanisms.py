@@ -14,16 +14,8 @@ from ..arrays import Floats, Ints, Numbers
 from ..data.parametric_model import Model
 from ..errors import InputError
 from ..numerics.factorisation import Backend, Factorisation, factorise
+from .eigen_numbers import EIGEN
 from .pencil import Pencil
-
-_SINGULAR = 1e-13
-"""Energy of A = K - sigma M beside that of its diagonal below which a motion is unresisted."""
-
-_ROUNDING = 2e-15
-"""Strain energy beside that of the diagonal of K that is rounding of double precision."""
-
-_SMALL = 600
-_NAMED = 6
 
 _NEGATIVE = (
     "the stiffness is not positive semi-definite: "
@@ -48,11 +40,11 @@ def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
         A strain energy is negative.
     """
     size = np.einsum("ij,ij,i->j", X, X, np.abs(pencil.k_diagonal))
-    rounding = max(_ROUNDING, 4.0 * pencil.precision) * size
+    rounding = max(EIGEN.strain, EIGEN.digits * pencil.precision) * size
     below = energy < -rounding
     if below.any():
         raise InputError(_NEGATIVE.format(where(None, pencil, X[:, below])))
-    return np.asarray(energy <= _ROUNDING * size)
+    return np.asarray(energy <= EIGEN.strain * size)
 
 
 def refuse_unresisted(model: Model | None, pencil: Pencil, sigma: float, f: Factorisation) -> None:
@@ -70,7 +62,7 @@ def refuse_unresisted(model: Model | None, pencil: Pencil, sigma: float, f: Fact
         diagnose(model, pencil, sigma, f.backend)
     b = np.sqrt(D) * np.random.default_rng(3).standard_normal(pencil.n)
     y = f.solve(b)
-    if not np.isfinite(y).all() or not float(b @ y) > _SINGULAR * float(y @ (D * y)):
+    if not np.isfinite(y).all() or not float(b @ y) > EIGEN.singular * float(y @ (D * y)):
         diagnose(model, pencil, sigma, f.backend)
 
 
@@ -83,21 +75,21 @@ def diagnose(
     a strong shift s, where only motions without stiffness and mass stay near zero, then at sigma
     for a negative stiffness.
     """
-    strong = min(sigma, -1e-3 * float(pencil.stiffness_over_mass[-1]))
+    strong = min(sigma, -EIGEN.strong * float(pencil.stiffness_over_mass[-1]))
     for shift in (strong, sigma):
         A = (pencil.K - shift * pencil.M).tocsr()
         D = A.diagonal()
         if not (D > 0.0).all():
             names = [pencil.name(int(r)) for r in np.flatnonzero(~(D > 0.0))]
-            raise InputError(_NEGATIVE.format(", ".join(names[:_NAMED])))
+            raise InputError(_NEGATIVE.format(", ".join(names[: EIGEN.named])))
         scale = sp.diags(1.0 / np.sqrt(D))
         scaled = (scale @ A @ scale).tocsr()
-        dense = pencil.n <= _SMALL
+        dense = pencil.n <= EIGEN.dense
         mu, Y = np.linalg.eigh(scaled.toarray()) if dense else _smallest(scaled, backend)
         X = scale @ Y
-        if mu[0] < -max(_SINGULAR, 4.0 * pencil.precision):
+        if mu[0] < -max(EIGEN.singular, EIGEN.digits * pencil.precision):
             raise InputError(_NEGATIVE.format(where(model, pencil, X[:, :1])))
-        free = np.abs(mu) <= _SINGULAR
+        free = np.abs(mu) <= EIGEN.singular
         if shift == strong and free.any():
             raise mechanism(model, pencil, X[:, free], massless=True)
 
@@ -106,12 +98,14 @@ def _smallest(scaled: sp.csr_matrix, backend: Backend | None) -> tuple[Floats, F
     """Lowest eigenpairs of a scaled matrix: a negative one, or else those next to zero."""
     n = scaled.shape[0]
     rng = np.random.default_rng(4)
-    factor = factorise(scaled + 100.0 * _SINGULAR * sp.eye(n), False, backend)
+    factor = factorise(scaled + EIGEN.off_zero * EIGEN.singular * sp.eye(n), False, backend)
     if factor.negative:
-        mu, Y = spla.eigsh(scaled, k=1, which="SA", tol=1e-3, v0=rng.standard_normal(n))
+        mu, Y = spla.eigsh(
+            scaled, k=1, which="SA", tol=EIGEN.negative_found, v0=rng.standard_normal(n)
+        )
         return mu, Y
-    Y = rng.standard_normal((n, 2 * _NAMED))
-    for _ in range(4):
+    Y = rng.standard_normal((n, 2 * EIGEN.named))
+    for _ in range(EIGEN.sweeps):
         Y = np.linalg.qr(factor.solve(Y))[0]
     mu, turn = np.linalg.eigh(Y.T @ (scaled @ Y))
     return mu, Y @ turn
@@ -171,8 +165,8 @@ def _motions(X: Floats) -> str:
 
 
 def _named(pencil: Pencil, rows: Ints) -> str:
-    more = f" and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
-    return ", ".join(pencil.name(int(r)) for r in rows[:_NAMED]) + more
+    more = f" and {len(rows) - EIGEN.named} more" if len(rows) > EIGEN.named else ""
+    return ", ".join(pencil.name(int(r)) for r in rows[: EIGEN.named]) + more
 
 
 def _least_motion(X: Floats, rigid: Floats, lengths: Floats) -> Floats:
@@ -183,8 +177,8 @@ def _least_motion(X: Floats, rigid: Floats, lengths: Floats) -> Floats:
     scaled, base = X * lengths[:, None], rigid * lengths[:, None]
     for column in scaled.T:
         rest = column.copy()
-        for _ in range(30):
-            weight = 1.0 / np.sqrt(np.abs(rest) + 1e-6 * np.abs(column).max())
+        for _ in range(EIGEN.reweighted):
+            weight = 1.0 / np.sqrt(np.abs(rest) + EIGEN.at_rest * np.abs(column).max())
             c, *_ = np.linalg.lstsq(base * weight[:, None], column * weight, rcond=None)
             rest = column - base @ c
         column[:] = rest
@@ -195,7 +189,7 @@ def where(model: Model | None, pencil: Pencil, X: Floats) -> str:
     """Name the degrees of freedom that move most in any of the vectors X, (n, n_vector)."""
     motion = np.abs(X) * _lengths(model, pencil.n)[:, None]
     motion = (motion / motion.max(axis=0)).max(axis=1)
-    rows = np.flatnonzero(motion > 0.3)
+    rows = np.flatnonzero(motion > EIGEN.named_motion)
     rows = rows[np.argsort(-motion[rows], kind="stable")]
     return _named(pencil, rows)
 
@@ -204,14 +198,11 @@ def _lengths(model: Model | None, n: int) -> Floats:
     """Displacement that a unit of each free degree of freedom makes, (n,): 1, or a lever arm."""
     if model is None:
         return np.ones(n)
-    arm = 0.1 * (model.geometry.size or 1.0)
+    arm = EIGEN.arm * (model.geometry.size or 1.0)
     row = np.where((model.dofs.component > 3) & (model.dofs.component <= 6), arm, 1.0)
     moved = abs(sp.csr_matrix(model.expansion)).T @ sp.diags(row)
     length = moved.max(axis=1).toarray().ravel()
     return np.where(length > 0.0, length, 1.0)
-
-
-_MOVED = 1e-6
 
 
 def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
@@ -250,7 +241,7 @@ def _turns(model: Model, still: Numbers, u: Floats) -> bool:
     dofs, geometry = model.dofs, model.geometry
     row = geometry.index_of(dofs.node)
     translation = (dofs.component >= 1) & (dofs.component <= 3) & (row >= 0)
-    moving = translation & (np.abs(v) > _MOVED * np.abs(v).max())
+    moving = translation & (np.abs(v) > EIGEN.moved * np.abs(v).max())
     grids = np.unique(row[moving])
     if not len(grids):
         return False
@@ -261,7 +252,7 @@ def _turns(model: Model, still: Numbers, u: Floats) -> bool:
     arm = (geometry.xyz[row[rows]] - geometry.xyz[grids].mean(axis=0)) / (geometry.size or 1.0)
     R = np.hstack([dofs.axis[rows], np.cross(arm, dofs.axis[rows])])
     c, *_ = np.linalg.lstsq(R, v[rows], rcond=None)
-    return bool(np.abs(R @ c - v[rows]).max() > 1e-3 * np.abs(v[rows]).max())
+    return bool(np.abs(R @ c - v[rows]).max() > EIGEN.turned * np.abs(v[rows]).max())
 
 
 def _neighbours(model: Model, grids: Ints) -> Ints:

@@ -16,16 +16,11 @@ from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.factorisation import Backend, Factorisation, best_backend, factorise
 from .dense_solver import dense_modes
+from .eigen_numbers import EIGEN
 from .mechanisms import Massless, hold, mechanism, refuse_linkage, strain_free
 from .pencil import Pencil, Spectrum
 from .rigid_body_modes import RigidBody, rigid_body
 from .shift_invert_solver import Request, sparse_modes
-
-_DENSE = 600
-_DEFAULT_MODES = 10
-_RESIDUAL = 1e-5
-_ORTHONORMAL = 1e-8
-_HELD = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +83,7 @@ def solve(
     p: Floats | None = None,
     *,
     backend: Backend | None = None,
-    tolerance: float = 1e-8,
+    tolerance: float = EIGEN.tolerance,
     keep_factor: bool = False,
     count: bool = True,
     seed: int = 0,
@@ -148,9 +143,11 @@ def solve(
     body = rigid_body(owner, pencil) if owner else RigidBody(none, none, ())
     rigid = body.modes
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
-    wanted = n_modes if n_modes is not None or fmax is not None else _DEFAULT_MODES
+    wanted = n_modes if n_modes is not None or fmax is not None else EIGEN.modes
     chosen = backend or best_backend()
-    small = pencil.n <= _DENSE or ((wanted or 0) > pencil.n // 4 and pencil.n <= 4 * _DENSE)
+    small = pencil.n <= EIGEN.dense or (
+        (wanted or 0) > pencil.n // EIGEN.dense_many and pencil.n <= EIGEN.dense_many * EIGEN.dense
+    )
     request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed)
     held: list[str] = []
     while True:
@@ -159,7 +156,7 @@ def solve(
             spectrum = dense_modes(*known) if small else sparse_modes(*known, request)
             break
         except Massless as found:
-            if len(held) == _HELD:
+            if len(held) == EIGEN.held:
                 raise
             pencil, rigid, note = hold(owner, pencil, found.motions, rigid)
             held.append(note)
@@ -208,13 +205,13 @@ def modes_of(model: Model, solution: Eigensolution) -> Modes:
 def _without_strain(pencil: Pencil, spectrum: Spectrum) -> int:
     """Count the leading modes, rigid-body ones apart, whose strain energy is rounding."""
     values = spectrum.values
-    count = min(len(values), 100)
+    count = min(len(values), EIGEN.looked_at)
     if not count:
         return 0
     zero = strain_free(pencil, spectrum.vectors[:, :count], values[:count])
     elastic = values[:count][~zero]
     first = int(np.argmin(zero)) if len(elastic) else count
-    if first and len(elastic) and abs(values[first - 1]) > 1e-4 * elastic[0]:
+    if first and len(elastic) and abs(values[first - 1]) > EIGEN.without_strain * elastic[0]:
         return 0
     return first
 
@@ -236,7 +233,7 @@ def _refuse_mechanism(model: Model | None, pencil: Pencil, body: RigidBody, Z: F
     nearly, mechanisms, replaced = body.split(pencil, Z)
     if mechanisms.shape[1]:
         raise mechanism(model, pencil, mechanisms, body.modes)
-    rows = np.argsort(-np.abs(pencil.K @ replaced).max(axis=1))[:4]
+    rows = np.argsort(-np.abs(pencil.K @ replaced).max(axis=1))[: EIGEN.few_named]
     return [
         f"{nearly.shape[1]} of the rigid-body modes are not quite those of a rigid body: springs "
         "or constraints join grids that are not in one place, near "
@@ -252,7 +249,9 @@ def _notes(
     if pieces and body.held:
         rows = body.pieces[0]
         grids = dict.fromkeys(pencil.name(int(r)).split(":")[0] for r in rows)
-        shown = ", ".join(list(grids)[:6]) + (", ..." if len(grids) > 6 else "")
+        shown = ", ".join(list(grids)[: EIGEN.named]) + (
+            ", ..." if len(grids) > EIGEN.named else ""
+        )
         part = "a part moves" if pieces == 1 else f"{pieces} parts move"
         notes.append(
             f"{part} freely that {'is' if pieces == 1 else 'are'} not connected to the rest, "
@@ -272,15 +271,15 @@ def _notes(
 
 
 def _verify(checks: dict[str, Any]) -> None:
-    if not checks["residual"] <= _RESIDUAL:
+    if not checks["residual"] <= EIGEN.residual:
         raise CheckError(
             f"the eigensolution has a residual of {checks['residual']:.1e} "
-            f"(limit {_RESIDUAL:g}): the matrices are too badly conditioned"
+            f"(limit {EIGEN.residual:g}): the matrices are too badly conditioned"
         )
-    if not checks["orthonormality"] <= _ORTHONORMAL:
+    if not checks["orthonormality"] <= EIGEN.orthonormal:
         raise CheckError(
             f"the modes are orthonormal to {checks['orthonormality']:.1e} only "
-            f"(limit {_ORTHONORMAL:g})"
+            f"(limit {EIGEN.orthonormal:g})"
         )
     if checks["missed"]:
         raise CheckError(

@@ -14,12 +14,7 @@ from ..errors import InputError
 from ..noun import Noun
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from ..numerics.factorisation import Factorisation
-
-_ROUNDING = 1e-12
-"""Mass over stiffness, beside that of most, below which a mass is rounding of a rotation."""
-
-_MASS_STEPS = 40
-"""Lanczos steps on the mass that look for a negative eigenvalue."""
+from .eigen_numbers import EIGEN
 
 
 class Pencil:
@@ -91,7 +86,8 @@ class Pencil:
     def least_shift(self) -> float:
         """Size of a shift that stands clear of the rounding of K."""
         ratio = self.stiffness_over_mass
-        return max(1e-11 * float(np.median(ratio)), 4.0 * self.precision * float(ratio[-1]))
+        least = EIGEN.least_shift * float(np.median(ratio))
+        return max(least, EIGEN.digits * self.precision * float(ratio[-1]))
 
     @cached_property
     def precision(self) -> float:
@@ -102,15 +98,16 @@ class Pencil:
         count: most values must need the last digit.
         """
         data = self.K.data[self.K.data != 0.0]
-        sample = data[:: max(1, len(data) // 2000)]
-        if len(sample) < 20:
+        sample = data[:: max(1, len(data) // EIGEN.sample)]
+        if len(sample) < EIGEN.sample_least:
             return 0.0
         needed = np.array([_digits(v) for v in sample])
         most, typical = int(needed.max()), float(np.median(needed))
-        if 6 <= most == typical <= 12:
+        if EIGEN.few_digits[0] <= most == typical <= EIGEN.few_digits[1]:
             return 0.5 * 10.0 ** (1 - most)
         single = sample.astype(np.float32).astype(np.float64)
-        return 6e-8 if typical >= 8 and np.array_equal(single, sample) else 0.0
+        same = typical >= EIGEN.single_digits and np.array_equal(single, sample)
+        return EIGEN.single if same else 0.0
 
     @property
     def pattern(self) -> sp.csr_matrix:
@@ -129,7 +126,7 @@ class Pencil:
             require_finite(matrix.data, f"the {what} matrix")
             probe = np.random.default_rng(1).standard_normal(self.n)
             size = (magnitudes(matrix) @ np.abs(probe)).max(initial=0.0)
-            if (np.abs(matrix @ probe - matrix.T @ probe) > 1e-6 * size).any():
+            if (np.abs(matrix @ probe - matrix.T @ probe) > EIGEN.symmetric * size).any():
                 raise InputError(f"the {what} matrix is not symmetric")
 
     def _check(self) -> None:
@@ -150,8 +147,9 @@ class Pencil:
             used[rows[matrix.data != 0.0]] = True
         if not used.all():
             rows = np.flatnonzero(~used)
-            names = ", ".join(self.name(int(r)) for r in rows[:5])
-            more = f" and {len(rows) - 5} more" if len(rows) > 5 else ""
+            names = ", ".join(self.name(int(r)) for r in rows[: EIGEN.unused_named])
+            left = len(rows) - EIGEN.unused_named
+            more = f" and {left} more" if left > 0 else ""
             raise InputError(
                 f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
             )
@@ -173,8 +171,8 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
     both = (k > 0.0) & (m > 0.0)
     if not both.any():
         return M
-    usual = float(np.quantile(m[both] / k[both], 0.9))
-    noise = (np.diff(M.indptr) > 0) & (np.abs(m) < _ROUNDING * usual * k)
+    usual = float(np.quantile(m[both] / k[both], EIGEN.usual))
+    noise = (np.diff(M.indptr) > 0) & (np.abs(m) < EIGEN.mass_rounding * usual * k)
     if not noise.any():
         return M
     kept = sp.diags((~noise).astype(float))
@@ -196,17 +194,17 @@ def refuse_indefinite_mass(pencil: Pencil) -> None:
     root = np.sqrt(pencil.m_diagonal)
     d = np.divide(1.0, root, out=np.zeros_like(root), where=root > 0.0)
     q = d * (M @ np.random.default_rng(6).standard_normal(pencil.n))
-    Q = np.zeros((pencil.n, _MASS_STEPS))
-    T = np.zeros((_MASS_STEPS, _MASS_STEPS))
-    for j in range(_MASS_STEPS):
+    Q = np.zeros((pencil.n, EIGEN.mass_steps))
+    T = np.zeros((EIGEN.mass_steps, EIGEN.mass_steps))
+    for j in range(EIGEN.mass_steps):
         norm = np.linalg.norm(q)
-        if norm <= 1e-10:
+        if norm <= EIGEN.mass_spanned:
             break
         Q[:, j] = q / norm
         image = d * (M @ (d * Q[:, j]))
         T[:, j] = Q.T @ image
         q = image - Q @ T[:, j]
-    if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -1e-6:
+    if np.linalg.eigvalsh((T + T.T) / 2.0)[0] < -EIGEN.mass_negative:
         raise InputError(NEGATIVE_MASS)
 
 

@@ -14,13 +14,8 @@ from ..arrays import Floats, Ints, Numbers
 from ..data.parametric_model import Model
 from ..errors import CheckError
 from ..numerics.factorisation import factorise
+from .eigen_numbers import EIGEN
 from .pencil import Pencil, magnitudes
-
-_ROUNDING = 1e-13
-"""Row forces this small beside the sum of the magnitudes that make them are rounding."""
-
-_NEARLY = 0.9
-"""Share (M-norm) of a motion that a rigid body explains, for it to count as one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +63,7 @@ class RigidBody:
         value, W = np.linalg.eigh(G.T @ (M @ G))
         G = G @ W[:, value > 0.5]
         u, s, vt = np.linalg.svd((M @ Z).T @ G)
-        count = int(np.count_nonzero(s > _NEARLY))
+        count = int(np.count_nonzero(s > EIGEN.nearly))
         return Z @ u[:, :count], Z @ u[:, count:], G @ vt[:count].T
 
 
@@ -84,7 +79,7 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     label = _pieces(model, pencil)
     _follow(pencil, U, scalar & np.isin(label, label[~scalar]))
     force, size = pencil.K @ U, magnitudes(pencil.K) @ np.abs(U).sum(axis=1)
-    noise = max(_ROUNDING, 4.0 * pencil.precision) * size
+    noise = max(EIGEN.row_rounding, EIGEN.digits * pencil.precision) * size
     mass = pencil.M @ U
     modes: list[tuple[Ints, Floats]] = []
     motions: list[tuple[Ints, Floats]] = []
@@ -177,7 +172,7 @@ def _follow(pencil: Pencil, U: Floats, followers: Numbers) -> None:
 def _strain_free(U: Floats, MU: Floats, KU: Floats, noise: Floats) -> Floats:
     """M-orthonormal basis of the combinations of U whose forces are below the noise."""
     size = np.linalg.norm(U, axis=0)
-    basis = size > 1e-10 * size.max(initial=0.0)
+    basis = size > EIGEN.followed * size.max(initial=0.0)
     if not basis.any():
         return U[:, :0]
     floor = np.where(noise > 0.0, noise, 1.0)
@@ -192,5 +187,5 @@ def _strain_free(U: Floats, MU: Floats, KU: Floats, noise: Floats) -> Floats:
 def _orthonormal(V: Floats, MV: Floats, scale: float = 0.0) -> Floats:
     """M-orthonormal basis of V; directions of little mass beside `scale` are left out."""
     value, W = np.linalg.eigh((V.T @ MV + MV.T @ V) / 2.0)
-    kept = value > 1e-12 * max(scale, value.max(initial=0.0))
+    kept = value > EIGEN.massive * max(scale, value.max(initial=0.0))
     return np.asarray(V @ (W[:, kept] / np.sqrt(value[kept])))

@@ -12,20 +12,9 @@ from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS, BlockLanczos
 from ..numerics.factorisation import Backend, Factorisation, NotDefinite, factorise
+from .eigen_numbers import EIGEN
 from .mechanisms import diagnose, refuse_unresisted
 from .pencil import Pencil, Spectrum, refuse_indefinite_mass
-
-_FIRST_SHIFT_HZ = 20.0  # a guess, bettered when the first Ritz values are seen
-_SHIFTS = 6  # guesses at most
-_WIDTH = 8  # of the block: what one pass through the factor serves best
-_NARROW = 4  # with SuperLU, which gains little by several right sides at once
-_WIDEST = 64  # of the block, when many equal modes were missed
-_GUARD = 4  # modes above the wanted ones, in the room of the basis
-_GUARD_TOLERANCE = 1e-3  # Ritz residual at which a value helps to find a gap
-_FIRM = 1e-6  # Ritz residual up to which guards are kept as modes
-_GAP = 1e-4  # least relative gap for an inertia count
-_CLEAR = 1e-2  # a gap that needs no better one
-_ATTEMPTS = 5  # searches for missed modes, the first included
 
 
 @dataclass(frozen=True)
@@ -72,7 +61,9 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     n_rigid = rigid.shape[1]
     below = None
     if request.limit is not None:
-        below = _inertia(pencil, (request.limit, request.limit * 1.0001), request.backend)
+        below = _inertia(
+            pencil, (request.limit, request.limit * EIGEN.beside_limit), request.backend
+        )
         if below <= n_rigid:
             none = np.zeros(0)
             return Spectrum(none, rigid[:, :0], none, -request.limit, complete=False, missed=0)
@@ -82,7 +73,7 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
     del factor, lanczos  # two factors at a time only where the caller keeps one
     have = missed = 0
-    for attempt in range(1, _ATTEMPTS + 1):
+    for attempt in range(1, EIGEN.attempts + 1):
         if not request.keep_factor:
             found = replace(found, factor=None)
         if not request.count:
@@ -95,7 +86,7 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
                 return replace(found, missed=0)
             if missed < 0:
                 break
-        if attempt < _ATTEMPTS:
+        if attempt < EIGEN.attempts:
             further = max(elastic, have + missed) - len(found.values)
             found = _with_missed(pencil, rigid, found, max(further, 1), request, attempt)
     raise CheckError(
@@ -109,14 +100,14 @@ def _started(
     """Choose a shift that suits the spectrum, with its factor and the first Krylov vectors."""
     refuse_indefinite_mass(pencil)
     typical = float(np.median(pencil.stiffness_over_mass))
-    hertz = _FIRST_SHIFT_HZ
-    first = (2.0 * np.pi * hertz) ** 2 if request.limit is None else 0.05 * request.limit
-    sigma = -float(np.clip(first, pencil.least_shift, 0.1 * typical))
+    usual, limit = (2.0 * np.pi * EIGEN.first_shift) ** 2, request.limit
+    first = usual if limit is None else EIGEN.below_limit * limit
+    sigma = -float(np.clip(first, pencil.least_shift, EIGEN.shift_most * typical))
     factor = _definite(model, pencil, sigma, request.backend)
     refuse_unresisted(model, pencil, sigma, factor)
     rng = np.random.default_rng(request.seed)
-    width = _WIDTH if request.backend == "pardiso" else _NARROW
-    for attempt in range(_SHIFTS):
+    width = EIGEN.width if request.backend == "pardiso" else EIGEN.narrow
+    for attempt in range(EIGEN.shifts):
         start = rng.standard_normal((pencil.n, min(width, pencil.n)))
         lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, _room(elastic))
         lanczos.step()
@@ -126,7 +117,7 @@ def _started(
             lanczos.advance()
             lanczos.step()
         better = _better_shift(sigma, lanczos.ritz()[0], elastic)
-        if better is None or -better < pencil.least_shift or attempt == _SHIFTS - 1:
+        if better is None or -better < pencil.least_shift or attempt == EIGEN.shifts - 1:
             break
         sigma = better
         factor = _definite(model, pencil, sigma, request.backend, factor)
@@ -152,18 +143,19 @@ def _definite(
 
 
 def _room(elastic: int) -> int:
-    return 3 * (elastic + _GUARD) + 6 * _WIDTH
+    modes, blocks = EIGEN.room
+    return modes * (elastic + EIGEN.guard) + blocks * EIGEN.width
 
 
 def _better_shift(sigma: float, theta: Floats, elastic: int) -> float | None:
     """Another shift where this one is far from the first modes, by their first estimates."""
-    values = sigma + 1.0 / theta[theta > 1e-12 * theta[0]]
-    pivot = values[min(elastic, _WIDTH, len(values)) - 1]
-    lowest = float(values[values > 1e-6 * pivot][0])
-    if -sigma > 10.0 * lowest and -sigma > pivot:
-        return -0.5 * lowest
-    if lowest > -1e8 * sigma:
-        return -1e-3 * lowest
+    values = sigma + 1.0 / theta[theta > EIGEN.zero * theta[0]]
+    pivot = values[min(elastic, EIGEN.width, len(values)) - 1]
+    lowest = float(values[values > EIGEN.pivot * pivot][0])
+    if -sigma > EIGEN.far_shift * lowest and -sigma > pivot:
+        return -EIGEN.nearer[0] * lowest
+    if lowest > -EIGEN.near_shift * sigma:
+        return -EIGEN.nearer[1] * lowest
     return None
 
 
@@ -181,20 +173,20 @@ def _converged(
     while True:
         if lanczos.exhausted or lanczos.size >= check_at or lanczos.full:
             theta, residual = lanczos.ritz()
-            if theta[-1] < -1e-6 * theta[0]:
+            if theta[-1] < -EIGEN.negative * theta[0]:
                 _refuse_negative(pencil, sigma, factor)
-            loose = int(np.argmin(np.append(residual <= _GUARD_TOLERANCE * theta, False)))
+            loose = int(np.argmin(np.append(residual <= EIGEN.guard_tolerance * theta, False)))
             tight = bool((residual <= request.tolerance * theta)[:elastic].all())
             if lanczos.exhausted:
-                firm = loose = int(np.count_nonzero(theta > 1e-12 * theta[0]))
+                firm = loose = int(np.count_nonzero(theta > EIGEN.zero * theta[0]))
                 break
             values = sigma + 1.0 / theta[:loose]
             if tight and loose > elastic and _widest_gap(values, elastic) is not None:
-                firm = max(elastic, int(np.argmax(residual > _FIRM * theta)))
+                firm = max(elastic, int(np.argmax(residual > EIGEN.firm * theta)))
                 break
             if lanczos.full:
-                lanczos.restart(max(elastic, loose) + _GUARD + _WIDTH)
-            check_at = lanczos.size + max(_WIDTH, lanczos.size // 12)
+                lanczos.restart(max(elastic, loose) + EIGEN.guard + EIGEN.width)
+            check_at = lanczos.size + max(EIGEN.width, lanczos.size // EIGEN.step)
         lanczos.advance()
         lanczos.step()
     found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(firm), theta[:firm])
@@ -230,11 +222,11 @@ def _polished(
 def _widest_gap(values: Floats, first: int) -> int | None:
     """Position k >= first of a clear gap between values[k - 1] and values[k], else None."""
     ahead = np.diff(values[first - 1 :]) / np.abs(values[first:])
-    clear = np.flatnonzero(ahead > _CLEAR)
+    clear = np.flatnonzero(ahead > EIGEN.clear)
     if len(clear):
         return first + int(clear[0])
     k = int(np.argmax(ahead)) if len(ahead) else 0
-    return first + k if len(ahead) and ahead[k] > _GAP else None
+    return first + k if len(ahead) and ahead[k] > EIGEN.gap else None
 
 
 def _estimates(found: Spectrum) -> Floats:
@@ -246,12 +238,13 @@ def _gap(found: Spectrum, elastic: int) -> tuple[float, float] | None:
     values = _estimates(found)
     if found.complete:
         top = abs(values[-1]) - found.sigma
-        return 2.0 * top, 4.0 * top
+        return EIGEN.above[0] * top, EIGEN.above[1] * top
     k = _widest_gap(values, elastic)
     if k is None:
         return None
     wide = values[k] - values[k - 1]
-    return float(values[k - 1] + 0.4 * wide), float(values[k - 1] + 0.6 * wide)
+    low, high = (float(values[k - 1] + share * wide) for share in EIGEN.within)
+    return low, high
 
 
 def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> int:
@@ -260,7 +253,7 @@ def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> 
     try:
         return factorise(pencil.shifted(low), False, backend, pencil.groups).negative
     except CheckError:
-        at = pencil.shifted(0.7 * low + 0.3 * high)
+        at = pencil.shifted((1.0 - EIGEN.again) * low + EIGEN.again * high)
         return factorise(at, False, backend, pencil.groups).negative
 
 
@@ -271,9 +264,11 @@ def _with_missed(
     factor = found.factor or _definite(None, pencil, found.sigma, request.backend)
     locked = np.hstack([rigid, found.vectors])
     rng = np.random.default_rng(request.seed + 1000 * attempt)
-    width = min(missed + _GUARD, _WIDEST) if missed > _GUARD else _WIDTH
+    width = min(missed + EIGEN.guard, EIGEN.widest) if missed > EIGEN.guard else EIGEN.width
     start = rng.standard_normal((pencil.n, width))
-    lanczos = BlockLanczos(factor.solve, pencil.M, start, locked, _room(missed) + 6 * width)
+    lanczos = BlockLanczos(
+        factor.solve, pencil.M, start, locked, _room(missed) + EIGEN.room[1] * width
+    )
     lanczos.step()
     further = _converged(pencil, locked, found.sigma, factor, lanczos, missed, request)
     X = np.hstack([found.vectors, further.vectors])

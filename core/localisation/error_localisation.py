@@ -23,18 +23,11 @@ from .first_order_maps import (
     root_of,
     stiffness_evidence,
 )
+from .localisation_numbers import MAPS
 from .shape_misfit import Misfit, misfit, paired_shapes, spread
 from .shape_noise import Noise, estimate_noise, given_noise
 
-_PLACES = 3000
-_ELEMENTS = 20_000
-_REACH = 0.06
-"""Radius of a patch of the maps, beside the size of the structure."""
-_FEW_SENSORS = 6
-_SHAPE_NOISE = 0.03
 _TRANSLATIONS = (1, 2, 3)
-_WITHIN, _ENOUGH = 2.0, 6
-"""Standard deviations within which every mode of a test agrees, and modes it takes to say so."""
 
 
 class ElementGroup(Protocol):
@@ -85,8 +78,10 @@ class Disagreement(Noun):
 def agrees(compared: Comparison, found: Disagreement) -> bool:
     """Whether every mode of a test pairs and agrees in frequency and shape within its scatter."""
     within = [np.abs(d).max(initial=0.0) for d in (found.misfit.by_mode, found.misfit.frequency)]
-    whole = len(compared.correlation.pairs) >= _ENOUGH and not compared.correlation.unpaired_test
-    return bool(whole and max(within) <= _WITHIN)
+    whole = (
+        len(compared.correlation.pairs) >= MAPS.enough and not compared.correlation.unpaired_test
+    )
+    return bool(whole and max(within) <= MAPS.within)
 
 
 def disagreement(
@@ -130,11 +125,11 @@ def disagreement(
     noise = _noise(compared, at_sensors)
     pairs = paired_shapes(found, at_sensors, compared.test.shapes)
     measured = misfit(found, pairs, noise)
-    places = _evenly(len(geometry.xyz), _PLACES)
+    places = _evenly(len(geometry.xyz), MAPS.places)
     centres = geometry.xyz[places]
     motion = spread(measured.by_sensor, seen.xyz, centres)
     lin = linearise(found, pairs, noise, hz, at_sensors)
-    radius = _REACH * geometry.size
+    radius = MAPS.reach * geometry.size
     moves = _translations(compared, geometry)
     mass = mass_evidence(lin, moves, patches_of(centres, geometry.xyz, radius))
     springs = [stiffness_evidence(lin, moves[places, c : c + 1]) for c in range(3)]
@@ -149,10 +144,11 @@ def disagreement(
 
 def _noise(compared: Comparison, at_sensors: Floats) -> Noise:
     shapes = realised(compared.test.shapes)
-    if len(shapes) < _FEW_SENSORS:
-        return given_noise(shapes, _SHAPE_NOISE)
+    if len(shapes) < MAPS.few_sensors:
+        return given_noise(shapes, MAPS.shape_noise)
     hz = compared.analysis.frequencies_hz
-    rigid = int(np.count_nonzero(hz < 1e-3 * max(float(hz.max(initial=0.0)), 1e-300)))
+    highest = max(float(hz.max(initial=0.0)), 1e-300)
+    rigid = int(np.count_nonzero(hz < MAPS.rigid * highest))
     return estimate_noise(hz, at_sensors, compared.test.frequencies_hz, shapes, rigid)
 
 
@@ -187,7 +183,7 @@ def _stiffness(
     count = sum(len(g.corners) for g in groups)
     moved = np.asarray(displacement @ free_shapes)
     for group in groups:
-        share = max(1, len(group.corners) * _ELEMENTS // max(count, 1))
+        share = max(1, len(group.corners) * MAPS.elements // max(count, 1))
         rows = _evenly(len(group.corners), share)
         if not len(rows):
             continue

@@ -11,12 +11,9 @@ from scipy.spatial import cKDTree
 from ..arrays import Floats, Numbers, frozen
 from ..correlation.mode_pairing import Correlation
 from ..errors import InputError
+from .localisation_numbers import MAPS
 from .shape_misfit import PairedShapes
 from .shape_noise import Noise
-
-NEAR = 0.1
-"""Modes within this relative distance in frequency mix too readily to say where."""
-_CHUNK = 2_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +69,7 @@ def linearise(
     noise: Noise,
     analysis_hz: Floats,
     analysis_shapes: Floats,
-    frequency_sigma: float = 0.005,
+    frequency_sigma: float = MAPS.frequency,
 ) -> Linearisation:
     """Prepare first-order maps from the misfit of paired modes.
 
@@ -117,7 +114,7 @@ def linearise(
     for j in range(n_pair):
         shape = analysis_shapes @ modes[:, j]
         scale = float(shape @ pairs.analysis[:, j] / max(shape @ shape, 1e-300)) / sigma[j]
-        near = np.abs(lam - eigenvalue[j]) <= 2 * NEAR * eigenvalue[j]
+        near = np.abs(lam - eigenvalue[j]) <= 2 * MAPS.near * eigenvalue[j]
         Q = np.linalg.qr(np.column_stack([C @ modes[:, j], C[:, near]]))[0]
         left = np.where(sound, pairs.test[:, j] - pairs.analysis[:, j], 0.0) / sigma[j]
         residual[j, 1:] = left - Q @ (Q.T @ left)
@@ -184,7 +181,7 @@ def mass_evidence(
     n_patch, n_mode = patches.shape[0], motion.shape[2]
     n_pair, width = lin.residual.shape
     per_place = n_pair * max(n_mode, width)
-    step = max(1, int(_CHUNK / (per_place * max(1.0, patches.nnz / max(n_patch, 1)))))
+    step = max(1, int(MAPS.at_once / (per_place * max(1.0, patches.nnz / max(n_patch, 1)))))
     explained, size = np.zeros(n_patch), np.zeros(n_patch)
     residual, common = lin.residual.ravel(), _common(lin)
     for start in range(0, n_patch, step):

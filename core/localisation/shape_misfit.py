@@ -12,9 +12,8 @@ from ..correlation.mac import realised
 from ..correlation.mode_pairing import Correlation
 from ..errors import InputError
 from ..noun import Noun
+from .localisation_numbers import MAPS
 from .shape_noise import Noise
-
-_SPREAD_NEIGHBOURS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,7 @@ def misfit(
     found: Correlation,
     shapes: PairedShapes,
     noise: Noise,
-    frequency_sigma: float | Floats = 0.005,
+    frequency_sigma: float | Floats = MAPS.frequency,
 ) -> Misfit:
     """Measure where paired shapes and frequencies disagree, in units of the noise.
 
@@ -158,7 +157,7 @@ def spread(values: Floats, sensor_xyz: Floats, grid_xyz: Floats) -> Floats:
     if not len(sensor_xyz):
         raise InputError("no sensor to draw a map from")
     width = _width(sensor_xyz)
-    k = min(_SPREAD_NEIGHBOURS, len(sensor_xyz))
+    k = min(MAPS.neighbours, len(sensor_xyz))
     distance, near = cKDTree(sensor_xyz).query(grid_xyz, k=np.arange(1, k + 1))
     # Relative to the nearest sensor, so that far grids follow it instead of falling to 0 / 0.
     weight = np.exp(-0.5 * (distance**2 - distance[:, :1] ** 2) / width**2)
@@ -173,5 +172,5 @@ def _width(sensor_xyz: Floats) -> float:
     places = np.unique(sensor_xyz, axis=0)
     if len(places) < 2:
         return 1.0
-    neighbours: Ints = np.array([min(4, len(places))])
+    neighbours: Ints = np.array([min(MAPS.width, len(places))])
     return float(np.median(cKDTree(places).query(places, k=neighbours)[0]))

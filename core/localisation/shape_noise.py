@@ -8,13 +8,7 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Ints, frozen
 from ..errors import InputError
-
-OUTLIER = 4.0
-"""A sensor whose residual is this many times the median's is no part of the noise."""
-_FLOOR = 1e-3
-_ROUNDS = 8
-_AT_REST = 1e-6
-"""Frequency below which a mode is at rest, beside the highest of the analysis."""
+from .localisation_numbers import MAPS
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +64,7 @@ def estimate_noise(
     test_hz: Floats,
     test_shapes: Floats,
     rigid_body_modes: int = 0,
-    share: float = 1 / 3,
+    share: float = MAPS.fitted,
 ) -> Noise:
     """Estimate the noise of test shapes by the part that no nearby analysis shapes explain.
 
@@ -99,7 +93,7 @@ def estimate_noise(
         Fewer than six sensors, which leave nothing to judge by.
     """
     n, m = test_shapes.shape
-    if n < 6:
+    if n < MAPS.few_sensors:
         raise InputError(f"the noise cannot be estimated from {n} sensors; state it")
     bases = [
         _basis(analysis_hz, analysis_shapes, hz, rigid_body_modes, max(2, int(share * n)))
@@ -108,20 +102,25 @@ def estimate_noise(
     rms = np.sqrt(np.mean(test_shapes**2, axis=0))
     scaled = test_shapes / np.where(rms > 0, rms, 1.0)
     sound = np.ones(n, bool)
-    for _ in range(_ROUNDS):
+    for _ in range(MAPS.rounds):
         predicted, sigma = _fit(bases, scaled, sound)
         error = scaled - predicted
-        size = np.sqrt(np.mean((error / np.maximum(sigma, _FLOOR)) ** 2, axis=1))
-        limit = OUTLIER * np.median(size[sound])
-        kept = size <= max(limit, OUTLIER / 2)
-        if np.array_equal(kept, sound) or np.count_nonzero(kept) < 0.6 * n:
+        size = np.sqrt(np.mean((error / np.maximum(sigma, MAPS.floor)) ** 2, axis=1))
+        limit = MAPS.outlier * np.median(size[sound])
+        kept = size <= max(limit, MAPS.outlier_least)
+        if np.array_equal(kept, sound) or np.count_nonzero(kept) < MAPS.sound * n:
             break
         sound = kept
     power = np.sum(predicted**2, axis=1)
     gain = np.divide(
-        np.sum(scaled * predicted, axis=1), power, out=np.full(n, np.nan), where=power > 1e-6 * m
+        np.sum(scaled * predicted, axis=1),
+        power,
+        out=np.full(n, np.nan),
+        where=power > MAPS.predicted * m,
     )
-    return Noise(sigma * rms, float(np.quantile(sigma, 0.25)), ~sound, gain, predicted * rms)
+    return Noise(
+        sigma * rms, float(np.quantile(sigma, MAPS.typical)), ~sound, gain, predicted * rms
+    )
 
 
 def _basis(
@@ -130,14 +129,14 @@ def _basis(
     """Orthonormal basis (n_sensor, k) of the rigid-body motions and the nearest shapes."""
     elastic = np.arange(rigid_body_modes, len(analysis_hz))
     highest = float(np.max(analysis_hz, initial=0.0))
-    least = max(1e-3 * hz, _AT_REST * highest, float(np.finfo(float).tiny))
+    least = max(MAPS.lowest * hz, MAPS.at_rest * highest, float(np.finfo(float).tiny))
     away = np.abs(np.log(np.maximum(analysis_hz[elastic], least) / max(hz, least)))
     nearest = elastic[np.argsort(away, kind="stable")]
     chosen: Ints = np.concatenate([np.arange(rigid_body_modes), nearest])
     picked = shapes[:, chosen[:count]]
     length = np.linalg.norm(picked, axis=0)
     U, s, _ = np.linalg.svd(picked[:, length > 0] / length[length > 0], full_matrices=False)
-    return np.asarray(U[:, s > 1e-3 * s[0]]) if len(s) else U
+    return np.asarray(U[:, s > MAPS.dependent * s[0]]) if len(s) else U
 
 
 def _fit(bases: list[Floats], scaled: Floats, sound: Bools) -> tuple[Floats, Floats]:
@@ -150,7 +149,7 @@ def _fit(bases: list[Floats], scaled: Floats, sound: Bools) -> tuple[Floats, Flo
         q = inverse @ scaled[sound, j]
         fitted = B @ q
         leverage = np.zeros(n)
-        leverage[sound] = np.einsum("ij,ji->i", inside, inverse).clip(0.0, 0.95)
+        leverage[sound] = np.einsum("ij,ji->i", inside, inverse).clip(0.0, MAPS.leverage)
         residual = (scaled[:, j] - fitted) / (1.0 - leverage)
         predicted[:, j] = scaled[:, j] - residual
         free = max(np.count_nonzero(sound) - B.shape[1], 1)

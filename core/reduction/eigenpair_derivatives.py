@@ -14,7 +14,8 @@ from ..arrays import Floats, Ints, Numbers
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
 from ..errors import InputError
-from .eigenvector_derivatives import REPEATED, ShapeDerivatives
+from .derivative_numbers import DERIVATIVES
+from .eigenvector_derivatives import ShapeDerivatives
 
 
 class Spectral(Protocol):
@@ -62,7 +63,7 @@ def sensitivities(
     parameters: Sequence[int],
     shapes_at: sp.spmatrix | Floats | None = None,
     *,
-    tolerance: float = 1e-7,
+    tolerance: float = DERIVATIVES.tolerance,
 ) -> Sensitivities:
     """Differentiate modes, or fixed combinations of the modes of a cluster.
 
@@ -185,7 +186,7 @@ def clusters(T: Floats, solution: Spectral) -> Iterator[Ints]:
         rigid-body modes. Groups without any entry are left out.
     """
     lam = solution.eigenvalues
-    near = np.diff(lam) <= REPEATED * np.abs(lam[1:])
+    near = np.diff(lam) <= DERIVATIVES.repeated * np.abs(lam[1:])
     near[: max(solution.rigid_body_modes - 1, 0)] = True
     follow = sp.diags(near.astype(float), 1, shape=(len(lam), len(lam)))
     together = sp.csr_matrix(T != 0.0, dtype=float)

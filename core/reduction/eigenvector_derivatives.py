@@ -14,20 +14,7 @@ from ..eigen.normal_modes import Eigensolution
 from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..numerics.factorisation import Factorisation, factorise
-
-_ITERATIONS = 80
-_OWN_FACTOR = 8
-"""Parameters from which on a factor next to the cluster costs less than it saves."""
-
-_BLOCK = 64
-
-_ROUNDING = 1e-8
-"""Part of a shape derivative, relative to what the right-hand side says of the known modes, below
-which what lies outside them is rounding: K' proportional to K, or M' to M, leaves nothing else."""
-
-REPEATED = 1e-5
-"""Eigenvalues this close, relatively, count as repeated: rounding of the coordinates in a deck
-splits the pairs of an axisymmetric mesh by so much, and no practical step resolves it."""
+from .derivative_numbers import DERIVATIVES
 
 
 def modal_part(
@@ -114,7 +101,8 @@ class ShapeDerivatives:
         lam = self._solution.eigenvalues
         z, b, along = modal_part(self._X, lam, cluster, changes)
         columns = np.repeat(lam[cluster], len(changes))
-        least = _ROUNDING**2 * np.sum(along**2, axis=0) / max(abs(lam[-1]), np.finfo(float).tiny)
+        size = max(abs(lam[-1]), np.finfo(float).tiny)
+        least = DERIVATIVES.rounding**2 * np.sum(along**2, axis=0) / size
         z += self._outside(cluster, b - self._MX @ along, columns, least)
         return z.reshape(len(z), len(cluster), len(changes))
 
@@ -124,13 +112,13 @@ class ShapeDerivatives:
             return np.zeros_like(r)
         factor, s = self._factor(cluster, r.shape[1])
         z = np.zeros_like(r)
-        for first in range(0, r.shape[1], _BLOCK):
-            part = slice(first, first + _BLOCK)
+        for first in range(0, r.shape[1], DERIVATIVES.block):
+            part = slice(first, first + DERIVATIVES.block)
             some = r[:, part], lam[part] - s, least[part]
             z[:, part] = self._conjugate_gradients(factor, *some, cluster)
         distance = np.einsum("ij,ij->j", z, r)
         size = np.einsum("ij,ij->j", z, self._pencil.M @ z)
-        if (distance < REPEATED * np.abs(lam) * size).any():
+        if (distance < DERIVATIVES.repeated * np.abs(lam) * size).any():
             raise _too_close(cluster)
         return z
 
@@ -144,7 +132,7 @@ class ShapeDerivatives:
         M, X, MX = self._pencil.M, self._X, self._MX
         z, d, Ad = (np.zeros_like(r) for _ in range(3))
         rho, goal = np.ones(r.shape[1]), np.zeros(r.shape[1])
-        for k in range(_ITERATIONS):
+        for k in range(DERIVATIVES.iterations):
             s = factor.solve(r)
             s -= X @ (MX.T @ s)
             new = np.maximum(np.einsum("ij,ij->j", r, s), 0.0)
@@ -170,7 +158,7 @@ class ShapeDerivatives:
     def _factor(self, cluster: Ints, columns: int) -> tuple[Factorisation, float]:
         """Return a factor of K - s M and s: next to the cluster where many solves follow."""
         solution = self._solution
-        if columns < _OWN_FACTOR * len(cluster):
+        if columns < DERIVATIVES.own_factor * len(cluster):
             if self._base is None:
                 self._base = factorise(self._pencil.shifted(solution.sigma), True)
             return self._base, solution.sigma
@@ -178,7 +166,7 @@ class ShapeDerivatives:
         low, high = int(cluster.min()), int(cluster.max())
         below = lam[low] - (lam[low - 1] if low else 2.0 * solution.sigma)
         above = lam[high + 1] - lam[high] if high + 1 < len(lam) else 0.0
-        reach = 0.01 * (lam[high] - solution.sigma)
+        reach = DERIVATIVES.beside * (lam[high] - solution.sigma)
         up = above > below
         s = lam[high if up else low] + (1 if up else -1) * min(max(above, below) / 2.0, reach)
         if self._near is None:

@@ -16,6 +16,7 @@ from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..noun import Noun
 from ..numerics.factorisation import Factorisation, factorise
+from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, coefficients, differentiate
 from .eigenvector_derivatives import modal_part
 from .reduced_sum import ReducedSum, reduced_sum
@@ -169,7 +170,7 @@ class ReducedModel(Noun):
     def _finite(self, modes: ReducedModes) -> ReducedModes:
         """Leave out the vectors of the basis without mass."""
         span = modes.eigenvalues - self.solution.sigma
-        return modes.take(int(np.count_nonzero(span < 1e13 * span[0])))
+        return modes.take(int(np.count_nonzero(span < DERIVATIVES.mass * span[0])))
 
 
 def build_reduced(
@@ -179,9 +180,9 @@ def build_reduced(
     parameters: Sequence[int],
     *,
     solution: Eigensolution | None = None,
-    more_modes: int = 12,
-    max_static: int = 250,
-    least_energy: float = 1e-4,
+    more_modes: int = DERIVATIVES.more_modes,
+    max_static: int = DERIVATIVES.most_static,
+    least_energy: float = DERIVATIVES.least_energy,
 ) -> ReducedModel:
     """Project a model onto its modes and their static answers to the parameters.
 
@@ -236,12 +237,6 @@ def build_reduced(
     return ReducedModel(model, Q, K, M, solution)
 
 
-_DEPENDENT = 1e-10
-"""Energy beside the largest below which a direction is dependent on the others."""
-
-_BLOCK = 64
-
-
 def static_answers(
     model: Model,
     p0: Floats,
@@ -278,7 +273,7 @@ def static_answers(
     X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
     weight = 1.0 / np.sqrt(span[chosen])
     n, m = X.shape
-    group = max(1, _BLOCK // max(m, 1))
+    group = max(1, DERIVATIVES.block // max(m, 1))
     groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
     ends = np.cumsum([0] + [m * len(g) for g in groups])
 
@@ -298,6 +293,6 @@ def static_answers(
     energy -= modal.T @ (span[:, None] * modal)
     value, W = np.linalg.eigh((energy + energy.T) / 2.0)
     best = np.argsort(-value)[:most]
-    best = best[value[best] > max(least, _DEPENDENT * value.max(initial=0.0))]
+    best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
     return np.asarray(S @ W - solution.vectors @ (modal @ W))

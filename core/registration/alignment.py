@@ -18,15 +18,8 @@ from ..sensors.sensor_map import default_tolerance
 from .pose_score import scorer_of
 from .pose_selection import choose
 from .poses import Poses
+from .registration_numbers import ALIGN
 from .surface_registration import cloud_of, polish, rms_of, search
-
-ON_MODEL = 0.9
-"""Share of the test nodes that must lie on the model for the frames to agree as they are."""
-FEWEST = 0.5
-"""Share of the test nodes that must lie on the model in the best position found."""
-POOR, GOOD, AHEAD = 0.5, 0.7, 0.25
-"""A frame that fits is still doubted when it correlates below POOR while another position
-correlates above GOOD and by AHEAD better."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,8 +121,8 @@ def align(
     here = Poses(np.eye(3)[None], np.zeros((1, 3)), np.zeros(1))
     here = replace(here, rms=rms_of(surface, points, here))
     score = None if scorer is None else float(scorer.score(here)[0])
-    lies = _share_on(surface, points, here, tolerance) >= ON_MODEL
-    if lies and (score is None or score >= POOR):
+    lies = _share_on(surface, points, here, tolerance) >= ALIGN.on_model
+    if lies and (score is None or score >= ALIGN.poor):
         return _as_it_is(surface, points, here, score, scale)
     cloud = cloud_of(surface)
     poses = search(cloud, points, seed)
@@ -137,7 +130,8 @@ def align(
         _require_on_model(surface, points, poses.take(np.array([0])), tolerance)
     choice = choose(cloud, points, scorer, poses)
     best = choice.candidates[0]
-    if lies and (score is None or best.score is None or best.score < max(GOOD, score + AHEAD)):
+    better = ALIGN.good if score is None else max(ALIGN.good, score + ALIGN.ahead)
+    if lies and (score is None or best.score is None or best.score < better):
         return _as_it_is(surface, points, here, score, scale)
     warnings = choice.warnings
     if lies:
@@ -147,7 +141,7 @@ def align(
             "check the coordinate frame of the test",
         )
     share = _share_on(surface, points, best.pose, tolerance)
-    if share < ON_MODEL:
+    if share < ALIGN.on_model:
         warnings += (
             f"only {share:.0%} of the test nodes lie on the model in the best position (rms "
             f"{best.rms:.3g}); check that both are the same structure and not mirrored",
@@ -192,7 +186,8 @@ def _as_it_is(
     warnings: tuple[str, ...] = ()
     rms = float(here.rms[0])
     closer = polish(surface, points, here.rotation, here.translation)
-    if rms > max(3.0 * closer.rms[0], 0.005 * surface.size):
+    least = ALIGN.closer_least * surface.size
+    if rms > max(ALIGN.closer * closer.rms[0], least):
         moved = np.linalg.norm(closer.apply(points) - points, axis=2).max()
         warnings = (
             f"the test lies on the model within {rms:.3g}, but a move by at most {moved:.3g} would "
@@ -208,7 +203,7 @@ def _require_on_model(
     surface: Surface, points: Floats, best: Poses, tolerance: float | None
 ) -> None:
     share = _share_on(surface, points, best, tolerance)
-    if share < FEWEST:
+    if share < ALIGN.fewest:
         raise InputError(
             f"the test does not fit on the model in any position: in the best only {share:.0%} of "
             f"its {len(points)} nodes lie on it (rms distance {best.rms[0]:.3g}; the model spans "

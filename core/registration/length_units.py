@@ -12,13 +12,7 @@ from ..data.length_units import METRES, length_factor
 from ..errors import InputError
 from ..sensors.closest_point import place
 from ..sensors.outer_surface import Surface, surface_of
-
-USUAL = (0.5, 1.25)
-"""Size of a test over size of its model that needs no further reason."""
-POSSIBLE = (0.1, 1.4)
-"""A smaller test is suspect, a larger one impossible."""
-_NEAR, _OWN = 0.01, 0.1
-"""How near to the model a point on it is, beside the size of the model and that of the test."""
+from .registration_numbers import ALIGN
 
 
 @dataclass(frozen=True)
@@ -95,8 +89,8 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     factor = length_factor(measured, deck)
     units = Units(deck, measured, factor)
     ratio = factor * test.size / surface.size if surface.size > 0 else 1.0
-    low, high = POSSIBLE
-    if test.size == 0 or USUAL[0] <= ratio <= high:
+    low, high = ALIGN.possible
+    if test.size == 0 or ALIGN.usual[0] <= ratio <= high:
         return units
     others = {unit: length_factor(measured, unit) for unit in METRES if unit != deck}
     better = _plausible(surface, test, others)
@@ -106,7 +100,9 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     by = METRES[deck] / METRES[better] if better else 1 / ratio
     times = f"{_round(by)} times smaller" if by > 1 else f"{_round(1 / by)} times larger"
     said = f"the test is about {times} than the model ({_sizes(surface, test, deck, measured)})"
-    if (low <= ratio <= high and not sure) or (better is None and low / 10 <= ratio < low):
+    if (low <= ratio <= high and not sure) or (
+        better is None and low / ALIGN.far_too_small <= ratio < low
+    ):
         return replace(units, warnings=(f"{said}; check the length units of both",))
     advice = (
         f"if the deck is in {better}, say so with --deck-length-unit {better}; else the test's "
@@ -119,7 +115,7 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
 
 def _alike(surface: Surface, test: Geometry) -> Units:
     ratio = test.size / surface.size if surface.size > 0 else 1.0
-    if not POSSIBLE[0] <= ratio <= POSSIBLE[1]:
+    if not ALIGN.possible[0] <= ratio <= ALIGN.possible[1]:
         raise InputError(
             "neither the deck nor the test states its length unit and their sizes differ "
             f"({_sizes(surface, test, None, None)}); state the deck's with --deck-length-unit"
@@ -133,8 +129,8 @@ def _plausible(surface: Surface, test: Geometry, choices: dict[str, float]) -> s
     if test.size == 0 or surface.size == 0:
         return None
     ratio = {unit: factor * test.size / surface.size for unit, factor in choices.items()}
-    usual = [unit for unit, r in ratio.items() if USUAL[0] <= r <= USUAL[1]]
-    inside = [u for u, r in ratio.items() if POSSIBLE[0] <= r <= POSSIBLE[1]]
+    usual = [unit for unit, r in ratio.items() if ALIGN.usual[0] <= r <= ALIGN.usual[1]]
+    inside = [u for u, r in ratio.items() if ALIGN.possible[0] <= r <= ALIGN.possible[1]]
     lying = [u for u in inside if _lies_on(surface, choices[u] * test.xyz)]
     for units in ([u for u in usual if u in lying], lying, usual):
         if len(units) == 1:
@@ -149,9 +145,9 @@ def _lies_on(surface: Surface, points: Floats) -> bool:
     near whatever one of them is near.
     """
     own = float(np.linalg.norm(np.ptp(points, axis=0)))
-    near = min(_NEAR * surface.size, _OWN * own)
+    near = min(ALIGN.unit_near * surface.size, ALIGN.unit_own * own)
     at = place(surface, points, reach=2.0 * near)
-    return bool(np.mean(at.distance <= near) >= 0.9)
+    return bool(np.mean(at.distance <= near) >= ALIGN.on_model)
 
 
 def _sizes(surface: Surface, test: Geometry, deck: str | None, measured: str | None) -> str:
@@ -162,4 +158,4 @@ def _sizes(surface: Surface, test: Geometry, deck: str | None, measured: str | N
 
 
 def _round(ratio: float) -> str:
-    return f"{ratio:.3g}" if ratio < 999.5 else f"{round(ratio, -1):.0f}"
+    return f"{ratio:.3g}" if ratio < ALIGN.rounded else f"{round(ratio, -1):.0f}"

@@ -9,14 +9,8 @@ import numpy as np
 from ..arrays import Bools, Floats
 from ..sensors.outer_surface import Surface
 from .poses import Poses, centre_and_radius, displaced, jacobian, motion_between
+from .registration_numbers import ALIGN
 from .surface_registration import Cloud, polish, rms_of
-
-STEP = 0.02
-"""Share of the model's size by which a test must be able to move to count as free."""
-_TURN_STEP = np.radians(2.0)
-_SLIDE_STEP = 0.01
-_FAR = (0.2, 0.5)
-_MOST_SAMPLES = 1500
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +52,9 @@ def family_of(surface: Surface, points: Floats, pose: Poses, limit: float) -> Fa
     `limit` is the largest rms distance that still fits.
     """
     centre, radius = centre_and_radius(pose.apply(points))
-    free = freedoms(surface, points, pose, STEP * surface.size, limit)
-    free = _straightened(surface, points, pose, free, STEP, limit, must=True)
-    for reach in _FAR:
+    free = freedoms(surface, points, pose, ALIGN.free * surface.size, limit)
+    free = _straightened(surface, points, pose, free, ALIGN.free, limit, must=True)
+    for reach in ALIGN.followed:
         free = np.concatenate(_parted(free))
         free = _straightened(surface, points, pose, free, reach, limit, must=False)
     turns, slides = _parted(free)
@@ -88,12 +82,13 @@ def _straightened(
     centre, radius = centre_and_radius(pose.apply(points))
     length = reach * surface.size
     trial = displaced(pose, centre, radius, length * np.concatenate([motions, -motions]))
-    rested = polish(surface, points, trial.rotation, trial.translation, rounds=8)
+    rested = polish(surface, points, trial.rotation, trial.translation, rounds=ALIGN.settling)
     found = motion_between(pose, rested, centre, radius) / length
     found[len(motions) :] *= -1
     size = np.linalg.norm(found, axis=1)
     likeness = np.einsum("ki,ki->k", found, np.tile(motions, (2, 1)))
-    fits = (rested.rms <= limit) & (size > 0.3) & (likeness > 0.5 * size)
+    fits = (rested.rms <= limit) & (size > ALIGN.led_least)
+    fits &= likeness > ALIGN.led_along * size
     both = (found * fits[:, None]).reshape(2, *motions.shape).sum(axis=0)
     led = fits.reshape(2, -1).sum(axis=0)
     led_to = np.where(led[:, None] > 0, both / np.maximum(led, 1)[:, None], motions)
@@ -105,7 +100,7 @@ def _parted(free: Floats) -> tuple[Floats, Floats]:
     if not len(free):
         return free, free
     U, strength, _ = np.linalg.svd(free[:, :3], full_matrices=True)
-    turning = np.concatenate([strength, np.zeros(len(free))])[: len(free)] > 0.2
+    turning = np.concatenate([strength, np.zeros(len(free))])[: len(free)] > ALIGN.turning
     combined = U.T @ free
     turns, slides = combined[turning], combined[~turning].copy()
     slides[:, :3] = 0.0
@@ -129,8 +124,8 @@ def freedoms(surface: Surface, points: Floats, pose: Poses, step: float, limit: 
     size = np.einsum("nxi,nxj->ij", J, J) / len(points)
     # A motion that does not move the points (a turn about the line they lie on) is free.
     value, vector = np.linalg.eigh(size)
-    still, basis = vector[:, value < 1e-9].T, vector[:, value >= 1e-9]
-    basis = basis / np.sqrt(value[value >= 1e-9])
+    moving = value >= ALIGN.still
+    still, basis = vector[:, ~moving].T, vector[:, moving] / np.sqrt(value[moving])
     n = basis.shape[1]
     i, j = np.triu_indices(n)
     unit = np.eye(n)
@@ -161,7 +156,7 @@ def members(family: Family, points: Floats, poses: Poses, surface: Surface) -> B
         along = np.linalg.lstsq(free.T, flat.T, rcond=None)[0]
         flat = flat - (free.T @ along).T
     rms = np.sqrt((flat**2).sum(axis=1) / len(points))
-    return np.asarray(rms < STEP * surface.size)
+    return np.asarray(rms < ALIGN.free * surface.size)
 
 
 def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses:
@@ -174,23 +169,29 @@ def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses
         return family.pose
     ways = [_feasible(cloud, points, family, k, limit) for k in range(d)]
     count = np.prod([len(way) for way in ways], dtype=float)
-    if count <= _MOST_SAMPLES:
+    if count <= ALIGN.most_samples:
         coordinates = np.stack(np.meshgrid(*ways, indexing="ij"), axis=-1).reshape(-1, d)
     else:
-        where = (_even(_MOST_SAMPLES, d) * [len(way) for way in ways]).astype(np.int64)
+        where = (_even(ALIGN.most_samples, d) * [len(way) for way in ways]).astype(np.int64)
         coordinates = np.stack([way[i] for way, i in zip(ways, where.T, strict=True)], axis=1)
     poses = family.at(coordinates)
-    near = cloud.rms(poses.rotation, poses.translation, points) < 1.5 * limit + cloud.spacing
+    far = ALIGN.off * limit + cloud.spacing
+    near = cloud.rms(poses.rotation, poses.translation, points) < far
     poses = poses.take(np.flatnonzero(near))
     if d == 1:
-        poses = polish(cloud.surface, points, poses.rotation, poses.translation, rounds=3)
+        poses = polish(
+            cloud.surface, points, poses.rotation, poses.translation, rounds=ALIGN.settled
+        )
     poses = replace(poses, rms=rms_of(cloud.surface, points, poses))
     return family.pose.followed_by(poses.take(np.flatnonzero(poses.rms <= limit)))
 
 
 def step_of(family: Family, surface: Surface) -> Floats:
     """Coordinate distance of neighbouring samples along each motion, (d,)."""
-    turn, slide = _TURN_STEP * family.radius[0], _SLIDE_STEP * surface.size
+    turn, slide = (
+        np.radians(ALIGN.turn_step) * family.radius[0],
+        ALIGN.slide_step * surface.size,
+    )
     return np.where(family.turning, turn, slide)
 
 
@@ -202,7 +203,7 @@ def _feasible(cloud: Cloud, points: Floats, family: Family, k: int, limit: float
     half = int(reach / step)
     steps = step * np.arange(-half, half + 1 - family.turning[k])
     poses = family.at(steps[:, None] * np.eye(len(family.motions))[k])
-    fits = rms_of(surface, points, poses) <= 2 * limit
+    fits = rms_of(surface, points, poses) <= ALIGN.feasible * limit
     fits[half] = True
     fits[1:] |= fits[:-1].copy()
     fits[:-1] |= fits[1:].copy()

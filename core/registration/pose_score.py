@@ -13,12 +13,7 @@ from ..data.modes import Modes
 from ..sensors.closest_point import place
 from ..sensors.sensor_map import Grids, grids_of
 from .poses import Poses
-
-BAND = 0.3
-"""Analysis modes within this relative distance in frequency may explain a test mode."""
-_MOST_MODES = 6
-_MOST_SENSORS = 240
-_CHUNK = 20_000
+from .registration_numbers import ALIGN
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +57,7 @@ class Scorer:
         not), less what as many random vectors would explain: 1 is perfect, about 0 is chance.
         """
         n = len(self.axis)
-        per = max(1, _CHUNK // n)
+        per = max(1, ALIGN.at_once // n)
         parts = [
             self._score(poses.take(np.arange(i, min(i + per, len(poses)))))
             for i in range(0, len(poses), per)
@@ -84,7 +79,7 @@ class Scorer:
         total = np.zeros(k)
         for j, (columns, size) in enumerate(zip(self.band, self.size, strict=True)):
             chosen = columns[:size]
-            G = gram[:, chosen[:, None], chosen] + 1e-6 * np.eye(size)
+            G = gram[:, chosen[:, None], chosen] + ALIGN.ridge * np.eye(size)
             b = onto[:, chosen, j][..., None]
             explained = np.real(np.conj(np.swapaxes(b, 1, 2)) @ np.linalg.solve(G, b))[:, 0, 0]
             total += 1.0 - (1.0 - np.minimum(explained, 1.0)) * n / max(n - size, 1)
@@ -110,9 +105,8 @@ def scorer_of(
     test = test_modes.shapes[rows]
     length = np.linalg.norm(test, axis=0)
     seen = length > 0
-    band, size = _bands(
-        np.real(modes.frequencies_hz), test_modes.frequencies_hz[seen], len(rows) // 6
-    )
+    hz, most = np.real(modes.frequencies_hz), len(rows) // ALIGN.sensors_a_mode
+    band, size = _bands(hz, test_modes.frequencies_hz[seen], most)
     return Scorer(
         grids_of(geometry, modes.dofs, modes.shapes),
         np.ascontiguousarray(np.real(modes.shapes)),
@@ -126,9 +120,9 @@ def scorer_of(
 
 
 def _few_sensors(sensors: Dofs) -> Ints:
-    """Rows of at most `_MOST_SENSORS` sensors, evenly through the list."""
+    """Rows of at most `most_sensors` sensors, evenly through the list."""
     n = len(sensors)
-    return np.unique(np.linspace(0, n - 1, min(n, _MOST_SENSORS)).round().astype(np.int64))
+    return np.unique(np.linspace(0, n - 1, min(n, ALIGN.most_sensors)).round().astype(np.int64))
 
 
 def _bands(analysis_hz: Floats, test_hz: Floats, most: int) -> tuple[Ints, Ints]:
@@ -136,10 +130,10 @@ def _bands(analysis_hz: Floats, test_hz: Floats, most: int) -> tuple[Ints, Ints]
 
     At least two where there are as many, so that a pair is not torn, and at most `most` and six.
     """
-    most = int(np.clip(most, 1, min(_MOST_MODES, len(analysis_hz))))
-    floor = 1e-3 * float(test_hz.max(initial=np.finfo(float).tiny))
+    most = int(np.clip(most, 1, min(ALIGN.most_modes, len(analysis_hz))))
+    floor = ALIGN.lowest * float(test_hz.max(initial=np.finfo(float).tiny))
     ratio = np.maximum(analysis_hz, floor)[None] / np.maximum(test_hz, floor)[:, None]
     away = np.abs(np.log(ratio))
     nearest = np.argsort(away, axis=1, kind="stable")[:, :most]
-    near = np.take_along_axis(away, nearest, axis=1) <= np.log(1 + BAND)
-    return nearest, np.maximum(near.sum(axis=1), min(2, most))
+    near = np.take_along_axis(away, nearest, axis=1) <= np.log(1 + ALIGN.band)
+    return nearest, np.maximum(near.sum(axis=1), min(ALIGN.fewest_modes, most))

@@ -9,24 +9,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..arrays import Floats
-from .pose_families import STEP, Family, family_of, members, sampled, step_of
+from .pose_families import Family, family_of, members, sampled, step_of
 from .pose_score import Scorer
 from .poses import Poses, motion_between
+from .registration_numbers import ALIGN
 from .surface_registration import Cloud, farthest_points, polish, rms_of
-
-_POINTS = 48
-_FAMILIES = 12
-_HALVINGS = 8
-_NAMED = 4
-_OPEN_TURN = np.radians(15.0)
-_OPEN_SLIDE = 0.05
-_SAME_ANGLE = np.radians(5.0)
-_PEAKS = 5
-_COARSE = 0.1
-_CALM_RMS = 1.25
-_FLAT = 0.5
-_EXACT = 1e-9
-"""Distance beside the size of the model that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +64,7 @@ def margin_of(score: float) -> float:
 
     A model that explains little of the test tells positions apart no better than that.
     """
-    return max(0.01, 0.1 * (1.0 - score))
+    return max(ALIGN.told_apart, ALIGN.told_share * (1.0 - score))
 
 
 def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, poses: Poses) -> Choices:
@@ -89,12 +76,13 @@ def choose(cloud: Cloud, points: Floats, scorer: Scorer | None, poses: Poses) ->
     without a score, geometry and the smaller rotation decide.
     """
     surface = cloud.surface
-    limit = max(1.5 * poses.rms[0], poses.rms[0] + 0.002 * surface.size)
+    share, beside = ALIGN.alike
+    limit = max(share * poses.rms[0], poses.rms[0] + beside * surface.size)
     poses = poses.take(np.flatnonzero(poses.rms <= limit))
-    few = points[farthest_points(points, _POINTS)]
-    judge = _Judge(cloud, points, scorer, max(poses.rms[0], _EXACT * surface.size), limit)
+    few = points[farthest_points(points, ALIGN.points)]
+    judge = _Judge(cloud, points, scorer, max(poses.rms[0], ALIGN.exact * surface.size), limit)
     found: list[_Peak] = []
-    for _ in range(_FAMILIES):
+    for _ in range(ALIGN.families):
         family = family_of(surface, few, poses.take(np.array([0])), limit)
         found += _explore(judge, family, sampled(cloud, few, family, limit))
         poses = poses.take(np.flatnonzero(~members(family, few, poses, surface)))
@@ -115,24 +103,28 @@ class _Judge:
 
     def worth(self, poses: Poses) -> Floats:
         """Score less a small share for distance, (k,)."""
-        spoiled = 0.02 * np.maximum(self._rms(poses) ** 2 - self.floor**2, 0.0) / self.limit**2
+        over = np.maximum(self._rms(poses) ** 2 - self.floor**2, 0.0)
+        spoiled = ALIGN.distance * over / self.limit**2
         return -spoiled if self.scorer is None else self.scorer.score(poses) - spoiled
 
     def calm(self, poses: Poses, least: float) -> Floats:
         """Minus the angle of rotation, far less where the worth or the fit falls short, (k,)."""
         short = np.maximum(least - self.worth(poses), 0.0)
-        spoiled = np.maximum(self._rms(poses) / (_CALM_RMS * self.floor) - 1.0, 0.0)
-        return np.asarray(-_angles(poses) - 100.0 * short - 10.0 * spoiled)
+        spoiled = np.maximum(self._rms(poses) / (ALIGN.calm * self.floor) - 1.0, 0.0)
+        lost = ALIGN.calm_short * short + ALIGN.calm_off * spoiled
+        return np.asarray(-_angles(poses) - lost)
 
     def margin(self, worth: float) -> float:
         """Difference of worth that does not count."""
         if self.scorer is not None:
             return margin_of(worth)
-        return 0.02 * (_CALM_RMS**2 - 1.0) * self.floor**2 / self.limit**2
+        over = (ALIGN.calm**2 - 1.0) * self.floor**2
+        return ALIGN.distance * over / self.limit**2
 
     def rested(self, pose: Poses) -> Choice:
         """Lay one pose on the surface and score it."""
-        pose = polish(self.cloud.surface, self.points, pose.rotation, pose.translation, rounds=8)
+        start, rounds = (pose.rotation, pose.translation), ALIGN.settling
+        pose = polish(self.cloud.surface, self.points, *start, rounds)
         score = None if self.scorer is None else float(self.scorer.score(pose)[0])
         return Choice(pose, score)
 
@@ -148,18 +140,22 @@ def _explore(judge: _Judge, family: Family, samples: Poses) -> list[_Peak]:
     step = step_of(family, judge.cloud.surface)
     found: list[_Peak] = []
     left = np.ones(len(samples), bool)
-    for _ in range(_PEAKS):
+    for _ in range(ALIGN.peaks):
         top = int(np.argmax(np.where(left, values, -np.inf)))
-        if not left[top] or (found and values[top] < values.max() - _COARSE):
+        if not left[top] or (found and values[top] < values.max() - ALIGN.coarse):
             break
         best, value = _climb(family, where[top], values[top], step, judge.worth)
         apart = _offsets(family, where - best)
         alike = values >= value - judge.margin(value) if judge.scorer else left
-        far = np.where(family.turning, _OPEN_TURN * family.radius[0], _OPEN_SLIDE * size)
-        gap = step * np.where(family.turning, 5.0, 2.0)  # turned samples settle on facets
+        far = np.where(
+            family.turning,
+            np.radians(ALIGN.open_turn) * family.radius[0],
+            ALIGN.open_slide * size,
+        )
+        gap = step * np.where(family.turning, ALIGN.gap_turn, ALIGN.gap_slide)
         reach, blur = _reach(apart, gap), _reach(apart[alike], gap)
         loose = tuple(np.flatnonzero(reach > far))
-        flat = tuple(k for k in loose if blur[k] > max(far[k], _FLAT * reach[k]))
+        flat = tuple(k for k in loose if blur[k] > max(far[k], ALIGN.flat * reach[k]))
         if flat and not found:
             best = _calmest(judge, family, where[alike], value, step)
         found.append(_Peak(family, judge.rested(family.at(best[None])), loose, flat, blur))
@@ -197,7 +193,7 @@ def _climb(
     best, d = start, len(start)
     pattern = np.concatenate([np.eye(d), -np.eye(d)])
     halvings = 0
-    while d and halvings < _HALVINGS:
+    while d and halvings < ALIGN.halvings:
         trial = best + pattern * step * 0.5**halvings
         values = worth(family.at(trial))
         k = int(np.argmax(values))
@@ -229,11 +225,16 @@ def _ranked(found: list[_Peak], points: Floats, size: float, scored: bool) -> Ch
     order = sorted(found, key=lambda e: (-(e.best.score or 0.0), e.best.rms))
     kept: list[_Peak] = []
     for e in order:
-        if all(_apart(e.best, other.best, points) > STEP * size for other in kept):
+        if all(_apart(e.best, other.best, points) > ALIGN.free * size for other in kept):
             kept.append(e)
     top = kept[0].best.score or 0.0
     alike = [e for e in kept if not scored or (e.best.score or 0.0) >= top - margin_of(top)]
-    alike.sort(key=lambda e: (round(e.best.angle / _SAME_ANGLE), -(e.best.score or 0.0)))
+    alike.sort(
+        key=lambda e: (
+            round(e.best.angle / np.radians(ALIGN.same_angle)),
+            -(e.best.score or 0.0),
+        )
+    )
     ranked = alike + [e for e in kept if e not in alike]
     ambiguity = _in_words(ranked, len(alike), scored)
     decided = len(alike) == 1 and not ranked[0].flat
@@ -257,7 +258,7 @@ def _in_words(ranked: list[_Peak], n_alike: int, scored: bool) -> str:
     if not scored:
         return f"{text}; without shapes to compare, the smallest rotation was taken"
     scores = [f"{e.best.score:.3f} (turned {np.degrees(e.best.angle):.0f} degrees)" for e in ranked]
-    listed = ", ".join(scores[:_NAMED]) + (", ..." if len(scores) > _NAMED else "")
+    listed = ", ".join(scores[: ALIGN.named]) + (", ..." if len(scores) > ALIGN.named else "")
     undecided = [_named(chosen.family, k) for k in chosen.flat]
     if n_alike > 1:
         undecided.append(f"{n_alike} of the positions")

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..arrays import Floats, Ints, skew
+from .registration_numbers import ALIGN
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +20,7 @@ class Poses:
     rotation : (k, 3, 3) float
     translation : (k, 3) float
     rms : (k,) float
-        Root mean square distance of the points from the surface, each at most `rigid_fit.CAP` of
+        Root mean square distance of the points from the surface, each at most `cap` of
         its size.
     """
 
@@ -101,7 +102,7 @@ def motion_between(pose: Poses, others: Poses, centre: Floats, radius: Floats) -
 def _screw(turn: Floats) -> Floats:
     """Left Jacobian of the rotation group at rotation vectors (k, 3): (k, 3, 3)."""
     angle = np.linalg.norm(turn, axis=1)
-    small = angle < 1e-4
+    small = angle < ALIGN.small_turn
     a = np.where(small, 1.0, angle)
     first = np.where(small, 0.5, (1 - np.cos(a)) / a**2)
     second = np.where(small, 1 / 6, (a - np.sin(a)) / a**3)

@@ -12,11 +12,7 @@ from ..arrays import Floats, Ints
 from ..sensors.closest_point import place
 from ..sensors.outer_surface import LINE, TRIA, Surface, shape_functions
 from .poses import Poses, centre_and_radius, jacobian, move
-
-CAP = 0.03
-"""A point farther than this share of the model's size counts as this far: it is off the model."""
-_CLOUD = 20_000
-_COARSE_POINTS = 48
+from .registration_numbers import ALIGN
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,28 +35,28 @@ class Cloud:
 
 def cloud_of(surface: Surface) -> Cloud:
     """Sample a surface for a coarse search."""
-    points, facets = surface.samples(_CLOUD)
+    points, facets = surface.samples(ALIGN.cloud)
     kind = surface.kind[facets]
     half = np.full(len(kind), 0.5)
     direction = surface.directions(facets, *shape_functions(kind, half, half)[1:])
     tree = cKDTree(points)
-    spacing = float(np.median(tree.query(points[::50], k=2)[0][:, 1]))
+    spacing = float(np.median(tree.query(points[:: ALIGN.every], k=2)[0][:, 1]))
     return Cloud(surface, points, direction, kind, tree, spacing)
 
 
 def capped_rms(distance: Floats, surface: Surface) -> Floats:
-    """Root mean square of distances (k, n) held to `CAP` of the surface's size, (k,)."""
-    return np.asarray(np.sqrt(np.mean(np.minimum(distance, CAP * surface.size) ** 2, axis=1)))
+    """Root mean square of distances (k, n) held to `cap` of the surface's size, (k,)."""
+    return np.asarray(np.sqrt(np.mean(np.minimum(distance, ALIGN.cap * surface.size) ** 2, axis=1)))
 
 
 def rms_of(surface: Surface, points: Floats, poses: Poses) -> Floats:
     """Return the capped rms distance of points (n, 3) moved by each pose, (k,)."""
     x = poses.apply(points)
-    at = place(surface, x.reshape(-1, 3), reach=2 * CAP * surface.size)
+    at = place(surface, x.reshape(-1, 3), reach=2 * ALIGN.cap * surface.size)
     return capped_rms(at.distance.reshape(x.shape[:2]), surface)
 
 
-def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = 40) -> Poses:
+def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = ALIGN.keep) -> Poses:
     """Find the poses that lay points on a surface, best first.
 
     Starts: the principal axes of points and surface in their 24 right-handed orders, and
@@ -77,13 +73,14 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = 40) -> Poses
     keep : int
         How many poses to polish.
     """
-    few = points[farthest_points(points, _COARSE_POINTS)]
+    few = points[farthest_points(points, ALIGN.points)]
     R, t = _starts(cloud, points, np.random.default_rng(seed))
-    for count, softness in ((len(R), 1.0), (len(R) // 3, 0.3), (len(R) // 9, 0.1), (keep, 0.03)):
+    rounds = [(len(R) // part, softness) for part, softness in ALIGN.coarser]
+    for count, softness in (*rounds, (keep, ALIGN.softest)):
         if count < len(R):
             best = np.argsort(cloud.rms(R, t, few), kind="stable")[: max(count, keep)]
             R, t = R[best], t[best]
-        for _ in range(4):
+        for _ in range(ALIGN.coarse_steps):
             R, t = _coarse_step(cloud, R, t, few, softness)
     poses = polish(cloud.surface, points, R, t)
     return poses.take(np.argsort(poses.rms, kind="stable"))
@@ -92,7 +89,8 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = 40) -> Poses
 def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
     cube = Rotation.create_group("O").as_matrix()
     base = principal_axes(cloud.points) @ cube @ principal_axes(points).T
-    random = Rotation.random(300, random_state=np.random.RandomState(rng.integers(2**31)))
+    state = np.random.RandomState(rng.integers(2**31))
+    random = Rotation.random(ALIGN.starts, random_state=state)
     R = np.concatenate([base, random.as_matrix()])
     box, middle = cloud.surface.extent.mean(axis=0), (points.min(axis=0) + points.max(axis=0)) / 2
     where = cloud.points[rng.integers(len(cloud.points), size=len(R))]
@@ -149,7 +147,7 @@ def normal_space(r: Floats, direction: Floats, kind: Ints, slack: float) -> Floa
     normal = np.einsum("...x,...x->...", r, direction)[..., None] * direction
     across = r - normal
     beyond = np.linalg.norm(across, axis=-1)
-    beyond_face = beyond > np.maximum(slack, 0.3 * np.linalg.norm(r, axis=-1))
+    beyond_face = beyond > np.maximum(slack, ALIGN.beyond * np.linalg.norm(r, axis=-1))
     border = np.cross(direction, across)
     border = border / np.where(beyond > 0, beyond, 1.0)[..., None]
     past_end = np.abs(np.einsum("...x,...x->...", r, direction)) > slack
@@ -160,8 +158,9 @@ def normal_space(r: Floats, direction: Floats, kind: Ints, slack: float) -> Floa
 
 
 def robust_weights(distance: Floats, floor: float) -> Floats:
-    """Geman-McClure weights of distances (k, n), scaled by three times each row's median."""
-    scale = np.maximum(3.0 * np.median(distance, axis=1, keepdims=True), floor)
+    """Geman-McClure weights of distances (k, n), scaled by some times each row's median."""
+    median = np.median(distance, axis=1, keepdims=True)
+    scale = np.maximum(ALIGN.outlier * median, floor)
     return np.asarray((1.0 / (1.0 + (distance / scale) ** 2)) ** 2)
 
 
@@ -172,24 +171,27 @@ def _moved(R: Floats, t: Floats, x: Floats, r: Floats, W: Floats) -> tuple[Float
     JW = np.einsum("knxi,knxy->kniy", J, W)
     H = np.einsum("kniy,knyj->kij", JW, J)
     g = np.einsum("kniy,kny->ki", JW, r)
-    damping = 1e-4 * np.trace(H, axis1=1, axis2=2) / 6 + 1e-300
+    damping = ALIGN.damping * np.trace(H, axis1=1, axis2=2) / 6 + 1e-300
     step = -np.linalg.solve(H + damping[:, None, None] * np.eye(6), g[..., None])[..., 0]
     return move(R, t, centre, step[:, :3] / radius[:, None], step[:, 3:])
 
 
-def polish(surface: Surface, points: Floats, R: Floats, t: Floats, rounds: int = 30) -> Poses:
+def polish(
+    surface: Surface, points: Floats, R: Floats, t: Floats, rounds: int = ALIGN.polish
+) -> Poses:
     """Fit poses to the facets themselves until they rest; a step is kept only where it helps."""
     R, t = R.copy(), t.copy()
     best = Poses(R, t, np.full(len(R), np.inf))
     cost = np.full(len(R), np.inf)
     active = np.arange(len(R))
+    share, least = ALIGN.gain
     for _ in range(rounds):
         x = Poses(R[active], t[active], cost[active]).apply(points)
-        at = place(surface, x.reshape(-1, 3), reach=2 * CAP * surface.size)
+        at = place(surface, x.reshape(-1, 3), reach=2 * ALIGN.cap * surface.size)
         shape = x.shape[:2]
         distance = at.distance.reshape(shape)
         rms = capped_rms(distance, surface)
-        gain = cost[active] - rms > 1e-6 * rms + 1e-12 * surface.size
+        gain = cost[active] - rms > share * rms + least * surface.size
         cost[active] = np.minimum(cost[active], rms)
         better = active[gain]
         best.rotation[better], best.translation[better] = R[better], t[better]
@@ -200,7 +202,7 @@ def polish(surface: Surface, points: Floats, R: Floats, t: Floats, rounds: int =
         x, distance = x[gain], distance[gain]
         r = x - at.foot.reshape(*shape, 3)[gain]
         normal, kind = at.normal.reshape(*shape, 3)[gain], at.kind.reshape(shape)[gain]
-        W = normal_space(r, normal, kind, 1e-9 * surface.size)
-        weight = robust_weights(distance, 1e-6 * surface.size)
+        W = normal_space(r, normal, kind, ALIGN.foot * surface.size)
+        weight = robust_weights(distance, ALIGN.near * surface.size)
         R[active], t[active] = _moved(R[active], t[active], x, r, W * weight[..., None, None])
     return best

@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Floats, Ints
 from ..noun import Noun
 from .outer_surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
+from .placement_numbers import PLACEMENT
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
         Default: a tenth of the size of the surface.
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
-    reach = 0.1 * surface.size if reach is None else reach
+    reach = PLACEMENT.reach * surface.size if reach is None else reach
     bound = surface.nearest_grid(points)[1]
     rows, facets = _candidates(surface, points, bound, reach)
     s, t, distance = _feet(surface, points[rows], facets)
@@ -87,7 +88,8 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
 def _candidates(surface: Surface, points: Floats, bound: Floats, reach: float) -> tuple[Ints, Ints]:
     """Pairs of point and facet that may hold the foot; at least one facet a point."""
     rows, facets = [], []
-    near = np.minimum(bound, reach) * (1 + 1e-9) + 1e-12 * surface.size
+    share, beside = PLACEMENT.wider
+    near = np.minimum(bound, reach) * (1 + share) + beside * surface.size
     for tree, of_level, radius in surface.levels:
         closest = tree.query(points)[1]
         rows.append(np.arange(len(points)))
@@ -101,7 +103,7 @@ def _candidates(surface: Surface, points: Floats, bound: Floats, reach: float) -
 
 def _tied(distance: Floats, size: float) -> Floats:
     """Distances rounded so that a face wins over the line on its edge."""
-    step = 1e-9 * size if size > 0 else 1.0
+    step = PLACEMENT.tied * size if size > 0 else 1.0
     return np.round(distance / step)
 
 
@@ -146,7 +148,7 @@ def _on_triangle(points: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Float
     u, v, w = b - a, c - a, points - a
     uu, uv, vv, wu, wv = _dot(u, u), _dot(u, v), _dot(v, v), _dot(w, u), _dot(w, v)
     det = uu * vv - uv * uv
-    sound = det > 1e-14 * uu * vv
+    sound = det > PLACEMENT.slender * uu * vv
     s = _ratio(vv * wu - uv * wv, np.where(sound, det, 0.0))
     t = _ratio(uu * wv - uv * wu, np.where(sound, det, 0.0))
     inside = sound & (s >= 0) & (t >= 0) & (s + t <= 1)
@@ -162,7 +164,7 @@ def _on_triangle(points: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Float
 
 
 def _on_warped_quads(
-    surface: Surface, points: Floats, facets: Ints, s: Floats, t: Floats, rounds: int = 12
+    surface: Surface, points: Floats, facets: Ints, s: Floats, t: Floats
 ) -> tuple[Floats, Floats]:
     """Move the feet on quads from the two trias to the bilinear surface.
 
@@ -172,14 +174,14 @@ def _on_warped_quads(
     quads = np.flatnonzero(surface.kind[facets] == QUAD)
     a, b, c, d = np.moveaxis(surface.xyz[surface.corners[facets[quads]]], 1, 0)
     skew = a - b + c - d  # zero for a parallelogram, which is its two trias: nothing to do
-    warped = _dot(skew, skew) > 1e-24 * _dot(c - a, c - a)
+    warped = _dot(skew, skew) > PLACEMENT.warped * _dot(c - a, c - a)
     quads, a, b, c, d = quads[warped], a[warped], b[warped], c[warped], d[warped]
     if not len(quads):
         return s, t
     p = points[quads]
     x, y = s[quads], t[quads]
     away = np.linalg.norm(p - _bilinear(a, b, c, d, x, y), axis=1)
-    for _ in range(rounds):
+    for _ in range(PLACEMENT.rounds):
         for start in (_gauss_newton(p, a, b, c, d, x, y), y):
             u = _on_segment(p, *_ruling(a, b, c, d, start))[0]
             v, distance = _on_segment(p, *_ruling(a, d, c, b, u))
@@ -200,7 +202,7 @@ def _gauss_newton(
     r = p - _bilinear(a, b, c, d, x, y)
     ss, st, tt, rs, rt = _dot(gs, gs), _dot(gs, gt), _dot(gt, gt), _dot(r, gs), _dot(r, gt)
     det = ss * tt - st * st
-    det = np.where(det > 1e-14 * ss * tt, det, 0.0)
+    det = np.where(det > PLACEMENT.slender * ss * tt, det, 0.0)
     return np.clip(y + _ratio(ss * rt - st * rs, det), 0.0, 1.0)
 
 

@@ -10,6 +10,7 @@ from ..arrays import Floats, Ints, Numbers, skew
 from ..noun import Noun
 from .closest_point import Placement
 from .outer_surface import LINE, POINT, QUAD, TRIA, Surface, shape_functions
+from .placement_numbers import PLACEMENT
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,7 @@ def _surface_gradients(xyz: Floats, Ns: Floats, Nt: Floats, kind: Ints) -> Float
     gt = np.einsum("nc,ncx->nx", Nt, xyz)
     ss, st, tt = (np.einsum("nx,nx->n", a, b) for a, b in ((gs, gs), (gs, gt), (gt, gt)))
     det = ss * tt - st * st
-    sound = (kind >= TRIA) & (det > 1e-14 * ss * tt) & (det > 0)
+    sound = (kind >= TRIA) & (det > PLACEMENT.slender * ss * tt) & (det > 0)
     inverse = np.divide(1.0, det, out=np.zeros_like(det), where=sound)
     dual_s = (tt[:, None] * gs - st[:, None] * gt) * inverse[:, None]
     dual_t = (ss[:, None] * gt - st[:, None] * gs) * inverse[:, None]

@@ -9,21 +9,11 @@ import numpy as np
 from ..arrays import Bools, Floats, Ints, Numbers
 from ..data.dofs import Dofs
 from ..data.modes import Modes
-
-THRESHOLD = 1e-4
-"""Motion below this fraction of a node's largest is rounding, not measurement.
-
-Universal files carry five to six digits, so a direction that was not measured shows at most
-about 1e-5 of the others.
-"""
-
-
-FEWEST_VECTORS = 4
-"""Fewer independent vectors than this cannot show that a node moves in a line or plane only."""
+from .placement_numbers import PLACEMENT
 
 
 def measured_directions(
-    modes: Modes, threshold: float = THRESHOLD
+    modes: Modes, threshold: float = PLACEMENT.measured
 ) -> tuple[Modes, tuple[str, ...]]:
     """Keep the directions in which each node of a test was measured.
 
@@ -57,7 +47,7 @@ def measured_directions(
     np.maximum.at(largest, of_row, np.where(translation, size, 0.0))
     keep = size > np.where(translation, threshold * largest[of_row], 0.0)
     axis, values = dofs.axis.copy(), shapes.copy()
-    if _independent(vectors, threshold) >= FEWEST_VECTORS:
+    if _independent(vectors, threshold) >= PLACEMENT.vectors:
         slots = _slots(dofs, of_row, keep & translation, len(nodes))
         _reduce(slots, vectors, threshold, keep, axis, values)
     silent = nodes[(largest == 0) & np.isin(nodes, dofs.node[translation])]
@@ -80,7 +70,7 @@ def _slots(dofs: Dofs, of_row: Ints, usable: Bools, n_node: int) -> Ints:
     E = np.where(slots[:, :, None] >= 0, dofs.axis[slots], 0.0)
     present = slots >= 0
     gram = E @ np.swapaxes(E, 1, 2) - np.eye(3) * present[:, :, None]
-    plain = np.abs(gram).max(axis=(1, 2)) < 1e-6
+    plain = np.abs(gram).max(axis=(1, 2)) < PLACEMENT.plain
     plain &= np.bincount(of_row[rows], minlength=n_node) == present.sum(axis=1)
     return np.asarray(slots[plain])
 
@@ -117,5 +107,6 @@ def _reduce(
 def _said(silent: Ints) -> tuple[str, ...]:
     if not len(silent):
         return ()
-    named = ", ".join(str(n) for n in silent[:10]) + (", ..." if len(silent) > 10 else "")
+    more = ", ..." if len(silent) > PLACEMENT.named else ""
+    named = ", ".join(str(n) for n in silent[: PLACEMENT.named]) + more
     return (f"{len(silent)} test node(s) do not move in any mode and were left out: {named}",)

@@ -16,8 +16,6 @@ from ..noun import Noun
 POINT, LINE, TRIA, QUAD = 1, 2, 3, 4
 """Shape of a facet, equal to its number of corners."""
 
-_BITS = 21
-
 
 @dataclass(frozen=True, eq=False)
 class Surface(Noun):
@@ -228,7 +226,7 @@ def _outer_faces(solids: list[tuple[str, Ints]], n_grid: int) -> list[Ints]:
 
 def _face_key(corners: Ints, n_grid: int) -> Numbers:
     """One number a face; its three smallest corners tell it from every other of a valid mesh."""
-    low = np.sort(corners, axis=1)[:, :3]
-    if n_grid < 1 << _BITS:
-        return (low[:, 0] << 2 * _BITS) | (low[:, 1] << _BITS) | low[:, 2]
+    low, bits = np.sort(corners, axis=1)[:, :3], 21
+    if n_grid < 1 << bits:
+        return (low[:, 0] << 2 * bits) | (low[:, 1] << bits) | low[:, 2]
     return np.ascontiguousarray(low).view([("a", np.int64), ("b", np.int64), ("c", np.int64)])[:, 0]

@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Floats, frozen, require_finite, require_shape
 from ..errors import InputError
 from ..noun import Noun
+from .placement_numbers import PLACEMENT
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class Transform(Noun):
         require_finite(self.rotation, "the rotation of the test frame")
         require_finite(self.translation, "the translation of the test frame")
         R = self.rotation
-        if np.abs(R @ R.T - np.eye(3)).max() > 1e-6 or np.linalg.det(R) < 0:
+        if np.abs(R @ R.T - np.eye(3)).max() > PLACEMENT.rotation or np.linalg.det(R) < 0:
             raise InputError(
                 "the rotation of the test frame is not a proper rotation "
                 f"(its determinant is {np.linalg.det(R):.6g}); mirror images are not allowed"

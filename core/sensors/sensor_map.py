@@ -15,11 +15,9 @@ from ..noun import Noun
 from .closest_point import Placement, place
 from .facet_interpolation import interpolate
 from .outer_surface import Surface, surface_of
+from .placement_numbers import PLACEMENT
 from .rigid_transform import IDENTITY, Transform
 
-FEWEST_ON_MODEL = 0.2
-"""A test with a smaller share of its sensors on the model is refused."""
-_NAMED = 10
 _BY_SENSOR = ("xyz", "nearest_grid", "distance", "within", "tolerance")
 
 
@@ -160,8 +158,9 @@ def _moving(motion: Numbers | sp.spmatrix) -> Bools:
 
 def default_tolerance(surface: Surface, placement: Placement) -> Floats:
     """Half the local mesh size, at least 0.5 % and at most 3 % of the model's size, (n,)."""
-    local = 0.5 * surface.mesh_size(placement.facet)
-    return np.clip(local, 0.005 * surface.size, 0.03 * surface.size)
+    local = PLACEMENT.local * surface.mesh_size(placement.facet)
+    least, most = PLACEMENT.off
+    return np.clip(local, least * surface.size, most * surface.size)
 
 
 def observe(
@@ -213,7 +212,7 @@ def observe(
     limit = default_tolerance(surface, placement)
     limit = limit if tolerance is None else np.full(len(xyz), float(tolerance))
     within = placement.distance <= limit
-    if len(xyz) and within.mean() < FEWEST_ON_MODEL:
+    if len(xyz) and within.mean() < PLACEMENT.fewest:
         raise InputError(_nowhere(surface, xyz, placement, within, limit))
     matrix = grids.sensor_matrix(placement, axis, sensors.component > 3)
     turned = Dofs(sensors.node, sensors.component, axis)
@@ -229,9 +228,9 @@ def _outside(sensors: Dofs, placement: Placement, within: Bools, limit: Floats) 
     nodes, first = np.unique(sensors.node[out], return_index=True)
     named = [
         f"{n} ({placement.distance[out[i]]:.4g} off, {limit[out[i]]:.4g} allowed)"
-        for n, i in zip(nodes[:_NAMED], first[:_NAMED], strict=True)
+        for n, i in zip(nodes[: PLACEMENT.named], first[: PLACEMENT.named], strict=True)
     ]
-    more = f" and {len(nodes) - _NAMED} more" if len(nodes) > _NAMED else ""
+    more = f" and {len(nodes) - PLACEMENT.named} more" if len(nodes) > PLACEMENT.named else ""
     return (
         f"{len(nodes)} test node(s) lie too far from the model to be used: "
         f"{', '.join(named)}{more}",

@@ -15,12 +15,7 @@ from ..data.parameter import Parameter
 from ..reduction.eigenpair_derivatives import Spectral
 from ..reduction.full_or_reduced import Order
 from .residuals import Linearisation, Residual, Seen, Slopes, Target, Weights
-
-_UNIDENTIFIABLE = 1e-4
-_UNSURE = 0.5
-_LEAST_GAIN = 1e-3
-_KEPT = 0.75
-"""Share of the pairs that a step must keep to be judged by those alone."""
+from .updating_numbers import UPDATING
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,13 +83,13 @@ class Objective:
         old = {q.test: k for k, q in enumerate(state.seen.pairs)}
         new = {q.test: k for k, q in enumerate(trial.seen.pairs)}
         common = sorted(old.keys() & new.keys())
-        if len(common) < _KEPT * len(old):
+        if len(common) < UPDATING.kept * len(old):
             return False
         cost = [
             self._cost(s.seen.take([at[k] for k in common]), len(common), residuals)
             for s, at in ((trial, new), (state, old))
         ]
-        return cost[0] < (1.0 - _LEAST_GAIN) * cost[1]
+        return cost[0] < (1.0 - UPDATING.least_gain) * cost[1]
 
     def step(
         self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
@@ -106,8 +101,9 @@ class Objective:
         weight = np.array([self.parameters[k].weight for k in free])
         prior = np.sqrt(self.weights.regularisation * weight)
         p = np.asarray(state.factors)[free]
-        least = np.maximum(lower[free] - p, -0.5 * p) - 1e-12
-        most = np.minimum(upper[free] - p, p) + 1e-12
+        down, up = UPDATING.step
+        least = np.maximum(lower[free] - p, -down * p) - UPDATING.slack
+        most = np.minimum(upper[free] - p, up * p) + UPDATING.slack
         G = np.vstack([lin.gradient, np.diag(prior)])
         full = np.zeros(len(self.parameters))
         due = np.concatenate([-lin.values, np.zeros(len(free))])
@@ -139,16 +135,16 @@ class Objective:
         _, s, vt = np.linalg.svd(lin.gradient, full_matrices=False)
         data = sum(len(r.squared(state.seen)) for r in residuals)
         scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
-        sound = s > _UNIDENTIFIABLE * s[0] if s.size and s[0] > 0.0 else np.zeros(len(s), bool)
+        sound = (s > UPDATING.unidentifiable * s.max(initial=0.0)) & (s > 0.0)
         said = vt[sound] ** 2 / s[sound, None] ** 2
         error[list(active)] = np.sqrt(np.sum(said, axis=0) * scatter)
         factors = np.asarray(state.factors)
-        unsure = np.flatnonzero(error > _UNSURE * factors)
+        unsure = np.flatnonzero(error > UPDATING.unsure * factors)
         lost = np.vstack([vt[~sound], np.zeros((0, len(active)))])
         names = [self.parameters[k].name for k in active]
         doubtful = []
         for direction in lost:
-            of = np.flatnonzero(np.abs(direction) > 0.1)
+            of = np.flatnonzero(np.abs(direction) > UPDATING.part)
             part = [names[i] for i in of]
             error[[active[i] for i in of]] = np.nan
             doubtful.append(

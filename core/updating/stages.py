@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..noun import Noun
 from .objective import State
 from .residuals import Residual, residuals_named
+from .updating_numbers import UPDATING
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Stage:
 
     parameters: tuple[int, ...]
     residuals: str = "both"
-    max_iterations: int = 10
+    max_iterations: int = UPDATING.iterations
 
     def __post_init__(self) -> None:
         residuals_named(self.residuals)

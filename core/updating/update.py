@@ -17,19 +17,10 @@ from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
 from .objective import Objective, State
 from .residuals import Target, Weights
 from .stages import Iteration, Reason, Stage, Stop, Updated
+from .updating_numbers import UPDATING
 
 __all__ = ["Iteration", "Reason", "Stage", "State", "Stop", "Target", "Updated", "update"]
 
-_REACH = 2.0
-"""A reduced model is left where a factor is this many times, or this part of, that of its basis."""
-
-_AGREE = 0.1
-"""Of the tolerance: relative difference of eigenvalues, full and reduced, that ends an update."""
-
-_SAME = 1e-6
-"""Reduced objectives this close to the full one where the walk ends are not told apart from it."""
-
-_HALVINGS = 5
 _NO_STEP = Stop(Reason.NO_STEP, "no step lowers the objective further")
 
 
@@ -39,8 +30,8 @@ def update(
     stages: Sequence[Stage],
     criteria: Criteria | None = None,
     weights: Weights | None = None,
-    n_modes: int = 40,
-    tolerance: float = 1e-3,
+    n_modes: int = UPDATING.modes,
+    tolerance: float = UPDATING.tolerance,
     progress: Callable[[Iteration], None] = lambda _: None,
 ) -> Updated:
     """Minimise ΔzᵀWΔz + pᵀW_p p over the parameters, equations (2)–(4).
@@ -119,7 +110,7 @@ def update(
     there = objective.at(near, state.factors, last)
     error, doubtful = objective.standard_error(near, there, active, last)
     lower, upper = objective.bounds
-    bounds = (np.isclose(state.factors, bound, rtol=1e-6) for bound in (lower, upper))
+    bounds = (np.isclose(state.factors, bound, rtol=UPDATING.at_bound) for bound in (lower, upper))
     moved = frozen(state.factors), frozen(error), frozen(np.any([*bounds], axis=0))
     told = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
     after = _without_factor(state)
@@ -157,12 +148,12 @@ def _work_off(
                 return state, near, solves, _NO_STEP
             trail, stop, arrived = [found], None, found
         for s in trail[:-1]:
-            if abs(s.objective - arrived.objective) > _SAME * arrived.objective:
+            if abs(s.objective - arrived.objective) > UPDATING.same * arrived.objective:
                 note(s)
         note(arrived)
         left -= len(trail)
         state = arrived
-        if stop and _agree(trail[-1], arrived, _AGREE * tolerance):
+        if stop and _agree(trail[-1], arrived, UPDATING.agree * tolerance):
             return state, near, solves, stop
     most = Stop(Reason.MOST_ITERATIONS, f"{stage.max_iterations} iterations")
     return state, near, solves, most
@@ -188,7 +179,7 @@ def _walk(
         trail.append(trial)
         if moved < tolerance:
             return trail, Stop(Reason.SETTLED, f"factors moved less than {tolerance:g}")
-        if np.max(np.abs(np.log(state.factors / start.factors))) > np.log(_REACH):
+        if np.max(np.abs(np.log(state.factors / start.factors))) > np.log(UPDATING.reach):
             break
     return trail, None
 
@@ -199,12 +190,12 @@ def _descend(
     """Take the step, halved until it is one; return where it leads and how many were tried."""
     lower, upper = objective.bounds
     step = objective.step(order, state, stage.parameters, stage.minimised)
-    for halving in range(_HALVINGS):
+    for halving in range(UPDATING.halvings):
         p = np.clip(state.factors + step / 2**halving, lower, upper)
         trial = objective.at(order, p, stage.minimised)
         if objective.closer(trial, state, stage.minimised):
             return trial, halving + 1
-    return None, _HALVINGS
+    return None, UPDATING.halvings
 
 
 def _agree(reduced: State, full: State, tolerance: float) -> bool:
@@ -213,7 +204,7 @@ def _agree(reduced: State, full: State, tolerance: float) -> bool:
     if by_test[0].keys() != by_test[1].keys():
         return False
     ratio = [(by_test[0][k] / by_test[1][k]) ** 2 - 1.0 for k in by_test[0]]
-    return bool(np.max(np.abs(ratio), initial=0.0) < max(tolerance, 1e-9))
+    return bool(np.max(np.abs(ratio), initial=0.0) < max(tolerance, UPDATING.agree_least))
 
 
 def _without_factor(state: State) -> State:

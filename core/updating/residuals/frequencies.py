@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Floats
+from ..updating_numbers import UPDATING
 from .declaration import Residual, Seen, Slopes
 
 
@@ -26,7 +27,7 @@ def _size(seen: Seen) -> Floats:
 FREQUENCIES = Residual(
     name="frequencies",
     weight="frequency_sigma",
-    sigma=0.01,
+    sigma=UPDATING.frequency,
     value=_value,
     derivative=_derivative,
     size=_size,

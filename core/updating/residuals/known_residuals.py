@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ...errors import InputError
+from ..updating_numbers import UPDATING
 from .declaration import Residual
 from .frequencies import FREQUENCIES
 from .shapes import SHAPES
@@ -64,7 +65,7 @@ class Weights:
     """
 
     sigmas: Mapping[str, float] = field(default_factory=dict)
-    regularisation: float = 1e-2
+    regularisation: float = UPDATING.regularisation
 
     def __post_init__(self) -> None:
         known = [r.weight for r in RESIDUALS]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Floats
+from ..updating_numbers import UPDATING
 from .declaration import Residual, Seen, Slopes
 
 
@@ -34,7 +35,7 @@ def _size(seen: Seen) -> Floats:
 SHAPES = Residual(
     name="shapes",
     weight="shape_sigma",
-    sigma=0.1,
+    sigma=UPDATING.shape,
     value=_value,
     derivative=_derivative,
     needs_shapes=True,

@@ -1,0 +1,22 @@
+"""The tuned numbers of a comparison, unless its user says otherwise."""
+
+from dataclasses import dataclass
+
+from ..number_table import ROUNDING, number
+
+CHECK = "pytest tests/core/correlation"
+
+
+@dataclass(frozen=True)
+class CorrelationNumbers:
+    mac: float = number(0.7, "MAC", "of a pair, at least", "practice of modal correlation")
+    frequency: float = number(0.3, "of f", "between the modes of a pair, at most", CHECK)
+    cluster: float = number(0.02, "of f", "over which modes count as one subspace", CHECK)
+    tie: float = number(1e-9, "squared cosine", "so that every column of a turned cluster gets a number", ROUNDING)
+    on_model: float = number(0.9, "of the sensors", "on the model that prove a very small test to be a part of it", CHECK)
+    reading: float = number(0.05, "of the rms of a shape", "error of a reading besides that of the fit: gain, place, model", "modal tests")
+    little: float = number(0.5, "weight", "below which a sensor is named", CHECK)
+    named: int = number(8, "sensors", "that a sentence names", "what a reader takes in")
+
+
+CORRELATION = CorrelationNumbers()

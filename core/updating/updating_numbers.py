@@ -1,0 +1,35 @@
+"""The tuned numbers of an update."""
+
+from dataclasses import dataclass
+
+from ..number_table import ROUNDING, number
+
+CHECK = "pytest tests/core/updating"
+
+
+@dataclass(frozen=True)
+class UpdatingNumbers:
+    frequency: float = number(0.01, "of f", "standard deviation of a frequency, unless said otherwise", "modal tests")
+    shape: float = number(0.1, "√(1 − MAC)", "standard deviation of a shape, unless said otherwise", "modal tests")
+    regularisation: float = number(1e-2, "-", "on steps of the factors, unless said otherwise", CHECK)
+    iterations: int = number(10, "iterations", "of a stage, unless said otherwise", CHECK)
+    modes: int = number(40, "modes", "of an eigensolution, unless said otherwise", "time")
+    tolerance: float = number(1e-3, "of a factor", "moves that settle an update, unless said otherwise", CHECK)
+
+    unidentifiable: float = number(1e-4, "of the largest singular value", "of a direction that the test does not determine", CHECK)
+    unsure: float = number(0.5, "of a factor", "standard error from which on it is said to be hardly determined", CHECK)
+    part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
+    least_gain: float = number(1e-3, "of the objective", "by which the pairs that are kept must be closer", CHECK)
+    kept: float = number(0.75, "of the pairs", "that a step must keep to be judged by those alone", CHECK)
+    step: tuple[float, float] = number((0.5, 1.0), "of a factor", "largest step down and up", CHECK)
+    slack: float = number(1e-12, "-", "between the bounds of a step that would fall together", ROUNDING)
+
+    reach: float = number(2.0, "times", "or part of, the factors of a reduced model, beyond which it is left", CHECK)
+    agree: float = number(0.1, "of the tolerance", "difference of eigenvalues, full and reduced, that ends an update", CHECK)
+    agree_least: float = number(1e-9, "of λ", "the same, at least", ROUNDING)
+    same: float = number(1e-6, "of the objective", "reduced ones this close to the full one are not told apart from it", CHECK)
+    halvings: int = number(5, "halvings", "of a step, at most", CHECK)
+    at_bound: float = number(1e-6, "of a factor", "beside its bound, at which it is", ROUNDING)
+
+
+UPDATING = UpdatingNumbers()
