@@ -1,5 +1,7 @@
 """Normal modes: closed forms, how many and up to where, bad input and checks that bite."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -7,6 +9,7 @@ from tests.core.chains import chain, chain_exact, scalar_model
 
 from trueup.core.data.parametric_model import Model, Term
 from trueup.core.eigen import normal_modes, shift_invert_solver
+from trueup.core.eigen.eigen_numbers import EIGEN
 from trueup.core.eigen.normal_modes import modes_of, solve
 from trueup.core.errors import CheckError, InputError
 
@@ -234,7 +237,7 @@ def test_checks_that_are_not_met_raise():
 
 @pytest.mark.parametrize("hertz", [1e-9, 1e-3, 1.0, 1e4, 1e9])
 def test_any_first_shift_leads_to_the_modes(ring, monkeypatch, hertz):
-    monkeypatch.setattr(shift_invert_solver, "_FIRST_SHIFT_HZ", hertz)
+    monkeypatch.setattr(shift_invert_solver, "EIGEN", replace(EIGEN, first_shift=hertz))
     model = ring(150)
     expected = solve(ring(150), 16).eigenvalues[6:]
     np.testing.assert_allclose(solve(model, 16).eigenvalues[6:], expected, rtol=1e-7)

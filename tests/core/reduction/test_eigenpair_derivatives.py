@@ -11,6 +11,7 @@ from trueup.core.data.parametric_model import Factor, Model
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 from trueup.core.reduction import eigenvector_derivatives
+from trueup.core.reduction.derivative_numbers import DERIVATIVES
 from trueup.core.reduction.eigenpair_derivatives import clusters, sensitivities
 
 STEP = 1e-3
@@ -243,7 +244,8 @@ def test_threefold_eigenvalue(frame):
 @pytest.mark.parametrize("route", [1, 10_000])
 def test_large_model_by_both_factors(sectored_ring, backend, monkeypatch, route):
     """The factor of the solution, or one next to each cluster: the same derivatives."""
-    monkeypatch.setattr(eigenvector_derivatives, "_OWN_FACTOR", route)
+    changed = replace(DERIVATIVES, own_factor=route)
+    monkeypatch.setattr(eigenvector_derivatives, "DERIVATIVES", changed)
     model = sectored_ring(120, fixed=[(0, c) for c in range(1, 7)])
     p = model.deck_point
     solution = solve(model, 16, p=p, backend=backend, tolerance=1e-11, keep_factor=True)
