@@ -1,7 +1,5 @@
 """The verbs of the command line and the exit statuses."""
 
-from __future__ import annotations
-
 import os
 import sys
 from typing import Annotated

@@ -1,7 +1,5 @@
 """What ``inspect`` found, cut down to one screen; the JSON keeps all of it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

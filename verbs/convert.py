@@ -1,7 +1,5 @@
 """The verb `convert`."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The report: one self-contained page made from what a run folder holds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import PurePath

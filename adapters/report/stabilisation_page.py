@@ -1,7 +1,5 @@
 """The stabilisation chart of an identification, the mode indicator function behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ its number. Real files leave out line ends, lose or repeat a delimiter, and carr
 (58b) in which anything may look like text. Nothing here reads what a dataset holds.
 """
 
-from __future__ import annotations
-
 import mmap
 import re
 from collections.abc import Callable, Iterator

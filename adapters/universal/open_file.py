@@ -1,12 +1,10 @@
 """An open universal file."""
 
-from __future__ import annotations
-
 import mmap
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO
+from typing import BinaryIO, Self
 
 from ...core.errors import InputError, Place
 from .container import Scan, Section, first_lines
@@ -34,7 +32,7 @@ class Source:
     skipped: tuple[Skipped, ...] = ()
     warnings: tuple[str, ...] = ()
 
-    def __enter__(self) -> Source:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

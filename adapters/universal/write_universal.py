@@ -1,7 +1,5 @@
 """Write universal files that other programs open."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Iterator, Sequence

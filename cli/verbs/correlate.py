@@ -1,7 +1,5 @@
 """``trueup correlate DECK TEST``."""
 
-from __future__ import annotations
-
 from ...verbs.study import Study
 from ..answer import answer, new_folder
 from ..console import working

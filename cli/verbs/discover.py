@@ -1,7 +1,5 @@
 """``trueup discover DECK TEST``."""
 
-from __future__ import annotations
-
 from ...verbs.study import Study
 from ..answer import answer_changed, new_folder
 from ..console import working

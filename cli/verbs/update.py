@@ -1,7 +1,5 @@
 """``trueup update DECK TEST``."""
 
-from __future__ import annotations
-
 import typer
 
 from ...verbs.study import Study

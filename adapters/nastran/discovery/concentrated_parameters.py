@@ -1,7 +1,5 @@
 """Masses and springs of the deck that may have a wrong value: one parameter each, for discovery."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from ....core.errors import InputError

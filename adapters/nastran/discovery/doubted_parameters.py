@@ -1,7 +1,5 @@
 """Which known properties compete in a discovery beside those that the user names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

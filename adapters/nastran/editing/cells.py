@@ -1,7 +1,5 @@
 """One line of a card: its format, and where each of its fields stands among its bytes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple

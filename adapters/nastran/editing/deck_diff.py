@@ -1,7 +1,5 @@
 """Unified diff of two texts of a deck, fast on meshes of a million lines."""
 
-from __future__ import annotations
-
 import bisect
 import difflib
 from collections import Counter

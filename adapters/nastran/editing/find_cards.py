@@ -1,7 +1,5 @@
 """Cards found by name and number over all files of a deck."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

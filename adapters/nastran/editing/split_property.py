@@ -1,7 +1,5 @@
 """One property made two: some of its elements get a copy of it and of its material."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 

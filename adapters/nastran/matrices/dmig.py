@@ -1,7 +1,5 @@
 """DMIG matrices of punch files and bulk data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

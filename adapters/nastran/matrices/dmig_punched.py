@@ -1,7 +1,5 @@
 """Many DMIG columns in the form in which Nastran punches them, read by array arithmetic."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Write DMIG cards as Nastran punches them: large field, one column a card."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

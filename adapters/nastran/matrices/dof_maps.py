@@ -1,7 +1,5 @@
 """Which degrees of freedom the rows of an exported matrix are, from a deck or an assembly file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

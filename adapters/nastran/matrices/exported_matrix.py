@@ -1,8 +1,7 @@
 """A matrix as Nastran exports it, and what its rows are."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -52,12 +51,12 @@ class DofMap(Noun):
         return Dofs(self.point, np.maximum(self.component, 1), axis)
 
     @classmethod
-    def of_dofs(cls, dofs: Dofs) -> DofMap:
+    def of_dofs(cls, dofs: Dofs) -> Self:
         """Make a map from what `dofs` gave."""
         return cls(dofs.node, np.where(dofs.axis.any(axis=1), dofs.component, 0))
 
     @classmethod
-    def of_keys(cls, keys: Ints) -> DofMap:
+    def of_keys(cls, keys: Ints) -> Self:
         """Make a map from `keys`."""
         return cls(keys // 8, keys % 8)
 

@@ -1,7 +1,5 @@
 """Derivative matrices from a small set of runs of the user's own Nastran."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ All matrices of a file stand one after another in three tables under
 values begin), COLUMN the place of each column's first value, DATA the row and value of each entry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

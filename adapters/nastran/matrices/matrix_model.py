@@ -1,7 +1,5 @@
 """A neutral model made of matrices that the user's own Nastran exported."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -6,8 +6,6 @@ a value for each entry, ended by -1, -1; another -1, -1 ends the matrix (MSC Nas
 Reference Guide, MATPOOL).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

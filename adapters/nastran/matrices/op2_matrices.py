@@ -1,7 +1,5 @@
 """Matrices of OP2 files: data blocks such as KGG and KELM, and the DMIG of a MATPOOL."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

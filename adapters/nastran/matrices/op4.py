@@ -1,7 +1,5 @@
 """OUTPUT4 files of any kind."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Formatted OUTPUT4 files: dense, bigmat and nonbigmat, exponents with E, D or no letter."""
 
-from __future__ import annotations
-
 import re
 from array import array
 from collections.abc import Iterator
@@ -196,7 +194,7 @@ def _batches(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[Stri
     yield _strings(runs), fields
 
 
-def _strings(runs: array[int]) -> Strings:
+def _strings(runs: "array[int]") -> Strings:
     column, row, count = np.array(runs, np.int64).reshape(-1, 3).T
     return Strings(column, row, count, np.zeros_like(count))
 

@@ -7,8 +7,6 @@ NROW > 65535, "bigmat"; both in one word otherwise). A column NCOL + 1 ends the 
 DMAP Programmer's Guide, OUTPUT4).
 """
 
-from __future__ import annotations
-
 import mmap
 import struct
 from array import array

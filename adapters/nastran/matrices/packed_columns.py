@@ -1,7 +1,5 @@
 """Strings of values, as Nastran packs the columns of a sparse matrix, to a sparse matrix."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

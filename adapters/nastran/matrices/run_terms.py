@@ -1,7 +1,5 @@
 """What a folder of exported runs holds, and its polynomial terms as matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ elements through a product (a modulus and a thickness) are sampled on a grid, th
 time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice

@@ -1,7 +1,5 @@
 """Write matrices to OP4 or DMIG; the file takes its name only when it is whole."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Iterator, Sequence

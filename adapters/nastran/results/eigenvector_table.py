@@ -1,7 +1,5 @@
 """Eigenvectors as a results file holds them: by subcase and superelement, in the file's axes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,7 +92,7 @@ class ModeTable(ModeHead):
         """Return one eigenvector, (n_point, 6)."""
         return self.values[:, mode].reshape(-1, 6)
 
-    def take(self, rows: Numbers, modes: Numbers) -> ModeTable:
+    def take(self, rows: Numbers, modes: Numbers) -> "ModeTable":
         """Return some points (indices or mask) and modes."""
         chosen = np.arange(len(self.points))[rows]
         picked = self.values[(6 * chosen[:, None] + np.arange(6)).ravel()][:, modes]

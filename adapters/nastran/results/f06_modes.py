@@ -1,7 +1,5 @@
 """Eigenvectors from the printed output (F06), the last resort: seven digits."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re

@@ -1,7 +1,5 @@
 """Eigenvectors from Nastran's HDF5 result files."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

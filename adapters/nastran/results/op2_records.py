@@ -6,8 +6,6 @@ ends a data block and, in place of a name, the file (MSC Nastran DMAP Programmer
 Nothing is read here but markers, names and trailers; the data stay in the file until asked for.
 """
 
-from __future__ import annotations
-
 import mmap
 import struct
 from array import array
@@ -15,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class Op2Block:
     name: str
     trailer: tuple[int, ...]
     records: tuple[Op2Record, ...]
-    runs: array[int]
+    runs: "array[int]"
     n_column: int = 0
 
 
@@ -88,7 +87,7 @@ class Op2File:
             self._data.close()
             raise
 
-    def __enter__(self) -> Op2File:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -251,7 +250,7 @@ class Op2File:
             number = words
         return Op2Block(name, tuple(map(int, trailer)), tuple(records[1:]), runs, n_column), at
 
-    def _column(self, at: int, column: int, runs: array[int]) -> tuple[int, int]:
+    def _column(self, at: int, column: int, runs: "array[int]") -> tuple[int, int]:
         """Note the runs of a column; return the marker after them and what follows it."""
         data, word = self._data, self.word
         while True:

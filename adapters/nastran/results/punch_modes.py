@@ -1,7 +1,5 @@
 """Eigenvectors from punch files, real or complex."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

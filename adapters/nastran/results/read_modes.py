@@ -1,7 +1,5 @@
 """Analysis modes from the user's own Nastran run, in basic axes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any

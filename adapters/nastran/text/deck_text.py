@@ -1,7 +1,5 @@
 """A deck as the text of all its files: nothing is lost, and every line knows its section."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -61,7 +59,7 @@ class DeckText(Noun):
     children: Mapping[tuple[int, str], int]
 
     @cached_property
-    def _walked(self) -> _Walk:
+    def _walked(self) -> "_Walk":
         def follow(parent: int, written: str, where: Place) -> int:
             child = self.children.get((parent, written))
             if child is None:
@@ -92,7 +90,7 @@ class DeckText(Noun):
         path = self.files[file].path
         return Place(path, row + 1, shown=path.name)
 
-    def with_file_data(self, changes: Mapping[int, bytes]) -> DeckText:
+    def with_file_data(self, changes: Mapping[int, bytes]) -> "DeckText":
         """Return the deck with other text in some of its files."""
         files = tuple(
             f.with_data(changes[k]) if k in changes else f for k, f in enumerate(self.files)

@@ -1,7 +1,5 @@
 """A table of the run as HTML."""
 
-from __future__ import annotations
-
 from ..tables.table import Cell, Table
 from .markup import esc, tag
 

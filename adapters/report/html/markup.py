@@ -1,7 +1,5 @@
 """The few lines that turn text into safe HTML and SVG."""
 
-from __future__ import annotations
-
 from html import escape
 
 

@@ -1,7 +1,5 @@
 """Round ticks and plain axes for the charts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

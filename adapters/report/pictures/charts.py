@@ -1,7 +1,5 @@
 """Line charts over the iterations and bars over the modes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

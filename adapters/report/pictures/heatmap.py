@@ -1,7 +1,5 @@
 """MAC matrices as heat maps: one path per colour class, values for the pointer and the reader."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

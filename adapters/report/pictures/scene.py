@@ -1,9 +1,8 @@
 """The structure as a picture: shaded mesh, sensors on it, effects at their place."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -174,7 +173,7 @@ class _Page:
     @classmethod
     def around(
         cls, projected: Floats, marks: Sequence[Mark], view: View, width: int, height: int
-    ) -> _Page:
+    ) -> Self:
         points = projected[:, :2]
         if marks:
             points = np.vstack([points, view.project(np.array([m.xyz for m in marks]))[:, :2]])

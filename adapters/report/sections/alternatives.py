@@ -1,7 +1,5 @@
 """What else was considered, and how likely it is beside what was found."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables

@@ -1,7 +1,5 @@
 """Measured damping ratios beside those of the deck before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables

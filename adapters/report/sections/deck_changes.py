@@ -1,7 +1,5 @@
 """What changed in the deck: its unified diff, changed fields picked out."""
 
-from __future__ import annotations
-
 from difflib import SequenceMatcher
 
 from ....core.results.correlation import RunTables

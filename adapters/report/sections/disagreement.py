@@ -1,7 +1,5 @@
 """Where model and test disagree, as a section of the report."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.data.geometry import Geometry

@@ -1,7 +1,5 @@
 """What is missing in the model or wrong in the test: sentences, picture, table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.discovery.effects import KINDS as EFFECTS

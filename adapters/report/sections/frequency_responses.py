@@ -1,7 +1,5 @@
 """How well measured frequency responses are met before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables

@@ -1,7 +1,5 @@
 """The gap before and after, on the searched and on the held-out data."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.correlation import Gap

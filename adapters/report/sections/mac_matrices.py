@@ -1,7 +1,5 @@
 """The MAC as measured, after rotation, after updating."""
 
-from __future__ import annotations
-
 from ....core.results.correlation import RunTables
 from ....core.results.discovery import DiscoverTables
 from ..html.markup import tag

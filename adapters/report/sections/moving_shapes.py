@@ -1,7 +1,5 @@
 """The moving overlay of analysis and test: data for the script, a still picture without it."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import replace
 

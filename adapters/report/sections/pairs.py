@@ -1,7 +1,5 @@
 """The paper's table of pairs, and deviations and MAC by mode."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from ....core.results.correlation import Compared, PairRow, RunTables

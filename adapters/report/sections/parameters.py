@@ -1,7 +1,5 @@
 """What was moved, and how an update went."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise

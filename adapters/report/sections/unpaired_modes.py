@@ -1,7 +1,5 @@
 """Modes of both sides without a partner, each with its closest look-alike by MAC."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What to measure next where the data do not decide."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables

@@ -1,7 +1,5 @@
 """The one sentence that a person reads first."""
 
-from __future__ import annotations
-
 import math
 
 from ....core.results.correlation import Compared, Gap, RunTables

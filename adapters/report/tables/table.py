@@ -1,7 +1,5 @@
 """A table of a run as plain content, rendered alike on the page and in the terminal."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Datasets 18 and 2420: coordinate systems."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """What a kind of dataset declares, what its reader adds to, and what its writer prints."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field

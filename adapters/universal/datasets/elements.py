@@ -1,7 +1,5 @@
 """Dataset 2412: elements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any

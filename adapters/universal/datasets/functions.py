@@ -1,7 +1,5 @@
 """Dataset 58 and 58b: one function at a nodal degree of freedom."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator

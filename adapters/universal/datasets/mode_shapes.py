@@ -1,7 +1,5 @@
 """Datasets 55 and 2414: mode shapes at nodes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

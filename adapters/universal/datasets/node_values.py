@@ -1,7 +1,5 @@
 """Values at nodes as datasets 55 and 2414 list them, and their checks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Datasets 15 and 2411: nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The lines of a dataset as numbers; errors name file and line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

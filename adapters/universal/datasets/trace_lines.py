@@ -1,7 +1,5 @@
 """Dataset 82: trace lines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 

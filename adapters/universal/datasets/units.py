@@ -1,7 +1,5 @@
 """Dataset 164: units."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Print frequency responses and other functions (datasets 58 and 58b)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Frequency responses: the functions of dataset 58 that belong together, as one array."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import product

@@ -1,7 +1,5 @@
 """Nodes of one or several files with positions and displacement axes in the basic frame."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The writers of cards: one module a kind of effect, one list."""
 
-from __future__ import annotations
-
 from .....core.errors import InputError
 from . import (
     distributed_mass,

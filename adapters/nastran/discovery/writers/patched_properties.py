@@ -1,7 +1,5 @@
 """Properties that the elements of a patch refer to."""
 
-from __future__ import annotations
-
 from ...deck.read_deck import Deck
 from ...editing.find_cards import find_card
 from ...text.deck_text import DeckText
