@@ -6,7 +6,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import InputError, Place, path_of
+from ..core.errors import Place, path_of
+from ..core.files import reading
 from .sources import Source, read_test
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -147,11 +148,8 @@ def kind_of_file(path: Path) -> FileKind:
     """
     if not path.is_file():
         raise Place(path).fault("does not exist or is not a file")
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
+    with reading(path), path.open("rb") as stream:
+        head = stream.read(_HEAD)
     if not head.strip():
         raise Place(path).fault("is empty")
     for kind in FILE_KINDS:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...core.errors import InputError, Place
+from ...core.files import replacing
 from ...core.results.plain import plain
 
 _OWN = {
@@ -88,11 +89,5 @@ def write_json(path: Path, result: Mapping[str, object]) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file atomically."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        Path(name).chmod(0o644)
-        os.replace(name, path)
-    except OSError as error:
-        raise _unwritten(path, error) from error
+    with replacing(path) as fresh:
+        fresh.write_text(text, encoding="utf-8")

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.files import release
 from .text.layout58 import HEADER_LINES, REALS, columns, form, records
 from .universal_content import Skipped
 
@@ -245,13 +246,6 @@ class Scan:
             self._mapped = offset
         self._counted = max(self._counted, offset)
         return self._line
-
-
-def release(data: mmap.mmap, begin: int, end: int) -> None:
-    """Let the system take back the memory that mapped bytes occupy."""
-    start = -(-begin // mmap.PAGESIZE) * mmap.PAGESIZE
-    if end - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
-        data.madvise(mmap.MADV_DONTNEED, start, end - start)
 
 
 def _integers(text: bytes) -> tuple[int, ...]:

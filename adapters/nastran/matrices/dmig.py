@@ -7,7 +7,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Ints, Numbers
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from ..deck.bulk import cut, fields_of
 from ..deck.card_definition import Fields
 from ..deck.logical_lines import Line
@@ -60,13 +61,11 @@ def read_dmig(path: Path | str, names: Iterable[str] | None = None) -> tuple[Nas
     path = Path(path)
     wanted = None if names is None else {n.upper() for n in names}
     found: dict[str, Entries] = {}
-    try:
+    with reading(path):
         for number, part in parts(path):
             if b"\0" in part[:4096]:
                 raise Place(path).fault("is not a text file: a punch file is expected")
             _take_part(part, number, path, found)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     matrices = (
         matrix_of_entries(name, e) for name, e in found.items() if not wanted or name in wanted
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from ....core.arrays import Ints
 from ....core.errors import InputError, Place
+from ....core.files import reading
 from ..deck.bulk import cut, fields_of
 from ..deck.card_definition import Fields
 from ..deck.logical_lines import Line
@@ -105,10 +106,8 @@ def read_extrn(path: Path | str) -> DofMap:
         A file that cannot be read or has no EXTRN.
     """
     path = Path(path)
-    try:
+    with reading(path):
         text = path.read_text("latin-1")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     lines = [Line(t, 0, k + 1) for k, t in enumerate(text.splitlines())]
     starts = [k for k, line in enumerate(lines) if line.text[:5].upper() == "EXTRN"]
     if not starts:

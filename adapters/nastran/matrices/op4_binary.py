@@ -18,6 +18,7 @@ import numpy as np
 
 from ....core.arrays import Ints, Numbers
 from ....core.errors import InputError, Place
+from ....core.files import release
 from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
 from .packed_columns import Filler, Strings, gather
 
@@ -81,11 +82,8 @@ class _File:
 
     def release(self, until: int) -> None:
         """Let the system take back the memory of what has been read."""
-        start = self._released // mmap.PAGESIZE * mmap.PAGESIZE
-        stop = until // mmap.PAGESIZE * mmap.PAGESIZE
-        if stop - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
-            self.data.madvise(mmap.MADV_DONTNEED, start, stop - start)
-            self._released = stop
+        release(self.data, self._released, until)
+        self._released = until // mmap.PAGESIZE * mmap.PAGESIZE
 
     def record(self, at: int) -> tuple[int, int]:
         """Return where the content of a record starts and ends."""

@@ -1,14 +1,12 @@
 """Write matrices to OP4 or DMIG; the file takes its name only when it is whole."""
 
-import os
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.errors import InputError
+from ....core.files import replacing
 from .dmig_write import dmig_text
 from .exported_matrix import RECTANGULAR, DofMap, NastranMatrix
 from .op4_write import op4_binary, op4_formatted
@@ -40,7 +38,7 @@ def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bo
         A name that Nastran does not take, a file that cannot be written.
     """
     write = op4_formatted if formatted else op4_binary
-    _write(Path(path), write([*matrices, *_maps(matrices)]))
+    _write(path, write([*matrices, *_maps(matrices)]))
 
 
 def write_dmig(path: Path | str, matrices: Sequence[NastranMatrix]) -> None:
@@ -51,7 +49,7 @@ def write_dmig(path: Path | str, matrices: Sequence[NastranMatrix]) -> None:
     InputError
         A matrix without dof map, a file that cannot be written.
     """
-    _write(Path(path), dmig_text(matrices))
+    _write(path, dmig_text(matrices))
 
 
 def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
@@ -81,23 +79,6 @@ def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
     return [*maps, NastranMatrix(USE, sp.csc_matrix(uses), RECTANGULAR)]
 
 
-def _write(target: Path, parts: Iterator[bytes]) -> None:
-    """Write all parts beside the target, then give them its name."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            for part in parts:
-                stream.write(part)
-        Path(name).chmod(0o644)
-        os.replace(name, target)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    finally:
-        Path(name).unlink(missing_ok=True)
+def _write(path: Path | str, parts: Iterator[bytes]) -> None:
+    with replacing(Path(path)) as fresh, fresh.open("wb") as stream:
+        stream.writelines(parts)

@@ -19,6 +19,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError, Place
+from ....core.files import reading, release
 
 _STARTS = {b"\4\0\0\0": ("<", 4), b"\0\0\0\4": (">", 4), b"\10\0\0\0": ("<", 8),
            b"\0\0\0\10": (">", 8)}  # fmt: skip
@@ -68,14 +69,11 @@ class Op2File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            with path.open("rb") as stream:
-                start = _STARTS.get(stream.read(_MARK))
-                if start is None:
-                    raise Place(path).fault("is not an OP2 file: a binary Nastran file is expected")
-                self._data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
+        with reading(path), path.open("rb") as stream:
+            start = _STARTS.get(stream.read(_MARK))
+            if start is None:
+                raise Place(path).fault("is not an OP2 file: a binary Nastran file is expected")
+            self._data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         self.order, self.word = start
         self._size = len(self._data)
         self._run = struct.Struct(self.order + ("5i" if self.word == 4 else "iqiiq"))
@@ -127,10 +125,7 @@ class Op2File:
 
     def release_between(self, start: int, stop: int) -> None:
         """Let the system take back the memory of some bytes that have been read."""
-        first = -(-start // mmap.PAGESIZE) * mmap.PAGESIZE
-        whole = (stop - first) // mmap.PAGESIZE * mmap.PAGESIZE
-        if whole > 0 and hasattr(mmap, "MADV_DONTNEED"):
-            self._data.madvise(mmap.MADV_DONTNEED, first, whole)
+        release(self._data, start, stop)
 
     def _words(self, record: Op2Record, kind: str) -> Numbers:
         if len(record.parts) == 1:

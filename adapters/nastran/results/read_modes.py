@@ -9,7 +9,8 @@ import numpy as np
 from ....core.arrays import Ints, Numbers
 from ....core.data.dofs import Dofs
 from ....core.data.modes import Modes
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from ..deck.pynastran_bridge import file_of
 from ..deck.read_deck import Deck
 from ..properties.grids import Points, read_points
@@ -135,11 +136,8 @@ def kind_of_results(path: Path) -> str:
     InputError
         It cannot be read.
     """
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}", file=path) from None
+    with reading(path), path.open("rb") as stream:
+        head = stream.read(_HEAD)
     if head.startswith(_HDF5_SIGNATURE):
         return HDF5
     text = "" if b"\0" in head else head.decode("latin-1")
