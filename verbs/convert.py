@@ -1,5 +1,7 @@
 """The verb `convert`."""
 
+from __future__ import annotations
+
 import os
 from collections import Counter
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """The verb `correlate`."""
 
+from __future__ import annotations
+
 from typing import Unpack
 
 from ..core.results.correlation import compared

@@ -1,5 +1,7 @@
 """Destinations of ``convert``: what each can hold, and its writing."""
 
+from __future__ import annotations
+
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """The verb `inspect`."""
 
+from __future__ import annotations
+
 import os
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Keyword arguments of the verbs that compare: the keys of a study file, with the same meaning."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps

@@ -1,5 +1,7 @@
 """The kinds of files that trueup reads: one list, which `read`, ``inspect`` and ``convert`` use."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module

@@ -1,5 +1,7 @@
 """The stages of an update from what the study says."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from difflib import get_close_matches
 

@@ -1,5 +1,7 @@
 """A test for correlation from universal files."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
