@@ -11,8 +11,7 @@ from . import (
     support_flexibility,
     tuned_absorber,
 )
-from .site import Site as Site
-from .site import Writer
+from .site import Site as Site, Writer
 
 WRITERS: dict[str, Writer] = {
     "point_mass": point_mass.write,
