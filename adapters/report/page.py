@@ -69,23 +69,24 @@ def make_report(
         tag("h1", _unbroken(first)),
         tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
         _strip(answer),
-        _warnings(answer.all_warnings),
+        warned(answer.all_warnings),
         links if len(shown) > 2 else "",
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
         tag("footer", esc(f"trueup · {answer.schema}")),
     )
-    head = (
-        '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{esc(' · '.join(t for t in ('trueup', name or kind) if t))}</title>"
-        f"<style>{style()}</style>"
-    )
     tip = '<div id="tip" role="status" hidden></div>'
     moving = "" if shapes is None else _asset("viewer.js")
     script = f"<script>{_asset('page.js')}{moving}</script>"
-    return (
-        f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}{tip}{script}</body>'
-        "</html>\n"
+    return html_page(name or kind, body + tip + script)
+
+
+def html_page(title: str, body: str, more_style: str = "") -> str:
+    """Return a page that needs nothing else, in the style of the reports, light and dark."""
+    head = (
+        '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<title>trueup · {esc(title)}</title><style>{_style()}{more_style}</style>"
     )
+    return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}</body></html>\n'
 
 
 def summary(answer: RunTables) -> str:
@@ -121,7 +122,8 @@ def _strip(answer: RunTables) -> str:
     return tag("dl", items, class_="figures")
 
 
-def _warnings(warnings: Sequence[str]) -> str:
+def warned(warnings: Sequence[str]) -> str:
+    """Return warnings, more than a few folded away; nothing where there are none."""
     if not warnings:
         return ""
     items = [tag("li", esc(w)) for w in warnings]
@@ -134,8 +136,7 @@ def _warnings(warnings: Sequence[str]) -> str:
     return tag("div", tag("b", "Warnings"), shown, more, class_="warnings", role="note")
 
 
-def style() -> str:
-    """Return the style sheet of the pages, light and dark."""
+def _style() -> str:
     ramp = "".join(
         f".c{k}{{fill:var(--c{k})}}.mesh .bar.k{k}{{stroke:var(--c{k})}}"
         for k in range(colour.STEPS)

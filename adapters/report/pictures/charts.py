@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..html.markup import esc, short, svg_text, tag
+from ..html.markup import centred, esc, key, short, svg, svg_text, tag
 from ..tables.number_formats import general
 from .axes import Plot, decades, spread, ticks
 from .colour import STEPS
@@ -74,34 +74,29 @@ def lines(
     if len(drawn) > 1:
         body += _names(plot, drawn, colours, alone=crowded)
     body += tag("path", class_="cursor", d=f"M0 {plot.top}v{short(plot.height)}", hidden=True)
-    svg = tag(
-        "svg",
+    told = f"{title}: {len(drawn)} lines over {len(x)} iterations."
+    picture = svg(
+        "lines",
+        (width, height),
+        told,
         body,
-        class_="lines",
-        viewBox=f"0 0 {width} {height}",
-        width=width,
-        role="img",
         tabindex="0",
-        aria_label=f"{title}: {len(drawn)} lines over {len(x)} iterations.",
         data_x=" ".join(general(v) for v in x),
         data_px=" ".join(short(plot.x(v)) for v in x),
         data_names="|".join(s.name for s in drawn),
         data_v="|".join(" ".join(_plain(v) for v in s.values) for s in drawn),
         data_unit=unit,
     )
-    key = ""
+    keys = ""
     if crowded:
-        key = "".join(
-            tag(
-                "span",
-                tag("i", style=f"background:{colours[k]}"),
-                esc(s.brief or s.name),
-                class_="key",
-            )
-            for k, s in enumerate(drawn)
-        )
-    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "", key)
-    return tag("figure", heading, svg)
+        marks = zip(drawn, colours, strict=True)
+        keys = "".join(key(s.brief or s.name, style=f"background:{c}") for s, c in marks)
+    return _figure(title, unit, keys, picture)
+
+
+def _figure(title: str, unit: str, keys: str, picture: str) -> str:
+    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "", keys)
+    return tag("figure", heading, picture)
 
 
 def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone: bool) -> str:
@@ -147,13 +142,8 @@ def _line(
 def _iterations(plot: Plot, x: Sequence[float]) -> str:
     every = max(1, round(len(x) / 12))
     y = plot.top + plot.height + 17
-    marks = "".join(
-        svg_text(plot.x(v), y, general(v), text_anchor="middle")
-        for k, v in enumerate(x)
-        if k % every == 0
-    )
-    middle = plot.left + plot.width / 2
-    return marks + svg_text(middle, y + 17, "iteration", class_="axis", text_anchor="middle")
+    marks = "".join(centred(plot.x(v), y, general(v)) for v in x[::every])
+    return marks + centred(plot.left + plot.width / 2, y + 17, "iteration", "axis")
 
 
 def _colour(k: int, count: int, ordered: bool) -> str:
@@ -220,24 +210,16 @@ def bars(
                    width=short(plot.width / len(labels)))  # fmt: skip
         note = tag("title", esc(f"{where}\n" + "\n".join(told)))
         body += tag("g", note, area, group, class_="hot")
-        body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 15, name, text_anchor="middle",
-                         class_="n")  # fmt: skip
+        middle, bottom = plot.x(k + 0.5), plot.top + plot.height
+        body += centred(middle, bottom + 15, name, "n")
         if frequency and len(labels) <= 30:
-            body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 28, frequency,
-                             text_anchor="middle")  # fmt: skip
-    body += svg_text(plot.left + plot.width / 2, height - 4, "test mode, Hz", class_="axis",
-                     text_anchor="middle")  # fmt: skip
-    svg = tag("svg", body, class_="bars", viewBox=f"0 0 {width} {height}", width=width,
-              role="img", aria_label=f"{title}, {len(labels)} test modes.")  # fmt: skip
-    key = ""
-    if len(states) > 1:
-        key = "".join(
-            tag("span", tag("i", class_=_role(s, states)), esc(s), class_="key") for s in states
-        )
+            body += centred(middle, bottom + 28, frequency)
+    body += centred(plot.left + plot.width / 2, height - 4, "test mode, Hz", "axis")
+    keys = "".join(key(s, _role(s, states)) for s in states) if len(states) > 1 else ""
     if any(v is None for values in states.values() for v in values):
-        key += tag("span", tag("i", class_="none"), "no partner", class_="key")
-    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}", key)
-    return tag("figure", heading, svg)
+        keys += key("no partner", "none")
+    picture = svg("bars", (width, height), f"{title}, {len(labels)} test modes.", body)
+    return _figure(title, unit, keys, picture)
 
 
 def _role(state: str, states: Mapping[str, Sequence[float | None]]) -> str:
