@@ -57,9 +57,11 @@ def make_report(
     shown = [(section, body) for section in SECTIONS if (body := section.body(run))]
     kind = _VERBS[answer.verb]
     name = title or _compared(answer)
-    kicker = tag(
-        "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(answer), class_="kicker"
-    )
+    verdict = ""
+    if isinstance(answer, DiscoverTables):
+        told = esc(VERDICTS.get(answer.verdict, answer.verdict))
+        verdict = tag("span", told, class_="verdict")
+    kicker = tag("p", esc(" · ".join(t for t in (kind, name) if t)), verdict, class_="kicker")
     first, *rest = story(answer)
     links = tag("nav", *[tag("a", esc(s.title), href=f"#{s.anchor}") for s, _ in shown],
                 aria_label="Sections")  # fmt: skip
@@ -80,11 +82,11 @@ def make_report(
     return html_page(name or kind, body + tip + script)
 
 
-def html_page(title: str, body: str, more_style: str = "") -> str:
+def html_page(title: str, body: str) -> str:
     """Return a page that needs nothing else, in the style of the reports, light and dark."""
     head = (
         '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>trueup · {esc(title)}</title><style>{_style()}{more_style}</style>"
+        f"<title>trueup · {esc(title)}</title><style>{_style()}</style>"
     )
     return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}</body></html>\n'
 
@@ -106,12 +108,6 @@ def _compared(answer: RunTables) -> str:
     deck, test = answer.sources
     sides = ((deck,) if deck else (), test)
     return " against ".join(", ".join(PurePath(p).name for p in side) for side in sides if side)
-
-
-def _verdict(answer: RunTables) -> str:
-    if not isinstance(answer, DiscoverTables):
-        return ""
-    return tag("span", esc(VERDICTS.get(answer.verdict, answer.verdict)), class_="verdict")
 
 
 def _strip(answer: RunTables) -> str:

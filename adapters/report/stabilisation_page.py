@@ -18,23 +18,6 @@ _DECADES = 7.0  # of the indicator that are shown at most
 _CURVES = 4  # indicator curves that are shown at most
 _POOR = 0.9  # quality below which a figure is coloured
 
-_STYLE = (
-    ".stab .curve{fill:none;stroke:var(--soft);stroke-width:1.2;stroke-linejoin:round}"
-    ".stab .curve.rest{stroke-width:.8;opacity:.55}"
-    ".stab .dots{fill:none;stroke-linecap:round}"
-    ".stab .stable{stroke:var(--now);stroke-width:4}"
-    ".stab .loose{stroke:var(--faint);stroke-width:2.4;opacity:.6}"
-    ".stab .mode path{stroke:var(--ink);stroke-width:.9;stroke-opacity:.6;fill:none}"
-    ".stab .mode.poor path{stroke:var(--warm);stroke-dasharray:4 3}"
-    ".stab .mode.poor text{fill:var(--warm)}.stab .mode .hit{fill:transparent}"
-    ".stab .mode:hover path{stroke-width:2;stroke-opacity:1}"
-    ".stab .edge{stroke:var(--faint);stroke-dasharray:2 3}"
-    ".key .stable{background:var(--now);border-radius:50%;width:8px;height:8px}"
-    ".key .loose{background:var(--faint);border-radius:50%;width:6px;height:6px}"
-    ".key .line{background:var(--soft);height:2px;width:16px;vertical-align:3px}"
-    ".key .found{background:var(--ink);height:10px;width:1.5px}"
-)
-
 
 def stabilisation_page(
     found: Identification, title: str = "", warnings: Sequence[str] | None = None
@@ -66,7 +49,7 @@ def stabilisation_page(
         html_table(modes_table(found)) if n else "",
         tag("footer", "trueup · trueup/identify/1"),
     )
-    return html_page(title or "identification", body, more_style=_STYLE)
+    return html_page(title or "identification", body)
 
 
 def stabilisation_chart(found: Identification) -> str:

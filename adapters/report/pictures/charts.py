@@ -113,7 +113,8 @@ def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone
     for k, y in zip(shown, places, strict=True):
         d = f"M{short(edge + 2)} {short(at[k])}L{short(edge + 9)} {short(y)}"
         body += tag("path", class_="leader", d=d, style=f"stroke:{colours[k]}")
-        name = _shortened(drawn[k].name)
+        name = drawn[k].name
+        name = name if len(name) <= 22 else name[:21] + "…"
         body += svg_text(edge + 11, y + 3.5, name, class_="name", style=f"fill:{colours[k]}")
     return body
 
@@ -150,10 +151,6 @@ def _colour(k: int, count: int, ordered: bool) -> str:
     if not ordered:
         return f"var(--s{k % 8})"
     return f"var(--c{round(6 + (STEPS - 7) * (k / (count - 1) if count > 1 else 1.0))})"
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= 22 else name[:21] + "…"
 
 
 def _plain(value: float | None) -> str:

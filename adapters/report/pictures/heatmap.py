@@ -61,7 +61,7 @@ def heatmap(
         tag("rect", class_="cursor", width=cell, height=cell, hidden=True),
     ]
     labels = [
-        [_mode_label(m, f) for m in modes]
+        [f"{m} ({hz(f[m - 1])} Hz)" for m in modes]
         for modes, f in ((matrix.test, test_hz), (matrix.analysis, analysis_hz))
     ]
     picture = svg(
@@ -110,12 +110,9 @@ def _position(
     ]
 
 
-def _classes(values: Floats) -> Floats:
-    return np.clip(np.nan_to_num(values, nan=-1.0) * STEPS, -1, STEPS - 1).astype(int)
-
-
 def _cells(values: Floats, cell: int) -> list[str]:
-    classes = np.where(np.isnan(values), -1, _classes(values))
+    steps = np.clip(np.nan_to_num(values, nan=-1.0) * STEPS, -1, STEPS - 1).astype(int)
+    classes = np.where(np.isnan(values), -1, steps)
     paths = []
     for k in [-1, *range(1, STEPS)]:
         where = np.argwhere(classes == k)
@@ -176,10 +173,6 @@ def _outline(cells: Sequence[tuple[int, int]], cell: int) -> str:
         d += "" if (r, c - 1) in inside else f"M{x} {y}v{cell}"
         d += "" if (r, c + 1) in inside else f"M{x + cell} {y}v{cell}"
     return d
-
-
-def _mode_label(mode: int, frequencies: Floats) -> str:
-    return f"{mode} ({hz(frequencies[mode - 1])} Hz)"
 
 
 def _packed(values: Floats) -> str:

@@ -2,14 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from ....core.data.length_units import METRES
 from ..container import Section
 from ..open_file import Source
 from ..text.number_fields import floats, integers, text
 from ..text.printing import dataset, name_field
-from ..universal_content import Units, UniversalContent
+from ..universal_content import Units
 from .dataset_kind import DatasetKind, Gathered, Outgoing
 from .section_lines import Lines
 
@@ -76,10 +75,6 @@ def _unit(factor: float) -> str | None:
     return None
 
 
-def _tell(content: UniversalContent) -> dict[str, Any]:
-    return {"length_unit": content.length_unit}
-
-
 def _write(out: Outgoing) -> Iterator[bytes]:
     units = out.units
     if units is None:
@@ -95,4 +90,6 @@ def _write(out: Outgoing) -> Iterator[bytes]:
     yield dataset(164, head, b"".join(printed[:3]) + b"\n", printed[3] + b"\n")
 
 
-UNITS_164 = DatasetKind(164, "units", _read, _tell, _write, vital=True)
+UNITS_164 = DatasetKind(
+    164, "units", _read, lambda content: {"length_unit": content.length_unit}, _write, vital=True
+)
