@@ -61,18 +61,13 @@ def _free_set(deck: Deck) -> DofMap | None:
         labels = build_model(deck).free_labels
     except InputError:  # elements that trueup does not assemble; the export knows them all
         return None
-    pairs = np.array([[int(w) for w in label.split(":")] for label in labels], np.int64)
-    return DofMap.of_keys(np.sort(8 * pairs[:, 0] + pairs[:, 1])) if len(pairs) else None
+    return DofMap.of_keys(np.sort(DofMap.of_labels(labels).keys)) if labels else None
 
 
 def _analysis_set(deck: Deck, scalar: set[int]) -> Ints:
-    cards = [f for name in _SETS for f in _raw_fields(deck, name)]
-    keys = [k for card in cards for k in set_keys(card)]
+    cards = (card for name in _SETS for card in deck.bulk.raw.get(name, []))
+    keys = [k for card in cards for k in set_keys(fields_of(card.lines))]
     return np.unique(np.array([8 * (k // 8) if k // 8 in scalar else k for k in keys], np.int64))
-
-
-def _raw_fields(deck: Deck, name: str) -> list[Fields]:
-    return [fields_of(raw.lines) for raw in deck.bulk.raw.get(name, [])]
 
 
 def set_keys(card: Fields) -> list[int]:

@@ -1,5 +1,6 @@
 """A matrix as Nastran exports it, and what its rows are."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
@@ -60,6 +61,12 @@ class DofMap(Noun):
         """Make a map from `keys`."""
         return cls(keys // 8, keys % 8)
 
+    @classmethod
+    def of_labels(cls, labels: Iterable[str]) -> Self:
+        """Make a map from the labels ``POINT:COMPONENT`` of a model's free dofs."""
+        pairs = np.array([[int(w) for w in label.split(":")] for label in labels], np.int64)
+        return cls(*pairs.reshape(-1, 2).T)
+
 
 @dataclass(frozen=True, eq=False)
 class NastranMatrix(Noun):
@@ -85,6 +92,20 @@ class NastranMatrix(Noun):
     rows: DofMap | None = None
     columns: DofMap | None = None
     single: bool = False
+
+    @classmethod
+    def of_file(
+        cls,
+        name: str,
+        matrix: sp.csc_matrix,
+        form: int,
+        there: DofMap | None = None,
+        single: bool = False,
+    ) -> Self:
+        """Return a matrix as a file holds it: a symmetric one may have one triangle only."""
+        if form == SYMMETRIC and matrix.shape[0] == matrix.shape[1]:
+            matrix = symmetrised(matrix)
+        return cls(name, matrix, form, there, there, single)
 
 
 def symmetrised(matrix: sp.csc_matrix) -> sp.csc_matrix:

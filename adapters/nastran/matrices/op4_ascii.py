@@ -12,7 +12,7 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.errors import InputError, Place
-from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
+from .exported_matrix import NastranMatrix
 from .op4_binary import Header, Names
 from .packed_columns import Filler, Strings
 
@@ -149,14 +149,11 @@ def read_ascii(path: Path, wanted: Names = None) -> Iterator[NastranMatrix | Hea
                     filler.add(strings, found)
                 except ValueError:
                     raise lines.wrong(f"matrix {header.name} has too many values") from None
-            yield _matrix(header, filler) if values else header
-
-
-def _matrix(header: Header, filler: Filler) -> NastranMatrix:
-    matrix = filler.matrix()
-    if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
-        matrix = symmetrised(matrix)
-    return NastranMatrix(header.name, matrix, header.form, single=header.kind in (1, 3))
+            if not values:
+                yield header
+                continue
+            single = header.kind in (1, 3)
+            yield NastranMatrix.of_file(header.name, filler.matrix(), header.form, single=single)
 
 
 def _header(lines: _Lines) -> tuple[Header, _Print]:
