@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ....core.arrays import Ints
 from ....core.errors import InputError, Place
 from ....core.noun import Noun
 from .includes import locate_include, parse_include
@@ -99,9 +100,19 @@ class DeckText(Noun):
 
     def rows_in(self, segment: Segment, name: str) -> Iterator[tuple[int, int]]:
         """Yield line and number (-1: none) of each card of a name in a segment."""
+        rows, ids = self._named(segment, name)
+        yield from zip(rows.tolist(), ids.tolist(), strict=True)
+
+    def rows_of(self, segment: Segment, name: str, numbers: int | Ints) -> list[tuple[int, int]]:
+        """Return line and number of the cards of a name in a segment that have some numbers."""
+        rows, ids = self._named(segment, name)
+        mine = np.isin(ids, numbers)
+        return list(zip(rows[mine].tolist(), ids[mine].tolist(), strict=True))
+
+    def _named(self, segment: Segment, name: str) -> tuple[Ints, Ints]:
         rows, ids = self.files[segment.file].rows_named(name)
-        a, b = np.searchsorted(rows, (segment.first, segment.stop))
-        yield from zip(rows[a:b].tolist(), ids[a:b].tolist(), strict=True)
+        here = slice(*np.searchsorted(rows, (segment.first, segment.stop)))
+        return rows[here], ids[here]
 
 
 def read_deck_text(path: Path | str) -> DeckText:
