@@ -116,13 +116,11 @@ def solve(
     if fmax is not None and (not isinstance(fmax, int | float) or not fmax > 0.0):
         raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
     read = None if isinstance(deck, Model) else read_deck(deck)
-    name = read.path if read else None
-    with naming(name):
-        model = build_model(read) if read else deck
-    assert isinstance(model, Model)
     asked = read.eigen.nd if read and read.eigen else None
-    progress("solving")
-    with naming(name):
+    with naming(read.path if read else None):
+        model = build_model(read) if read else deck
+        assert isinstance(model, Model)
+        progress("solving")
         wanted = number if number or fmax else (asked or _FEW)
         solution = normal_modes.solve(model, n_modes=wanted, fmax=fmax)
     modes = normal_modes.modes_of(model, solution)

@@ -127,13 +127,13 @@ def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
         raise InputError(
             f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
         )
+    errors = placed.errors
     target = core.Target(
         placed.test.frequencies_hz,
         placed.weighted(placed.test.shapes),
         placed.weighted(placed.observation.matrix @ analysis.model.expansion),
         chosen,
-        None if placed.errors is None else placed.errors.frequency,
-        None if placed.errors is None else placed.errors.length,
+        *((None, None) if errors is None else (errors.frequency, errors.length)),
     )
     return core.update(
         analysis.model,
@@ -161,11 +161,10 @@ def _written(
 
     assert analysis.deck is not None
     original = analysis.deck.text
+    moved = zip(analysis.specs, analysis.model.parameters, done.factors, strict=True)
     wanted = {
         ref: value * float(factor)
-        for spec, parameter, factor in zip(
-            analysis.specs, analysis.model.parameters, done.factors, strict=True
-        )
+        for spec, parameter, factor in moved
         for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
         if abs(factor - 1.0) > 1e-12
     }

@@ -122,20 +122,17 @@ def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone
 def _line(
     plot: Plot, x: Sequence[float], s: Series, k: int, colour: str, count: int, ordered: bool
 ) -> str:
-    d, pen = "", "M"
+    d, dots, pen = "", "", "M"
     for at, v in zip(x, s.values, strict=False):
         if v is None:
             pen = "M"
             continue
-        d += f"{pen}{short(plot.x(at))} {short(plot.y(v))}"
+        here = short(plot.x(at)), short(plot.y(v))
+        d += pen + " ".join(here)
+        dots += tag("circle", cx=here[0], cy=here[1], r=2.3)
         pen = "L"
     dashes = None if ordered or k < 8 else ("5 3", "2 2", "8 3 2 3")[(k // 8 - 1) % 3]
-    dots = "".join(
-        tag("circle", cx=short(plot.x(at)), cy=short(plot.y(v)), r=2.3)
-        for at, v in zip(x, s.values, strict=False)
-        if v is not None and count <= 12
-    )
-    dot = tag("g", dots, fill=colour, stroke="none") if dots else ""
+    dot = tag("g", dots, fill=colour, stroke="none") if dots and count <= 12 else ""
     line = tag("path", d=d, stroke=colour, stroke_dasharray=dashes)
     return tag("g", line, dot, class_="series", data_k=k)
 
