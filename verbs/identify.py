@@ -17,8 +17,8 @@ from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
 from ..core.results.identification import IdentifyTables, identified
 from ..core.results.plain import BESIDE
+from .folder import Folder
 from .options import Say, checked_call, unheard
-from .run import Folder
 from .sources import Source, existing, files_of
 
 if TYPE_CHECKING:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from ..adapters.store import StoreContent
 from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
@@ -15,9 +14,12 @@ from ..core.eigen import normal_modes
 from ..core.errors import InputError, Place, naming, path_of
 from ..core.results.plain import BESIDE, Table
 from ..core.results.solution import Checks, ModeRow, SolveTables
+from .folder import Folder
 from .options import Say, checked_call, unheard
-from .run import Folder
 from .sources import Source, geometry_of, read_deck
+
+if TYPE_CHECKING:
+    from ..adapters.store import StoreContent
 
 _FEW = 10
 """Modes where neither the user nor the deck says how many."""
@@ -40,6 +42,8 @@ class Solved(SolveTables, Folder):
     @property
     def content(self) -> StoreContent:
         """What a store holds of it."""
+        from ..adapters.store import StoreContent
+
         return StoreContent(geometry=self.geometry, modes={"analysis": self.shapes})
 
     def write(self, path: Path | str) -> Path:

@@ -1,15 +1,19 @@
 """A matrix as Nastran exports it, and what its rows are."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
-import scipy.sparse as sp
 
 from ....core.arrays import Ints, frozen, require_shape
 from ....core.data.dofs import Dofs
 from ....core.noun import Noun
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 SQUARE, RECTANGULAR, SYMMETRIC = 1, 2, 6
 _COLUMNS = 1 << 14
@@ -110,6 +114,8 @@ class NastranMatrix(Noun):
 
 def symmetrised(matrix: sp.csc_matrix) -> sp.csc_matrix:
     """Fill in the entries of a symmetric matrix that are given on one side of the diagonal only."""
+    import scipy.sparse as sp  # slow to import, and not needed to know a file
+
     upper, lower = _sides(matrix)
     if upper == lower and _is_symmetric(matrix):
         return matrix
