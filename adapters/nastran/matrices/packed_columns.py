@@ -1,5 +1,7 @@
 """Strings of values, as Nastran packs the columns of a sparse matrix, to a sparse matrix."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

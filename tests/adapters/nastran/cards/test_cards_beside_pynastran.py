@@ -9,8 +9,7 @@ from itertools import zip_longest
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.cards import definitions
