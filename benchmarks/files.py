@@ -22,9 +22,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import scipy.sparse as sp
-from universal import compare as compare_universal
-from universal import large as large_universal
-from universal import seconds, survey
+from universal import compare as compare_universal, large as large_universal, seconds, survey
 
 from trueup.adapters.nastran import NastranMatrix, read_modes, read_op4, write_op4
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..verbs.study import Study
-from .console import emit_json, speaks, stderr, stdout
+from .console import emit_json, speaks, stdout, tell
 from .options import Output
 
 if TYPE_CHECKING:
@@ -69,6 +69,4 @@ def answer(found: Run, folder: Path, output: Output) -> None:
         for table in result_tables(found, console.width):
             console.print(table)
         console.print(f"run folder: {folder}", markup=False)
-    if not output.quiet:
-        for warning in found.warnings:
-            stderr().print(f"warning: {warning}", markup=False)
+    tell(output, "warning", found.warnings)

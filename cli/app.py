@@ -1,7 +1,5 @@
 """The verbs of the command line and the exit statuses."""
 
-from __future__ import annotations
-
 import os
 import sys
 from typing import Annotated
@@ -37,16 +35,14 @@ def _root(
 
 def _register() -> None:
     from .options import UPDATE, comparing
+    from .verbs.comparing import correlate, discover, update
     from .verbs.convert import convert
-    from .verbs.correlate import correlate
     from .verbs.demo import demo
-    from .verbs.discover import discover
     from .verbs.export_runs import export_runs
     from .verbs.identify import identify
     from .verbs.inspect import inspect
     from .verbs.report import report
     from .verbs.solve import solve
-    from .verbs.update import update
 
     app.command()(inspect)
     app.command()(convert)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +26,12 @@ def stderr() -> Console:
     from rich.console import Console
 
     return Console(stderr=True, highlight=False)
+
+
+def tell(output: Output, word: str, sentences: Iterable[str], wrap: bool = True) -> None:
+    """Tell warnings and the like on standard error, one a line, unless all is to be quiet."""
+    for sentence in () if output.quiet else sentences:
+        stderr().print(f"{word}: {sentence}", markup=False, soft_wrap=not wrap)
 
 
 def speaks(output: Output) -> bool:

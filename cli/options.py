@@ -1,11 +1,9 @@
 """Options that every verb that compares takes, declared once."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,9 +16,6 @@ JsonOption = Annotated[
     str | None,
     typer.Option("--json", metavar="FILE|-", help="Write result.json here; '-' is stdout."),
 ]
-OutOption = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="The run folder to write.")
-]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run folder.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no tables.")]
 InPlaceOption = Annotated[
@@ -28,10 +23,6 @@ InPlaceOption = Annotated[
     typer.Option("-ip", "--in-place", help="Change the deck itself as well; keeps backups."),
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
-LengthUnitOption = Annotated[
-    str | None,
-    typer.Option("--deck-length-unit", metavar="m|mm|in|ft", help="Length unit of the deck."),
-]
 
 
 @dataclass(frozen=True)
@@ -45,64 +36,39 @@ class Output:
     in_place: bool = False
 
 
+def _option(kind: Any, said: str, *names: str, metavar: str | None = None) -> Any:
+    """Return an option that may be left out; its name is that of the key of `Study`, or `names`."""
+    return Annotated[kind | None, typer.Option(*names, metavar=metavar, help=said)]
+
+
 _STUDY: dict[str, Any] = {
-    "mac_min": Annotated[
-        float | None, typer.Option("--mac-min", help="Smallest MAC of a pair. [default: 0.7]")
-    ],
-    "frequency_tolerance": Annotated[
-        float | None,
-        typer.Option(
-            "--frequency-tolerance",
-            help="Largest relative frequency difference of a pair. [default: 0.3]",
-        ),
-    ],
-    "cluster_width": Annotated[
-        float | None,
-        typer.Option(
-            "--cluster-width",
-            help="Relative bandwidth within which modes count as close. [default: 0.02]",
-        ),
-    ],
-    "rotate": Annotated[
-        str | None,
-        typer.Option(
-            "--rotate", metavar="analysis|test|none", help="Side to rotate. [default: analysis]"
-        ),
-    ],
-    "modes": Annotated[
-        Path | None,
-        typer.Option("--modes", metavar="FILE", help="Analysis modes of your own Nastran run."),
-    ],
-    "deck_length_unit": LengthUnitOption,
-    "parameters": Annotated[
-        list[str] | None,
-        typer.Option(
-            "-p",
-            "--parameter",
-            metavar="PARAMETER",
-            help="For example 'PBAR 11 I1' or 'front = PBAR 11 I1, PBAR 11 I2 [0.2, 5]'.",
-        ),
-    ],
-    "out": OutOption,
-}
+    "mac_min": _option(float, "Smallest MAC of a pair. [default: 0.7]"),
+    "frequency_tolerance": _option(
+        float, "Largest relative frequency difference of a pair. [default: 0.3]"
+    ),
+    "cluster_width": _option(
+        float, "Relative bandwidth within which modes count as close. [default: 0.02]"
+    ),
+    "rotate": _option(str, "Side to rotate. [default: analysis]", metavar="analysis|test|none"),
+    "modes": _option(Path, "Analysis modes of your own Nastran run.", metavar="FILE"),
+    "deck_length_unit": _option(str, "Length unit of the deck.", metavar="m|mm|in|ft"),
+    "parameters": _option(
+        list[str], "For example 'PBAR 11 I1' or 'front = PBAR 11 I1, PBAR 11 I2 [0.2, 5]'.",
+        "-p", "--parameter", metavar="PARAMETER",
+    ),
+    "out": _option(Path, "The run folder to write.", metavar="DIR"),
+}  # fmt: skip
 
 UPDATE: dict[str, Any] = {
-    "residuals": Annotated[
-        str | None,
-        typer.Option(
-            "--residuals",
-            metavar="both|frequencies|shapes|...",
-            help="What the update minimises; several with commas. [default: both]",
-        ),
-    ],
-    "test_modes": Annotated[
-        list[int] | None,
-        typer.Option("--test-mode", help="Use only these test modes (repeatable, from 1)."),
-    ],
-    "max_iterations": Annotated[
-        int | None, typer.Option("--max-iterations", help="Per stage. [default: 10]")
-    ],
-}
+    "residuals": _option(
+        str, "What the update minimises; several with commas. [default: both]",
+        metavar="both|frequencies|shapes|...",
+    ),
+    "test_modes": _option(
+        list[int], "Use only these test modes (repeatable, from 1).", "--test-mode"
+    ),
+    "max_iterations": _option(int, "Per stage. [default: 10]"),
+}  # fmt: skip
 
 
 def comparing(
@@ -122,13 +88,8 @@ def comparing(
     @functools.wraps(verb)
     def command(**given: Any) -> None:
         study_file: Path | None = given.pop("study")
-        output = Output(
-            given.pop("json"),
-            given.pop("force"),
-            given.pop("quiet"),
-            given.pop("verbose"),
-            given.pop("in_place", False),
-        )
+        spoken = {f.name: given.pop(f.name) for f in fields(Output) if f.name in given}
+        output = Output(**spoken)
         filed = read_study(study_file) if study_file else Study()
         try:
             study = merge(filed, given, given, "options")
@@ -146,13 +107,7 @@ def comparing(
     signature = [
         keyword("deck", Annotated[Path | None, typer.Argument(metavar="DECK")]),
         keyword("test", Annotated[list[Path] | None, typer.Argument(metavar="TEST...")]),
-        keyword(
-            "study",
-            Annotated[
-                Path | None,
-                typer.Option("--study", metavar="FILE", help="Study file (TOML); options win."),
-            ],
-        ),
+        keyword("study", _option(Path, "Study file (TOML); options win.", metavar="FILE")),
         *(keyword(name, annotation) for name, annotation in shared.items()),
         *([keyword("in_place", InPlaceOption, False)] if changes_deck else []),
         keyword("json", JsonOption),

@@ -127,9 +127,7 @@ def _shaded(value: float, cell: int, shades: list[str]) -> tuple[str, str]:
 
 def solve_table(answer: SolveTables) -> RenderableType:
     """Return the modes of ``trueup solve`` with mass and centre of gravity."""
-    table = _titled("Normal modes")
-    for heading in ("mode", "Hz", "generalised mass", ""):
-        table.add_column(heading, justify="left" if not heading else "right")
+    table = _titled("Normal modes", ("mode", "Hz", "generalised mass", ""))
     for k, mode in enumerate(answer.modes):
         rigid = k < answer.rigid_body_modes
         what = Text("rigid body", style="dim") if rigid else ""
@@ -148,9 +146,8 @@ def _solved_hz(f: float, rigid: bool) -> str:
 
 def identify_table(modes: Sequence[IdentifiedRow]) -> Table:
     """Return the modes of ``trueup identify`` with their uncertainty and quality."""
-    table = _titled("Identified modes")
-    for heading in ("mode", "Hz", "±", "damping %", "±", "MPC %", "MPD °", "quality", ""):
-        table.add_column(heading, justify="left" if not heading else "right")
+    headings = ("mode", "Hz", "±", "damping %", "±", "MPC %", "MPD °", "quality", "")
+    table = _titled("Identified modes", headings)
     for k, mode in enumerate(modes):
         notes = [mode.remark] if mode.remark else []
         notes += ["moves as a rigid body (suspension)"] if mode.suspension else []
@@ -213,9 +210,13 @@ def _told(value: object, between: str = ", ") -> str:
     return general(value, 6) if isinstance(value, float) else str(value)
 
 
-def _titled(title: str) -> Table:
-    return Table(title=Text(title, style="bold"), title_justify="left", box=None, pad_edge=False,
-                 header_style="dim", padding=(0, 2, 0, 0))  # fmt: skip
+def _titled(title: str, headings: Sequence[str] = ()) -> Table:
+    """Return an empty table; columns are of numbers where they have a heading."""
+    table = Table(title=Text(title, style="bold"), title_justify="left", box=None, pad_edge=False,
+                  header_style="dim", padding=(0, 2, 0, 0))  # fmt: skip
+    for heading in headings:
+        table.add_column(heading, justify="right" if heading else "left")
+    return table
 
 
 def _rich(table: report_table.Table, state: str = "") -> Table:

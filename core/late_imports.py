@@ -26,8 +26,8 @@ def optional(package: str, extra: str) -> Any:
         ) from error
 
 
-def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], object]:
-    """Return the ``__getattr__`` of a package.
+def lazy_names(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], list[str]]:
+    """Return the ``__getattr__`` and the ``__all__`` of a package.
 
     Parameters
     ----------
@@ -43,4 +43,4 @@ def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], object
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
         return getattr(import_module(home[name], package), name)
 
-    return attribute
+    return attribute, sorted(home)

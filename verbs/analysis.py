@@ -62,11 +62,8 @@ def read_analysis(
     name = None if deck is None else deck.path
     specs = tuple(parse_parameter(p) for p in study.parameters)
     with naming(name):
-        if isinstance(source, Model):
-            model = source
-        else:
-            assert deck is not None
-            model = build_model(deck, specs)
+        model = source if deck is None else build_model(deck, specs)
+    assert isinstance(model, Model)
     warnings = (*(deck.warnings if deck else ()), *model.warnings)
     if modes is not None:
         given = analysis_modes(modes, deck)
@@ -144,7 +141,4 @@ def named(study: Study, deck: Deck | None, test: Measured, modes: Source | None)
 def _rigid(modes: Modes) -> int:
     """Count the leading modes that are rigid-body motions to the rounding of the file."""
     hz = modes.frequencies_hz
-    if not len(hz):
-        return 0
-    leading = np.flatnonzero(hz > 1e-3 * np.max(hz))
-    return int(leading[0]) if len(leading) else 0
+    return int(np.argmax(hz > 1e-3 * np.max(hz))) if len(hz) else 0

@@ -117,24 +117,21 @@ def _check(sources: list[Path], destination: Path, kind: str | None, force: bool
 
 
 def _written(cargo: Cargo, holds: frozenset[str]) -> dict[str, str]:
-    said: dict[str, str] = {}
-    if cargo.geometry is not None and "geometry" in holds:
-        said["geometry"] = f"{len(cargo.geometry.ids)} nodes"
-    if cargo.modes and "modes" in holds:
-        said["modes"] = ", ".join(f"{k} {len(m)}" for k, m in cargo.modes.items())
-    if cargo.frfs and "frfs" in holds:
-        said["frequency responses"] = ", ".join(
-            f"{k} {len(f.responses)} x {len(f.references)} x {len(f.frequencies_hz)}"
-            for k, f in cargo.frfs.items()
-        )
-    if cargo.functions and "functions" in holds:
-        kinds = Counter(f.kind for f in cargo.functions.values())
-        said["functions"] = ", ".join(f"{n} x {kind}" for kind, n in kinds.items())
-    if cargo.matrices and "matrices" in holds:
-        said["matrices"] = ", ".join(
-            f"{k} {m.matrix.shape[0]} x {m.matrix.shape[1]}" for k, m in cargo.matrices.items()
-        )
-    return said
+    kinds = Counter(f.kind for f in cargo.functions.values())
+    responses = (
+        f"{k} {len(f.responses)} x {len(f.references)} x {len(f.frequencies_hz)}"
+        for k, f in cargo.frfs.items()
+    )
+    sizes = ((k, m.matrix.shape) for k, m in cargo.matrices.items())
+    said = {
+        "geometry": [f"{len(cargo.geometry.ids)} nodes"] if cargo.geometry is not None else [],
+        "modes": [f"{k} {len(m)}" for k, m in cargo.modes.items()],
+        "frfs": list(responses),
+        "functions": [f"{n} x {kind}" for kind, n in kinds.items()],
+        "matrices": [f"{k} {rows} x {columns}" for k, (rows, columns) in sizes],
+    }
+    names = {"frfs": "frequency responses"}
+    return {names.get(k, k): ", ".join(v) for k, v in said.items() if v and k in holds}
 
 
 def _told(cargo: Cargo) -> str:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -99,18 +98,13 @@ def _universal(path: Path, cargo: Cargo, binary: bool = False) -> None:
     modes = next(iter(cargo.modes.values()), None)
     if modes is not None:
         keep = np.flatnonzero(~_scalar(modes))
-        modes = Modes(
-            modes.frequencies_hz, modes.shapes[keep], modes.dofs.take(keep), modes.damping,
-            modes.generalized_mass, modes.source,
-        )  # fmt: skip
-    frfs = next(iter(cargo.frfs.values()), None)
-    functions = tuple(cargo.functions.values())
+        modes = replace(modes, shapes=modes.shapes[keep], dofs=modes.dofs.take(keep))
     write_universal(
         path,
         geometry=cargo.geometry,
         modes=modes,
-        frfs=frfs,
-        functions=functions,
+        frfs=next(iter(cargo.frfs.values()), None),
+        functions=tuple(cargo.functions.values()),
         extensions=[noun for nouns in cargo.extensions.values() for noun in nouns],
         binary=binary,
     )
@@ -141,8 +135,7 @@ def _store(path: Path, cargo: Cargo) -> None:
 
 
 def _record(function: Any) -> dict[str, Any]:
-    said = dataclasses.asdict(function)
-    kept = {k: v for k, v in said.items() if k not in ("kind", "line", "path")}
+    kept = {k: v for k, v in asdict(function).items() if k not in ("kind", "line", "path")}
     return {"function": function.kind, **kept}
 
 

@@ -170,16 +170,11 @@ def _compared(
 
 
 def _scattered(test: Placed, asked: Study) -> Placed:
-    if asked.frequency_scatter is None and asked.shape_scatter is None:
+    scatter = asked.frequency_scatter, asked.shape_scatter
+    if scatter == (None, None):
         return test
-    errors = with_scatter(
-        test.errors,
-        len(test.observation),
-        len(test.test),
-        asked.frequency_scatter or 0.0,
-        asked.shape_scatter or 0.0,
-    )
-    return replace(test, errors=errors)
+    count = len(test.observation), len(test.test)
+    return replace(test, errors=with_scatter(test.errors, *count, *(s or 0.0 for s in scatter)))
 
 
 def _maps(before: Comparison, structure: Structure, solution: Eigensolution) -> Disagreement | None:
@@ -225,18 +220,8 @@ def _parameters(
 ) -> Table[ParameterRow]:
     rows = []
     for m in found.parameters:
-        q = model.parameters[m.number]
-        factor = written_factor(found.verdict, m)
-        rows.append(
-            ParameterRow(
-                specs[m.number].name,
-                q.handle,
-                q.deck_values,
-                tuple(v * factor for v in q.deck_values),
-                m.factor,
-                m.standard_error,
-                False,
-                m.significant,
-            )
-        )
+        q, factor = model.parameters[m.number], written_factor(found.verdict, m)
+        values = tuple(v * factor for v in q.deck_values)
+        told = (m.factor, m.standard_error, False, m.significant)
+        rows.append(ParameterRow(specs[m.number].name, q.handle, q.deck_values, values, *told))
     return Table(rows)

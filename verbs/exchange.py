@@ -53,7 +53,9 @@ class Cargo:
     extensions: dict[str, list[Any]] = field(default_factory=dict)
 
     def add(self, part: str, name: str, noun: object) -> None:
-        """Add a noun under a name that is still free."""
+        """Add a noun, if there is one, under a name that is still free."""
+        if noun is None:
+            return
         named: dict[str, object] = getattr(self, part)
         free, number = name, 2
         while free in named:
@@ -84,11 +86,20 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
         if k == RESULTS:
             _results(path, deck, subcase, cargo)
         elif k in (OP4, PUNCH):
-            _matrices(path, deck, cargo)
+            from ..adapters.nastran import read_matrices
+
+            for m in read_matrices(path, deck):
+                cargo.add("matrices", m.name, m)
         elif k == RUNS:
-            _runs(path, cargo)
+            from ..adapters.nastran import terms_of_runs
+
+            for m, factor in terms_of_runs(path):
+                cargo.add("matrices", m.name, m)
+                cargo.notes.append(f"{m.name} is multiplied by {factor}")
         elif k == STORE:
-            _store(path, cargo)
+            from ..adapters.store import read_store
+
+            _stored(read_store(path), path, cargo)
     return cargo
 
 
@@ -106,13 +117,15 @@ def cargo_of(source: object) -> Cargo:
     for noun in source if isinstance(source, list | tuple) else [source]:
         held = getattr(noun, "content", noun)
         if isinstance(noun, Measurement):
-            _put(cargo, "test", noun.geometry, noun.modes, noun.frfs)
+            _set_geometry(cargo, noun.geometry, Path("test"))
+            cargo.add("modes", "test", noun.modes)
+            cargo.add("frfs", "test", noun.frfs)
         elif isinstance(noun, Modes):
-            _put(cargo, "analysis", modes=noun)
+            cargo.add("modes", "analysis", noun)
         elif isinstance(noun, Frfs):
-            _put(cargo, "test", frfs=noun)
+            cargo.add("frfs", "test", noun)
         elif isinstance(noun, Geometry):
-            _put(cargo, "", noun)
+            _set_geometry(cargo, noun, Path("the sources"))
         elif isinstance(held, StoreContent):
             _stored(held, Path("the store"), cargo)
         else:
@@ -121,20 +134,6 @@ def cargo_of(source: object) -> Cargo:
                 "responses, a geometry or what a verb gave"
             )
     return cargo
-
-
-def _put(
-    cargo: Cargo,
-    name: str,
-    geometry: Geometry | None = None,
-    modes: Modes | None = None,
-    frfs: Frfs | None = None,
-) -> None:
-    _set_geometry(cargo, geometry, Path(name or "the sources"))
-    if modes is not None:
-        cargo.add("modes", name, modes)
-    if frfs is not None:
-        cargo.add("frfs", name, frfs)
 
 
 def _set_geometry(cargo: Cargo, geometry: Geometry | None, path: Path) -> None:
@@ -167,10 +166,8 @@ def _universal(paths: list[Path], cargo: Cargo) -> None:
 
     content = read_universal(paths)
     _set_geometry(cargo, content.geometry, paths[0])
-    if content.modes is not None:
-        cargo.add("modes", "test", content.modes)
-    if content.frfs is not None:
-        cargo.add("frfs", "test", content.frfs)
+    cargo.add("modes", "test", content.modes)
+    cargo.add("frfs", "test", content.frfs)
     for k, f in enumerate(content.functions, 1):
         cargo.functions[f"{f.kind.replace(' ', '_').replace('/', '_')}/{k:05d}"] = f
     for noun in content.extensions:
@@ -199,27 +196,6 @@ def _results(path: Path, deck: Any, subcase: int | None, cargo: Cargo) -> None:
     if others:
         more = f" and {len(others) - 6} more" if len(others) > 6 else ""
         cargo.notes.append(f"{path.name}: not read: {', '.join(others[:6])}{more}")
-
-
-def _runs(path: Path, cargo: Cargo) -> None:
-    from ..adapters.nastran import terms_of_runs
-
-    for m, factor in terms_of_runs(path):
-        cargo.add("matrices", m.name, m)
-        cargo.notes.append(f"{m.name} is multiplied by {factor}")
-
-
-def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:
-    from ..adapters.nastran import read_matrices
-
-    for m in read_matrices(path, deck):
-        cargo.add("matrices", m.name, m)
-
-
-def _store(path: Path, cargo: Cargo) -> None:
-    from ..adapters.store import read_store
-
-    _stored(read_store(path), path, cargo)
 
 
 def _stored(content: StoreContent, path: Path, cargo: Cargo) -> None:

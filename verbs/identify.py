@@ -17,8 +17,8 @@ from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
 from ..core.noun import BESIDE
 from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_rows
+from .folder import Folder
 from .options import Say, checked_call, unheard
-from .run import Folder
 from .sources import Source, existing, files_of
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from ..core.errors import InputError, Place, path_of
 
 if TYPE_CHECKING:
     from ..adapters.store import StoreContent
-    from .run import Folder
+    from .folder import Folder
 
 
 def open_run(folder: Path | str) -> Folder:

@@ -8,7 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import InputError, Place, path_of
+from ..core.errors import Place, path_of
+from ..core.files import reading
 from .sources import Source, read_test
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -41,33 +42,19 @@ class FileKind:
     read: Callable[[Path], object]
 
 
-def _late(room: str, name: str) -> Callable[[Path], Any]:
+def _late(room: str, name: str) -> Callable[[Any], Any]:
     """Return a function of an adapter, which is imported when it is called."""
-    return lambda path: getattr(import_module(f"..adapters.{room}", __package__), name)(path)
+    return lambda given: getattr(import_module(f"..adapters.{room}", __package__), name)(given)
 
 
 def _is_store(path: Path, head: bytes) -> bool:
-    from ..adapters.store import is_store
-
-    return head.startswith(_HDF5_SIGNATURE) and is_store(path)
+    return head.startswith(_HDF5_SIGNATURE) and bool(_late("store", "is_store")(path))
 
 
 def _is_universal(path: Path, head: bytes) -> bool:
     if head.startswith(_HDF5_SIGNATURE):
         return False
     return head.lstrip()[:3].split() == [b"-1"] or path.suffix.lower() in _UNIVERSAL_SUFFIXES
-
-
-def _is_runs(path: Path, head: bytes) -> bool:
-    from ..adapters.nastran import is_runs
-
-    return is_runs(head)
-
-
-def _is_op4(path: Path, head: bytes) -> bool:
-    from ..adapters.nastran import is_op4
-
-    return is_op4(path)
 
 
 def _is_results(path: Path, head: bytes) -> bool:
@@ -114,10 +101,16 @@ def _results(path: Path) -> object:
     return read_modes(path) if held["modes"] or not held.get("matrices") else read_matrices(path)
 
 
-def _runs(path: Path) -> object:
-    from ..adapters.nastran import read_runs
+def _is_op4(path: Path, head: bytes) -> bool:
+    return bool(_late("nastran", "is_op4")(path))
 
-    return read_runs(path.parent)
+
+def _is_runs(path: Path, head: bytes) -> bool:
+    return bool(_late("nastran", "is_runs")(head))
+
+
+def _runs(path: Path) -> object:
+    return _late("nastran", "read_runs")(path.parent)
 
 
 _matrices = _late("nastran", "describe_matrices"), _late("nastran", "read_matrices")
@@ -149,11 +142,8 @@ def kind_of_file(path: Path) -> FileKind:
     """
     if not path.is_file():
         raise Place(path).fault("does not exist or is not a file")
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
+    with reading(path), path.open("rb") as stream:
+        head = stream.read(_HEAD)
     if not head.strip():
         raise Place(path).fault("is empty")
     for kind in FILE_KINDS:

@@ -10,51 +10,17 @@ from typing import TYPE_CHECKING, Self
 from ..adapters.nastran.editing.changed_deck import ChangedDeck
 from ..adapters.store import StoreContent
 from ..core.correlation.comparison import Comparison
-from ..core.errors import path_of
 from ..core.noun import BESIDE
 from ..core.results.correlation import Compared, CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
-from ..core.results.plain import Table, Tables
+from ..core.results.plain import Table
 from ..core.results.update import ChangingTables, InPlace, UpdateTables
 from ..core.updating.stages import Iteration
+from .folder import Folder
 from .study import Study, read_study, study_toml
 
 if TYPE_CHECKING:
     from .plots import Plots
-
-
-class Folder(Tables):
-    """Base of the results that a run folder holds."""
-
-    def save(self, folder: Path | str, force: bool = False) -> Path:
-        """Write the run folder, whole or not at all; return its path.
-
-        Parameters
-        ----------
-        folder : path
-        force : bool
-            Replace a run folder that is there.
-
-        Raises
-        ------
-        InputError
-            The folder exists and `force` is not given, or cannot be written.
-        """
-        from ..adapters.run_folder.write_run import run_folder
-
-        path = path_of(folder, "the run folder")
-        with run_folder(path, force) as work:
-            self.fill(work)
-        return path
-
-    def fill(self, work: Path) -> None:
-        """Write everything that the run folder holds into an empty one."""
-        raise NotImplementedError
-
-    @classmethod
-    def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
-        """Return what `fill` wrote: from result.json, result.h5 and the rest of a run folder."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

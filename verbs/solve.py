@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from ..adapters.store import StoreContent
 from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
@@ -16,9 +15,12 @@ from ..core.errors import InputError, Place, naming, path_of
 from ..core.noun import BESIDE
 from ..core.results.modes import Checks, ModeRow, SolveTables
 from ..core.results.plain import Table
+from .folder import Folder
 from .options import Say, checked_call, unheard
-from .run import Folder
 from .sources import Source, geometry_of, read_deck
+
+if TYPE_CHECKING:
+    from ..adapters.store import StoreContent
 
 _FEW = 10
 """Modes where neither the user nor the deck says how many."""
@@ -41,6 +43,8 @@ class Solved(SolveTables, Folder):
     @property
     def content(self) -> StoreContent:
         """What a store holds of it."""
+        from ..adapters.store import StoreContent
+
         return StoreContent(geometry=self.geometry, modes={"analysis": self.shapes})
 
     def write(self, path: Path | str) -> Path:
@@ -117,13 +121,11 @@ def solve(
     if fmax is not None and (not isinstance(fmax, int | float) or not fmax > 0.0):
         raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
     read = None if isinstance(deck, Model) else read_deck(deck)
-    name = read.path if read else None
-    with naming(name):
-        model = build_model(read) if read else deck
-    assert isinstance(model, Model)
     asked = read.eigen.nd if read and read.eigen else None
-    progress("solving")
-    with naming(name):
+    with naming(read.path if read else None):
+        model = build_model(read) if read else deck
+        assert isinstance(model, Model)
+        progress("solving")
         wanted = number if number or fmax else (asked or _FEW)
         solution = normal_modes.solve(model, n_modes=wanted, fmax=fmax)
     modes = normal_modes.modes_of(model, solution)

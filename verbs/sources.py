@@ -69,8 +69,7 @@ def read_deck(source: Source) -> Deck:
     InputError
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
-    from ..adapters.nastran import Deck
-    from ..adapters.nastran import read_deck as read
+    from ..adapters.nastran import Deck, read_deck as read
 
     if isinstance(source, Deck):
         return source
@@ -103,8 +102,7 @@ def read_test(source: Source) -> Measurement:
         A file that is missing or cannot be read; neither modes nor frequency responses; no
         geometry; a node of the shapes without a position.
     """
-    from ..adapters.universal import is_pyuff, read_pyuff
-    from ..adapters.universal import read_test as read
+    from ..adapters.universal import is_pyuff, read_pyuff, read_test as read
 
     if isinstance(source, Measurement):
         return source

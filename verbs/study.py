@@ -138,13 +138,11 @@ def read_study(path: Path) -> Study:
     """
     here = Place(path, shown=f"study file {path}")
     try:
-        text = path.read_text(encoding="utf-8")
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise here.error(error.strerror or str(error)) from error
     except UnicodeDecodeError as error:
         raise here.fault("is not UTF-8 text") from error
-    try:
-        table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise here.fault(f"is not valid TOML: {error}") from error
     values = _study_values(table, {**_FIELDS, **_sigma_fields()}, here)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from ..core.correlation.comparison import Comparison, Placed, compare
+from ..core.data.parameter import Parameter
 from ..core.data.parametric_model import Model
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import CheckError, InputError
@@ -21,7 +23,6 @@ from .analysis import Analysis, both_given, correlated, named, read_analysis
 from .options import Files, Say, UpdateOptions, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
-from .stages import stages_of
 from .study import Study
 
 if TYPE_CHECKING:
@@ -127,18 +128,18 @@ def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
         raise InputError(
             f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
         )
+    errors = placed.errors
     target = core.Target(
         placed.test.frequencies_hz,
         placed.weighted(placed.test.shapes),
         placed.weighted(placed.observation.matrix @ analysis.model.expansion),
         chosen,
-        None if placed.errors is None else placed.errors.frequency,
-        None if placed.errors is None else placed.errors.length,
+        *((None, None) if errors is None else (errors.frequency, errors.length)),
     )
     return core.update(
         analysis.model,
         target,
-        stages_of(asked, analysis.model.parameters),
+        _stages(asked, analysis.model.parameters),
         asked.criteria,
         asked.weights,
         n_modes=len(analysis.modes),
@@ -161,11 +162,10 @@ def _written(
 
     assert analysis.deck is not None
     original = analysis.deck.text
+    moved = zip(analysis.specs, analysis.model.parameters, done.factors, strict=True)
     wanted = {
         ref: value * float(factor)
-        for spec, parameter, factor in zip(
-            analysis.specs, analysis.model.parameters, done.factors, strict=True
-        )
+        for spec, parameter, factor in moved
         for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
         if abs(factor - 1.0) > 1e-12
     }
@@ -180,3 +180,33 @@ def _written(
             "updated model's; nothing was written"
         )
     return changed, [[read_value(changed.text, r) for r in s.fields] for s in analysis.specs]
+
+
+def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, ...]:
+    """Return the stages; without ``[[stages]]`` one that moves every parameter.
+
+    Raises
+    ------
+    InputError
+        A stage that names a parameter the study does not define.
+    """
+    names = [p.name for p in parameters]
+    if not study.stages:
+        every = tuple(range(len(names)))
+        return (core.Stage(every, study.residuals, study.max_iterations),)
+    return tuple(
+        core.Stage(
+            tuple(_number(name, names) for name in s.parameters) or tuple(range(len(names))),
+            s.residuals,
+            s.max_iterations,
+        )
+        for s in study.stages
+    )
+
+
+def _number(name: str, names: Sequence[str]) -> int:
+    if name in names:
+        return names.index(name)
+    near = get_close_matches(name, names, n=1)
+    hint = f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(names)}"
+    raise InputError(f"a stage names the parameter '{name}', which the study does not define{hint}")

@@ -7,82 +7,48 @@ from typing import TYPE_CHECKING
 from ...core.late_imports import lazy_names
 
 if TYPE_CHECKING:
-    from .assembly.build_model import build_model
-    from .assembly.grid_point_weight import Weight, weight
-    from .deck.read_deck import Deck, EigenRequest
-    from .deck_contents import deck_geometry, describe_deck
-    from .deck_reader import read_deck
-    from .editing.add_cards import add_cards
-    from .editing.deck_diff import unified_diff
-    from .editing.find_cards import free_id
-    from .editing.set_values import read_value, set_values
-    from .editing.split_property import Split, split_property
-    from .editing.write_deck import write_deck, write_in_place
-    from .fields.parameter_references import FieldRef, ParameterSpec, parse_parameter
-    from .matrices.exported_matrix import DofMap, NastranMatrix, is_runs
-    from .matrices.exported_runs import read_runs, write_runs
-    from .matrices.matrix_model import (
-        matrix_of,
-        model_matrices,
-        model_of_matrices,
-        stiffness_and_mass,
+    from .assembly.build_model import build_model as build_model
+    from .assembly.grid_point_weight import Weight as Weight, weight as weight
+    from .deck.read_deck import Deck as Deck, EigenRequest as EigenRequest
+    from .deck_contents import deck_geometry as deck_geometry, describe_deck as describe_deck
+    from .deck_reader import read_deck as read_deck
+    from .editing.add_cards import add_cards as add_cards
+    from .editing.deck_diff import unified_diff as unified_diff
+    from .editing.find_cards import free_id as free_id
+    from .editing.set_values import read_value as read_value, set_values as set_values
+    from .editing.split_property import Split as Split, split_property as split_property
+    from .editing.write_deck import write_deck as write_deck, write_in_place as write_in_place
+    from .fields.parameter_references import (
+        FieldRef as FieldRef,
+        ParameterSpec as ParameterSpec,
+        parse_parameter as parse_parameter,
     )
-    from .matrices.op4 import is_op4, read_op4
-    from .matrices.read_matrices import describe_matrices, matrix_file_kind, read_matrices
-    from .matrices.run_terms import describe_runs, terms_of_runs
-    from .matrices.write_matrices import write_dmig, write_op4
-    from .results.read_modes import read_modes
-    from .results_contents import describe_results
-    from .text.deck_text import DeckText, read_deck_text
-    from .text.real_numbers import writable
+    from .matrices.exported_matrix import (
+        DofMap as DofMap,
+        NastranMatrix as NastranMatrix,
+        is_runs as is_runs,
+    )
+    from .matrices.exported_runs import read_runs as read_runs, write_runs as write_runs
+    from .matrices.matrix_model import (
+        matrix_of as matrix_of,
+        model_matrices as model_matrices,
+        model_of_matrices as model_of_matrices,
+        stiffness_and_mass as stiffness_and_mass,
+    )
+    from .matrices.op4 import is_op4 as is_op4, read_op4 as read_op4
+    from .matrices.read_matrices import (
+        describe_matrices as describe_matrices,
+        matrix_file_kind as matrix_file_kind,
+        read_matrices as read_matrices,
+    )
+    from .matrices.run_terms import describe_runs as describe_runs, terms_of_runs as terms_of_runs
+    from .matrices.write_matrices import write_dmig as write_dmig, write_op4 as write_op4
+    from .results.read_modes import read_modes as read_modes
+    from .results_contents import describe_results as describe_results
+    from .text.deck_text import DeckText as DeckText, read_deck_text as read_deck_text
+    from .text.real_numbers import writable as writable
 
-__all__ = [
-    "Deck",
-    "DeckText",
-    "DofMap",
-    "EigenRequest",
-    "FieldRef",
-    "NastranMatrix",
-    "ParameterSpec",
-    "Split",
-    "Weight",
-    "add_cards",
-    "build_model",
-    "deck_geometry",
-    "describe_deck",
-    "describe_matrices",
-    "describe_results",
-    "describe_runs",
-    "free_id",
-    "is_op4",
-    "is_runs",
-    "matrix_file_kind",
-    "matrix_of",
-    "model_matrices",
-    "model_of_matrices",
-    "parse_parameter",
-    "read_deck",
-    "read_deck_text",
-    "read_matrices",
-    "read_modes",
-    "read_op4",
-    "read_runs",
-    "read_value",
-    "set_values",
-    "split_property",
-    "stiffness_and_mass",
-    "terms_of_runs",
-    "unified_diff",
-    "weight",
-    "writable",
-    "write_deck",
-    "write_dmig",
-    "write_in_place",
-    "write_op4",
-    "write_runs",
-]
-
-__getattr__ = lazy_names(
+__getattr__, __all__ = lazy_names(
     __name__,
     {
         ".assembly.build_model": "build_model",

@@ -1,7 +1,5 @@
 """What a deck holds, in one screen."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Read a deck by the cards of the registry."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

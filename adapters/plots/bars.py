@@ -1,7 +1,5 @@
 """Frequency deviations and MAC by test mode."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A figure of matplotlib that leaves the user's own settings and pyplot alone."""
 
-from __future__ import annotations
-
 from functools import partial
 from io import BytesIO
 from typing import Any

@@ -1,7 +1,5 @@
 """The MAC matrix, shaded."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The structure in space: paired shapes, and where they differ."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Protocol
 

@@ -7,28 +7,14 @@ from typing import TYPE_CHECKING
 from ...core.late_imports import lazy_names
 
 if TYPE_CHECKING:
-    from .page import make_report
-    from .pictures.shape_overlay import Overlay, overlay
-    from .sections.known_sections import SECTIONS, register_section
-    from .sections.section import ReportedRun, Section
-    from .tables.headline import headline
-    from .tables.table import Cell, Column, Table
+    from .page import make_report as make_report
+    from .pictures.shape_overlay import Overlay as Overlay, overlay as overlay
+    from .sections.known_sections import SECTIONS as SECTIONS, register_section as register_section
+    from .sections.section import ReportedRun as ReportedRun, Section as Section
+    from .tables.headline import headline as headline
+    from .tables.table import Cell as Cell, Column as Column, Table as Table
 
-__all__ = [
-    "SECTIONS",
-    "Cell",
-    "Column",
-    "Overlay",
-    "ReportedRun",
-    "Section",
-    "Table",
-    "headline",
-    "make_report",
-    "overlay",
-    "register_section",
-]
-
-__getattr__ = lazy_names(
+__getattr__, __all__ = lazy_names(
     __name__,
     {
         ".page": "make_report",

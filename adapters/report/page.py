@@ -1,7 +1,5 @@
 """The report: one self-contained page made from what a run folder holds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import PurePath
@@ -59,9 +57,11 @@ def make_report(
     shown = [(section, body) for section in SECTIONS if (body := section.body(run))]
     kind = _VERBS[answer.verb]
     name = title or _compared(answer)
-    kicker = tag(
-        "p", esc(" · ".join(t for t in (kind, name) if t)), _verdict(answer), class_="kicker"
-    )
+    verdict = ""
+    if isinstance(answer, DiscoverTables):
+        told = esc(VERDICTS.get(answer.verdict, answer.verdict))
+        verdict = tag("span", told, class_="verdict")
+    kicker = tag("p", esc(" · ".join(t for t in (kind, name) if t)), verdict, class_="kicker")
     first, *rest = story(answer)
     links = tag("nav", *[tag("a", esc(s.title), href=f"#{s.anchor}") for s, _ in shown],
                 aria_label="Sections")  # fmt: skip
@@ -71,23 +71,24 @@ def make_report(
         tag("h1", _unbroken(first)),
         tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
         _strip(answer),
-        _warnings(answer.all_warnings),
+        warned(answer.all_warnings),
         links if len(shown) > 2 else "",
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
         tag("footer", esc(f"trueup · {answer.schema}")),
     )
-    head = (
-        '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{esc(' · '.join(t for t in ('trueup', name or kind) if t))}</title>"
-        f"<style>{style()}</style>"
-    )
     tip = '<div id="tip" role="status" hidden></div>'
     moving = "" if shapes is None else _asset("viewer.js")
     script = f"<script>{_asset('page.js')}{moving}</script>"
-    return (
-        f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}{tip}{script}</body>'
-        "</html>\n"
+    return html_page(name or kind, body + tip + script)
+
+
+def html_page(title: str, body: str) -> str:
+    """Return a page that needs nothing else, in the style of the reports, light and dark."""
+    head = (
+        '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<title>trueup · {esc(title)}</title><style>{_style()}</style>"
     )
+    return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}</body></html>\n'
 
 
 def summary(answer: RunTables) -> str:
@@ -109,12 +110,6 @@ def _compared(answer: RunTables) -> str:
     return " against ".join(", ".join(PurePath(p).name for p in side) for side in sides if side)
 
 
-def _verdict(answer: RunTables) -> str:
-    if not isinstance(answer, DiscoverTables):
-        return ""
-    return tag("span", esc(VERDICTS.get(answer.verdict, answer.verdict)), class_="verdict")
-
-
 def _strip(answer: RunTables) -> str:
     items = ""
     for what, now, then in figures(answer):
@@ -123,7 +118,8 @@ def _strip(answer: RunTables) -> str:
     return tag("dl", items, class_="figures")
 
 
-def _warnings(warnings: Sequence[str]) -> str:
+def warned(warnings: Sequence[str]) -> str:
+    """Return warnings, more than a few folded away; nothing where there are none."""
     if not warnings:
         return ""
     items = [tag("li", esc(w)) for w in warnings]
@@ -136,8 +132,7 @@ def _warnings(warnings: Sequence[str]) -> str:
     return tag("div", tag("b", "Warnings"), shown, more, class_="warnings", role="note")
 
 
-def style() -> str:
-    """Return the style sheet of the pages, light and dark."""
+def _style() -> str:
     ramp = "".join(
         f".c{k}{{fill:var(--c{k})}}.mesh .bar.k{k}{{stroke:var(--c{k})}}"
         for k in range(colour.STEPS)

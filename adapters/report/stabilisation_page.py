@@ -1,7 +1,5 @@
 """The stabilisation chart of an identification, the mode indicator function behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,33 +7,16 @@ import numpy as np
 from ...core.arrays import Bools, Floats, Ints
 from ...core.identification import Identification
 from .html.html_table import html_table
-from .html.markup import esc, short, svg_text, tag
-from .page import style
+from .html.markup import centred, esc, key, short, svg, svg_text, tag
+from .page import html_page, warned
 from .pictures.axes import Plot, decades, spread, ticks
 from .tables.number_formats import counted, fixed, general, hz, percent
-from .tables.table import Cell, Column, Table
+from .tables.table import Cell, Table, left
 
 _WIDTH, _HEIGHT = 1056, 500
 _DECADES = 7.0  # of the indicator that are shown at most
 _CURVES = 4  # indicator curves that are shown at most
 _POOR = 0.9  # quality below which a figure is coloured
-
-_STYLE = (
-    ".stab .curve{fill:none;stroke:var(--soft);stroke-width:1.2;stroke-linejoin:round}"
-    ".stab .curve.rest{stroke-width:.8;opacity:.55}"
-    ".stab .dots{fill:none;stroke-linecap:round}"
-    ".stab .stable{stroke:var(--now);stroke-width:4}"
-    ".stab .loose{stroke:var(--faint);stroke-width:2.4;opacity:.6}"
-    ".stab .mode path{stroke:var(--ink);stroke-width:.9;stroke-opacity:.6;fill:none}"
-    ".stab .mode.poor path{stroke:var(--warm);stroke-dasharray:4 3}"
-    ".stab .mode.poor text{fill:var(--warm)}.stab .mode .hit{fill:transparent}"
-    ".stab .mode:hover path{stroke-width:2;stroke-opacity:1}"
-    ".stab .edge{stroke:var(--faint);stroke-dasharray:2 3}"
-    ".key .stable{background:var(--now);border-radius:50%;width:8px;height:8px}"
-    ".key .loose{background:var(--faint);border-radius:50%;width:6px;height:6px}"
-    ".key .line{background:var(--soft);height:2px;width:16px;vertical-align:3px}"
-    ".key .found{background:var(--ink);height:10px;width:1.5px}"
-)
 
 
 def stabilisation_page(
@@ -59,25 +40,16 @@ def stabilisation_page(
         f"{general(float(f[-1]))} Hz from {counted(len(found.modes.dofs), 'response')} and "
         f"{counted(len(found.references), 'reference')}"
     )
-    told = ""
-    if said:
-        items = tag("ul", *[tag("li", esc(w)) for w in said])
-        told = tag("div", tag("b", "Warnings"), items, class_="warnings", role="note")
     body = tag(
         "main",
         tag("p", esc(" · ".join(t for t in ("Identification", title) if t)), class_="kicker"),
         tag("h1", esc(heading)),
-        told,
+        warned(said),
         stabilisation_chart(found),
         html_table(modes_table(found)) if n else "",
         tag("footer", "trueup · trueup/identify/1"),
     )
-    head = (
-        '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{esc(' · '.join(t for t in ('trueup', title or 'identification') if t))}</title>"
-        f"<style>{style()}{_STYLE}</style>"
-    )
-    return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}</body></html>\n'
+    return html_page(title or "identification", body)
 
 
 def stabilisation_chart(found: Identification) -> str:
@@ -101,35 +73,22 @@ def stabilisation_chart(found: Identification) -> str:
         body += _dots(orders, c.frequency_hz, c.order, np.asarray(chosen & inside), name)
     body += _modes(orders, found)
     middle = above + height / 2
-    body += svg_text(14, middle, "model order", class_="axis", text_anchor="middle",
-                     transform=f"rotate(-90 14 {short(middle)})")  # fmt: skip
-    svg = tag(
-        "svg",
-        body,
-        class_="stab",
-        viewBox=f"0 0 {_WIDTH} {_HEIGHT}",
-        width=_WIDTH,
-        role="img",
-        aria_label=f"Stabilisation chart: {counted(len(found.modes), 'mode')} among "
-        f"{counted(len(c.order), 'pole')} up to order {top}.",
+    turned = f"rotate(-90 14 {short(middle)})"
+    body += centred(14, middle, "model order", "axis", transform=turned)
+    told = (
+        f"Stabilisation chart: {counted(len(found.modes), 'mode')} among "
+        f"{counted(len(c.order), 'pole')} up to order {top}."
     )
-    key = "".join(
-        tag("span", tag("i", class_=mark), what, class_="key")
-        for mark, what in (
-            ("stable", "stable pole"),
-            ("loose", "other pole"),
-            ("line", "mode indicator (CMIF)"),
-            ("found", "identified mode"),
-        )
-    )
-    return tag("figure", tag("figcaption", tag("b", "Stabilisation"), key), svg)
+    keys = key("stable pole", "stable") + key("other pole", "loose")
+    keys += key("mode indicator (CMIF)", "line") + key("identified mode", "found")
+    caption = tag("figcaption", tag("b", "Stabilisation"), keys)
+    return tag("figure", caption, svg("stab", (_WIDTH, _HEIGHT), told, body))
 
 
 def modes_table(found: Identification) -> Table:
     """Return the identified modes with their uncertainty and quality."""
     named = ("mode", "Hz", "± Hz", "damping %", "± %", "MPC %", "MPD °", "indicator", "quality",
              "modal mass")  # fmt: skip
-    columns = (*(Column(c) for c in named), Column("remark", numeric=False))
     rows = []
     for k in range(len(found.modes)):
         notes = [found.remarks[k]] if found.remarks[k] else []
@@ -138,16 +97,16 @@ def modes_table(found: Identification) -> Table:
         quality = float(found.quality[k])
         rows.append(
             (
-                Cell(str(k + 1)),
-                Cell(hz(found.modes.frequencies_hz[k])),
-                Cell(general(found.frequency_std[k], 2)),
-                Cell(fixed(100.0 * found.modes.damping[k], 3)),
-                Cell(general(100.0 * found.damping_std[k], 2)),
-                Cell(percent(found.mpc[k], 1)),
-                Cell(fixed(found.mpd[k], 1)),
-                Cell(fixed(found.mode_indicator[k], 3)),
+                str(k + 1),
+                hz(found.modes.frequencies_hz[k]),
+                general(found.frequency_std[k], 2),
+                fixed(100.0 * found.modes.damping[k], 3),
+                general(100.0 * found.damping_std[k], 2),
+                percent(found.mpc[k], 1),
+                fixed(found.mpd[k], 1),
+                fixed(found.mode_indicator[k], 3),
                 Cell(fixed(quality, 4), "poor" if quality < _POOR else ""),
-                Cell(general(found.real_modes.generalized_mass[k], 4)),
+                general(found.real_modes.generalized_mass[k], 4),
                 Cell("; ".join(notes), "poor" if found.remarks[k] else "muted"),
             )
         )
@@ -156,17 +115,16 @@ def modes_table(found: Identification) -> Table:
         "functions around the mode; the modal mass belongs to the real shape whose largest "
         "component is 1, and is known where a driving point was measured."
     )
-    return Table("Identified modes", columns, tuple(rows), note)
+    return Table.of("Identified modes", (*named, *left("remark")), rows, note)
 
 
 def _frequencies(plot: Plot) -> str:
     body, bottom = "", plot.top + plot.height
     for v in ticks(plot.x_low, plot.x_high, 10):
         if plot.x_low <= v <= plot.x_high:
-            body += svg_text(plot.x(v), bottom + 17, general(v), text_anchor="middle")
+            body += centred(plot.x(v), bottom + 17, general(v))
             body += tag("path", class_="base", d=f"M{short(plot.x(v))} {short(bottom)}v4")
-    middle = plot.left + plot.width / 2
-    body += svg_text(middle, bottom + 36, "frequency, Hz", class_="axis", text_anchor="middle")
+    body += centred(plot.left + plot.width / 2, bottom + 36, "frequency, Hz", "axis")
     return tag("g", body, class_="rules")
 
 
@@ -236,7 +194,7 @@ def _modes(plot: Plot, found: Identification) -> str:
         top = short(plot.top)
         d = f"M{short(label)} {short(plot.top - 9)}L{short(x)} {top}v{short(plot.height)}"
         hit = tag("rect", class_="hit", x=short(x - 3), y=top, width=6, height=short(plot.height))
-        name = svg_text(label, plot.top - 13, k + 1, class_="n", text_anchor="middle")
+        name = centred(label, plot.top - 13, k + 1, "n")
         kind = "mode poor" if found.remarks[k] else "mode"
         body += tag("g", tag("title", esc(told)), hit, tag("path", d=d), name, class_=kind)
     return body

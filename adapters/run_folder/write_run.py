@@ -1,7 +1,5 @@
 """A run folder: written whole or not at all."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
@@ -11,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...core.errors import InputError, Place
+from ...core.files import replacing
 from ...core.results.plain import plain
 
 _OWN = {
@@ -90,11 +89,5 @@ def write_json(path: Path, result: Mapping[str, object]) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file atomically."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        Path(name).chmod(0o644)
-        os.replace(name, path)
-    except OSError as error:
-        raise _unwritten(path, error) from error
+    with replacing(path) as fresh:
+        fresh.write_text(text, encoding="utf-8")

@@ -34,8 +34,7 @@ def read_store(path: str | os.PathLike[str]) -> StoreContent:
     """
     with opened(path) as file:
         return StoreContent(
-            geometry=_geometry(file["geometry"]) if "geometry" in file else None,
-            test_geometry=_geometry(file["test_geometry"]) if "test_geometry" in file else None,
+            **{key: read(file[key]) for key, read in _WHOLE.items() if key in file},
             modes=_named(file, "modes", _modes),
             frfs=_named(file, "frfs", _frfs),
             dofs=_named(file, "dofs", _dofs),
@@ -43,8 +42,6 @@ def read_store(path: str | os.PathLike[str]) -> StoreContent:
             matrices=_named(file, "matrices", _matrix),
             matrix_names={k: n for k, n in _named(file, "matrices", _own_name).items() if n},
             functions=_named(file, "functions", _function),
-            pairs=read_table(file["pairs"]) if "pairs" in file else (),
-            history=read_table(file["history"]) if "history" in file else (),
         )
 
 
@@ -58,25 +55,21 @@ def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
         raise Place(source).fault("does not exist or is not a file")
     if not h5py.is_hdf5(source):
         raise Place(source).fault("is not an HDF5 file or is truncated at its head")
+    foreign = None
     try:
-        file = h5py.File(source, "r")
-    except OSError as error:
-        raise _damaged(source, error) from error
-    with file:
-        try:
+        with h5py.File(source, "r") as file:
             form, version = file.attrs.get("format"), file.attrs.get("version")
-        except DAMAGE as error:
-            raise _damaged(source, error) from error
-        if form != FORMAT:
-            raise Place(source).fault("is an HDF5 file but no store of trueup")
-        if version != VERSION:
-            raise Place(source).fault(
-                f"is a store of version {version}; this trueup reads version {VERSION}"
-            )
-        try:
-            yield file
-        except DAMAGE as error:
-            raise _damaged(source, error) from error
+            if form != FORMAT:
+                foreign = "is an HDF5 file but no store of trueup"
+            elif version != VERSION:
+                foreign = f"is a store of version {version}; this trueup reads version {VERSION}"
+            if foreign is None:
+                yield file
+                return
+    except DAMAGE as error:
+        reason = " ".join(str(error).strip(chr(39)).split())[:200] or type(error).__name__
+        raise Place(source).fault(f"is a damaged store: {reason}") from error
+    raise Place(source).fault(foreign)
 
 
 DAMAGE = (
@@ -84,11 +77,6 @@ DAMAGE = (
     MemoryError,
 )  # fmt: skip
 """What h5py raises for damaged files."""
-
-
-def _damaged(source: Path, error: Exception) -> InputError:
-    reason = " ".join(str(error).strip(chr(39)).split())[:200] or type(error).__name__
-    return Place(source).fault(f"is a damaged store: {reason}")
 
 
 def _named(file: h5py.File, key: str, read: Callable[[h5py.Group], Any]) -> dict[str, Any]:
@@ -109,12 +97,11 @@ def _named(file: h5py.File, key: str, read: Callable[[h5py.Group], Any]) -> dict
 
 def _geometry(group: h5py.Group) -> Geometry:
     elements, ids = (
-        {shape: d[()] for shape, d in group[key].items()} if key in group else {}
+        {shape: d[()] for shape, d in group.get(key, {}).items()}
         for key in ("elements", "element_ids")
     )
-    return Geometry(
-        group["ids"][()], group["xyz"][()], group.attrs.get("length_unit"), elements, ids
-    )
+    unit = group.attrs.get("length_unit")
+    return Geometry(group["ids"][()], group["xyz"][()], unit, elements, ids)
 
 
 def _dofs(group: h5py.Group) -> Dofs:
@@ -144,15 +131,12 @@ def _frfs(group: h5py.Group) -> Frfs:
 
 
 def _function(group: h5py.Group) -> Record:
-    said = {key: group.attrs[key] for key in FUNCTION_TEXTS}
+    numbers = ("response", "reference", *({"codes"} & set(group.attrs)))
     return {
-        "abscissa": group["abscissa"][()],
-        "values": group["values"][()],
-        "response": tuple(int(n) for n in group.attrs["response"]),
-        **{k: tuple(int(n) for n in group.attrs[k]) for k in ("codes",) if k in group.attrs},
-        "reference": tuple(int(n) for n in group.attrs["reference"]),
-        "ids": tuple(str(t) for t in group.attrs["ids"]),
-        **said,
+        **{key: group[key][()] for key in ("abscissa", "values")},
+        **{key: tuple(map(int, group.attrs[key])) for key in numbers},
+        **{key: group.attrs[key] for key in FUNCTION_TEXTS},
+        "ids": tuple(map(str, group.attrs["ids"])),
     }
 
 
@@ -170,3 +154,9 @@ def _matrix(group: h5py.Group) -> Matrix:
         return np.asarray(data)
     shape = tuple(int(n) for n in group.attrs["shape"])
     return sp.csr_matrix((data, group["indices"][()], group["indptr"][()]), shape=shape)
+
+
+_WHOLE: dict[str, Callable[[h5py.Group], Any]] = {
+    "geometry": _geometry, "test_geometry": _geometry, "pairs": read_table, "history": read_table,
+}  # fmt: skip
+"""What stands in a store once, under a name of its own."""

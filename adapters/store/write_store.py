@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from ...core.data.frfs import Frfs
 from ...core.data.geometry import Geometry
 from ...core.data.modes import Modes
 from ...core.errors import InputError, Place
+from ...core.files import replacing
 from .result_columns import write_table
 from .store_content import FORMAT, FUNCTION_TEXTS, VERSION, Matrix, Record
 
@@ -75,12 +75,10 @@ def write_store(
 
     target = Path(path)
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-        os.close(handle)
-    except OSError as error:
-        raise _unwritable(target, error) from error
-    try:
-        with h5py.File(name, "w", libver=("earliest", "v110")) as file:
+        with (
+            replacing(target) as fresh,
+            h5py.File(fresh, "w", libver=("earliest", "v110")) as file,
+        ):
             file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
             for key, noun in (("geometry", geometry), ("test_geometry", test_geometry)):
                 if noun is not None:
@@ -100,16 +98,8 @@ def write_store(
             for key, rows in (("pairs", pairs), ("history", history)):
                 if rows:
                     write_table(_group(file, key, "table"), rows)
-        Path(name).chmod(0o644)
-        os.replace(name, target)
-    except (OSError, ValueError, TypeError) as error:
-        raise _unwritable(target, error) from error
-    finally:
-        Path(name).unlink(missing_ok=True)
-
-
-def _unwritable(path: Path, error: Exception) -> InputError:
-    return Place(path).fault(f"cannot be written: {getattr(error, 'strerror', None) or error}")
+    except (ValueError, TypeError) as error:  # what HDF5 cannot hold
+        raise Place(target).fault(f"cannot be written: {error}") from error
 
 
 def _checked(named: Mapping[str, Any], key: str) -> Mapping[str, Any]:

@@ -5,8 +5,6 @@ its number. Real files leave out line ends, lose or repeat a delimiter, and carr
 (58b) in which anything may look like text. Nothing here reads what a dataset holds.
 """
 
-from __future__ import annotations
-
 import mmap
 import re
 from collections.abc import Callable, Iterator
@@ -15,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.files import release
 from .text.layout58 import HEADER_LINES, REALS, columns, form, records
 from .universal_content import Skipped
 
@@ -82,14 +81,12 @@ class Scan:
         while (mark := self._delimiter(at)) is not None:
             start, after = mark
             opened = _NUMBER.match(self.data, after)
+            self._report_outside(outside, start)
             if opened is None:
-                self._report_outside(outside, start)
-                self.warnings.append(
-                    f"{self.path} line {self._line_at(start)}: a stray -1 was passed over"
-                )
+                stray = f"{self.path} line {self._line_at(start)}: a stray -1 was passed over"
+                self.warnings.append(stray)
                 at = outside = after
                 continue
-            self._report_outside(outside, start)
             section, at = self._section(opened)
             yield section
             outside = at
@@ -165,11 +162,12 @@ class Scan:
 
     def _form(self, begin: int, n_line: int) -> tuple[int, tuple[int, ...]]:
         """Offset behind the header of a function, and what its seventh line says."""
-        lines, at = first_lines(self._read, begin, len(self.data), min(n_line, HEADER_LINES))
-        return at, form(lines[6]) if len(lines) > 6 else ()
 
-    def _read(self, begin: int, end: int) -> bytes:
-        return self.data[begin:end]
+        def read(start: int, stop: int) -> bytes:
+            return self.data[start:stop]
+
+        lines, at = first_lines(read, begin, len(self.data), min(n_line, HEADER_LINES))
+        return at, form(lines[6]) if len(lines) > 6 else ()
 
     def _closing(self, at: int) -> tuple[int, int] | None:
         """Start of a -1 that follows `at` at once or on the next line, and of the line after."""
@@ -227,14 +225,9 @@ class Scan:
         text = self.data[begin:end].strip(b" \t\r\n\x00\x1a")
         if text:
             shift = self.data[begin:end].index(text[:1])
-            self.skipped.append(
-                Skipped(
-                    "text outside any dataset",
-                    self._line_at(begin + shift),
-                    "no -1 and dataset number before it",
-                    str(self.path),
-                )
-            )
+            what, why = "text outside any dataset", "no -1 and dataset number before it"
+            line = self._line_at(begin + shift)
+            self.skipped.append(Skipped(what, line, why, str(self.path)))
 
     def _line_at(self, offset: int) -> int:
         """1-based number of the line that starts at `offset`; offsets come in rising order."""
@@ -247,13 +240,6 @@ class Scan:
             self._mapped = offset
         self._counted = max(self._counted, offset)
         return self._line
-
-
-def release(data: mmap.mmap, begin: int, end: int) -> None:
-    """Let the system take back the memory that mapped bytes occupy."""
-    start = -(-begin // mmap.PAGESIZE) * mmap.PAGESIZE
-    if end - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
-        data.madvise(mmap.MADV_DONTNEED, start, end - start)
 
 
 def _integers(text: bytes) -> tuple[int, ...]:

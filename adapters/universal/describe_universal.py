@@ -1,7 +1,5 @@
 """What a universal file holds, in one screen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -76,7 +76,7 @@ def read_test(paths: Sequence[Path] | Path) -> ModalTest:
     damaged = next((s for s in content.skipped if s.harm == "test"), None)
     if damaged is not None:
         raise Place(damaged.path, damaged.line).error(damaged.why)
-    test = _of(content)
+    test = Place(content.files[0], shown=" and ".join(content.files))
     if content.modes is None and content.frfs is None:
         raise test.error(
             "neither mode shapes (dataset 55, 2414) nor frequency responses (58) to "
@@ -108,10 +108,6 @@ def read_test(paths: Sequence[Path] | Path) -> ModalTest:
         )
     except InputError as error:
         raise test.error(str(error)) from None
-
-
-def _of(content: UniversalContent) -> Place:
-    return Place(content.files[0], shown=" and ".join(content.files))
 
 
 def _first_skip(content: UniversalContent) -> str:

@@ -1,14 +1,12 @@
 """An open universal file."""
 
-from __future__ import annotations
-
 import mmap
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import BinaryIO
+from typing import BinaryIO, Self
 
 from ...core.errors import InputError, Place
+from ...core.files import reading
 from .container import Scan, Section, first_lines
 from .universal_content import Skipped
 
@@ -34,15 +32,10 @@ class Source:
     skipped: tuple[Skipped, ...] = ()
     warnings: tuple[str, ...] = ()
 
-    def __enter__(self) -> Source:
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stream.close()
 
     @property
@@ -84,10 +77,8 @@ def open_source(path: Path, exact_lines: bool = True) -> Source:
     InputError
         The file does not exist, is empty, or holds no dataset.
     """
-    try:
+    with reading(path):
         stream = path.open("rb", buffering=0)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from error
     try:
         # The file is mapped only to look for delimiters: pages that were mapped count as memory.
         with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:

@@ -4,8 +4,6 @@ pyuff and trueup meet in a file that lives as long as the call: what each makes 
 own reader and writer say, and nothing of it is said twice.
 """
 
-from __future__ import annotations
-
 import copy
 import warnings
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Read one or several universal files into one content."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
 from pathlib import Path

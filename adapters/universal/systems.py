@@ -1,7 +1,5 @@
 """Coordinate systems (datasets 18 and 2420): positions and displacement axes in the basic frame."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

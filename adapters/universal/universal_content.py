@@ -1,7 +1,5 @@
 """What universal files hold, in neutral words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

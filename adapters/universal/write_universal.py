@@ -1,16 +1,13 @@
 """Write universal files that other programs open."""
 
-from __future__ import annotations
-
-import os
-import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from ...core.data.frfs import Frfs
 from ...core.data.geometry import Geometry
 from ...core.data.modes import Modes
 from ...core.errors import InputError, Place
+from ...core.files import replacing
 from .datasets.axis_components import node_systems
 from .datasets.dataset_kind import Outgoing
 from .datasets.known_datasets import DATASETS
@@ -83,7 +80,8 @@ def write_universal(
         target.name, description, geometry, modes, frfs, tuple(functions),
         _units_of(units, geometry), tuple(extensions), systems, binary, single, node_dataset,
     )  # fmt: skip
-    _write(target, (part for kind in DATASETS for part in kind.write(out)))
+    with replacing(target) as fresh, fresh.open("wb") as stream:
+        stream.writelines(part for kind in DATASETS for part in kind.write(out))
 
 
 def _units_of(units: Units | str | None, geometry: Geometry | None) -> Units | None:
@@ -95,32 +93,3 @@ def _units_of(units: Units | str | None, geometry: Geometry | None) -> Units | N
     if unit not in UNITS:
         raise InputError(f"length unit {unit!r} is none of {', '.join(UNITS)}")
     return UNITS[unit]
-
-
-def _write(target: Path, parts: Iterator[bytes]) -> None:
-    """Write all parts beside the target, then give them its name."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            for part in parts:
-                stream.write(part)
-        os.chmod(name, 0o666 & ~_umask())
-        os.replace(name, target)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    finally:
-        if os.path.exists(name):
-            os.unlink(name)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

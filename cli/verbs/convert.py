@@ -1,7 +1,5 @@
 """``trueup convert SRC... DST``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 
@@ -10,7 +8,7 @@ import typer
 from ...core.errors import InputError
 from ...verbs.delivery import TARGETS
 from ...verbs.exchange import KINDS
-from ..console import emit_json, speaks, stderr, stdout, working
+from ..console import emit_json, speaks, stdout, tell, working
 from ..options import JsonOption, Output, QuietOption
 
 
@@ -57,8 +55,5 @@ def convert(
     if speaks(output):
         told = "; ".join(f"{k} {v}" for k, v in done.written.items())
         stdout().print(f"{destination} ({done.format}): {told}", markup=False, soft_wrap=True)
-    if not quiet:
-        for left in done.lost:
-            stderr().print(f"left out: {left}", markup=False, soft_wrap=True)
-        for note in done.warnings:
-            stderr().print(f"note: {note}", markup=False, soft_wrap=True)
+    tell(output, "left out", done.lost, wrap=False)
+    tell(output, "note", done.warnings, wrap=False)

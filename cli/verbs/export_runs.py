@@ -1,7 +1,5 @@
 """``trueup export-runs DECK -p PARAMETER``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

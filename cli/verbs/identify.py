@@ -9,7 +9,7 @@ import typer
 
 from ...core.errors import InputError, Place
 from ..answer import free_folder
-from ..console import emit_json, speaks, stderr, stdout, working
+from ..console import emit_json, speaks, stdout, tell, working
 from ..options import ForceOption, JsonOption, Output, QuietOption, VerboseOption
 
 if TYPE_CHECKING:
@@ -64,8 +64,13 @@ def identify(
         if found.modes:
             console.print(identify_table(found.modes))
         console.print(f"{'modes' if alone else 'run folder'}: {target}", markup=False)
-    if not quiet:
-        _tell(found, verbose)
+    if verbose:
+        bands = (f"{b.low_hz:.5g} to {b.high_hz:.5g} Hz" for b in found.bands)
+        tell(output, "band", bands)
+        tell(output, "skipped", (f"{s.what} at line {s.line}: {s.why}" for s in found.skipped))
+    marked = ((k, m) for k, m in enumerate(found.modes, 1) if m.remark)
+    poor = (f"mode {k} ({m.frequency_hz:.2f} Hz): {m.remark}" for k, m in marked)
+    tell(output, "warning", (*poor, *found.warnings))
 
 
 def _refuse(target: Path, frf: list[Path], force: bool) -> None:
@@ -79,25 +84,12 @@ def _refuse(target: Path, frf: list[Path], force: bool) -> None:
 
 def _headline(found: Identified) -> str:
     """Return an identification in one sentence."""
+    from ...adapters.report.tables.number_formats import counted
+
     modes, (low, high) = found.modes, found.range_hz
-    many = f"{len(modes)} mode{'' if len(modes) == 1 else 's'}" if modes else "No mode"
-    counts = ((len(found.responses), "response"), (len(found.references), "reference"))
-    of = " and ".join(f"{n} {w}{'' if n == 1 else 's'}" for n, w in counts)
+    many = counted(len(modes), "mode") if modes else "No mode"
+    of = f"{counted(len(found.responses), 'response')} and "
+    of += counted(len(found.references), "reference")
     poor = sum(bool(m.remark) for m in modes)
     marked = f"; {poor} marked as poor" if poor else ""
     return f"{many} between {low:.4g} and {high:.4g} Hz from {of}{marked}."
-
-
-def _tell(found: Identified, verbose: bool) -> None:
-    console = stderr()
-    if verbose:
-        for band in found.bands:
-            console.print(f"band: {band.low_hz:.5g} to {band.high_hz:.5g} Hz", markup=False)
-        for s in found.skipped:
-            console.print(f"skipped: {s.what} at line {s.line}: {s.why}", markup=False)
-    for k, mode in enumerate(found.modes):
-        if mode.remark:
-            told = f"mode {k + 1} ({mode.frequency_hz:.2f} Hz): {mode.remark}"
-            console.print(f"warning: {told}", markup=False)
-    for warning in found.warnings:
-        console.print(f"warning: {warning}", markup=False)

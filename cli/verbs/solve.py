@@ -1,14 +1,12 @@
 """``trueup solve DECK``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ...core.errors import InputError
-from ..console import emit_json, speaks, stderr, stdout, working
+from ..console import emit_json, speaks, stdout, tell, working
 from ..options import JsonOption, Output, QuietOption, VerboseOption
 
 
@@ -39,9 +37,7 @@ def solve(
         from ..terminal_tables import solve_table
 
         stdout().print(solve_table(found))
-    if not quiet:
-        for warning in found.warnings:
-            stderr().print(f"warning: {warning}", markup=False)
+    tell(output, "warning", found.warnings)
 
 
 def _check(number: int | None, fmax: float | None, out: Path | None) -> None:

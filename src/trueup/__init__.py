@@ -25,80 +25,44 @@ from typing import TYPE_CHECKING
 from .core.late_imports import lazy_names
 
 if TYPE_CHECKING:
-    from .adapters.nastran import Deck
-    from .adapters.universal import ModalTest
-    from .core.data.dofs import Dofs
-    from .core.data.frfs import Frfs
-    from .core.data.geometry import Geometry
-    from .core.data.measurement import Measurement
-    from .core.data.modes import Modes
-    from .core.data.parameter import Parameter
-    from .core.data.parametric_model import Model
-    from .core.errors import CheckError, InputError, TrueupError
-    from .core.updating.residuals import register_residual
-    from .verbs.convert import Converted, convert
-    from .verbs.correlate import correlate
-    from .verbs.discover import discover
-    from .verbs.identify import Identified, identify
-    from .verbs.inspect import Inspected, inspect
-    from .verbs.open_run import open_run
-    from .verbs.options import (
-        CompareOptions,
-        CorrelateOptions,
-        DiscoverOptions,
-        UpdateOptions,
+    from .adapters.nastran import Deck as Deck
+    from .adapters.universal import ModalTest as ModalTest
+    from .core.data.dofs import Dofs as Dofs
+    from .core.data.frfs import Frfs as Frfs
+    from .core.data.geometry import Geometry as Geometry
+    from .core.data.measurement import Measurement as Measurement
+    from .core.data.modes import Modes as Modes
+    from .core.data.parameter import Parameter as Parameter
+    from .core.data.parametric_model import Model as Model
+    from .core.errors import (
+        CheckError as CheckError,
+        InputError as InputError,
+        TrueupError as TrueupError,
     )
-    from .verbs.read import read
-    from .verbs.report import report
-    from .verbs.run import Correlated, Discovered, Updated
-    from .verbs.solve import Solved, solve
-    from .verbs.sources import read_deck, read_test
-    from .verbs.study import Study
-    from .verbs.update import update
+    from .core.updating.residuals import register_residual as register_residual
+    from .verbs.convert import Converted as Converted, convert as convert
+    from .verbs.correlate import correlate as correlate
+    from .verbs.discover import discover as discover
+    from .verbs.identify import Identified as Identified, identify as identify
+    from .verbs.inspect import Inspected as Inspected, inspect as inspect
+    from .verbs.open_run import open_run as open_run
+    from .verbs.options import (
+        CompareOptions as CompareOptions,
+        CorrelateOptions as CorrelateOptions,
+        DiscoverOptions as DiscoverOptions,
+        UpdateOptions as UpdateOptions,
+    )
+    from .verbs.read import read as read
+    from .verbs.report import report as report
+    from .verbs.run import Correlated as Correlated, Discovered as Discovered, Updated as Updated
+    from .verbs.solve import Solved as Solved, solve as solve
+    from .verbs.sources import read_deck as read_deck, read_test as read_test
+    from .verbs.study import Study as Study
+    from .verbs.update import update as update
 
 __version__ = "0.1.0"
 
-__all__ = [
-    "CheckError",
-    "CompareOptions",
-    "Converted",
-    "CorrelateOptions",
-    "Correlated",
-    "Deck",
-    "DiscoverOptions",
-    "Discovered",
-    "Dofs",
-    "Frfs",
-    "Geometry",
-    "Identified",
-    "InputError",
-    "Inspected",
-    "Measurement",
-    "ModalTest",
-    "Model",
-    "Modes",
-    "Parameter",
-    "Solved",
-    "Study",
-    "TrueupError",
-    "UpdateOptions",
-    "Updated",
-    "convert",
-    "correlate",
-    "discover",
-    "identify",
-    "inspect",
-    "open_run",
-    "read",
-    "read_deck",
-    "read_test",
-    "register_residual",
-    "report",
-    "solve",
-    "update",
-]
-
-__getattr__ = lazy_names(
+__getattr__, __all__ = lazy_names(
     __name__,
     {
         ".adapters.nastran": "Deck",

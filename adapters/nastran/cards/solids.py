@@ -17,7 +17,7 @@ from .placed_elements import Placed, placed
 def _card(name: str, corners: int, nodes: int, elements: str) -> Card:
     names = [f"G{k}" for k in range(1, nodes + 1)]
     first, middle = ",".join(names[:corners]), ",".join(names[corners:])
-    layout = f"EID:i! PID:i=EID {first}>nodes:i! {middle}>nodes:i"
+    layout = f"EID:i! PID:i! {first}>nodes:i! {middle}>nodes:i"
     return Card(name, layout, "eid", elements=elements, properties="PSOLID")
 
 

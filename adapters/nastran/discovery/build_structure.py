@@ -1,7 +1,5 @@
 """The elements of a deck one by one, for discovery."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The deck completed by what was found, read back, solved and compared again."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a deck counts masses in, as far as its densities tell."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.data.length_units import METRES

@@ -1,7 +1,5 @@
 """Write a missing effect into a deck as the cards a Nastran engineer would write."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ....core.discovery.findings import Finding

@@ -1,7 +1,5 @@
 """New cards in a deck's text: one commented block in the file that holds their neighbours."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Sequence
 

@@ -1,9 +1,8 @@
 """One line of a card: its format, and where each of its fields stands among its bytes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 from ..text.real_numbers import LARGE, SMALL
@@ -88,35 +87,22 @@ class CardLine:
         return self.content.expandtabs()[CONTENT_END:].rstrip()
 
     def _free_cells(self) -> list[Cell]:
-        words = self.content.split(b",")
-        found: list[Cell] = []
-        at = len(words[0]) + 1
-        for word in words[1 : 1 + self.capacity]:
-            found.append(Cell(at, at + len(word)))
-            at += len(word) + 1
-        return found
+        words = self.content.split(b",")[: 1 + self.capacity]
+        stops = list(accumulate(len(word) + 1 for word in words))
+        return [Cell(a, b - 1) for a, b in pairwise(stops)]
 
     def _fixed_cells(self) -> list[Cell]:
-        stops = _Stops(self.content)
         columns = range(8, CONTENT_END, self.width)
-        found = [Cell(stops(c), stops(c + self.width)) for c in columns]
+        found = [Cell(self._byte_at(c), self._byte_at(c + self.width)) for c in columns]
         return [cell for cell in found if cell.start < len(self.content)]
 
-
-class _Stops:
-    """Which byte of a line stands at a column, tabs taken as Nastran does (every 8 columns)."""
-
-    def __init__(self, content: bytes) -> None:
-        self._length = len(content)
-        self._columns: list[int] | None = None
-        if b"\t" in content:
-            self._columns = []
-            column = 0
-            for byte in content:
-                self._columns.append(column)
-                column = (column // 8 + 1) * 8 if byte == 9 else column + 1
-
-    def __call__(self, column: int) -> int:
-        if self._columns is None:
-            return min(column, self._length)
-        return next((k for k, c in enumerate(self._columns) if c >= column), self._length)
+    def _byte_at(self, column: int) -> int:
+        """Which byte stands at a column, tabs taken as Nastran does (every 8 columns)."""
+        if b"\t" not in self.content:
+            return min(column, len(self.content))
+        at = 0
+        for k, byte in enumerate(self.content):
+            if at >= column:
+                return k
+            at = (at // 8 + 1) * 8 if byte == 9 else at + 1
+        return len(self.content)

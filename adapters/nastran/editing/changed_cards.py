@@ -1,7 +1,5 @@
 """The cards by which one text of a deck differs from another, as they stand there."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from ..text.deck_text import DeckText

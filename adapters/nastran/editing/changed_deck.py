@@ -1,9 +1,8 @@
 """A deck that was changed: to be looked at, compared with what it was, and written."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 from ....core.noun import Noun
 from ..text.deck_text import DeckText
@@ -46,7 +45,7 @@ class ChangedDeck(Noun):
         return write_deck(self.text, folder)
 
     @classmethod
-    def of(cls, original: DeckText, text: DeckText) -> ChangedDeck:
+    def of(cls, original: DeckText, text: DeckText) -> Self:
         """Return what a deck became."""
         return cls(text, unified_diff(original, text))
 

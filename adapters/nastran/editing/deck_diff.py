@@ -1,7 +1,5 @@
 """Unified diff of two texts of a deck, fast on meshes of a million lines."""
 
-from __future__ import annotations
-
 import bisect
 import difflib
 from collections import Counter
@@ -87,9 +85,9 @@ def changes(old: TextFile, new: TextFile) -> Iterator[Change]:
     a, b = np.frombuffer(old.data, np.uint8), np.frombuffer(new.data, np.uint8)
     front = _common(a, b)
     back = min(_common(a[::-1], b[::-1]), min(len(a), len(b)) - front)
-    first = max(int(np.searchsorted(old.lines.starts, front, "right")) - 2, 0)
-    i2 = min(_row_after(old, len(a) - back), len(old.lines))
-    j2 = min(_row_after(new, len(b) - back), len(new.lines))
+    first = max(_rows_to(old, front) - 2, 0)
+    i2 = min(_rows_to(old, len(a) - back) + 1, len(old.lines))
+    j2 = min(_rows_to(new, len(b) - back) + 1, len(new.lines))
     for i, k, j, m in _changes(_texts(old, first, i2), _texts(new, first, j2)):
         yield i + first, k + first, j + first, m + first
 
@@ -104,8 +102,8 @@ def _common(a: Bytes, b: Bytes) -> int:
     return n
 
 
-def _row_after(file: TextFile, offset: int) -> int:
-    return int(np.searchsorted(file.lines.starts, offset, "right")) + 1
+def _rows_to(file: TextFile, offset: int) -> int:
+    return int(np.searchsorted(file.lines.starts, offset, "right"))
 
 
 def _texts(file: TextFile, first: int, stop: int) -> list[bytes]:
@@ -126,13 +124,9 @@ def _changes(a: list[bytes], b: list[bytes]) -> Iterator[Change]:
     at_i, at_j = 0, 0
     anchors = _anchors(a, b)
     for i, j in [*anchors, (len(a), len(b))]:
-        if i > at_i or j > at_j:
-            inner: Iterator[Change] = iter([(0, i - at_i, 0, j - at_j)])
-            if anchors and a[at_i:i] != b[at_j:j]:
-                inner = _changes(a[at_i:i], b[at_j:j])
-            elif anchors:
-                inner = iter([])
-            for i1, i2, j1, j2 in inner:
+        old, new = a[at_i:i], b[at_j:j]
+        if old != new:
+            for i1, i2, j1, j2 in _changes(old, new) if anchors else [(0, len(old), 0, len(new))]:
                 yield i1 + at_i, i2 + at_i, j1 + at_j, j2 + at_j
         at_i, at_j = i + 1, j + 1
 
@@ -143,9 +137,7 @@ def _anchors(a: list[bytes], b: list[bytes]) -> list[tuple[int, int]]:
     once_b = {line for line, n in Counter(b).items() if n == 1}
     where = {line: j for j, line in enumerate(b) if line in once_b}
     pairs = [(i, where[line]) for i, line in enumerate(a) if line in once_a and line in where]
-    ends: list[int] = []
-    last: list[int] = []
-    previous = [-1] * len(pairs)
+    ends, last, previous = list[int](), list[int](), [-1] * len(pairs)
     for k, (_, j) in enumerate(pairs):
         at = bisect.bisect_left(ends, j)
         previous[k] = last[at - 1] if at else -1

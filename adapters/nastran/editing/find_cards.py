@@ -1,7 +1,5 @@
 """Cards found by name and number over all files of a deck."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +9,7 @@ import numpy as np
 from ....core.errors import InputError
 from ..cards import definitions
 from ..text.deck_text import DeckText, Segment
-from ..text.source_file import CONTINUATION, REPLICATION, name_of
+from ..text.source_file import CONTINUATION, REPLICATION, Keys, name_of
 from .cells import CardLine
 
 MOST_DIGITS = 99_999_999
@@ -111,20 +109,15 @@ def find_card(deck: DeckText, name: str, number: int) -> Card:
         No such card (its nearest numbers are named), or several.
     """
     name = name.upper()
-    found = [*_matches(deck, name, number)]
+    found, called = [*_matches(deck, name, number)], f"{name} {number}"
     if not found:
-        raise InputError(
-            _missing(deck, name, number), file=deck.files[0].path, card=f"{name} {number}"
-        )
+        raise InputError(_missing(deck, name, number), file=deck.files[0].path, card=called)
     if len(found) > 1:
-        places = [
-            f"{deck.place(c.file, c.rows[0])}" + (f" ({c.part})" if c.part else "")
-            for c in found[:3]
-        ]
-        first = found[0]
-        raise replace(deck.place(first.file, first.rows[0]), card=f"{name} {number}").about(
-            f"{name} {number} stands {len(found)} times in the deck ({', '.join(places)}): "
-            "it is not clear which one is meant, give the copies their own numbers"
+        at = [(deck.place(c.file, c.rows[0]), c.part) for c in found[:3]]
+        places = ", ".join(f"{place}" + (f" ({part})" if part else "") for place, part in at)
+        raise replace(at[0][0], card=called).about(
+            f"{called} stands {len(found)} times in the deck ({places}): it is not clear which "
+            "one is meant, give the copies their own numbers"
         )
     return found[0]
 
@@ -133,8 +126,7 @@ def names_in(deck: DeckText) -> list[str]:
     """Return the names of all cards of the bulk data."""
     names: set[int] = set()
     for segment in deck.segments:
-        keys = deck.files[segment.file].lines.keys[segment.first : segment.stop]
-        names.update(np.unique(keys).tolist())
+        names.update(np.unique(_keys(deck, segment)).tolist())
     return sorted(name_of(k) for k in names if k > REPLICATION)
 
 
@@ -168,29 +160,26 @@ def free_id(deck: DeckText, kind: str) -> int:
 
 def _used(deck: DeckText, kind: re.Pattern[str]) -> set[int]:
     used: set[int] = set()
-    _require_written_out(deck)
-    for name in names_in(deck):
-        if not kind.match(name):
-            continue
-        for segment in deck.segments:
-            rows, ids = deck.files[segment.file].rows_named(name)
-            a, b = np.searchsorted(rows, (segment.first, segment.stop))
-            if _stride(name) or name in ("SPOINT", "EPOINT"):
-                for row in rows[a:b].tolist():
-                    used |= _all_ids(card_at(deck, segment, row, name))
-            else:
-                used.update(np.unique(ids[a:b]).tolist())
-    return {n for n in used if 0 < n <= MOST_DIGITS}
-
-
-def _require_written_out(deck: DeckText) -> None:
     for segment in deck.segments:
-        keys = deck.files[segment.file].lines.keys[segment.first : segment.stop]
-        rows = np.flatnonzero(keys == REPLICATION)
+        rows = np.flatnonzero(_keys(deck, segment) == REPLICATION)
         if len(rows):
             raise deck.place(segment.file, segment.first + int(rows[0])).error(
                 "cards are replicated by '=', so free numbers are not known; write the cards out"
             )
+    for name in names_in(deck):
+        if not kind.match(name):
+            continue
+        for segment in deck.segments:
+            found = deck.rows_in(segment, name)
+            if _stride(name) or name in ("SPOINT", "EPOINT"):
+                used.update(*(_all_ids(card_at(deck, segment, row, name)) for row, _ in found))
+            else:
+                used.update(number for _, number in found)
+    return {n for n in used if 0 < n <= MOST_DIGITS}
+
+
+def _keys(deck: DeckText, segment: Segment) -> Keys:
+    return deck.files[segment.file].lines.keys[segment.first : segment.stop]
 
 
 def _stride(name: str) -> int:
@@ -210,17 +199,15 @@ def _all_ids(card: Card) -> set[int]:
 def _matches(deck: DeckText, name: str, number: int) -> Iterator[Card]:
     stride = _stride(name)
     for segment in deck.segments:
-        rows, ids = deck.files[segment.file].rows_named(name)
-        a, b = np.searchsorted(rows, (segment.first, segment.stop))
         if not stride:
-            for row in rows[a:b][ids[a:b] == number].tolist():
+            for row, _ in deck.rows_of(segment, name, number):
                 yield card_at(deck, segment, row, name)
             continue
-        for row in rows[a:b].tolist():
+        for row, _ in deck.rows_in(segment, name):
             card = card_at(deck, segment, row, name)
             for shift in range(0, card.size, stride):
                 if card.text(shift) == str(number):
-                    yield Card(name, card.file, card.rows, card.lines, shift, card.part)
+                    yield replace(card, shift=shift)
 
 
 def _missing(deck: DeckText, name: str, number: int) -> str:
@@ -228,8 +215,7 @@ def _missing(deck: DeckText, name: str, number: int) -> str:
     numbers: set[int] = set()
     for segment in deck.segments:
         for row, first in deck.rows_in(segment, name):
-            more = _all_ids(card_at(deck, segment, row, name)) if _stride(name) else {first}
-            numbers |= more
+            numbers |= _all_ids(card_at(deck, segment, row, name)) if _stride(name) else {first}
     numbers.discard(-1)
     if not numbers:
         return f"{top} has no {name} {number}: there is no {name} card in the deck"

@@ -5,8 +5,6 @@ two lines of large fields (free format stays free), the rest of the card stays a
 value read back is the one of `numbers.writable`, whatever the card's format.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from ....core.errors import InputError

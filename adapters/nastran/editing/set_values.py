@@ -1,7 +1,5 @@
 """Values read from and written to a deck's text, and nothing else changed."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 

@@ -1,7 +1,5 @@
 """One property made two: some of its elements get a copy of it and of its material."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -10,8 +8,7 @@ import numpy as np
 from ....core.errors import InputError, Place
 from ..cards import definitions, holders
 from ..deck.movable_values import position_of
-from ..text.deck_text import DeckText, Segment
-from ..text.source_file import TextFile
+from ..text.deck_text import DeckText
 from .add_cards import add_lines
 from .cells import CardLine
 from .find_cards import Card, card_at, find_card, free_id, names_in
@@ -107,7 +104,7 @@ def _copy(card: Card, number: int, fields: Mapping[int, int]) -> list[bytes]:
 
 def _cards(deck: DeckText, name: str, number: int) -> list[Card]:
     """Return the card of a name and number, or none."""
-    found = any(n == number for segment in deck.segments for _, n in deck.rows_in(segment, name))
+    found = any(deck.rows_of(segment, name, number) for segment in deck.segments)
     return [find_card(deck, name, number)] if found else []
 
 
@@ -127,14 +124,12 @@ def _members(deck: DeckText, card: str, number: int, elements: frozenset[int]) -
     missing = set(elements)
     for name in holders(card):
         for segment in deck.segments:
-            for row, element in _rows_of(deck.files[segment.file], segment, name, wanted):
+            for row, element in deck.rows_of(segment, name, wanted):
                 member = card_at(deck, segment, row, name)
                 _require_member(deck, member, card, number)
                 if element not in missing:
-                    raise deck.place(segment.file, row).error(
-                        f"element {element} stands twice in the "
-                        "deck: it is not clear which one is meant"
-                    )
+                    twice = f"element {element} stands twice in the deck: it is not clear which "
+                    raise deck.place(segment.file, row).error(twice + "one is meant")
                 missing.discard(element)
                 yield member
     if missing:
@@ -142,15 +137,6 @@ def _members(deck: DeckText, card: str, number: int, elements: frozenset[int]) -
             f"has no element {min(missing)} that could have a "
             f"{card}: such elements are {', '.join(holders(card))}"
         )
-
-
-def _rows_of(
-    file: TextFile, segment: Segment, name: str, wanted: np.ndarray[tuple[int], np.dtype[np.int64]]
-) -> Iterator[tuple[int, int]]:
-    rows, ids = file.rows_named(name)
-    a, b = np.searchsorted(rows, (segment.first, segment.stop))
-    hit = np.isin(ids[a:b], wanted)
-    yield from zip(rows[a:b][hit].tolist(), ids[a:b][hit].tolist(), strict=True)
 
 
 def _require_member(deck: DeckText, member: Card, card: str, number: int) -> None:

@@ -1,7 +1,5 @@
 """A deck's text back to files: a copy of the whole tree, or over the originals with a backup."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile

@@ -1,7 +1,5 @@
 """Where a named value stands on a card: asked of the definitions of the cards."""
 
-from __future__ import annotations
-
 import difflib
 import re
 

@@ -1,7 +1,5 @@
 """How a user names the values that may move: ``PBAR 11 I1, PBAR 11 I2 [0.2, 5]``."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

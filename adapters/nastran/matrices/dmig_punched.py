@@ -1,7 +1,6 @@
 """Many DMIG columns in the form in which Nastran punches them, read by array arithmetic."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +10,8 @@ from ....core.arrays import Bools, Ints, Numbers
 
 _PART, _FIRST = 1 << 21, 1 << 12
 _HEAD, _FIELD, _FIELDS = 8, 16, 4
+_HEADER_CARD = re.compile(rb"(?m)^(DMIG    [^\n]{8} *0 [^\n]*\n)(?=DMIG\*)")
+"""The card that begins a matrix, of a form of its own among its columns."""
 _COLUMN, _ROW = b"DMIG*   ", b"*       "
 
 
@@ -28,8 +29,9 @@ def parts(path: Path) -> Iterator[tuple[int, bytes]]:
             if cut:
                 part, kept = kept[:cut], kept[cut:]
                 part = part.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-                yield number, part
-                number += part.count(b"\n")
+                for piece in filter(None, _HEADER_CARD.split(part)):
+                    yield number, piece
+                    number += piece.count(b"\n")
             if not more:
                 return
 

@@ -1,13 +1,12 @@
 """Which degrees of freedom the rows of an exported matrix are, from a deck or an assembly file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 
 from ....core.arrays import Ints
 from ....core.errors import InputError, Place
+from ....core.files import reading
 from ..deck.bulk import cut, fields_of
 from ..deck.card_definition import Fields
 from ..deck.logical_lines import Line
@@ -62,18 +61,13 @@ def _free_set(deck: Deck) -> DofMap | None:
         labels = build_model(deck).free_labels
     except InputError:  # elements that trueup does not assemble; the export knows them all
         return None
-    pairs = np.array([[int(w) for w in label.split(":")] for label in labels], np.int64)
-    return DofMap.of_keys(np.sort(8 * pairs[:, 0] + pairs[:, 1])) if len(pairs) else None
+    return DofMap.of_keys(np.sort(DofMap.of_labels(labels).keys)) if labels else None
 
 
 def _analysis_set(deck: Deck, scalar: set[int]) -> Ints:
-    cards = [f for name in _SETS for f in _raw_fields(deck, name)]
-    keys = [k for card in cards for k in set_keys(card)]
+    cards = (card for name in _SETS for card in deck.bulk.raw.get(name, []))
+    keys = [k for card in cards for k in set_keys(fields_of(card.lines))]
     return np.unique(np.array([8 * (k // 8) if k // 8 in scalar else k for k in keys], np.int64))
-
-
-def _raw_fields(deck: Deck, name: str) -> list[Fields]:
-    return [fields_of(raw.lines) for raw in deck.bulk.raw.get(name, [])]
 
 
 def set_keys(card: Fields) -> list[int]:
@@ -107,10 +101,8 @@ def read_extrn(path: Path | str) -> DofMap:
         A file that cannot be read or has no EXTRN.
     """
     path = Path(path)
-    try:
+    with reading(path):
         text = path.read_text("latin-1")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     lines = [Line(t, 0, k + 1) for k, t in enumerate(text.splitlines())]
     starts = [k for k, line in enumerate(lines) if line.text[:5].upper() == "EXTRN"]
     if not starts:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
-import scipy.sparse as sp
 
 from ....core.arrays import Ints, frozen, require_shape
 from ....core.data.dofs import Dofs
 from ....core.noun import Noun
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 SQUARE, RECTANGULAR, SYMMETRIC = 1, 2, 6
 _COLUMNS = 1 << 14
@@ -52,14 +56,20 @@ class DofMap(Noun):
         return Dofs(self.point, np.maximum(self.component, 1), axis)
 
     @classmethod
-    def of_dofs(cls, dofs: Dofs) -> DofMap:
+    def of_dofs(cls, dofs: Dofs) -> Self:
         """Make a map from what `dofs` gave."""
         return cls(dofs.node, np.where(dofs.axis.any(axis=1), dofs.component, 0))
 
     @classmethod
-    def of_keys(cls, keys: Ints) -> DofMap:
+    def of_keys(cls, keys: Ints) -> Self:
         """Make a map from `keys`."""
         return cls(keys // 8, keys % 8)
+
+    @classmethod
+    def of_labels(cls, labels: Iterable[str]) -> Self:
+        """Make a map from the labels ``POINT:COMPONENT`` of a model's free dofs."""
+        pairs = np.array([[int(w) for w in label.split(":")] for label in labels], np.int64)
+        return cls(*pairs.reshape(-1, 2).T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +97,25 @@ class NastranMatrix(Noun):
     columns: DofMap | None = None
     single: bool = False
 
+    @classmethod
+    def of_file(
+        cls,
+        name: str,
+        matrix: sp.csc_matrix,
+        form: int,
+        there: DofMap | None = None,
+        single: bool = False,
+    ) -> Self:
+        """Return a matrix as a file holds it: a symmetric one may have one triangle only."""
+        if form == SYMMETRIC and matrix.shape[0] == matrix.shape[1]:
+            matrix = symmetrised(matrix)
+        return cls(name, matrix, form, there, there, single)
+
 
 def symmetrised(matrix: sp.csc_matrix) -> sp.csc_matrix:
     """Fill in the entries of a symmetric matrix that are given on one side of the diagonal only."""
+    import scipy.sparse as sp  # slow to import, and not needed to know a file
+
     upper, lower = _sides(matrix)
     if upper == lower and _is_symmetric(matrix):
         return matrix

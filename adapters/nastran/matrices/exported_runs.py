@@ -1,7 +1,5 @@
 """Derivative matrices from a small set of runs of the user's own Nastran."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -22,7 +20,7 @@ from ..fields.parameter_references import ParameterSpec, parse_parameter
 from ..text.deck_text import read_deck_text
 from ..text.real_numbers import writable
 from .dmig import read_dmig
-from .exported_matrix import RUNS_SCHEMA, NastranMatrix
+from .exported_matrix import RUNS_SCHEMA, DofMap, NastranMatrix
 from .hdf5_matrices import list_hdf5_matrices
 from .matrix_model import model_of_matrices, stiffness_and_mass
 from .op2_matrices import list_op2_matrices
@@ -83,16 +81,13 @@ def write_runs(path: Path | str, specs: Sequence[ParameterSpec], out: Path | str
     index = {
         "schema": RUNS_SCHEMA,
         "deck": str(path),
-        "parameters": [_written(spec) for spec in specs],
+        "parameters": [
+            f"{s.name} = {', '.join(map(str, s.fields))} [{s.lower!r}, {s.upper!r}]" for s in specs
+        ],
         "runs": runs,
     }
     (out / INDEX).write_text(json.dumps(index, indent=1) + "\n", encoding="utf-8")
     return index
-
-
-def _written(spec: ParameterSpec) -> str:
-    fields = ", ".join(str(f) for f in spec.fields)
-    return f"{spec.name} = {fields} [{spec.lower!r}, {spec.upper!r}]"
 
 
 def read_runs(folder: Path | str) -> Model:
@@ -200,9 +195,7 @@ _LISTS: dict[str, Callable[[Path], Iterable[tuple[str, tuple[int, int]]]]] = {
 
 def _terms(matrices: Sequence[NastranMatrix], design: Design, frame: Model) -> tuple[Term, ...]:
     """Solve for the constant matrices, entry by entry on the union of all patterns."""
-    keys = np.array(
-        [8 * int(p) + int(c) for p, c in (label.split(":") for label in frame.free_labels)]
-    )
+    keys = DofMap.of_labels(frame.free_labels).keys
     n = len(keys)
     entries = []
     for m in matrices:

@@ -5,8 +5,6 @@ All matrices of a file stand one after another in three tables under
 values begin), COLUMN the place of each column's first value, DATA the row and value of each entry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,7 +15,7 @@ import scipy.sparse as sp
 from ....core.arrays import Numbers
 from ....core.errors import Place
 from ..results.hdf5_modes import opened
-from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form, symmetrised
+from .exported_matrix import DofMap, NastranMatrix, guessed_form
 
 _MATRICES = "NASTRAN/RESULT/MATRIX/GENERAL"
 _GRIDS = "NASTRAN/INPUT/NODE/GRID"
@@ -73,12 +71,10 @@ def _matrix(tables: Any, row: Any, path: Path, grids: Any) -> NastranMatrix:
     matrix.sum_duplicates()
     matrix.eliminate_zeros()
     form = int(row["FORM"]) if "FORM" in row.dtype.names else guessed_form(matrix)
-    if form == SYMMETRIC and shape[0] == shape[1]:
-        matrix = symmetrised(matrix)
     there = None
     if shape == (6 * len(grids), 6 * len(grids)) and len(grids):
         there = DofMap.of_keys((8 * grids[:, None] + np.arange(1, 7)).reshape(-1))
-    return NastranMatrix(name, matrix, form, there, there)
+    return NastranMatrix.of_file(name, matrix, form, there)
 
 
 def _values(data: Numbers) -> Numbers:

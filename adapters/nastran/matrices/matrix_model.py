@@ -1,13 +1,11 @@
 """A neutral model made of matrices that the user's own Nastran exported."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.arrays import Floats, Ints
+from ....core.arrays import Ints
 from ....core.data.dofs import Dofs
 from ....core.data.geometry import Geometry
 from ....core.data.parametric_model import Model, Term
@@ -146,24 +144,15 @@ def _expanded(there: DofMap, points: Points) -> tuple[Dofs, sp.csr_matrix]:
         np.concatenate([np.repeat(points.ids, 6), scalar_ids]),
         np.concatenate([np.tile(np.arange(1, 7), n_grid), np.ones(n_scalar, np.int64)]),
     )
-    rows: list[Ints] = []
-    columns: list[Ints] = []
-    values: list[Floats] = []
-    grid = np.flatnonzero(~is_scalar)
+    grid, scalar = np.flatnonzero(~is_scalar), np.flatnonzero(is_scalar)
     row = np.searchsorted(points.ids, there.point[grid])
     triple, direction = np.divmod(there.component[grid] - 1, 3)
-    first = 6 * row + 3 * triple
-    for k in range(3):
-        rows.append(first + k)
-        columns.append(grid)
-        values.append(points.directions[row, direction, k])
-    scalar = np.flatnonzero(is_scalar)
-    rows.append(6 * n_grid + np.searchsorted(scalar_ids, there.point[scalar]))
-    columns.append(scalar)
-    values.append(np.ones(len(scalar)))
+    along = (6 * row + 3 * triple)[:, None] + np.arange(3)
+    rows = [along.ravel(), 6 * n_grid + np.searchsorted(scalar_ids, there.point[scalar])]
+    values = [points.directions[row, direction].ravel(), np.ones(len(scalar))]
+    columns = np.concatenate([np.repeat(grid, 3), scalar])
     matrix = sp.coo_matrix(
-        (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
-        shape=(len(dofs), len(there)),
+        (np.concatenate(values), (np.concatenate(rows), columns)), shape=(len(dofs), len(there))
     ).tocsr()
     matrix.eliminate_zeros()
     return dofs, matrix
@@ -179,8 +168,7 @@ def model_matrices(model: Model) -> tuple[NastranMatrix, NastranMatrix]:
     """
     if len(model.free_labels) != model.n_free:
         raise InputError("the model does not name its free degrees of freedom")
-    pairs = np.array([[int(w) for w in label.split(":")] for label in model.free_labels], np.int64)
-    there = DofMap(*pairs.reshape(-1, 2).T)
+    there = DofMap.of_labels(model.free_labels)
     K, M = (
         NastranMatrix(name, matrix.tocsc(), SYMMETRIC, there, there)
         for name, matrix in (("KFF", model.K()), ("MFF", model.M()))

@@ -6,8 +6,6 @@ a value for each entry, ended by -1, -1; another -1, -1 ends the matrix (MSC Nas
 Reference Guide, MATPOOL).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -56,10 +54,13 @@ def _matrices(file: Op2File, record: Op2Record, words: Ints, block: str) -> Iter
         start = at + _HEAD
         # doubles stand there even for matrices that call themselves single
         kinds = (_TYPES[kind], _WIDE[kind]) if file.word == 4 else (_WIDE[kind],)
-        number, size, columns, at = _fitting(words, start, kinds, file.word)
-        if not number:
+        for number in kinds:  # the one that leads to the end of the matrix
+            size = np.dtype(number).itemsize // file.word
+            if (found := _columns(words, start, size)) is not None:
+                break
+        else:
             raise file.damaged(record.parts[0][0], f"the entries of {name} in {block} do not end")
-        entries = Entries(form, kind)
+        (columns, at), entries = found, Entries(form, kind)
         for gj, cj, first, count in columns:
             table = np.frombuffer(
                 raw[first * file.word : (first + count * (2 + size)) * file.word],
@@ -73,18 +74,6 @@ def _matrices(file: Op2File, record: Op2Record, words: Ints, block: str) -> Iter
 
 
 _Columns = list[tuple[int, int, int, int]]
-
-
-def _fitting(
-    words: Ints, at: int, kinds: tuple[str, ...], word: int
-) -> tuple[str, int, _Columns, int]:
-    """Return the kind of number that leads to the end of a matrix, its words, and the columns."""
-    for number in kinds:
-        size = np.dtype(number).itemsize // word
-        found = _columns(words, at, size)
-        if found is not None:
-            return number, size, *found
-    return "", 0, [], at
 
 
 def _columns(words: Ints, at: int, size: int) -> tuple[_Columns, int] | None:

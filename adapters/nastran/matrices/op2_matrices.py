@@ -1,14 +1,12 @@
 """Matrices of OP2 files: data blocks such as KGG and KELM, and the DMIG of a MATPOOL."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ..results.op2_records import Op2Block, Op2File
-from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, symmetrised
+from .exported_matrix import DofMap, NastranMatrix
 from .op2_matpool import is_pool, pool_matrices
 from .packed_columns import Filler, Strings, gather
 
@@ -99,9 +97,5 @@ def _matrix(file: Op2File, block: Op2Block, g_set: DofMap | None) -> NastranMatr
         except ValueError:
             raise file.damaged(int(start[0]), f"{block.name} has too many values") from None
         file.release_between(int(start.min(initial=0)), int(stop.max(initial=0)))
-    matrix = filler.matrix()
-    square = rows == columns
-    if form == SYMMETRIC and square:
-        matrix = symmetrised(matrix)
-    there = g_set if g_set is not None and square and len(g_set) == rows else None
-    return NastranMatrix(block.name.upper(), matrix, form, there, there, single)
+    there = g_set if g_set is not None and len(g_set) == rows == columns else None
+    return NastranMatrix.of_file(block.name.upper(), filler.matrix(), form, there, single)

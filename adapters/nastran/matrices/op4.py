@@ -1,11 +1,10 @@
 """OUTPUT4 files of any kind."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from .exported_matrix import NastranMatrix
 from .op4_ascii import is_ascii_op4, read_ascii
 from .op4_binary import Header, Names, layout_of, read_binary
@@ -15,9 +14,13 @@ _HEAD = 512
 
 def is_op4(path: Path) -> bool:
     """Whether a file starts as OP4 does, in any of its kinds."""
-    with path.open("rb") as stream:
-        head = stream.read(_HEAD)
+    head = _head(path)
     return layout_of(head) is not None or is_ascii_op4(head)
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        return stream.read(_HEAD)
 
 
 def read_op4(path: Path | str, names: Collection[str] | None = None) -> tuple[NastranMatrix, ...]:
@@ -51,8 +54,7 @@ def list_op4(path: Path | str) -> tuple[Header, ...]:
 
 def kind_of(path: Path) -> str:
     """Say in words which kind of OP4 a file is."""
-    with path.open("rb") as stream:
-        layout = layout_of(stream.read(_HEAD))
+    layout = layout_of(_head(path))
     if layout is None:
         return "formatted"
     order = "little" if layout.order == "<" else "big"
@@ -60,9 +62,8 @@ def kind_of(path: Path) -> str:
 
 
 def _matrices(path: Path, wanted: Names) -> Iterator[NastranMatrix | Header]:
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
+    with reading(path):
+        head = _head(path)
         layout = layout_of(head)
         if layout is not None:
             yield from read_binary(path, layout, wanted)
@@ -72,5 +73,3 @@ def _matrices(path: Path, wanted: Names) -> Iterator[NastranMatrix | Header]:
             raise Place(path).fault(
                 "is not an OP4 file: it starts neither as a binary nor as a formatted one"
             )
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None

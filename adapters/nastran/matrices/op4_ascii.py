@@ -1,7 +1,5 @@
 """Formatted OUTPUT4 files: dense, bigmat and nonbigmat, exponents with E, D or no letter."""
 
-from __future__ import annotations
-
 import re
 from array import array
 from collections.abc import Iterator
@@ -14,7 +12,7 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.errors import InputError, Place
-from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
+from .exported_matrix import NastranMatrix
 from .op4_binary import Header, Names
 from .packed_columns import Filler, Strings
 
@@ -151,14 +149,11 @@ def read_ascii(path: Path, wanted: Names = None) -> Iterator[NastranMatrix | Hea
                     filler.add(strings, found)
                 except ValueError:
                     raise lines.wrong(f"matrix {header.name} has too many values") from None
-            yield _matrix(header, filler) if values else header
-
-
-def _matrix(header: Header, filler: Filler) -> NastranMatrix:
-    matrix = filler.matrix()
-    if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
-        matrix = symmetrised(matrix)
-    return NastranMatrix(header.name, matrix, header.form, single=header.kind in (1, 3))
+            if not values:
+                yield header
+                continue
+            single = header.kind in (1, 3)
+            yield NastranMatrix.of_file(header.name, filler.matrix(), header.form, single=single)
 
 
 def _header(lines: _Lines) -> tuple[Header, _Print]:
@@ -196,7 +191,7 @@ def _batches(lines: _Lines, header: Header, form: _Print) -> Iterator[tuple[Stri
     yield _strings(runs), fields
 
 
-def _strings(runs: array[int]) -> Strings:
+def _strings(runs: "array[int]") -> Strings:
     column, row, count = np.array(runs, np.int64).reshape(-1, 3).T
     return Strings(column, row, count, np.zeros_like(count))
 

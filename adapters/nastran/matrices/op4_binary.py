@@ -7,8 +7,6 @@ NROW > 65535, "bigmat"; both in one word otherwise). A column NCOL + 1 ends the 
 DMAP Programmer's Guide, OUTPUT4).
 """
 
-from __future__ import annotations
-
 import mmap
 import struct
 from array import array
@@ -20,7 +18,8 @@ import numpy as np
 
 from ....core.arrays import Ints, Numbers
 from ....core.errors import InputError, Place
-from .exported_matrix import SYMMETRIC, NastranMatrix, symmetrised
+from ....core.files import release
+from .exported_matrix import NastranMatrix
 from .packed_columns import Filler, Strings, gather
 
 _BIGMAT_FROM = 65536
@@ -83,11 +82,8 @@ class _File:
 
     def release(self, until: int) -> None:
         """Let the system take back the memory of what has been read."""
-        start = self._released // mmap.PAGESIZE * mmap.PAGESIZE
-        stop = until // mmap.PAGESIZE * mmap.PAGESIZE
-        if stop - start >= mmap.PAGESIZE and hasattr(mmap, "MADV_DONTNEED"):
-            self.data.madvise(mmap.MADV_DONTNEED, start, stop - start)
-            self._released = stop
+        release(self.data, self._released, until)
+        self._released = until // mmap.PAGESIZE * mmap.PAGESIZE
 
     def record(self, at: int) -> tuple[int, int]:
         """Return where the content of a record starts and ends."""
@@ -168,7 +164,8 @@ def read_binary(
         if wanted is None or header.name in wanted:
             yield _matrix(file, header, columns)
         else:
-            columns.skip()
+            for _ in columns.batches():  # stepped over
+                pass
             yield header
         at = columns.at
 
@@ -178,11 +175,6 @@ class _Columns:
 
     def __init__(self, file: _File, at: int, header: Header) -> None:
         self.file, self.at, self.header = file, at, header
-
-    def skip(self) -> None:
-        """Step over all of them."""
-        for _ in self.batches():
-            pass
 
     def batches(self) -> Iterator[Ints]:
         """Yield ICOL, IROW, first and last byte of the values, (n, 4), of some columns at once."""
@@ -238,10 +230,7 @@ def _matrix(file: _File, header: Header, columns: _Columns) -> NastranMatrix:
             filler.add(strings, values)
         except ValueError:
             raise file.damaged_strings(header) from None
-    matrix = filler.matrix()
-    if header.form == SYMMETRIC and header.shape[0] == header.shape[1]:
-        matrix = symmetrised(matrix)
-    return NastranMatrix(header.name, matrix, header.form, single=kind in (1, 3))
+    return NastranMatrix.of_file(header.name, filler.matrix(), header.form, single=kind in (1, 3))
 
 
 def _strings_of_column(
@@ -262,8 +251,8 @@ def _strings_of_column(
             raise file.damaged_strings(header)
         found.extend((column, row, length, at + k))
         k += length
-    table = np.array(found, np.int64).reshape(-1, 4)
-    return table[:, 0], table[:, 1], table[:, 2], table[:, 3]
+    column_of, row_of, length_of, at_of = np.array(found, np.int64).reshape(-1, 4).T
+    return column_of, row_of, length_of, at_of
 
 
 def _strings(file: _File, header: Header, columns: Ints, per_value: int) -> Strings:

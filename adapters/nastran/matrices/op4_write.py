@@ -1,7 +1,5 @@
 """Write OUTPUT4 files that Nastran reads with INPUTT4: sparse, double precision."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
 from ....core.arrays import Ints, Numbers
 from ....core.errors import InputError
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 _LONG = 256
 """Runs of so many words on average are copied one by one, shorter ones picked all at once."""
@@ -110,6 +113,8 @@ class Filler:
         for array in (self._data, self._rows):
             array.resize(self._n, refcheck=False)
         np.cumsum(self._counts, out=self._counts)
+        import scipy.sparse as sp  # slow to import, and not needed to know a file
+
         matrix = sp.csc_matrix((self._data, self._rows, self._counts), self._shape)
         self._data = self._rows = np.empty(0)
         if not matrix.has_sorted_indices:

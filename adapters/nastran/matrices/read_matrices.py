@@ -1,7 +1,5 @@
 """Matrices of any of Nastran's files, with their dof maps as far as they are known."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,12 +1,8 @@
 """What a folder of exported runs holds, and its polynomial terms as matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from ....core.data.parameter import Parameter
 from ....core.data.parametric_model import Factor, Model, Term
@@ -25,9 +21,10 @@ def describe_runs(path: Path | str) -> dict[str, Any]:
     """
     folder = Path(path).parent
     index = read_index(folder)
+    held = [[p.name for p in matrices_beside(folder / r["deck"])] for r in index["runs"]]
     runs = [
-        {"deck": r["deck"], "factors": r["factors"], "matrices": _found(folder / r["deck"])}
-        for r in index["runs"]
+        {"deck": r["deck"], "factors": r["factors"], "matrices": names[0] if names else None}
+        for r, names in zip(index["runs"], held, strict=True)
     ]
     missing = sum(1 for r in runs if r["matrices"] is None)
     return {
@@ -42,11 +39,6 @@ def describe_runs(path: Path | str) -> dict[str, Any]:
     }
 
 
-def _found(top: Path) -> str | None:
-    there = matrices_beside(top)
-    return there[0].name if there else None
-
-
 def terms_of_runs(path: Path | str) -> list[tuple[NastranMatrix, str]]:
     """Return the constant matrices of K and M over the parameters, and what multiplies each.
 
@@ -59,8 +51,7 @@ def terms_of_runs(path: Path | str) -> list[tuple[NastranMatrix, str]]:
         As `read_runs`.
     """
     model = read_runs(Path(path).parent)
-    pairs = np.array([[int(w) for w in label.split(":")] for label in model.free_labels], np.int64)
-    there = DofMap(*pairs.reshape(-1, 2).T)
+    there = DofMap.of_labels(model.free_labels)
     return [
         (NastranMatrix(name, term.matrix.tocsc(), SYMMETRIC, there, there), said)
         for letter, terms in (("K", model.stiffness), ("M", model.mass))

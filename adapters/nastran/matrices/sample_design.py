@@ -6,8 +6,6 @@ elements through a product (a modulus and a thickness) are sampled on a grid, th
 time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -64,7 +62,11 @@ def design_of(deck: Deck, specs: Sequence[ParameterSpec]) -> Design:
     """
     parameters = read_variation(deck, specs).parameters
     degrees = [_degree(deck.bulk, spec) for spec in specs]
-    together = np.array([[_act_together(deck.bulk, a, b) for b in specs] for a in specs])
+    bulk = deck.bulk
+    together = np.array(
+        [[any(_coupled(bulk, x, y) for x in a.fields for y in b.fields) for b in specs]
+         for a in specs]
+    )  # fmt: skip
     orders = list(islice(_orders(degrees, together), MOST_RUNS + 1))
     if len(orders) > MOST_RUNS:
         raise InputError(
@@ -125,10 +127,6 @@ def _is_linear(bulk: Bulk, ref: FieldRef) -> bool:
     if ref.card == "PBAR" and ref.field != "NSM":
         return not (card.k1 or card.k2)
     return True
-
-
-def _act_together(bulk: Bulk, a: ParameterSpec, b: ParameterSpec) -> bool:
-    return any(_coupled(bulk, x, y) for x in a.fields for y in b.fields)
 
 
 def _coupled(bulk: Bulk, x: FieldRef, y: FieldRef) -> bool:

@@ -1,9 +1,5 @@
 """Write matrices to OP4 or DMIG; the file takes its name only when it is whole."""
 
-from __future__ import annotations
-
-import os
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -11,14 +7,17 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.errors import InputError
-from .dmig_write import dmig_text
-from .exported_matrix import RECTANGULAR, DofMap, NastranMatrix
+from ....core.files import replacing
+from ..text.real_numbers import format_real
+from .exported_matrix import RECTANGULAR, SQUARE, SYMMETRIC, DofMap, NastranMatrix
 from .op4_write import op4_binary, op4_formatted
 
 MAP = "DOFMAP"
 """Name of the matrix (n, 2) of points and components that stands in an OP4 for a dof map."""
 USE = "DOFUSE"
 """Name of the matrix (n_matrix, 2) of the map's number, from 1, of rows and columns; 0: none."""
+_RECTANGULAR = 9
+"""Form of a rectangular matrix in DMIG."""
 
 
 def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bool = False) -> None:
@@ -42,18 +41,52 @@ def write_op4(path: Path | str, matrices: Sequence[NastranMatrix], formatted: bo
         A name that Nastran does not take, a file that cannot be written.
     """
     write = op4_formatted if formatted else op4_binary
-    _write(Path(path), write([*matrices, *_maps(matrices)]))
+    _write(path, write([*matrices, *_maps(matrices)]))
 
 
 def write_dmig(path: Path | str, matrices: Sequence[NastranMatrix]) -> None:
-    """Write DMIG cards in large field, as Nastran punches them.
+    """Write DMIG cards in large field, as Nastran punches them; of a symmetric matrix one triangle.
 
     Raises
     ------
     InputError
-        A matrix without dof map, a file that cannot be written.
+        A matrix without dof map, which DMIG has to name; a name that is too long for Nastran; a
+        file that cannot be written.
     """
-    _write(Path(path), dmig_text(matrices))
+    _write(path, (part for m in matrices for part in _dmig(m)))
+
+
+def _dmig(m: NastranMatrix) -> Iterator[bytes]:
+    """Yield DMIG cards; numbers have as many digits as 16 columns take (11 to 14)."""
+    if m.rows is None:
+        raise InputError(
+            f"matrix {m.name} has no dof map and DMIG needs one: name the deck as a source too"
+        )
+    if len(m.name) > 8:
+        raise InputError(f"{m.name!r} is longer than the 8 characters of a matrix name in Nastran")
+    complex_ = np.iscomplexobj(m.matrix.data)
+    form = SYMMETRIC if m.form == SYMMETRIC else _RECTANGULAR
+    square = m.matrix.shape[0] == m.matrix.shape[1]
+    if form != SYMMETRIC and square and m.columns is not None:
+        form = SQUARE if np.array_equal(m.rows.keys, m.columns.keys) else _RECTANGULAR
+    number = np.arange(1, m.matrix.shape[1] + 1)
+    columns = m.columns or DofMap(number, np.zeros_like(number))
+    matrix = sp.csc_matrix(sp.triu(m.matrix) if form == SYMMETRIC else m.matrix)
+    matrix.sort_indices()
+    kind = 4 if complex_ else 2
+    yield f"DMIG    {m.name:8}{0:8d}{form:8d}{kind:8d}{0:8d}{'':16}{len(columns):8d}\n".encode()
+    point, component = m.rows.point.tolist(), m.rows.component.tolist()
+    for j in range(matrix.shape[1]):
+        at = slice(matrix.indptr[j], matrix.indptr[j + 1])
+        rows, values = matrix.indices[at].tolist(), matrix.data[at].tolist()
+        if not rows:
+            continue
+        lines = [f"DMIG*   {m.name:16}{columns.point[j]:16d}{columns.component[j]:16d}"]
+        for i, value in zip(rows, values, strict=True):
+            parts = (value.real, value.imag) if complex_ else (value,)
+            numbers = "".join(f"{format_real(part):>16}" for part in parts)
+            lines.append(f"*       {point[i]:16d}{component[i]:16d}{numbers}")
+        yield ("\n".join(lines) + "\n").encode()
 
 
 def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
@@ -83,23 +116,6 @@ def _maps(matrices: Sequence[NastranMatrix]) -> list[NastranMatrix]:
     return [*maps, NastranMatrix(USE, sp.csc_matrix(uses), RECTANGULAR)]
 
 
-def _write(target: Path, parts: Iterator[bytes]) -> None:
-    """Write all parts beside the target, then give them its name."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            for part in parts:
-                stream.write(part)
-        Path(name).chmod(0o644)
-        os.replace(name, target)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}", file=target
-        ) from error
-    finally:
-        Path(name).unlink(missing_ok=True)
+def _write(path: Path | str, parts: Iterator[bytes]) -> None:
+    with replacing(Path(path)) as fresh, fresh.open("wb") as stream:
+        stream.writelines(parts)

@@ -1,8 +1,6 @@
 """Eigenvectors as a results file holds them: by subcase and superelement, in the file's axes."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -94,20 +92,18 @@ class ModeTable(ModeHead):
         """Return one eigenvector, (n_point, 6)."""
         return self.values[:, mode].reshape(-1, 6)
 
-    def take(self, rows: Numbers, modes: Numbers) -> ModeTable:
+    def take(self, rows: Numbers | slice, modes: Numbers | slice) -> "ModeTable":
         """Return some points (indices or mask) and modes."""
         chosen = np.arange(len(self.points))[rows]
         picked = self.values[(6 * chosen[:, None] + np.arange(6)).ravel()][:, modes]
-        return ModeTable(
-            subcase=self.subcase,
-            superelement=self.superelement,
+        return replace(
+            self,
             points=self.points[rows],
             scalar=self.scalar[rows],
             numbers=self.numbers[modes],
             eigenvalues=self.eigenvalues[modes],
             values=np.asfortranarray(picked),
             generalized_mass=self.generalized_mass[modes],
-            basic=self.basic,
         )
 
 

@@ -1,13 +1,12 @@
 """Eigenvectors from the printed output (F06), the last resort: seven digits."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
 from pathlib import Path
 
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from ..text.real_numbers import parse_real
 from .eigenvector_table import ModeTable
 from .gather_vectors import Vector, tables_of
@@ -46,10 +45,8 @@ def read_f06_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     InputError
         A file that cannot be read; a row of an eigenvector that is not one: the line.
     """
-    try:
+    with reading(path):
         lines = path.read_text("latin-1").splitlines()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     printed = _Printed(path)
     for k, line in enumerate(lines):
         printed.take(line, k)

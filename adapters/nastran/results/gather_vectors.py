@@ -1,7 +1,5 @@
 """Eigenvectors gathered from text, point by point, to tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

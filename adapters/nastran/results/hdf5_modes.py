@@ -1,7 +1,5 @@
 """Eigenvectors from Nastran's HDF5 result files."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -41,14 +39,14 @@ def read_hdf5_tables(
     """
     with opened(path) as file:
         groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path, modes)]
-        return [_table(file, g, path) for g in groups], tuple(_data_sets(file))
+        return [_table(file, g, path) for g in groups], _data_sets(file)
 
 
 def read_hdf5_heads(path: Path) -> tuple[list[ModeHead], tuple[str, ...]]:
     """Read what `read_hdf5_tables` gives but the values: costs what it reads."""
     with opened(path) as file:
         groups = [g for name in (_REAL, _COMPLEX) for g in _groups(file, name, path)]
-        return [g.head for g in groups], tuple(_data_sets(file))
+        return [g.head for g in groups], _data_sets(file)
 
 
 @contextmanager
@@ -78,14 +76,13 @@ def grids_with_own_systems(path: Path) -> Ints:
         return np.asarray(grids["ID"][grids["CD"] != 0], np.int64)
 
 
-def _data_sets(file: Any) -> Iterator[str]:
+def _data_sets(file: Any) -> tuple[str, ...]:
     found: list[str] = []
-    results = file.get("NASTRAN/RESULT")
-    if results is not None:
-        results.visititems(
+    if "NASTRAN/RESULT" in file:
+        file["NASTRAN/RESULT"].visititems(
             lambda name, item: found.append(name) if hasattr(item, "dtype") else None
         )
-    return iter(found)
+    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -152,11 +149,8 @@ def _places(file: Any, name: str, path: Path) -> dict[int, slice]:
         domains = of_row[starts]
         if len(np.unique(domains)) < len(domains):
             raise Place(path).error("the rows of one eigenvector do not stand together")
-    return {
-        int(d): slice(int(a), int(b))
-        for d, a, b in zip(domains, starts, stops, strict=True)
-        if b > a
-    }
+    rows = zip(domains.tolist(), starts.tolist(), stops.tolist(), strict=True)
+    return {domain: slice(a, b) for domain, a, b in rows if b > a}
 
 
 def _table(file: Any, group: _Group, path: Path) -> ModeTable:

@@ -1,7 +1,5 @@
 """Eigenvectors from OP2 files of MSC, NX, OptiStruct and MYSTRAN, 32 and 64 bit."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Sequence

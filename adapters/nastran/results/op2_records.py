@@ -6,20 +6,19 @@ ends a data block and, in place of a name, the file (MSC Nastran DMAP Programmer
 Nothing is read here but markers, names and trailers; the data stay in the file until asked for.
 """
 
-from __future__ import annotations
-
 import mmap
 import struct
 from array import array
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
+from typing import Self
 
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError, Place
+from ....core.files import reading, release
 
 _STARTS = {b"\4\0\0\0": ("<", 4), b"\0\0\0\4": (">", 4), b"\10\0\0\0": ("<", 8),
            b"\0\0\0\10": (">", 8)}  # fmt: skip
@@ -54,7 +53,7 @@ class Op2Block:
     name: str
     trailer: tuple[int, ...]
     records: tuple[Op2Record, ...]
-    runs: array[int]
+    runs: "array[int]"
     n_column: int = 0
 
 
@@ -69,14 +68,11 @@ class Op2File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            with path.open("rb") as stream:
-                start = _STARTS.get(stream.read(_MARK))
-                if start is None:
-                    raise Place(path).fault("is not an OP2 file: a binary Nastran file is expected")
-                self._data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
+        with reading(path), path.open("rb") as stream:
+            start = _STARTS.get(stream.read(_MARK))
+            if start is None:
+                raise Place(path).fault("is not an OP2 file: a binary Nastran file is expected")
+            self._data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         self.order, self.word = start
         self._size = len(self._data)
         self._run = struct.Struct(self.order + ("5i" if self.word == 4 else "iqiiq"))
@@ -88,15 +84,10 @@ class Op2File:
             self._data.close()
             raise
 
-    def __enter__(self) -> Op2File:
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(BufferError):  # a view is still held: it closes with the last one
             self._data.close()
 
@@ -128,10 +119,7 @@ class Op2File:
 
     def release_between(self, start: int, stop: int) -> None:
         """Let the system take back the memory of some bytes that have been read."""
-        first = -(-start // mmap.PAGESIZE) * mmap.PAGESIZE
-        whole = (stop - first) // mmap.PAGESIZE * mmap.PAGESIZE
-        if whole > 0 and hasattr(mmap, "MADV_DONTNEED"):
-            self._data.madvise(mmap.MADV_DONTNEED, first, whole)
+        release(self._data, start, stop)
 
     def _words(self, record: Op2Record, kind: str) -> Numbers:
         if len(record.parts) == 1:
@@ -251,7 +239,7 @@ class Op2File:
             number = words
         return Op2Block(name, tuple(map(int, trailer)), tuple(records[1:]), runs, n_column), at
 
-    def _column(self, at: int, column: int, runs: array[int]) -> tuple[int, int]:
+    def _column(self, at: int, column: int, runs: "array[int]") -> tuple[int, int]:
         """Note the runs of a column; return the marker after them and what follows it."""
         data, word = self._data, self.word
         while True:

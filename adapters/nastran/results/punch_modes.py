@@ -1,12 +1,11 @@
 """Eigenvectors from punch files, real or complex."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from ..text.real_numbers import parse_real
 from .eigenvector_table import ModeTable
 from .gather_vectors import Row, Vector, tables_of
@@ -38,10 +37,8 @@ def read_punch_tables(path: Path) -> tuple[list[ModeTable], tuple[str, ...]]:
     InputError
         A file that cannot be read, magnitudes and phases: the line.
     """
-    try:
+    with reading(path):
         lines = path.read_text("latin-1").splitlines()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}", file=path) from None
     vectors: list[Vector] = []
     names: dict[str, None] = {}
     for head, at, body in _blocks(lines):

@@ -1,8 +1,7 @@
 """Analysis modes from the user's own Nastran run, in basic axes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,8 @@ import numpy as np
 from ....core.arrays import Ints, Numbers
 from ....core.data.dofs import Dofs
 from ....core.data.modes import Modes
-from ....core.errors import InputError, Place
+from ....core.errors import Place
+from ....core.files import reading
 from ..deck.pynastran_bridge import file_of
 from ..deck.read_deck import Deck
 from ..properties.grids import Points, read_points
@@ -120,9 +120,8 @@ def _tables(
     else:
         tables, names = READERS[kind](path)
         if modes is not None:
-            rows = [np.arange(len(t.points)) for t in tables]
-            kept = [np.flatnonzero(np.isin(t.numbers, list(modes))) for t in tables]
-            tables = [t.take(r, k) for t, r, k in zip(tables, rows, kept, strict=True) if len(k)]
+            tables = [t.take(slice(None), np.isin(t.numbers, list(modes))) for t in tables]
+            tables = [t for t in tables if len(t.numbers)]
     if modes is not None and not tables:
         asked = ", ".join(map(str, sorted(modes)))
         raise Place(path).fault(f"has none of the modes {asked}")
@@ -137,11 +136,8 @@ def kind_of_results(path: Path) -> str:
     InputError
         It cannot be read.
     """
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(_HEAD)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}", file=path) from None
+    with reading(path), path.open("rb") as stream:
+        head = stream.read(_HEAD)
     if head.startswith(_HDF5_SIGNATURE):
         return HDF5
     text = "" if b"\0" in head else head.decode("latin-1")
@@ -169,8 +165,7 @@ def _of_subcase(
 def _without_conjugates(table: ModeTable) -> ModeTable:
     if not table.is_complex or (table.eigenvalues.imag >= 0.0).all():
         return table
-    keep = table.eigenvalues.imag >= 0.0
-    return table.take(np.arange(len(table.points)), np.flatnonzero(keep))
+    return table.take(slice(None), table.eigenvalues.imag >= 0.0)
 
 
 def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
@@ -192,18 +187,13 @@ def _joined(tables: list[ModeTable], path: Path) -> ModeTable:
             )
         new = np.array([p not in known for p in table.points.tolist()], bool)
         known |= set(table.points.tolist())
-        parts.append(table.take(new, np.arange(len(table.numbers))))
+        parts.append(table.take(new, slice(None)))
     if len(parts) == 1:
         return first
-    return ModeTable(
-        subcase=first.subcase,
-        superelement=first.superelement,
+    return replace(
+        first,
         points=np.concatenate([t.points for t in parts]),
         scalar=np.concatenate([t.scalar for t in parts]),
-        numbers=first.numbers,
-        eigenvalues=first.eigenvalues,
-        generalized_mass=first.generalized_mass,
-        basic=first.basic,
         values=np.asfortranarray(np.concatenate([t.values for t in parts])),
     )
 

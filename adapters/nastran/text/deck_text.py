@@ -1,7 +1,5 @@
 """A deck as the text of all its files: nothing is lost, and every line knows its section."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ....core.arrays import Ints
 from ....core.errors import InputError, Place
 from ....core.noun import Noun
 from .includes import locate_include, parse_include
@@ -61,7 +60,7 @@ class DeckText(Noun):
     children: Mapping[tuple[int, str], int]
 
     @cached_property
-    def _walked(self) -> _Walk:
+    def _walked(self) -> "_Walk":
         def follow(parent: int, written: str, where: Place) -> int:
             child = self.children.get((parent, written))
             if child is None:
@@ -92,7 +91,7 @@ class DeckText(Noun):
         path = self.files[file].path
         return Place(path, row + 1, shown=path.name)
 
-    def with_file_data(self, changes: Mapping[int, bytes]) -> DeckText:
+    def with_file_data(self, changes: Mapping[int, bytes]) -> "DeckText":
         """Return the deck with other text in some of its files."""
         files = tuple(
             f.with_data(changes[k]) if k in changes else f for k, f in enumerate(self.files)
@@ -101,9 +100,19 @@ class DeckText(Noun):
 
     def rows_in(self, segment: Segment, name: str) -> Iterator[tuple[int, int]]:
         """Yield line and number (-1: none) of each card of a name in a segment."""
+        rows, ids = self._named(segment, name)
+        yield from zip(rows.tolist(), ids.tolist(), strict=True)
+
+    def rows_of(self, segment: Segment, name: str, numbers: int | Ints) -> list[tuple[int, int]]:
+        """Return line and number of the cards of a name in a segment that have some numbers."""
+        rows, ids = self._named(segment, name)
+        mine = np.isin(ids, numbers)
+        return list(zip(rows[mine].tolist(), ids[mine].tolist(), strict=True))
+
+    def _named(self, segment: Segment, name: str) -> tuple[Ints, Ints]:
         rows, ids = self.files[segment.file].rows_named(name)
-        a, b = np.searchsorted(rows, (segment.first, segment.stop))
-        yield from zip(rows[a:b].tolist(), ids[a:b].tolist(), strict=True)
+        here = slice(*np.searchsorted(rows, (segment.first, segment.stop)))
+        return rows[here], ids[here]
 
 
 def read_deck_text(path: Path | str) -> DeckText:

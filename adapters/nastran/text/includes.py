@@ -1,7 +1,5 @@
 """INCLUDE statements: what they name, over which lines, and which file that is."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Reals as the bulk data writes them: within 8 or 16 columns, read back without loss."""
 
-from __future__ import annotations
-
 import math
 import re
 

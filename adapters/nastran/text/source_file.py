@@ -1,7 +1,5 @@
 """One file of a deck as bytes, with an index of its lines made in one pass over the bytes."""
 
-from __future__ import annotations
-
 import codecs
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -133,7 +131,7 @@ class TextFile(Noun):
             self._ids[name] = (rows, _numbers(self, rows))
         return self._ids[name]
 
-    def with_data(self, data: bytes) -> TextFile:
+    def with_data(self, data: bytes) -> "TextFile":
         """Return the same file with another text."""
         return TextFile(self.path, data, self.original)
 

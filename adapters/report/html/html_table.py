@@ -1,6 +1,6 @@
 """A table of the run as HTML."""
 
-from __future__ import annotations
+from itertools import groupby
 
 from ..tables.table import Cell, Table
 from .markup import esc, tag
@@ -11,33 +11,19 @@ def html_table(table: Table) -> str:
     groups = [c.group for c in table.columns]
     head = ""
     if any(groups):
-        cells, k = "", 0
-        while k < len(groups):
-            n = next((j for j in range(k, len(groups)) if groups[j] != groups[k]), len(groups)) - k
-            cells += tag("th", esc(groups[k]), colspan=n, class_="group" if groups[k] else None)
-            k += n
-        head = tag("tr", cells)
+        runs = ((name, len([*run])) for name, run in groupby(groups))
+        head = tag("tr", *(tag("th", esc(name), colspan=n, class_="group" if name else None)
+                           for name, n in runs))  # fmt: skip
     starts = {k for k, g in enumerate(groups) if g and (k == 0 or groups[k - 1] != g)}
     classes = [
         " ".join([*["r"] * c.numeric, *["g"] * (k in starts)]) or None
         for k, c in enumerate(table.columns)
     ]
-    head += tag(
-        "tr",
-        *[
-            tag("th", esc(c.heading), class_=classes[k], scope="col")
-            for k, c in enumerate(table.columns)
-        ],
-    )
-    rows = [
-        tag("tr", *[_cell(cell, classes[k]) for k, cell in enumerate(row)]) for row in table.rows
-    ]
-    body = tag(
-        "table",
-        tag("thead", head),
-        tag("tbody", *rows),
-        class_="both" if any(groups) else None,
-    )
+    named = zip(table.columns, classes, strict=True)
+    head += tag("tr", *[tag("th", esc(c.heading), class_=kind, scope="col") for c, kind in named])
+    rows = [tag("tr", *map(_cell, row, classes)) for row in table.rows]
+    both = "both" if any(groups) else None
+    body = tag("table", tag("thead", head), tag("tbody", *rows), class_=both)
     note = tag("p", esc(table.note), class_="note") if table.note else ""
     return tag("div", body, class_="wide") + note
 

@@ -1,7 +1,5 @@
 """The few lines that turn text into safe HTML and SVG."""
 
-from __future__ import annotations
-
 from html import escape
 
 
@@ -30,6 +28,23 @@ def tag(name: str, *children: str, **attributes: object) -> str:
 def svg_text(x: float, y: float, label: object, **attributes: object) -> str:
     """Return an SVG text element."""
     return tag("text", esc(label), x=short(x), y=short(y), **attributes)
+
+
+def centred(x: float, y: float, label: object, kind: str | None = None, **more: object) -> str:
+    """Return an SVG text element whose middle is at `x`."""
+    return svg_text(x, y, label, class_=kind, text_anchor="middle", **more)
+
+
+def svg(kind: str, size: tuple[float, float], told: str, *children: str, **more: object) -> str:
+    """Return a picture of some pixels; `told` is what it shows, for who does not see it."""
+    width, height = size
+    return tag("svg", *children, class_=kind, viewBox=f"0 0 {width} {height}", width=width,
+               role="img", aria_label=told, **more)  # fmt: skip
+
+
+def key(text: str, role: str | None = None, **of_mark: object) -> str:
+    """Return an entry of a legend: a mark of some style, and what it stands for."""
+    return tag("span", tag("i", class_=role, **of_mark), esc(text), class_="key")
 
 
 def short(value: float) -> str:

@@ -1,7 +1,5 @@
 """Round ticks and plain axes for the charts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -75,7 +73,9 @@ def spread(wanted: list[float], gap: float, low: float, high: float) -> list[flo
     runs: list[list[int]] = []
     for k in order:
         runs.append([k])
-        while len(runs) > 1 and _start(runs[-1], wanted, gap) < _end(runs[-2], wanted, gap):
+        while len(runs) > 1 and (
+            _start(runs[-1], wanted, gap) < _start(runs[-2], wanted, gap) + gap * len(runs[-2])
+        ):
             runs[-2:] = [runs[-2] + runs[-1]]
     placed = list(wanted)
     for run in runs:
@@ -91,7 +91,3 @@ def spread(wanted: list[float], gap: float, low: float, high: float) -> list[flo
 
 def _start(run: list[int], wanted: list[float], gap: float) -> float:
     return sum(wanted[k] for k in run) / len(run) - gap * len(run) / 2
-
-
-def _end(run: list[int], wanted: list[float], gap: float) -> float:
-    return _start(run, wanted, gap) + gap * len(run)

@@ -1,11 +1,9 @@
 """Line charts over the iterations and bars over the modes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..html.markup import esc, short, svg_text, tag
+from ..html.markup import centred, esc, key, short, svg, svg_text, tag
 from ..tables.number_formats import general
 from .axes import Plot, decades, spread, ticks
 from .colour import STEPS
@@ -76,34 +74,29 @@ def lines(
     if len(drawn) > 1:
         body += _names(plot, drawn, colours, alone=crowded)
     body += tag("path", class_="cursor", d=f"M0 {plot.top}v{short(plot.height)}", hidden=True)
-    svg = tag(
-        "svg",
+    told = f"{title}: {len(drawn)} lines over {len(x)} iterations."
+    picture = svg(
+        "lines",
+        (width, height),
+        told,
         body,
-        class_="lines",
-        viewBox=f"0 0 {width} {height}",
-        width=width,
-        role="img",
         tabindex="0",
-        aria_label=f"{title}: {len(drawn)} lines over {len(x)} iterations.",
         data_x=" ".join(general(v) for v in x),
         data_px=" ".join(short(plot.x(v)) for v in x),
         data_names="|".join(s.name for s in drawn),
         data_v="|".join(" ".join(_plain(v) for v in s.values) for s in drawn),
         data_unit=unit,
     )
-    key = ""
+    keys = ""
     if crowded:
-        key = "".join(
-            tag(
-                "span",
-                tag("i", style=f"background:{colours[k]}"),
-                esc(s.brief or s.name),
-                class_="key",
-            )
-            for k, s in enumerate(drawn)
-        )
-    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "", key)
-    return tag("figure", heading, svg)
+        marks = zip(drawn, colours, strict=True)
+        keys = "".join(key(s.brief or s.name, style=f"background:{c}") for s, c in marks)
+    return _figure(title, unit, keys, picture)
+
+
+def _figure(title: str, unit: str, keys: str, picture: str) -> str:
+    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}" if unit else "", keys)
+    return tag("figure", heading, picture)
 
 
 def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone: bool) -> str:
@@ -120,7 +113,8 @@ def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone
     for k, y in zip(shown, places, strict=True):
         d = f"M{short(edge + 2)} {short(at[k])}L{short(edge + 9)} {short(y)}"
         body += tag("path", class_="leader", d=d, style=f"stroke:{colours[k]}")
-        name = _shortened(drawn[k].name)
+        name = drawn[k].name
+        name = name if len(name) <= 22 else name[:21] + "…"
         body += svg_text(edge + 11, y + 3.5, name, class_="name", style=f"fill:{colours[k]}")
     return body
 
@@ -128,20 +122,17 @@ def _names(plot: Plot, drawn: Sequence[Series], colours: Sequence[str], *, alone
 def _line(
     plot: Plot, x: Sequence[float], s: Series, k: int, colour: str, count: int, ordered: bool
 ) -> str:
-    d, pen = "", "M"
+    d, dots, pen = "", "", "M"
     for at, v in zip(x, s.values, strict=False):
         if v is None:
             pen = "M"
             continue
-        d += f"{pen}{short(plot.x(at))} {short(plot.y(v))}"
+        here = short(plot.x(at)), short(plot.y(v))
+        d += pen + " ".join(here)
+        dots += tag("circle", cx=here[0], cy=here[1], r=2.3)
         pen = "L"
     dashes = None if ordered or k < 8 else ("5 3", "2 2", "8 3 2 3")[(k // 8 - 1) % 3]
-    dots = "".join(
-        tag("circle", cx=short(plot.x(at)), cy=short(plot.y(v)), r=2.3)
-        for at, v in zip(x, s.values, strict=False)
-        if v is not None and count <= 12
-    )
-    dot = tag("g", dots, fill=colour, stroke="none") if dots else ""
+    dot = tag("g", dots, fill=colour, stroke="none") if dots and count <= 12 else ""
     line = tag("path", d=d, stroke=colour, stroke_dasharray=dashes)
     return tag("g", line, dot, class_="series", data_k=k)
 
@@ -149,23 +140,14 @@ def _line(
 def _iterations(plot: Plot, x: Sequence[float]) -> str:
     every = max(1, round(len(x) / 12))
     y = plot.top + plot.height + 17
-    marks = "".join(
-        svg_text(plot.x(v), y, general(v), text_anchor="middle")
-        for k, v in enumerate(x)
-        if k % every == 0
-    )
-    middle = plot.left + plot.width / 2
-    return marks + svg_text(middle, y + 17, "iteration", class_="axis", text_anchor="middle")
+    marks = "".join(centred(plot.x(v), y, general(v)) for v in x[::every])
+    return marks + centred(plot.left + plot.width / 2, y + 17, "iteration", "axis")
 
 
 def _colour(k: int, count: int, ordered: bool) -> str:
     if not ordered:
         return f"var(--s{k % 8})"
     return f"var(--c{round(6 + (STEPS - 7) * (k / (count - 1) if count > 1 else 1.0))})"
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= 22 else name[:21] + "…"
 
 
 def _plain(value: float | None) -> str:
@@ -222,24 +204,16 @@ def bars(
                    width=short(plot.width / len(labels)))  # fmt: skip
         note = tag("title", esc(f"{where}\n" + "\n".join(told)))
         body += tag("g", note, area, group, class_="hot")
-        body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 15, name, text_anchor="middle",
-                         class_="n")  # fmt: skip
+        middle, bottom = plot.x(k + 0.5), plot.top + plot.height
+        body += centred(middle, bottom + 15, name, "n")
         if frequency and len(labels) <= 30:
-            body += svg_text(plot.x(k + 0.5), plot.top + plot.height + 28, frequency,
-                             text_anchor="middle")  # fmt: skip
-    body += svg_text(plot.left + plot.width / 2, height - 4, "test mode, Hz", class_="axis",
-                     text_anchor="middle")  # fmt: skip
-    svg = tag("svg", body, class_="bars", viewBox=f"0 0 {width} {height}", width=width,
-              role="img", aria_label=f"{title}, {len(labels)} test modes.")  # fmt: skip
-    key = ""
-    if len(states) > 1:
-        key = "".join(
-            tag("span", tag("i", class_=_role(s, states)), esc(s), class_="key") for s in states
-        )
+            body += centred(middle, bottom + 28, frequency)
+    body += centred(plot.left + plot.width / 2, height - 4, "test mode, Hz", "axis")
+    keys = "".join(key(s, _role(s, states)) for s in states) if len(states) > 1 else ""
     if any(v is None for values in states.values() for v in values):
-        key += tag("span", tag("i", class_="none"), "no partner", class_="key")
-    heading = tag("figcaption", tag("b", esc(title)), f" {esc(unit)}", key)
-    return tag("figure", heading, svg)
+        keys += key("no partner", "none")
+    picture = svg("bars", (width, height), f"{title}, {len(labels)} test modes.", body)
+    return _figure(title, unit, keys, picture)
 
 
 def _role(state: str, states: Mapping[str, Sequence[float | None]]) -> str:

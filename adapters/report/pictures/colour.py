@@ -1,7 +1,5 @@
 """Colours by lightness: a perceptually uniform ramp and the colours of the series."""
 
-from __future__ import annotations
-
 import math
 
 STEPS = 20  # a ramp class every 5 % of MAC

@@ -1,7 +1,5 @@
 """MAC matrices as heat maps: one path per colour class, values for the pointer and the reader."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 
@@ -9,7 +7,7 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.results.correlation import MacTable
-from ..html.markup import esc, short, svg_text, tag
+from ..html.markup import centred, esc, short, svg, svg_text, tag
 from ..tables.number_formats import hz
 from .colour import STEPS
 
@@ -63,25 +61,22 @@ def heatmap(
         tag("rect", class_="cursor", width=cell, height=cell, hidden=True),
     ]
     labels = [
-        [_mode_label(m, f) for m in modes]
+        [f"{m} ({hz(f[m - 1])} Hz)" for m in modes]
         for modes, f in ((matrix.test, test_hz), (matrix.analysis, analysis_hz))
     ]
-    svg = tag(
-        "svg",
+    picture = svg(
+        "heat",
+        (w + _LEFT + _PAD, h + _BOTTOM + _PAD),
+        _description(matrix, title),
         tag("g", *body, transform=f"translate({_LEFT} {_PAD})"),
-        class_="heat",
-        viewBox=f"0 0 {w + _LEFT + _PAD} {h + _BOTTOM + _PAD}",
-        width=w + _LEFT + _PAD,
-        role="img",
         tabindex="0",
-        aria_label=_description(matrix, title),
         data_cell=cell,
         data_rows="|".join(labels[0]),
         data_cols="|".join(labels[1]),
         data_v=_packed(matrix.values),
     )
     caption = tag("figcaption", tag("b", esc(title)))
-    return tag("figure", caption, svg, _values_table(matrix), class_="mac")
+    return tag("figure", caption, picture, _values_table(matrix), class_="mac")
 
 
 def legend(what: str = "MAC %") -> str:
@@ -90,9 +85,7 @@ def legend(what: str = "MAC %") -> str:
     boxes = "".join(
         tag("rect", class_=f"c{k}", x=k * step, width=step, height=12) for k in range(STEPS)
     )
-    ticks = "".join(
-        svg_text(p / 100 * STEPS * step, 25, p, text_anchor="middle") for p in (0, 25, 50, 75, 100)
-    )
+    ticks = "".join(centred(p / 100 * STEPS * step, 25, p) for p in (0, 25, 50, 75, 100))
     bar = tag("g", boxes, ticks, transform=f"translate({short(left)} 2)")
     return tag(
         "svg",
@@ -117,12 +110,9 @@ def _position(
     ]
 
 
-def _classes(values: Floats) -> Floats:
-    return np.clip(np.nan_to_num(values, nan=-1.0) * STEPS, -1, STEPS - 1).astype(int)
-
-
 def _cells(values: Floats, cell: int) -> list[str]:
-    classes = np.where(np.isnan(values), -1, _classes(values))
+    steps = np.clip(np.nan_to_num(values, nan=-1.0) * STEPS, -1, STEPS - 1).astype(int)
+    classes = np.where(np.isnan(values), -1, steps)
     paths = []
     for k in [-1, *range(1, STEPS)]:
         where = np.argwhere(classes == k)
@@ -152,26 +142,19 @@ def _labels(matrix: MacTable, test_hz: Floats, analysis_hz: Floats, cell: int) -
     left = "".join(
         svg_text(-6, (k + 0.5) * cell + 3.5, n, text_anchor="end", class_="n")
         + svg_text(-26, (k + 0.5) * cell + 3.5, hz(test_hz[n - 1]), text_anchor="end")
-        for k, n in enumerate(matrix.test)
-        if k % every == 0
+        for k, n in [*enumerate(matrix.test)][::every]
     )
     below = "".join(
         _upright((k + 0.5) * cell + 3.5, rows * cell, n, analysis_hz[n - 1])
-        for k, n in enumerate(matrix.analysis)
-        if k % every == 0
+        for k, n in [*enumerate(matrix.analysis)][::every]
     )
     middle = rows * cell / 2
+    turned = f"translate(-73 {short(middle)}) rotate(-90)"
     return [
         tag("g", left, below, class_="ticks"),
-        svg_text(
-            0, 0, "test mode, Hz", class_="axis", text_anchor="middle",
-            transform=f"translate(-73 {short(middle)}) rotate(-90)",
-        ),
-        svg_text(
-            cols * cell / 2, rows * cell + 82, "analysis mode, Hz", class_="axis",
-            text_anchor="middle",
-        ),
-    ]  # fmt: skip
+        centred(0, 0, "test mode, Hz", "axis", transform=turned),
+        centred(cols * cell / 2, rows * cell + 82, "analysis mode, Hz", "axis"),
+    ]
 
 
 def _upright(x: float, y: float, mode: int, frequency: float) -> str:
@@ -190,10 +173,6 @@ def _outline(cells: Sequence[tuple[int, int]], cell: int) -> str:
         d += "" if (r, c - 1) in inside else f"M{x} {y}v{cell}"
         d += "" if (r, c + 1) in inside else f"M{x + cell} {y}v{cell}"
     return d
-
-
-def _mode_label(mode: int, frequencies: Floats) -> str:
-    return f"{mode} ({hz(frequencies[mode - 1])} Hz)"
 
 
 def _packed(values: Floats) -> str:

@@ -1,15 +1,14 @@
 """The structure as a picture: shaded mesh, sensors on it, effects at their place."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints
 from ....core.data.geometry import Geometry
-from ..html.markup import esc, short, svg_text, tag
+from ..html.markup import centred, esc, short, svg, svg_text, tag
 from .colour import STEPS
 from .seen_surface import (
     Surface,
@@ -146,15 +145,7 @@ def _picture(
     body += tag("g", hidden, class_="hidden") if hidden else ""
     body += "".join(m for visible, m in drawn if visible) + _triad(view, page)
     body += svg_text(4, 12, name) if name else ""
-    return tag(
-        "svg",
-        body,
-        class_="scene",
-        viewBox=f"0 0 {page.width} {page.height}",
-        width=page.width,
-        role="img",
-        aria_label=label,
-    )
+    return svg("scene", (page.width, page.height), label, body)
 
 
 def _nearby(marks: Sequence[Mark], mesh: Surface) -> list[Mark]:
@@ -174,7 +165,7 @@ class _Page:
     @classmethod
     def around(
         cls, projected: Floats, marks: Sequence[Mark], view: View, width: int, height: int
-    ) -> _Page:
+    ) -> Self:
         points = projected[:, :2]
         if marks:
             points = np.vstack([points, view.project(np.array([m.xyz for m in marks]))[:, :2]])
@@ -275,7 +266,7 @@ def _mark(mark: Mark, view: View, page: _Page, size: float) -> str:
         radius = 4.0
     body += tag("circle", cx=short(x), cy=short(y), r=radius, class_=colour)
     if mark.text:
-        body += tag("text", esc(mark.text), x=short(x), y=short(y + 4), text_anchor="middle")
+        body += centred(x, y + 4, mark.text)
     return tag("g", body, class_=f"hot {mark.role}")
 
 
@@ -286,5 +277,5 @@ def _triad(view: View, page: _Page) -> str:
         tip, end = origin + axis, origin + 1.32 * axis
         line = "L".join(f"{short(u)} {short(v)}" for u, v in (origin, tip))
         arrows += tag("path", d=f"M{line}")
-        arrows += tag("text", name, x=short(end[0]), y=short(end[1] + 3.5), text_anchor="middle")
+        arrows += centred(end[0], end[1] + 3.5, name)
     return tag("g", arrows, class_="triad")

@@ -1,7 +1,5 @@
 """What of a mesh is seen in a picture: outer faces, made coarse enough, hidden ones left out."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

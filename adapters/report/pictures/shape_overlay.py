@@ -1,7 +1,5 @@
 """The paired shapes, analysis over test, reduced to what a page can carry."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

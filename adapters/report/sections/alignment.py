@@ -1,7 +1,5 @@
 """Where the test sits on the model."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Floats

@@ -1,22 +1,20 @@
 """Measured damping ratios beside those of the deck before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables
 from ..tables.number_formats import fixed, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Table
 from .section import Section
 
 
 def _tables(found: DiscoverTables) -> Sequence[Table]:
     if found.damping is None or not found.damping.modes:
         return []
-    rows = tuple(
-        (Cell(str(m.test)), *[Cell(percent(v, 2)) for v in (m.measured, m.before, m.after)])
+    rows = [
+        (str(m.test), *[percent(v, 2) for v in (m.measured, m.before, m.after)])
         for m in found.damping.modes
-    )
+    ]
     columns = ("test mode", "measured %", "before %", "after %")
     typical = found.damping.typical_factor
     note = (
@@ -24,7 +22,7 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
         f"{fixed(typical.after, 2)} after. Dampers do not enter normal modes: the ratios "
         "are those of complex modes with the structure's own damping as the test shows it."
     )
-    return [Table("Damping ratios", tuple(map(Column, columns)), rows, note)]
+    return [Table.of("Damping ratios", columns, rows, note)]
 
 
 DAMPING = Section("Damping", "damping", DiscoverTables, _tables)

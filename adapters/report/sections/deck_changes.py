@@ -1,12 +1,10 @@
 """What changed in the deck: its unified diff, changed fields picked out."""
 
-from __future__ import annotations
-
 from difflib import SequenceMatcher
 
 from ....core.results.correlation import RunTables
 from ..html.markup import esc, tag
-from .section import ReportedRun, Section
+from .section import Section
 
 _MOST_LINES = 600
 
@@ -59,9 +57,8 @@ def _change(removed: list[str], added: list[str]) -> list[str]:
 
 def _differing(old: str, new: str) -> tuple[str, str]:
     a, b = old[1:], new[1:]
-    bounds = _fields(a, b)
     left, right = esc(old[0]), esc(new[0])
-    for kind, i, j, m, n in bounds:
+    for kind, i, j, m, n in _fields(a, b):
         if kind == "equal":
             left, right = left + esc(a[i:j]), right + esc(b[m:n])
         else:
@@ -79,12 +76,10 @@ def _fields(a: str, b: str) -> list[tuple[str, int, int, int, int]]:
             i, j, m, n = min(k, len(a)), min(k + 8, len(a)), min(k, len(b)), min(k + 8, len(b))
             out.append(("equal" if a[i:j] == b[m:n] else "replace", i, j, m, n))
         return out
-    codes = SequenceMatcher(None, a, b, autojunk=False).get_opcodes()
-    return [(kind, i, j, m, n) for kind, i, j, m, n in codes]
+    return list(SequenceMatcher(None, a, b, autojunk=False).get_opcodes())
 
 
-def _render(run: ReportedRun[RunTables]) -> str:
-    return deck_diff(run.diff) if run.diff.strip() else ""
-
-
-DECK_CHANGES = Section("Changes to the deck", "deck", RunTables, render=_render)
+DECK_CHANGES = Section(
+    "Changes to the deck", "deck", RunTables,
+    render=lambda run: deck_diff(run.diff) if run.diff.strip() else "",
+)  # fmt: skip

@@ -1,7 +1,5 @@
 """Where model and test disagree, as a section of the report."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.data.geometry import Geometry
@@ -12,7 +10,7 @@ from ..html.markup import esc, tag
 from ..pictures import heatmap
 from ..pictures.scene import scene
 from ..tables.number_formats import fixed, hz, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Table, left
 from . import marks_on_structure
 from .section import ReportedRun, Section
 
@@ -64,27 +62,23 @@ def misfit_tables(found: DiscoverTables) -> Sequence[Table]:
     if told is None:
         return []
     known = found.before.test_hz
-    pairs = tuple(
+    pairs = [
         (str(m.test), hz(known[m.test - 1]), fixed(m.shape, 1), fixed(m.frequency, 1))
         for m in told.modes
-    )
+    ]
     worst = sorted(told.sensors, key=lambda s: -s.misfit)[:_MOST_SENSORS]
-    sensors = tuple((s.sensor, fixed(s.misfit, 1), percent(s.comac, 1)) for s in worst)
+    sensors = [(s.sensor, fixed(s.misfit, 1), percent(s.comac, 1)) for s in worst]
     tables = (
-        Table(
-            "Misfit of the pairs",
-            (Column("test mode"), Column("Hz"), Column("shape"), Column("frequency")),
-            tuple(tuple(map(Cell, row)) for row in pairs),
+        Table.of(
+            "Misfit of the pairs", ("test mode", "Hz", "shape", "frequency"), pairs,
             "In standard deviations of the measurement: 1 is noise alone.",
         ),
-        Table(
-            "Misfit of the sensors",
-            (Column("sensor", numeric=False), Column("misfit"), Column("COMAC %")),
-            tuple(tuple(map(Cell, row)) for row in sensors),
+        Table.of(
+            "Misfit of the sensors", (*left("sensor"), "misfit", "COMAC %"), sensors,
             f"The {len(sensors)} of {len(told.sensors)} that disagree most, before anything was "
             "completed.",
         ),
-    )
+    )  # fmt: skip
     return [t for t in tables if t.rows]
 
 

@@ -1,7 +1,5 @@
 """What is missing in the model or wrong in the test: sentences, picture, table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.discovery.effects import KINDS as EFFECTS
@@ -10,11 +8,11 @@ from ....core.discovery.findings import Finding
 from ....core.results.discovery import DiscoverTables
 from ....core.results.plain import Json
 from ..html.html_table import html_table
-from ..html.markup import esc, tag
+from ..html.markup import esc, key, tag
 from ..pictures import heatmap
 from ..pictures.scene import scene
 from ..tables.number_formats import MISSING, general, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Cell, Table, left
 from . import marks_on_structure
 from .section import ReportedRun, Section
 
@@ -35,26 +33,19 @@ def kind_in_words(kind: str) -> str:
 
 
 def _tables(found: DiscoverTables) -> Sequence[Table]:
-    rows = tuple(
+    rows = [
         (
-            Cell(f.side),
-            Cell(kind_in_words(f.kind)),
-            Cell(f.where.region or ""),
-            Cell(_magnitude(f)),
+            f.side,
+            kind_in_words(f.kind),
+            f.where.region or "",
+            _magnitude(f),
             Cell(percent(f.confidence), bar=f.confidence),
-            Cell(str(sum(place.size for place in f.credible_set) or MISSING)),
+            str(sum(place.size for place in f.credible_set) or MISSING),
         )
         for f in found.findings
-    )
-    columns = (
-        Column("side", numeric=False),
-        Column("what", numeric=False),
-        Column("where", numeric=False),
-        Column("size (95 % interval)", numeric=False),
-        Column("confidence %"),
-        Column("places as good"),
-    )
-    return [Table("Findings", columns, rows)] if rows else []
+    ]
+    words = left("side", "what", "where", "size (95 % interval)")
+    return [Table.of("Findings", (*words, "confidence %", "places as good"), rows)] if rows else []
 
 
 def _magnitude(finding: Finding) -> str:
@@ -100,11 +91,7 @@ def _picture(run: ReportedRun[DiscoverTables]) -> str:
     sensors = marks_on_structure.sensors(told.final.alignment.sensors, geometry, directions=False)
     marks = sensors + marks_on_structure.findings(told.findings, geometry, sensors)
     scale = heatmap.legend("misfit, % of its largest") if values is not None else ""
-    keys = [
-        tag("span", tag("i", class_=role), text, class_="key")
-        for role, text in _ROLES
-        if any(m.role == role for m in marks)
-    ]
+    keys = [key(text, role) for role, text in _ROLES if any(m.role == role for m in marks)]
     return (
         scene(geometry, "Where", marks=marks, values=values)
         + scale

@@ -1,12 +1,10 @@
 """How well measured frequency responses are met before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables
 from ..tables.number_formats import fixed, general, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Table, left
 from .section import Section
 
 
@@ -21,13 +19,12 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
         ("FRAC %, worst sensor", *[percent(w, 1) for w in worst]),
         ("magnitudes, rms log ratio", fixed(log.before, 3), fixed(log.after, 3)),
     )
-    columns = (Column("measure", numeric=False), Column("before"), Column("after"))
+    columns = [*left("measure"), "before", "after"]
     note = (
         f"{frf.lines} lines at {len(frf.responses)} sensors, none of them used to fit a "
         f"hypothesis; {general(frf.independent_lines, 3)} count as independent."
     )
-    cells = tuple(tuple(map(Cell, row)) for row in rows)
-    return [Table("Frequency responses", columns, cells, note)]
+    return [Table.of("Frequency responses", columns, rows, note)]
 
 
 FREQUENCY_RESPONSES = Section("Frequency responses", "responses", DiscoverTables, _tables)

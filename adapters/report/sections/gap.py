@@ -1,13 +1,11 @@
 """The gap before and after, on the searched and on the held-out data."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.correlation import Gap
 from ....core.results.discovery import DiscoverTables
 from ..tables.number_formats import fixed, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Cell, Table, left
 from .section import Section
 
 _LEFT = "The deck was left as it was; what differs comes of sensors corrected for the comparison."
@@ -21,34 +19,20 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
         ("held out", "before", held.before),
         ("held out", "after", held.after),
     ]
-    rows = tuple(
-        (Cell(data), Cell(model), *_cells(entry))
-        for data, model, entry in states
-        if entry is not None
-    )
-    columns = (
-        Column("data", numeric=False),
-        Column("model", numeric=False),
-        Column("pairs"),
-        Column("mean |dev.| %"),
-        Column("worst |dev.| %"),
-        Column("mean MAC %"),
-    )
+    rows = [(data, model, *_cells(entry)) for data, model, entry in states if entry is not None]
+    columns = [*left("data", "model"), "pairs", "mean |dev.| %", "worst |dev.| %", "mean MAC %"]
     note = "Held out: modes and sensors that the search never saw."
     if held.before is None:
         note = "No modes were held out from the search: the test has fewer than ten that count."
     if not found.adopted:
         note += f" {_LEFT}"
-    return [Table("The gap", columns, rows, note)]
+    return [Table.of("The gap", columns, rows, note)]
 
 
-def _cells(gap: Gap) -> list[Cell]:
-    return [
-        Cell(str(gap.pairs)),
-        Cell(fixed(gap.mean_abs_deviation_percent, 2)),
-        Cell(fixed(gap.worst_deviation_percent, 2)),
-        Cell(percent(gap.mean_mac, 1), bar=gap.mean_mac),
-    ]
+def _cells(gap: Gap) -> list[Cell | str]:
+    mean, worst = gap.mean_abs_deviation_percent, gap.worst_deviation_percent
+    mac = Cell(percent(gap.mean_mac, 1), bar=gap.mean_mac)
+    return [str(gap.pairs), fixed(mean, 2), fixed(worst, 2), mac]
 
 
 GAP = Section("The gap", "gap", DiscoverTables, _tables)

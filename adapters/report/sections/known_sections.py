@@ -1,7 +1,5 @@
 """The sections of the report, one line each."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ....core.errors import InputError

@@ -1,10 +1,8 @@
 """The MAC as measured, after rotation, after updating."""
 
-from __future__ import annotations
-
 from ....core.results.correlation import RunTables
 from ....core.results.discovery import DiscoverTables
-from ..html.markup import tag
+from ..html.markup import key, tag
 from ..pictures import heatmap
 from .section import ReportedRun, Section
 
@@ -35,9 +33,7 @@ def _render(run: ReportedRun[RunTables]) -> str:
         )
         for c, matrix, title in shown
     ]
-    keys = tag("span", tag("i", class_="ring"), "pair", class_="key") + tag(
-        "span", tag("i", class_="frame"), "cluster of close modes", class_="key"
-    )
+    keys = key("pair", "ring") + key("cluster of close modes", "frame")
     top = tag("div", heatmap.legend(), tag("span", keys, class_="note"), class_="row")
     return top + tag("div", *figures, class_="row")
 

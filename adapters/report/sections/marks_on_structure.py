@@ -1,7 +1,5 @@
 """From what a run says of sensors, findings and misfit to marks on the structure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

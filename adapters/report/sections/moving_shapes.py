@@ -1,7 +1,5 @@
 """The moving overlay of analysis and test: data for the script, a still picture without it."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import replace
 
@@ -9,7 +7,7 @@ import numpy as np
 
 from ....core.arrays import Numbers
 from ....core.results.correlation import PairRow, RunTables
-from ..html.markup import esc, tag
+from ..html.markup import esc, key, tag
 from ..pictures.scene import still
 from ..tables.number_formats import fixed, hz, percent
 from .section import ReportedRun, Section
@@ -46,13 +44,8 @@ def _render(run: ReportedRun[RunTables]) -> str:
         data_model=_packed(overlay.model / 2.0, np.int8),
         data_test=_packed(overlay.test / 2.0, np.int8),
     )
-    keys = "".join(
-        tag("span", tag("i", class_=role), text, class_="key")
-        for role, text in (
-            ("model", "where the model puts a sensor"),
-            ("measured", "where the test puts it, to the same scale"),
-        )
-    )
+    keys = key("where the model puts a sensor", "model")
+    keys += key("where the test puts it, to the same scale", "measured")
     return figure + tag("p", keys, class_="note")
 
 

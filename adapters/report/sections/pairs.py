@@ -1,14 +1,12 @@
 """The paper's table of pairs, and deviations and MAC by mode."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from ....core.results.correlation import Compared, PairRow, RunTables
 from ..html.html_table import html_table
 from ..pictures import charts
 from ..tables.number_formats import fixed, hz, percent, signed
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Cell, Column, Heading, Table
 from .section import ReportedRun, Section
 
 _PAIR = ("analysis mode", "Hz", "deviation %", "MAC %", "rotation °", "cluster")
@@ -23,33 +21,33 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
     every = [p for of in partners for p in of.values()]
     keep = [0, 1, 2, 3] + [4] * any(p.rotation_deg is not None for p in every)
     keep += [5] * any(p.cluster is not None for p in every)
-    columns = [Column("test mode"), Column("Hz")]
+    columns: list[Heading] = ["test mode", "Hz"]
     columns += [Column(_PAIR[k], group) for group, _ in states for k in keep]
     rows = []
     for n in last.test_modes:
-        row = [Cell(str(n)), Cell(hz(last.test_hz[n - 1]))]
+        row: list[Cell | str] = [str(n), hz(last.test_hz[n - 1])]
         for of in partners:
             cells = _cells(of.get(n))
             row += [cells[k] for k in keep]
-        rows.append(tuple(row))
+        rows.append(row)
     note = "Deviation is 100·(analysis − test)/test."
     if 4 in keep:
         note += (
             " Rotation is how far the analysis mode was turned within its cluster of close modes."
         )
-    return Table("Test modes and their partners", tuple(columns), tuple(rows), note)
+    return Table.of("Test modes and their partners", columns, rows, note)
 
 
-def _cells(pair: PairRow | None) -> list[Cell]:
+def _cells(pair: PairRow | None) -> list[Cell | str]:
     if pair is None:
-        return [Cell("none", "muted")] + [Cell("")] * 5
+        return [Cell("none", "muted"), *[""] * 5]
     return [
-        Cell(str(pair.analysis)),
-        Cell(hz(pair.analysis_hz)),
-        Cell(signed(pair.deviation_percent, 2)),
+        str(pair.analysis),
+        hz(pair.analysis_hz),
+        signed(pair.deviation_percent, 2),
         Cell(percent(pair.mac, 1), bar=pair.mac),
-        Cell("" if pair.rotation_deg is None else fixed(pair.rotation_deg, 1)),
-        Cell("" if pair.cluster is None else str(pair.cluster)),
+        "" if pair.rotation_deg is None else fixed(pair.rotation_deg, 1),
+        "" if pair.cluster is None else str(pair.cluster),
     ]
 
 

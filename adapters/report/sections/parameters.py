@@ -1,7 +1,5 @@
 """What was moved, and how an update went."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -16,7 +14,7 @@ from ..html.html_table import html_table
 from ..html.markup import tag
 from ..pictures import charts
 from ..tables.number_formats import MISSING, fixed, general, hz
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Cell, Column, Heading, Table, left
 from .section import ReportedRun, Section
 
 _LOOSE = 0.5
@@ -37,25 +35,14 @@ def _tables(answer: ChangingTables) -> Sequence[Table]:
 def _moved(answer: ChangingTables) -> Table:
     """Return what was moved: cards, values before and after, factor, standard error, bounds."""
     rows = [_row(p) for p in answer.parameters]
-    columns = (
-        Column("parameter", numeric=False),
-        Column("cards", numeric=False),
-        Column("initial"),
-        Column("updated"),
-        Column("factor"),
-        Column("std. error"),
-        Column("", numeric=False),
-    )
+    numbers = ("initial", "updated", "factor", "std. error")
+    columns = [*left("parameter", "cards"), *numbers, *left("")]
     used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
     note = "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
     if isinstance(answer, DiscoverTables) and not answer.adopted:
         note = _LEFT + note
-    return Table(
-        "Parameters",
-        tuple(columns[k] for k in used),
-        tuple(tuple(r[k] for k in used) for r in rows),
-        note,
-    )
+    cells = [[r[k] for k in used] for r in rows]
+    return Table.of("Parameters", [columns[k] for k in used], cells, note)
 
 
 def _row(p: ParameterRow) -> tuple[Cell, ...]:
@@ -79,16 +66,11 @@ def _iterations(answer: UpdateTables) -> Table:
         off = np.abs(h.deviations_percent[np.isfinite(h.deviations_percent)])
         cells = [str(h.iteration), general(h.objective)]
         cells += [fixed(float(f(off)), 2) if len(off) else MISSING for f in (np.mean, np.max)]
-        rows.append(tuple(map(Cell, [*cells, *[fixed(f, 4) for f in h.factors]])))
-    columns = (
-        Column("iteration"),
-        Column("objective"),
-        Column("mean |dev.| %"),
-        Column("worst |dev.| %"),
-        *[Column(p.name, "factors") for p in answer.parameters],
-    )
+        rows.append([*cells, *[fixed(f, 4) for f in h.factors]])
+    factors = [Column(p.name, "factors") for p in answer.parameters]
+    columns: list[Heading] = ["iteration", "objective", "mean |dev.| %", "worst |dev.| %"]
     note = f"Ended: {answer.stopped}." if answer.stopped else ""
-    return Table("Iterations", columns, tuple(rows), note)
+    return Table.of("Iterations", [*columns, *factors], rows, note)
 
 
 def _render(run: ReportedRun[ChangingTables]) -> str:

@@ -1,7 +1,5 @@
 """What a section of the report declares, and the run that it is made from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar

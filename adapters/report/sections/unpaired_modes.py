@@ -1,7 +1,5 @@
 """Modes of both sides without a partner, each with its closest look-alike by MAC."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +8,7 @@ from ....core.results.correlation import MacTable, RunTables
 from ..html.html_table import html_table
 from ..html.markup import esc, tag
 from ..tables.number_formats import counted, hz, percent
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Column, Table, left
 from .section import ReportedRun, Section
 
 _ABOVE = 1.02
@@ -30,17 +28,10 @@ def _tables(answer: RunTables) -> Sequence[Table]:
             if side == "analysis" and n in beyond:
                 continue
             like, mac = _closest(found.mac_rotated, side, n)
-            cells = (side, str(n), hz(frequencies[n - 1]), f"{other} {like}", percent(mac, 1))
-            rows.append(tuple(map(Cell, cells)))
+            rows.append((side, str(n), hz(frequencies[n - 1]), f"{other} {like}", percent(mac, 1)))
     note = f"Above the test's range: {counted(len(beyond), 'analysis mode')}." if beyond else ""
-    columns = (
-        Column("side", numeric=False),
-        Column("mode"),
-        Column("Hz"),
-        Column("most alike"),
-        Column("MAC %"),
-    )
-    return [Table("Modes without a partner", columns, tuple(rows), note)] if rows else []
+    columns = [*left("side"), "mode", "Hz", "most alike", "MAC %"]
+    return [Table.of("Modes without a partner", columns, rows, note)] if rows else []
 
 
 def _closest(matrix: MacTable, side: str, mode: int) -> tuple[int, float]:

@@ -1,18 +1,16 @@
 """What to measure next where the data do not decide."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ....core.results.discovery import DiscoverTables
 from ..html.markup import esc, tag
-from ..tables.table import Cell, Column, Table
+from ..tables.table import Table, left
 from .section import ReportedRun, Section
 
 
 def _tables(found: DiscoverTables) -> Sequence[Table]:
-    rows = tuple((Cell(said),) for said in found.would_decide)
-    return [Table("What would decide", (Column("", numeric=False),), rows)] if rows else []
+    rows = [(said,) for said in found.would_decide]
+    return [Table.of("What would decide", left(""), rows)] if rows else []
 
 
 def _render(run: ReportedRun[DiscoverTables]) -> str:

@@ -1,7 +1,5 @@
 """The one sentence that a person reads first."""
 
-from __future__ import annotations
-
 import math
 
 from ....core.results.correlation import Compared, Gap, RunTables
@@ -123,11 +121,10 @@ def figures(answer: RunTables) -> list[tuple[str, str, str]]:
     if isinstance(answer, DiscoverTables):
         now, then = _figures(answer.gap.after), _figures(answer.gap.before)
     else:
-        now = _figures(answer.final.summary, len(answer.final.test_modes))
-        before = answer.initial
-        then = ["", "", "", ""]
-        if before is not None:
-            then = _figures(before.summary, len(before.test_modes))
+        now, then = (
+            _figures(c.summary, len(c.test_modes)) if c else [""] * 4
+            for c in (answer.final, answer.initial)
+        )
     what = ("pairs", "mean frequency deviation", "worst frequency deviation",
             "mean MAC of the pairs")  # fmt: skip
     rows = list(zip(what, now, then, strict=True))

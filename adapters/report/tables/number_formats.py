@@ -1,7 +1,5 @@
 """Numbers as an engineer writes them; a missing one (None or not finite) is a dash."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

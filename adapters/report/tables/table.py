@@ -1,8 +1,8 @@
 """A table of a run as plain content, rendered alike on the page and in the terminal."""
 
-from __future__ import annotations
-
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,9 @@ class Column:
     numeric: bool = True
 
 
+Heading = Column | str
+
+
 @dataclass(frozen=True)
 class Table:
     """A titled table; `note` is what has to be known to read it."""
@@ -31,3 +34,24 @@ class Table:
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
     note: str = ""
+
+    @classmethod
+    def of(
+        cls,
+        title: str,
+        columns: Sequence[Heading],
+        rows: Iterable[Sequence[Cell | str]],
+        note: str = "",
+    ) -> Self:
+        """Return a table in which a plain text is a column of numbers or a plain cell."""
+        return cls(
+            title,
+            tuple(c if isinstance(c, Column) else Column(c) for c in columns),
+            tuple(tuple(c if isinstance(c, Cell) else Cell(c) for c in row) for row in rows),
+            note,
+        )
+
+
+def left(*headings: str) -> list[Heading]:
+    """Return columns of words."""
+    return [Column(heading, numeric=False) for heading in headings]

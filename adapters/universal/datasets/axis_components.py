@@ -1,7 +1,5 @@
 """Motion along any axes as the three components a universal file stores for each node."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers, frozen

@@ -1,7 +1,5 @@
 """Datasets 18 and 2420: coordinate systems."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -12,11 +10,10 @@ from ....core.arrays import Floats
 from ..container import Section
 from ..open_file import Source
 from ..systems import BASIC, KINDS, CoordinateSystem, from_points
-from ..text.number_fields import integers, text
 from ..text.printing import dataset, text_line
 from ..universal_content import UniversalContent
 from .dataset_kind import DatasetKind, Gathered, Outgoing
-from .section_lines import filled, positions
+from .section_lines import Lines
 
 
 def _defined(found: Mapping[int, CoordinateSystem], source: Source, into: Gathered) -> int:
@@ -26,68 +23,45 @@ def _defined(found: Mapping[int, CoordinateSystem], source: Source, into: Gather
     return len(found)
 
 
+def _each(
+    lines: Lines, least: int, starts: str, count: int
+) -> Iterator[tuple[int, list[int], str, Floats]]:
+    """Yield row, integers, name and rows of three numbers of each system."""
+    while lines.more():
+        row, head = lines.head(least, starts)
+        if head[1] not in range(len(KINDS)):
+            raise lines.error(row, starts)
+        name, values = lines.name(), lines.positions(count)
+        if len(values) < count:
+            raise lines.error(row, f"system {head[0]} needs {count} values, has {len(values)}")
+        yield row, head, name, np.array(values[:count]).reshape(-1, 3)
+
+
 def _read_18(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 18; a system may refer to those defined before, first to those of its file."""
     known = {**into.systems, **into.systems_of.get(source.name, {})}
-    lines = filled(source, section)
-    found: dict[int, CoordinateSystem] = {}
-    at = 0
-    while at < len(lines):
-        head = integers(lines[at])
-        line = section.line + 1 + at
-        if len(head) < 3 or head[1] not in range(3):
-            raise source.error(
-                line, "dataset 18: a system starts with number, type (0..2), reference"
-            )
-        name, at = text(lines[at + 1]) if at + 1 < len(lines) else "", at + 2
-        values: list[float] = []
-        while len(values) < 9 and at < len(lines):
-            values += positions(source, section, lines, at)
-            at += 1
-        if len(values) < 9:
-            raise source.error(
-                line, f"dataset 18: system {head[0]} needs 9 values, has {len(values)}"
-            )
-        reference = {**known, **found}.get(head[2], BASIC if head[2] in (0, head[0]) else None)
+    lines, found = Lines.filled(source, section), dict[int, CoordinateSystem]()
+    starts = "a system starts with number, type (0..2), reference"
+    for row, (number, kind, to, *_), name, points in _each(lines, 3, starts, 9):
+        reference = {**known, **found}.get(to, BASIC if to in (0, number) else None)
         if reference is None:
-            raise source.error(
-                line, f"dataset 18: system {head[0]} refers to {head[2]}, not defined"
-            )
-        points = np.array(values[:9]).reshape(3, 3)
+            raise lines.error(row, f"system {number} refers to {to}, not defined")
         try:
-            found[head[0]] = from_points(KINDS[head[1]], reference, points, name)
+            found[number] = from_points(KINDS[kind], reference, points, name)
         except ValueError as error:
-            raise source.error(line, f"dataset 18, system {head[0]}: {error}") from None
+            raise lines.error(row, f"system {number}: {error}") from None
     return _defined(found, source, into)
 
 
 def _read_2420(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 2420: rows 1..3 of the matrix are the axes, row 4 the origin, in the part."""
-    lines = filled(source, section)
-    found: dict[int, CoordinateSystem] = {}
-    at = 2
-    while at < len(lines):
-        head = integers(lines[at])
-        line = section.line + 1 + at
-        if len(head) < 2 or head[1] not in range(3):
-            raise source.error(
-                line, "dataset 2420: a system starts with its number and type (0..2)"
-            )
-        name, at = text(lines[at + 1]) if at + 1 < len(lines) else "", at + 2
-        values: list[float] = []
-        while len(values) < 12 and at < len(lines):
-            values += positions(source, section, lines, at)
-            at += 1
-        if len(values) < 12:
-            raise source.error(
-                line, f"dataset 2420: system {head[0]} needs 12 values, has {len(values)}"
-            )
-        matrix = np.array(values[:12]).reshape(4, 3)
+    lines, found = Lines.filled(source, section), dict[int, CoordinateSystem]()
+    lines.at = 2
+    starts = "a system starts with its number and type (0..2)"
+    for row, (number, kind, *_), name, matrix in _each(lines, 2, starts, 12):
         if np.abs(matrix[:3] @ matrix[:3].T - np.eye(3)).max() > 1e-3:
-            raise source.error(
-                line, f"dataset 2420: the axes of system {head[0]} are not orthogonal unit vectors"
-            )
-        found[head[0]] = CoordinateSystem(KINDS[head[1]], matrix[:3], matrix[3], name)
+            raise lines.error(row, f"the axes of system {number} are not orthogonal unit vectors")
+        found[number] = CoordinateSystem(KINDS[kind], matrix[:3], matrix[3], name)
     return _defined(found, source, into)
 
 

@@ -1,7 +1,5 @@
 """What a kind of dataset declares, what its reader adds to, and what its writer prints."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -83,14 +81,6 @@ class Outgoing:
         return tuple(e for e in self.extensions if isinstance(e, kind))
 
 
-def _nothing_told(content: UniversalContent) -> dict[str, Any]:
-    return {}
-
-
-def _nothing_written(out: Outgoing) -> Iterable[bytes]:
-    return ()
-
-
 @dataclass(frozen=True)
 class DatasetKind:
     """A kind of dataset of universal files.
@@ -118,7 +108,7 @@ class DatasetKind:
     number: int
     name: str
     read: Callable[[Source, Section, Gathered], int]
-    tell: Callable[[UniversalContent], dict[str, Any]] = _nothing_told
-    write: Callable[[Outgoing], Iterable[bytes]] = _nothing_written
+    tell: Callable[[UniversalContent], dict[str, Any]] = lambda content: {}
+    write: Callable[[Outgoing], Iterable[bytes]] = lambda out: ()
     vital: bool = False
     tells_own_end: bool = False

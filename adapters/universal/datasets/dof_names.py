@@ -1,7 +1,5 @@
 """Response and reference of a function: by their numbers, or where they lack, by their names."""
 
-from __future__ import annotations
-
 import re
 from itertools import pairwise
 

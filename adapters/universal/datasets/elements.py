@@ -1,7 +1,6 @@
 """Dataset 2412: elements."""
 
-from __future__ import annotations
-
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +14,7 @@ from ..text.number_fields import integers
 from ..text.printing import dataset
 from ..universal_content import Skipped, UniversalContent
 from .dataset_kind import DatasetKind, Gathered, Outgoing
-from .section_lines import filled
+from .section_lines import Lines
 
 _BEAMS = (11, 21, 22, 23, 24, 31, 32)
 _LINES = (*_BEAMS, 121, 136, 137, 141, 151, 171)
@@ -63,28 +62,22 @@ class Element:
 
 def _read(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 2412; elements of no shape that can be drawn are listed as skipped."""
-    lines = filled(source, section)
-    found, other, at = list[Element](), dict[tuple[int, int], int](), 0
-    while at < len(lines):
-        head = integers(lines[at])
-        line, at = section.line + 1 + at, at + 1
-        if len(head) < 6 or head[5] < 1:
-            raise source.error(line, "dataset 2412: an element starts with six integers")
-        n = head[5]
-        ahead = integers(lines[at]) if at < len(lines) else []
-        if head[1] in _BEAMS and len(ahead) == 3 and (n != 3 or at + 1 < len(lines)):
-            at += 1  # orientation and end references of a beam
-        nodes: list[int] = []
-        while len(nodes) < n and at < len(lines):
-            nodes += integers(lines[at])
-            at += 1
+    lines = Lines.filled(source, section)
+    found, other = list[Element](), Counter[tuple[int, int]]()
+    while lines.more():
+        row, head = lines.head(6, starts := "an element starts with six integers")
+        number, descriptor, n = head[0], head[1], head[5]
+        if n < 1:
+            raise lines.error(row, starts)
+        ahead = integers(lines.lines[lines.at]) if lines.more() else []
+        if descriptor in _BEAMS and len(ahead) == 3 and (n != 3 or lines.at + 1 < len(lines.lines)):
+            lines.at += 1  # orientation and end references of a beam
+        nodes = lines.gathered(n, integers)
         if len(nodes) != n:
-            raise source.error(
-                line, f"dataset 2412: element {head[0]} announces {n} nodes, {len(nodes)} are there"
-            )
-        element = _element(head[0], head[1], nodes)
+            raise lines.error(row, f"element {number} announces {n} nodes, {len(nodes)} are there")
+        element = _element(number, descriptor, nodes)
         if element is None:
-            other[head[1], n] = other.get((head[1], n), 0) + 1
+            other[descriptor, n] += 1
         else:
             found.append(element)
     for (descriptor, n), count in other.items():

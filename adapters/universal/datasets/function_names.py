@@ -1,7 +1,5 @@
 """What dataset 58 calls functions and what they are of."""
 
-from __future__ import annotations
-
 KINDS = {
     0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum",
     4: "frequency response", 5: "transmissibility", 6: "coherence", 7: "auto correlation",

@@ -1,7 +1,5 @@
 """The numbers of a dataset 58 or 58b."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Floats, Numbers

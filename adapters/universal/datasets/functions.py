@@ -1,22 +1,20 @@
 """Dataset 58 and 58b: one function at a nodal degree of freedom."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from ..container import Section
 from ..open_file import Source
 from ..text.layout58 import HEADER_LINES, form
-from ..text.number_fields import NotANumber, integers, numbers_of, text
+from ..text.number_fields import integers, numbers_of, text
 from ..universal_content import UniversalContent
-from .dataset_kind import DatasetKind, Gathered, Outgoing
+from .dataset_kind import DatasetKind, Gathered
 from .dof_names import dofs_of
 from .function_names import KINDS
-from .write_functions import frf_datasets, function_datasets
+from .section_lines import Lines
+from .write_functions import write_functions
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,7 @@ class Head58:
     ordinate: Axis
     denominator: Axis
     data_at: int
-    named: bool = field(default=False)
+    named: bool = False
 
     @property
     def kind(self) -> str:
@@ -93,34 +91,27 @@ def read_head(source: Source, section: Section) -> Head58:
         A header that is cut off, or whose counts are no numbers.
     """
     lines, data_at = source.head(section, HEADER_LINES)
+    read = Lines(source, section, lines)
     if len(lines) < HEADER_LINES:
-        raise source.error(
-            section.line,
-            f"dataset 58 is cut off: {len(lines)} of its {HEADER_LINES} header lines are there; "
+        raise read.error(
+            -1,
+            f"it is cut off: {len(lines)} of its {HEADER_LINES} header lines are there; "
             "export or copy the file again",
         )
     ids = tuple(text(line) for line in lines[:5])
     try:
         function, numbered, named = dofs_of(lines[5], ids)
     except ValueError:
-        raise source.error(
-            section.line + 6,
-            f"dataset 58: {text(lines[5])!r} does not name a response and a reference",
-        ) from None
+        said = text(lines[5])
+        raise read.error(5, f"{said!r} does not name a response and a reference") from None
     layout = form(lines[6])
     if not layout:
-        raise source.error(
-            section.line + 7, "dataset 58: data type, count and spacing are expected"
-        )
-    try:
+        raise read.error(6, "data type, count and spacing are expected")
+    with read.numbers(6):
         steps = numbers_of(lines[6][30:], (13, 13, 13))
-    except NotANumber as error:
-        raise source.error(
-            section.line + 7, f"dataset 58: {error.text!r} is not a number"
-        ) from None
     steps = [*steps, 0.0, 0.0][: max(2, len(steps))]
     if layout[2] != 0 and not all(map(math.isfinite, steps[:2])):
-        raise source.error(section.line + 7, "dataset 58: its start or step is not a finite number")
+        raise read.error(6, "its start or step is not a finite number")
     return Head58(
         section,
         ids,
@@ -163,9 +154,6 @@ def _tell(content: UniversalContent) -> dict[str, Any]:
     return told
 
 
-def _write(out: Outgoing) -> Iterator[bytes]:
-    yield from frf_datasets(out)
-    yield from function_datasets(out)
-
-
-FUNCTIONS_58 = DatasetKind(58, "function at nodal dof", _read, _tell, _write, tells_own_end=True)
+FUNCTIONS_58 = DatasetKind(
+    58, "function at nodal dof", _read, _tell, write_functions, tells_own_end=True
+)

@@ -1,7 +1,5 @@
 """Datasets 151 (header) and 2400 (model header): where a file comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from datetime import datetime
 from typing import Any

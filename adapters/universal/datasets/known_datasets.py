@@ -1,7 +1,5 @@
 """The datasets of universal files that are read and written, one line each."""
 
-from __future__ import annotations
-
 from ....core.errors import InputError
 from .coordinate_systems import SYSTEMS_18, SYSTEMS_2420
 from .dataset_kind import DatasetKind

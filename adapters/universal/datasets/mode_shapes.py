@@ -1,11 +1,9 @@
 """Datasets 55 and 2414: mode shapes at nodes."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -13,12 +11,13 @@ from ....core.arrays import Ints, Numbers
 from ....core.data.modes import Modes
 from ..container import Section
 from ..open_file import Source
-from ..text.number_fields import NotANumber, floats, integers, text
+from ..text.number_fields import floats, integers, text
 from ..text.printing import dataset, text_line, tight
 from ..universal_content import Skipped, UniversalContent
 from .axis_components import node_vectors
 from .dataset_kind import DatasetKind, Gathered, Outgoing
 from .node_values import node_values
+from .section_lines import Lines
 
 _ANALYSES = {
     0: "unknown",
@@ -65,43 +64,41 @@ class _Head:
     ids: tuple[str, ...]
     n_line: int
 
+    @classmethod
+    def of(cls, lines: Lines, kind: int, ids: Sequence[int], reals: range) -> Self:
+        """Read the line of kinds, lines of text and lines of reals."""
+        found = _integers(lines, kind, 6)
+        with lines.numbers(reals.start):
+            numbers = tuple(floats(lines.lines[reals.start : reals.stop]).tolist())
+        said = tuple(text(lines.lines[k]) for k in ids)
+        return cls(found[1], found[3], found[4], found[5], numbers, said, reals.stop)
 
-def read_55(
-    source: Source, section: Section, wanted: Callable[[], bool] = lambda: True
-) -> Shape | Skipped | None:
+
+def _header(source: Source, section: Section, least: int) -> Lines:
+    lines = Lines(source, section, source.head(section, _HEADER)[0])
+    if len(lines.lines) < least:
+        raise lines.error(-1, "it is cut off within its header")
+    return lines
+
+
+def _read_55(source: Source, section: Section, into: Gathered) -> Shape | Skipped | None:
     """Read dataset 55; anything but a mode shape with 3 or 6 values a node is skipped.
 
-    `wanted` is asked once the header shows a mode shape; where it says no, the values are not
-    read and the answer is None.
+    None where a mode shape was not asked for: its values are not read.
     """
-    lines, _ = source.head(section, _HEADER)
-    if len(lines) < 8:
-        raise source.error(section.line, "dataset 55 is cut off within its header")
-    kind = _integers(source, section, lines, 5, 6)
-    counts = _integers(source, section, lines, 6, 2)
-    n_real = counts[1]
-    rows = max(1, math.ceil(n_real / 6))
-    reals = _header_floats(source, section, lines, 7, 7 + rows)
-    ids = tuple(text(line) for line in lines[:5])
-    head = _Head(kind[1], kind[3], kind[4], kind[5], reals, ids, 7 + rows)
-    return _shape(source, section, head, _modal_55(head), wanted)
+    lines = _header(source, section, 8)
+    rows = max(1, math.ceil(_integers(lines, 6, 2)[1] / 6))
+    head = _Head.of(lines, 5, range(5), range(7, 7 + rows))
+    return _shape(source, section, head, _modal_55(head), into)
 
 
-def read_2414(
-    source: Source, section: Section, wanted: Callable[[], bool] = lambda: True
-) -> Shape | Skipped | None:
-    """Read dataset 2414; as `read_55`."""
-    lines, _ = source.head(section, _HEADER)
-    if len(lines) < 13:
-        raise source.error(section.line, "dataset 2414 is cut off within its header")
-    place = _integers(source, section, lines, 2, 1)[0]
-    if place != 1:
+def _read_2414(source: Source, section: Section, into: Gathered) -> Shape | Skipped | None:
+    """Read dataset 2414; as `_read_55`."""
+    lines = _header(source, section, 13)
+    if _integers(lines, 2, 1)[0] != 1:
         return _skip(source, section, "data not at nodes")
-    kind = _integers(source, section, lines, 8, 6)
-    reals = _header_floats(source, section, lines, 11, 13)
-    ids = tuple(text(line) for line in (lines[1], *lines[3:8]))
-    head = _Head(kind[1], kind[3], kind[4], kind[5], reals, ids, 13)
-    return _shape(source, section, head, _modal_2414(head), wanted)
+    head = _Head.of(lines, 8, (1, *range(3, 8)), range(11, 13))
+    return _shape(source, section, head, _modal_2414(head), into)
 
 
 def _modal_55(head: _Head) -> tuple[float, float, float]:
@@ -146,7 +143,7 @@ def _shape(
     section: Section,
     head: _Head,
     modal: tuple[float, float, float],
-    wanted: Callable[[], bool],
+    into: Gathered,
 ) -> Shape | Skipped | None:
     if head.analysis != 2 and head.analysis not in _COMPLEX_MODES:
         kind = _ANALYSES.get(head.analysis, f"analysis type {head.analysis}")
@@ -155,42 +152,29 @@ def _shape(
         return _skip(source, section, f"specific data type {head.specific} is no motion")
     if head.n_value not in (3, 6):
         return _skip(source, section, f"{head.n_value} values a node where 3 or 6 are expected")
+    what = f"dataset {section.number}:"
     if head.data_type not in (2, 4, 5, 6):
-        raise source.error(
-            section.line,
-            f"dataset {section.number}: data type {head.data_type} is none of 2, 4, 5, 6",
-        )
+        why = f"{what} data type {head.data_type} is none of 2, 4, 5, 6"
+        raise source.error(section.line, why)
     if not math.isfinite(modal[0]):
-        raise source.error(section.line, f"dataset {section.number}: the frequency is not a number")
-    if not wanted():
+        raise source.error(section.line, f"{what} the frequency is not a number")
+    if not into.next_shape_is_wanted():
         return None
     width = head.n_value * (2 if head.data_type in (5, 6) else 1)
-    nodes, values = node_values(source, section, source.lines(section), head.n_line, width)
+    lines = Lines.filled(source, section)
+    lines.at = head.n_line
+    nodes, values = node_values(lines, width)
     if head.data_type in (5, 6):
         values = np.ascontiguousarray(values).view(np.complex128)
     return Shape(*modal, nodes, values, head.ids, section.line, source.name)
 
 
-def _integers(source: Source, section: Section, lines: list[bytes], row: int, n: int) -> list[int]:
-    found = integers(lines[row])
+def _integers(lines: Lines, row: int, n: int) -> list[int]:
+    found = integers(lines.lines[row])
     if len(found) < n:
-        raise source.error(
-            section.line + 1 + row,
-            f"dataset {section.number}: {n} integers are expected, found {text(lines[row])!r}",
-        )
+        said = text(lines.lines[row])
+        raise lines.error(row, f"{n} integers are expected, found {said!r}")
     return found
-
-
-def _header_floats(
-    source: Source, section: Section, lines: list[bytes], start: int, stop: int
-) -> tuple[float, ...]:
-    try:
-        return tuple(float(v) for v in floats(lines[start:stop]))
-    except NotANumber as error:
-        raise source.error(
-            section.line + 1 + start + error.row,
-            f"dataset {section.number}: {error.text!r} is not a number",
-        ) from None
 
 
 def _skip(source: Source, section: Section, why: str) -> Skipped:
@@ -198,10 +182,10 @@ def _skip(source: Source, section: Section, why: str) -> Skipped:
 
 
 def _adding(
-    read: Callable[[Source, Section, Callable[[], bool]], Shape | Skipped | None],
+    read: Callable[[Source, Section, Gathered], Shape | Skipped | None],
 ) -> Callable[[Source, Section, Gathered], int]:
     def added(source: Source, section: Section, into: Gathered) -> int:
-        shape = read(source, section, into.next_shape_is_wanted)
+        shape = read(source, section, into)
         if isinstance(shape, Skipped):
             into.skipped.append(shape)
         elif shape is not None:
@@ -281,5 +265,5 @@ def _printed(*numbers: int) -> bytes:
     return b"".join(b"%10d" % n for n in numbers) + b"\n"
 
 
-SHAPES_55 = DatasetKind(55, "data at nodes", _adding(read_55), _tell, _write, vital=True)
-SHAPES_2414 = DatasetKind(2414, "analysis data", _adding(read_2414), vital=True)
+SHAPES_55 = DatasetKind(55, "data at nodes", _adding(_read_55), _tell, _write, vital=True)
+SHAPES_2414 = DatasetKind(2414, "analysis data", _adding(_read_2414), vital=True)

@@ -1,7 +1,5 @@
 """Datasets 15 and 2411: nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +13,7 @@ from ..text.printing import dataset
 from ..universal_content import UniversalContent
 from .coordinate_systems import key, numbered
 from .dataset_kind import DatasetKind, Gathered, Outgoing
-from .section_lines import filled, rows_of_numbers
+from .section_lines import Lines
 
 _15 = (10, 10, 10, 10, 13, 13, 13)
 _2411 = ((10, 10, 10, 10), (25, 25, 25))
@@ -36,8 +34,7 @@ class NodeTable:
 
 def _read_15(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 15: coordinates stand in each node's definition system."""
-    lines = filled(source, section)
-    values = rows_of_numbers(source, section, lines, _15, 1)
+    values = Lines.filled(source, section).table(_15)
     ids, definition, displacement = values[:, :3].astype(np.int64).T
     into.add(NodeTable(ids, definition, displacement, values[:, 4:7], source.name, section.line))
     return len(ids)
@@ -45,13 +42,12 @@ def _read_15(source: Source, section: Section, into: Gathered) -> int:
 
 def _read_2411(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 2411: coordinates stand in the part's own frame, whatever the systems."""
-    lines = filled(source, section)
-    if len(lines) % 2:
-        raise source.error(
-            section.line + len(lines), "dataset 2411 ends in the middle of a node; export it again"
-        )
-    labels = rows_of_numbers(source, section, lines[0::2], _2411[0], 2).astype(np.int64)
-    xyz = rows_of_numbers(source, section, lines[1::2], _2411[1], 2, 1)
+    lines = Lines.filled(source, section)
+    if len(lines.lines) % 2:
+        last = len(lines.lines) - 1
+        raise lines.error(last, "it ends in the middle of a node; export it again")
+    labels = lines.table(_2411[0], 2).astype(np.int64)
+    xyz = lines.table(_2411[1], 2, 1)
     zero = np.zeros(len(labels), np.int64)
     into.add(NodeTable(labels[:, 0], zero, labels[:, 2], xyz, source.name, section.line))
     return len(labels)

@@ -1,58 +1,92 @@
-"""The lines of a dataset as numbers; errors name file and line."""
+"""The lines of a dataset one after another; what is wrong in them is told with file and line."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Self, TypeVar
 
 import numpy as np
 
 from ....core.arrays import Floats
 from ..container import Section
-from ..open_file import Source
-from ..text.number_fields import NotANumber, floats, table
+from ..open_file import DatasetError, Source
+from ..text.number_fields import NotANumber, floats, integers, table, text
+
+T = TypeVar("T")
 
 
-def filled(source: Source, section: Section) -> list[bytes]:
-    """Return the lines without the blank ones at the end."""
-    lines = source.lines(section)
-    while lines and not lines[-1].strip(b" \t\x00"):
-        lines.pop()
-    return lines
+class Lines:
+    """Lines of a dataset; `at` is the next one, counted from 0 behind the line of the number."""
 
+    def __init__(self, source: Source, section: Section, lines: list[bytes]) -> None:
+        self.source, self.section, self.lines, self.at = source, section, lines, 0
 
-def rows_of_numbers(
-    source: Source,
-    section: Section,
-    lines: Sequence[bytes],
-    widths: Sequence[int],
-    stride: int,
-    shift: int = 0,
-) -> Floats:
-    """Return a table (n_line, n_width) of finite numbers; line k is ``stride * k + shift``."""
-    try:
-        values = table(lines, widths)
-    except NotANumber as error:
-        line = section.line + 1 + shift + stride * error.row
-        raise source.error(
-            line, f"dataset {section.number}: {error.text!r} does not hold {len(widths)} numbers"
-        ) from None
-    bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
-    if len(bad):
-        line = section.line + 1 + shift + stride * int(bad[0])
-        raise source.error(line, f"dataset {section.number} holds a value that is not finite")
-    return values
+    @classmethod
+    def filled(cls, source: Source, section: Section) -> Self:
+        """Return all lines but the blank ones at the end."""
+        lines = source.lines(section)
+        while lines and not lines[-1].strip(b" \t\x00"):
+            lines.pop()
+        return cls(source, section, lines)
 
+    def error(self, row: int, why: str) -> DatasetError:
+        """Return the error that names the file, a line, and the dataset."""
+        line = self.section.line + 1 + row
+        return self.source.error(line, f"dataset {self.section.number}: {why}")
 
-def positions(source: Source, section: Section, lines: Sequence[bytes], at: int) -> list[float]:
-    """Return the numbers of line `at`, none of them too large for a position."""
-    try:
-        values = floats(lines[at : at + 1])
-    except NotANumber as error:
-        raise source.error(
-            section.line + 1 + at, f"dataset {section.number}: {error.text!r} is not a number"
-        ) from None
-    if not np.all(np.abs(values) < 1e100):
-        raise source.error(
-            section.line + 1 + at, f"dataset {section.number} holds a value that is no position"
-        )
-    return list(values)
+    @contextmanager
+    def numbers(
+        self, first: int = 0, stride: int = 1, why: str = "{} is not a number"
+    ) -> Iterator[None]:
+        """Tell where a number of a block is none, whose line k is ``first + stride * k``."""
+        try:
+            yield
+        except NotANumber as error:
+            raise self.error(first + stride * error.row, why.format(repr(error.text))) from None
+
+    def more(self) -> bool:
+        """Whether any line is left."""
+        return self.at < len(self.lines)
+
+    def take(self, read: Callable[[bytes], T]) -> T:
+        """Return the next line as `read` takes it; a blank one behind the last."""
+        self.at += 1
+        return read(self.lines[self.at - 1] if self.at <= len(self.lines) else b"")
+
+    def head(self, least: int, why: str) -> tuple[int, list[int]]:
+        """Return the row and the integers of the line that starts an entry, `least` or more."""
+        row, found = self.at, self.take(integers)
+        if len(found) < least:
+            raise self.error(row, why)
+        return row, found
+
+    def name(self) -> str:
+        """Return the next line as text."""
+        return self.take(text)
+
+    def gathered(self, count: int, read: Callable[[bytes], Sequence[T]]) -> list[T]:
+        """Return what `read` finds on the next lines, until `count` or more are found."""
+        found: list[T] = []
+        while len(found) < count and self.more():
+            found += self.take(read)
+        return found
+
+    def positions(self, count: int) -> list[float]:
+        """Return the numbers of the next lines, none of them too large for a position."""
+
+        def read(line: bytes) -> list[float]:
+            with self.numbers(self.at - 1):
+                found = floats([line])
+            if not np.all(np.abs(found) < 1e100):
+                raise self.error(self.at - 1, "it holds a value that is no position")
+            return list(found)
+
+        return self.gathered(count, read)
+
+    def table(self, widths: Sequence[int], stride: int = 1, first: int = 0) -> Floats:
+        """Return every `stride`-th line from `first` on as finite numbers, (n_line, n_width)."""
+        with self.numbers(first, stride, f"{{}} does not hold {len(widths)} numbers"):
+            values = table(self.lines[first::stride], widths)
+        bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
+        if len(bad):
+            raise self.error(first + stride * int(bad[0]), "it holds a value that is not finite")
+        return values

@@ -1,7 +1,5 @@
 """Dataset 82: trace lines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -9,12 +7,12 @@ import numpy as np
 
 from ..container import Section
 from ..open_file import Source
-from ..text.number_fields import integers, text
+from ..text.number_fields import integers
 from ..text.printing import dataset, text_line
 from ..universal_content import Trace
 from .dataset_kind import DatasetKind, Gathered, Outgoing
 from .elements import are_elements
-from .section_lines import filled
+from .section_lines import Lines
 
 _COLOR = 11
 _PER_LINE = 8
@@ -22,30 +20,19 @@ _PER_LINE = 8
 
 def _read(source: Source, section: Section, into: Gathered) -> int:
     """Read dataset 82: one trace line by the book, several one after another from some."""
-    lines = filled(source, section)
-    traces, at = [], 0
-    while at < len(lines):
-        head = integers(lines[at])
-        if len(head) < 2 or at + 1 >= len(lines):
-            raise source.error(
-                section.line + 1 + at,
-                "dataset 82: a trace line must start with its number and how many nodes it has",
-            )
-        name, nodes = text(lines[at + 1]), list[int]()
-        first = at
-        at += 2
-        while len(nodes) < head[1] and at < len(lines):
-            nodes += integers(lines[at])
-            at += 1
-        if len(nodes) < head[1]:
-            raise source.error(
-                section.line + 1 + first,
-                f"dataset 82: trace line {head[0]} announces {head[1]} nodes but has {len(nodes)}",
-            )
-        color = head[2] if len(head) > 2 else 0
-        traces.append(Trace(head[0], name, color, np.array(nodes[: head[1]], np.int64)))
-        while at < len(lines) and not any(integers(lines[at])):
-            at += 1  # some programs pad with lines of zeros
+    lines, traces = Lines.filled(source, section), list[Trace]()
+    while lines.more():
+        starts = "a trace line must start with its number and how many nodes it has"
+        row, (number, count, *color) = lines.head(2, starts)
+        if not lines.more():
+            raise lines.error(row, starts)
+        name, nodes = lines.name(), lines.gathered(count, integers)
+        if len(nodes) < count:
+            why = f"trace line {number} announces {count} nodes but has {len(nodes)}"
+            raise lines.error(row, why)
+        traces.append(Trace(number, name, (*color, 0)[0], np.array(nodes[:count], np.int64)))
+        while lines.more() and not any(integers(lines.lines[lines.at])):
+            lines.at += 1  # some programs pad with lines of zeros
     into.add(*traces)
     return len(traces)
 

@@ -1,18 +1,16 @@
 """Dataset 164: units."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from ....core.data.length_units import METRES
 from ..container import Section
 from ..open_file import Source
-from ..text.number_fields import NotANumber, floats, integers, text
+from ..text.number_fields import floats, integers, text
 from ..text.printing import dataset, name_field
-from ..universal_content import Units, UniversalContent
+from ..universal_content import Units
 from .dataset_kind import DatasetKind, Gathered, Outgoing
+from .section_lines import Lines
 
 # What the codes of dataset 164 mean for lengths.
 _CODES = {1: "m", 2: "ft", 3: "m", 4: "ft", 5: "mm", 6: "cm", 7: "in", 8: "mm", 10: "mm"}
@@ -36,21 +34,16 @@ class DeclaredUnits:
 
 
 def _read(source: Source, section: Section, into: Gathered) -> int:
-    lines = source.lines(section)
-    code = integers(lines[0][:10]) if lines else []
-    try:
-        factors = floats(lines[1:])
-    except NotANumber as error:
-        raise source.error(
-            section.line + 2 + error.row, f"dataset 164: {error.text!r} is not a number"
-        ) from None
+    lines = Lines(source, section, source.lines(section))
+    head = lines.take(bytes)
+    code = integers(head[:10])
+    with lines.numbers(1):
+        factors = floats(lines.lines[1:])
     if not code or not len(factors):
-        raise source.error(section.line, "dataset 164 is cut off; it needs a code and factors")
+        raise lines.error(-1, "it is cut off; it needs a code and factors")
     length = float(factors[0])
     if length <= 0.0:
-        raise source.error(
-            section.line + 2, f"dataset 164: the length factor {length:g} is not positive"
-        )
+        raise lines.error(1, f"the length factor {length:g} is not positive")
     force, temperature, offset = [*factors[1:4], *(1.0, 1.0, 273.15)[len(factors) - 1 :]][:3]
     unit = _unit(length)
     where = f"{source.name} line {section.line}: dataset 164"
@@ -69,7 +62,7 @@ def _read(source: Source, section: Section, into: Gathered) -> int:
     elif unit is None:
         into.warnings.append(f"{where}: the length factor {length:g} is no unit known here")
     rest = float(force), float(temperature), float(offset)
-    units = Units(code[0], text(lines[0][10:30]), length, *rest, unit if unit in METRES else None)
+    units = Units(code[0], text(head[10:30]), length, *rest, unit if unit in METRES else None)
     into.add(DeclaredUnits(units, source.name, section.line))
     return 1
 
@@ -80,10 +73,6 @@ def _unit(factor: float) -> str | None:
         if abs(factor * metres - 1.0) < 2e-3:
             return unit
     return None
-
-
-def _tell(content: UniversalContent) -> dict[str, Any]:
-    return {"length_unit": content.length_unit}
 
 
 def _write(out: Outgoing) -> Iterator[bytes]:
@@ -101,4 +90,6 @@ def _write(out: Outgoing) -> Iterator[bytes]:
     yield dataset(164, head, b"".join(printed[:3]) + b"\n", printed[3] + b"\n")
 
 
-UNITS_164 = DatasetKind(164, "units", _read, _tell, _write, vital=True)
+UNITS_164 = DatasetKind(
+    164, "units", _read, lambda content: {"length_unit": content.length_unit}, _write, vital=True
+)

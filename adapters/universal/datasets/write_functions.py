@@ -1,7 +1,5 @@
 """Print frequency responses and other functions (datasets 58 and 58b)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
@@ -9,6 +7,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Numbers
 from ....core.data.dofs import Dofs
+from ....core.data.frfs import Frfs
 from ....core.errors import InputError
 from ..text.layout58 import records
 from ..text.print_columns import print_lines
@@ -19,74 +18,61 @@ from .function_names import KINDS, QUANTITIES
 _LETTERS = ("X", "Y", "Z", "RX", "RY", "RZ")
 
 
-def frf_datasets(out: Outgoing) -> Iterator[bytes]:
-    """Print each measured combination; nodes in `systems` have displacement axes of their own.
+def write_functions(out: Outgoing) -> Iterator[bytes]:
+    """Print frequency responses, each measured combination, and then the other functions.
+
+    Nodes in `systems` have displacement axes of their own. The numbers of a function are those of
+    the file it came from.
 
     Raises
     ------
     InputError
         Values that are not finite: the format cannot say so.
     """
-    if out.frfs is None:
-        return
-    frfs, spaced = out.frfs, spacing(out.frfs.frequencies_hz)
+    if out.frfs is not None:
+        yield from _responses(out, out.frfs)
+    for f in out.functions:
+        words = (f.kind, f.over, f.quantity, f.per)
+        names = (KINDS, QUANTITIES, QUANTITIES, QUANTITIES)
+        kind, over, quantity, per = map(_number, names, words, f.codes)
+        axes = _axis_line(over, unit=f.abscissa_unit) + _axis_line(quantity, unit=f.ordinate_unit)
+        axes += _axis_line(per) + _axis_line(0)
+        what = f"the {f.kind} of node {f.response[0]}"
+        spaced = spacing(f.abscissa)
+        head = (f.ids, kind, f.response, f.reference, axes)
+        yield from _printed(out, what, head, f.abscissa, f.values, spaced)
+
+
+def _responses(out: Outgoing, frfs: Frfs) -> Iterator[bytes]:
+    spaced = spacing(frfs.frequencies_hz)
     responses, references = (_directions(d, out.systems) for d in (frfs.responses, frfs.references))
-    axes = _axis_line(18, 0, 0, "Frequency", "Hz")
-    axes += _axis_line(_number(QUANTITIES, frfs.quantity, 0), 1, 0, "NONE", "NONE")
-    axes += _axis_line(13, 0, 1, "NONE", "NONE") + _axis_line(0, 0, 0, "NONE", "NONE")
+    axes = _axis_line(18, label="Frequency", unit="Hz")
+    axes += _axis_line(_number(QUANTITIES, frfs.quantity, 0), length=1)
+    axes += _axis_line(13, force=1) + _axis_line(0)
     for (i, response), (j, reference) in product(enumerate(responses), enumerate(references)):
         values = frfs.values[i, j]
         if np.isnan(values).all():
             continue
-        name = f"{_name(*response)}/{_name(*reference)}"
-        if not np.isfinite(values).all():
-            raise InputError(
-                f"response {name.replace('/', ' to ')} holds values that are not finite numbers; "
-                "a universal file cannot say so"
-            )
-        yield from _printed(
-            out, (name,), 4, response, reference, axes, frfs.frequencies_hz, values, spaced
-        )
-
-
-def function_datasets(out: Outgoing) -> Iterator[bytes]:
-    """Print each function; its numbers are those of the file it came from.
-
-    Raises
-    ------
-    InputError
-        Values that are not finite: the format cannot say so.
-    """
-    for f in out.functions:
-        if not (np.isfinite(f.abscissa).all() and np.isfinite(f.values).all()):
-            raise InputError(
-                f"the {f.kind} of node {f.response[0]} holds values that are not finite numbers; "
-                "a universal file cannot say so"
-            )
-        words = (f.kind, f.over, f.quantity, f.per)
-        names = (KINDS, QUANTITIES, QUANTITIES, QUANTITIES)
-        kind, over, quantity, per = map(_number, names, words, f.codes)
-        axes = _axis_line(over, 0, 0, "NONE", f.abscissa_unit)
-        axes += _axis_line(quantity, 0, 0, "NONE", f.ordinate_unit)
-        axes += _axis_line(per, 0, 0, "NONE", "NONE") + _axis_line(0, 0, 0, "NONE", "NONE")
-        yield from _printed(
-            out, f.ids, kind, f.response, f.reference, axes, f.abscissa, f.values,
-            spacing(f.abscissa),
-        )  # fmt: skip
+        names = _name(*response), _name(*reference)
+        head = (("/".join(names),), 4, response, reference, axes)
+        what = f"response {' to '.join(names)}"
+        yield from _printed(out, what, head, frfs.frequencies_hz, values, spaced)
 
 
 def _printed(
     out: Outgoing,
-    ids: Sequence[str],
-    function: int,
-    response: tuple[int, int],
-    reference: tuple[int, int],
-    axes: bytes,
+    what: str,
+    head: tuple[Sequence[str], int, tuple[int, int], tuple[int, int], bytes],
     x: Floats,
     values: Numbers,
     spaced: tuple[float, float, bool],
 ) -> Iterator[bytes]:
-    start, step, even = spaced
+    """Print a function; `head` is its text lines, type, response, reference and axes."""
+    if not (np.isfinite(x).all() and np.isfinite(values).all()):
+        raise InputError(
+            f"{what} holds values that are not finite numbers; a universal file cannot say so"
+        )
+    (ids, function, response, reference, axes), (start, step, even) = head, spaced
     kind = (2 if out.single else 4) + (np.iscomplexobj(values) and (3 if out.single else 2))
     number = b"    58"
     if out.binary:
@@ -137,7 +123,9 @@ def _name(node: int, direction: int) -> str:
     return f"{node}:{'-' if direction < 0 else '+'}{_LETTERS[abs(direction) - 1]}"
 
 
-def _axis_line(kind: int, length: int, force: int, label: str, unit: str) -> bytes:
+def _axis_line(
+    kind: int, length: int = 0, force: int = 0, label: str = "NONE", unit: str = "NONE"
+) -> bytes:
     """Return a record that describes an axis: quantity, exponents, label and unit."""
     name, said = (w.encode("latin-1", "replace")[:20] for w in (label, unit))
     return b"%10d%5d%5d%5d %-20s %-20s\n" % (kind, length, force, 0, name, said)

@@ -1,7 +1,5 @@
 """Nodes of all files with what is drawn between them as one geometry."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

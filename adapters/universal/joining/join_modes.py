@@ -1,7 +1,5 @@
 """Mode shapes of several datasets as one set of modes; units of several files as one."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

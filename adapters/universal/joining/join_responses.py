@@ -1,7 +1,5 @@
 """Frequency responses: the functions of dataset 58 that belong together, as one array."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -74,12 +72,8 @@ def assemble(
     chosen = _largest_group([r for r in records if is_frf(r.head)], report)
     frfs = _frfs(chosen, frames, length_unit, report) if chosen else None
     taken = {id(r) for r in chosen}
-    others = []
-    for record in records:
-        if id(record) not in taken and (read := _read(record, report)) is not None:
-            x, y = read
-            others.append(_function(record, x, y))
-    return frfs, tuple(others)
+    others = ((r, _read(r, report)) for r in records if id(r) not in taken)
+    return frfs, tuple(_function(r, *read) for r, read in others if read is not None)
 
 
 def is_frf(head: Head58) -> bool:
@@ -103,9 +97,7 @@ def _largest_group(records: Sequence[Record], report: Report) -> list[Record]:
         h = r.head
         axis = (h.n_point, f"{h.start:.5e}", f"{h.step:.5e}") if h.even else (h.n_point, "uneven")
         groups.setdefault(axis, []).append(r)
-    if not groups:
-        return []
-    best = max(groups.values(), key=len)
+    best = max(groups.values(), key=len, default=[])
     for group in groups.values():
         if group is not best:
             report.warnings.append(
@@ -136,9 +128,8 @@ def _frfs(
     axis, filled = _fill(values, records, (row, column), quantity, scale, report)
     if axis is None:
         return None
-    for place in product(range(shape[0]), range(shape[1])):
-        if place not in filled:
-            values[place] = np.nan
+    for place in {*product(range(shape[0]), range(shape[1]))} - filled:
+        values[place] = np.nan
     _say_changed(records, quantity, report)
     rows, columns = (sorted({place[k] for place in filled}) for k in (0, 1))
     if (len(rows), len(columns)) != values.shape[:2]:
@@ -170,12 +161,10 @@ def _fill(
         if place in filled:
             report.skip(record, "this response and reference were read before; the first is kept")
             continue
-        read = _read(record, report)
-        if read is None:
+        if (read := _read(record, report)) is None:
             continue
         x, y = read
-        why = _unusable(record.head, x, y, axis)
-        if why:
+        if why := _unusable(record.head, x, y, axis):
             report.skip(record, why)
             continue
         axis = x if axis is None else axis
@@ -211,10 +200,8 @@ def _dofs(dofs: Sequence[tuple[int, int]], frames: Frames) -> Dofs:
 def _say_unfit(records: Sequence[Record], report: Report) -> None:
     """Warn of functions that call themselves frequency responses but cannot be used as such."""
     reasons: dict[str, list[Record]] = {}
-    for record in records:
+    for record in (r for r in records if r.head.function == 4 and not is_frf(r.head)):
         h = record.head
-        if h.function != 4 or is_frf(h):
-            continue
         if not h.is_complex:
             why = "are real, not complex"
         elif not h.response[1] or not h.reference[1]:
@@ -230,14 +217,12 @@ def _say_unfit(records: Sequence[Record], report: Report) -> None:
 
 def _say_changed(records: Sequence[Record], quantity: str, report: Report) -> None:
     """Tell which dofs came from names, and which responses were differentiated."""
-    others = [r for r in records if quantity_of(r.head) not in (quantity, None)]
-    if others:
+    if others := [r for r in records if quantity_of(r.head) not in (quantity, None)]:
         report.warnings.append(
             f"{others[0].where}: {len(others)} response(s) are not {quantity} as the others and "
             "were multiplied by i omega as often as that takes"
         )
-    named = [r for r in records if r.head.named]
-    if named:
+    if named := [r for r in records if r.head.named]:
         report.warnings.append(
             f"{named[0].where}: node and direction of {len(named)} function(s) stand only in their "
             f"names and were taken from there ({label(named[0].head)} first)"

@@ -1,7 +1,5 @@
 """Nodes of one or several files with positions and displacement axes in the basic frame."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -45,10 +43,8 @@ def node_frames(
     `systems` are those that each table may refer to.
     """
     undefined: dict[int, int] = {}
-    parts = [
-        _placed(table, known, undefined, warnings)
-        for table, known in zip(tables, systems, strict=True)
-    ]
+    known = zip(tables, systems, strict=True)
+    parts = [_placed(table, those, undefined, warnings) for table, those in known]
     for number, count in undefined.items():
         warnings.append(
             f"coordinate system {number}, used by {count} node(s), is not defined (dataset 18 or "

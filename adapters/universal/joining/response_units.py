@@ -1,7 +1,5 @@
 """What the responses of a survey are, and what turns them into one quantity and unit."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Sequence

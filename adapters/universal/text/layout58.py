@@ -1,7 +1,5 @@
 """How the numbers of dataset 58 are laid out, by ordinate data type and spacing."""
 
-from __future__ import annotations
-
 REALS = {2: 1, 4: 1, 5: 2, 6: 2}
 """Reals that make one ordinate: 2, 4 real and 5, 6 complex; 4 and 6 double precision."""
 

@@ -1,7 +1,5 @@
 """Floating-point numbers of 58b blocks: IEEE 754, and the DEC VAX and IBM/370 formats."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

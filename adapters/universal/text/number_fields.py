@@ -5,8 +5,6 @@ letter of a three-digit exponent (``1.0-114``), leave fields blank, or print sta
 did not fit. Whatever is not a number is an error here, never a zero.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 

@@ -8,8 +8,6 @@ digit) could decide, and for three-digit exponents, the number is printed one by
 result is the correctly rounded one that ``%E`` gives.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

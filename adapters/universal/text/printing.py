@@ -1,7 +1,5 @@
 """Numbers and lines as universal files print them."""
 
-from __future__ import annotations
-
 DELIMITER = b"    -1\n"
 
 

@@ -7,8 +7,6 @@ keeps the layout of its first field, the digits become integers column by column
 to read floating point numbers accurately*, 1990). Fields in any other layout are read one by one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -35,7 +33,7 @@ class _Layout:
     stop: int
 
     @staticmethod
-    def of(field: bytes) -> _Layout | None:
+    def of(field: bytes) -> "_Layout | None":
         """Return the layout of one field, None if it is not of the kind that repeats."""
         lower = field.lower().replace(b"d", b"e")
         point, letter = lower.find(b"."), lower.find(b"e")

@@ -14,12 +14,14 @@ from . import (
     tuned_absorber,
 )
 from .candidates import Candidates as Candidates
-from .effect_kind import FACTOR as FACTOR
-from .effect_kind import MASS as MASS
-from .effect_kind import STIFFNESS as STIFFNESS
-from .effect_kind import EffectKind as EffectKind
-from .effect_kind import Magnitude as Magnitude
-from .effect_kind import Scale as Scale
+from .effect_kind import (
+    FACTOR as FACTOR,
+    MASS as MASS,
+    STIFFNESS as STIFFNESS,
+    EffectKind as EffectKind,
+    Magnitude as Magnitude,
+    Scale as Scale,
+)
 
 KINDS: dict[str, EffectKind] = {
     k.name: k

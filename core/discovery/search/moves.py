@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ..effects.candidates import Suspect
-from ..effects.candidates import beside as stretches_beside
+from ..effects.candidates import Suspect, beside as stretches_beside
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve

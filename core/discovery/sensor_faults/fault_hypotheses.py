@@ -11,8 +11,7 @@ from functools import partial
 
 import numpy as np
 from scipy.special import logsumexp
-from scipy.stats import norm
-from scipy.stats import t as student
+from scipy.stats import norm, t as student
 
 from ...arrays import Floats
 from ..faults import AXIS, DOUBLED, GAIN, POLARITY, SWAP

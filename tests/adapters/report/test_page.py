@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 from trueup.adapters.report import headline, make_report, overlay
 from trueup.adapters.report.sections.deck_changes import deck_diff

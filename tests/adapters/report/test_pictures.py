@@ -9,8 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from trueup.adapters.report.pictures.axes import Plot, decades, spread, ticks
 from trueup.adapters.report.pictures.charts import Series, bars, lines

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import pyuff
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
 
@@ -221,7 +220,7 @@ def test_what_cannot_be_written_is_refused(tmp_path):
         write_universal(path, geometry=GRID, node_dataset=781)
     with pytest.raises(InputError, match="'cm' is none of"):
         write_universal(path, geometry=GRID, units="cm")
-    with pytest.raises(InputError, match="cannot write"):
+    with pytest.raises(InputError, match="cannot be written"):
         write_universal(tmp_path / "absent" / "f.unv", geometry=GRID)
     skew = Dofs([1], [1], [[0.6, 0.8, 0.0]])
     frfs = Frfs([1.0], skew, Dofs([2], [1]), np.ones((1, 1, 1)))

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from trueup.core.assembly.multipoint_constraints import Equations, reduction, unsupported
 from trueup.core.errors import InputError, Place

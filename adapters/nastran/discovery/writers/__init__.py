@@ -1,7 +1,5 @@
 """The writers of cards: one module a kind of effect, one list."""
 
-from __future__ import annotations
-
 from .....core.errors import InputError
 from . import (
     distributed_mass,
@@ -13,8 +11,7 @@ from . import (
     support_flexibility,
     tuned_absorber,
 )
-from .site import Site as Site
-from .site import Writer
+from .site import Site as Site, Writer
 
 WRITERS: dict[str, Writer] = {
     "point_mass": point_mass.write,

@@ -1,7 +1,5 @@
 """Elements taken off their grid and hung on it by a bushing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

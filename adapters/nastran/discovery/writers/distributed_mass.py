@@ -1,7 +1,5 @@
 """Non-structural mass of a property of their own for elements that carry more."""
 
-from __future__ import annotations
-
 from ...editing.set_values import read_value, set_values
 from ...editing.split_property import split_property
 from ...fields.parameter_references import FieldRef

@@ -1,7 +1,5 @@
 """CELAS2 for a spring to ground."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ...editing.find_cards import free_id

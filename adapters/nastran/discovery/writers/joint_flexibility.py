@@ -1,7 +1,5 @@
 """CBUSH between the end of a beam and its joint."""
 
-from __future__ import annotations
-
 from ...text.deck_text import DeckText
 from .detached_elements import detached
 from .site import Site

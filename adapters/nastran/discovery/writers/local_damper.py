@@ -1,7 +1,5 @@
 """CDAMP2, or CBUSH, for a dashpot to ground."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ...editing.find_cards import free_id

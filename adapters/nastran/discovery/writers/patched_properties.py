@@ -1,7 +1,5 @@
 """Properties that the elements of a patch refer to."""
 
-from __future__ import annotations
-
 from ...deck.read_deck import Deck
 from ...editing.find_cards import find_card
 from ...text.deck_text import DeckText
@@ -22,10 +20,7 @@ def by_property(
         for e in elements:
             if e in table:
                 number = int(find_card(text, name, e).text(1) or e)
-                card = next((p for p in properties if _has(text, p, number)), properties[0])
+                held = (p for p in properties for s in text.segments if text.rows_of(s, p, number))
+                card = next(held, properties[0])
                 out.setdefault((card, number), []).append(e)
     return out
-
-
-def _has(text: DeckText, card: str, number: int) -> bool:
-    return any(n == number for s in text.segments for _, n in text.rows_in(s, card))

@@ -1,7 +1,5 @@
 """CONM2 for an attached mass."""
 
-from __future__ import annotations
-
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
 from .site import Site

@@ -1,7 +1,5 @@
 """What a writer of cards works from: a deck and the finding that goes into it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """CBUSH between a support and what it holds."""
 
-from __future__ import annotations
-
 from ...text.deck_text import DeckText
 from .detached_elements import attached, detached
 from .site import Site

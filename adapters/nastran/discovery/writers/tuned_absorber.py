@@ -1,7 +1,5 @@
 """A scalar point with CMASS2 on a CELAS2 for an absorber."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import weight
+from trueup.adapters.nastran.properties.thermal import read_thermal
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 
@@ -194,6 +195,21 @@ class TestTemperature:
         cold = model(self.rod + self.table + "TEMPD,4,0.", case="TEMP(INIT) = 4")
         hot = model(self.rod + self.table + temperatures, case="TEMP(INIT) = 4")
         assert hot.K().diagonal() == pytest.approx(4.0 * cold.K().diagonal())
+
+    @pytest.mark.parametrize(
+        "material",
+        [
+            "MAT1,1,1.,,.3,1.,,,.5\nMATT1,1,,,,,,,3",
+            "MAT2,1,1.,0.,0.,1.,0.,1.,1.\n,,,,,.5\nMATT2,1\n,,,,,3",
+            "MAT8,1,1.,1.,.3,1.\n,,,,,,,,\n,.5\nMATT8,1\n,,,,,,,,\n,3",
+            f"MAT9,1{3 * (',' * 8 + chr(10))},,,,,,,.5\nMATT9,1{3 * (',' * 8 + chr(10))},,,,,,,3",
+        ],
+    )
+    def test_damping_follows_its_own_table(self, deck, material):
+        found = deck(f"{material}\nTABLEM1,3\n,0.,4.,100.,16.,ENDT\nTEMPD,4,100.",
+                     case="TEMP(INIT) = 4")  # fmt: skip
+        hot = read_thermal(found).applied(found.bulk)
+        assert hot.table(material[:4])[1].ge == 16.0
 
     def test_different_temperatures_are_refused(self, model):
         cards = self.rod + self.table + "TEMP,4,1,50.\nTEMPD,4,60."

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trueup.adapters.nastran import build_model, read_deck
+from trueup.adapters.nastran import build_model, read_deck, read_modes
 from trueup.adapters.nastran.deck.pynastran_bridge import file_of
 from trueup.core.errors import InputError
 
@@ -58,8 +58,12 @@ def plain(found):
     return json.loads(json.dumps(found, default=lambda v: np.asarray(v).tolist()))
 
 
+def shared():
+    return Path(os.environ.get("TRUEUP_DATA", Path(__file__).parents[5] / "shared" / "data"))
+
+
 def decks():
-    root = Path(os.environ.get("TRUEUP_DATA", Path(__file__).parents[5] / "shared" / "data"))
+    root = shared()
     return [DUCT, *sorted(root.glob("nastran/*/*.bdf")), *sorted(root.glob("nastran/*/*.dat"))]
 
 
@@ -97,6 +101,19 @@ def test_a_deck_goes_to_pynastran_and_back():
     there, back = build_model(deck), build_model(again)
     for a, b in zip(there.stiffness + there.mass, back.stiffness + back.mass, strict=True):
         assert abs(a.matrix - b.matrix).max() <= 1e-9 * abs(a.matrix).max()
+
+
+def test_modes_of_an_op2_object_are_those_of_its_file_and_its_own():
+    op2 = pytest.importorskip("pyNastran.op2.op2").OP2(debug=None)
+    path = shared() / "nastran" / "plate" / "plate_py.op2"
+    if not path.is_file():
+        pytest.skip("no shared data beside the repository")
+    op2.read_op2(str(path))
+    found, ours, theirs = read_modes(op2), read_modes(path), op2.eigenvectors[1]
+    np.testing.assert_array_equal(found.shapes, ours.shapes)
+    np.testing.assert_array_equal(found.frequencies_hz, ours.frequencies_hz)
+    np.testing.assert_array_equal(found.shapes.T.reshape(theirs.data.shape), theirs.data)
+    np.testing.assert_array_equal(found.dofs.node[::6], theirs.node_gridtype[:, 0])
 
 
 def test_other_objects_are_refused():

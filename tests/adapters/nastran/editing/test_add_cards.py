@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from trueup.adapters.nastran.deck.bulk import fields_of
 from trueup.adapters.nastran.editing.add_cards import add_cards

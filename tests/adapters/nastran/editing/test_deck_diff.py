@@ -5,8 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from tests.work import calls_of
 
 from trueup.adapters.nastran.editing.deck_diff import unified_diff

@@ -7,8 +7,7 @@ tabs, tags, comments between and behind the lines, all line ends.
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from tests.adapters.nastran.editing.written_decks import (
     VALUES,
     as_read,

@@ -8,8 +8,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from tests.adapters.nastran.editing import written_decks
 
 from trueup.adapters.nastran import read_deck_text, split_property, write_deck, write_in_place

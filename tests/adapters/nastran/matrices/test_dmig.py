@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from trueup.adapters.nastran import DofMap, NastranMatrix, read_matrices, write_dmig
 from trueup.adapters.nastran.matrices.dmig import read_dmig

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from trueup.adapters.universal.text.number_fields import NotANumber, floats, integers, table, text
 from trueup.adapters.universal.text.print_columns import print_lines

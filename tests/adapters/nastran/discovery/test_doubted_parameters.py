@@ -3,7 +3,7 @@
 import pytest
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.discovery.concentrated_parameters import (
+from trueup.adapters.nastran.discovery.doubted_parameters import (
     alike,
     concentrated_parameters,
     joined,
