@@ -2,6 +2,6 @@
 
 from .bars import frequencies
 from .matrix import mac
-from .structure import PairedShapes, misfit, shapes
+from .structure import misfit, shapes
 
-__all__ = ["PairedShapes", "frequencies", "mac", "misfit", "shapes"]
+__all__ = ["frequencies", "mac", "misfit", "shapes"]

@@ -1,13 +1,14 @@
 """The structure in space: paired shapes, and where they differ."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints
+from ...core.arrays import Floats
 from ...core.late_imports import optional
 from ...core.results.correlation import PairRow
+from ...core.results.paired_shapes import DrawnMesh, Overlay
 from .figure import FAINT, INK, MESH, figure
 
 _REACH = 0.12
@@ -18,44 +19,12 @@ _NAMED = 5
 """Sensors of the largest misfit that are named."""
 
 
-class Mesh(Protocol):
-    """What is drawn of a model: `xyz` (n, 3), `faces` (m, 4) and `lines` (k, 2) rows of it."""
-
-    @property
-    def xyz(self) -> Floats: ...  # noqa: D102
-    @property
-    def faces(self) -> Ints: ...  # noqa: D102
-    @property
-    def lines(self) -> Ints: ...  # noqa: D102
-
-
-class PairedShapes(Protocol):
-    """Pairs on a mesh, as the report's overlay holds them.
-
-    `shapes` (n_pair, n, 3), the largest of each 1; `sensors` and `axes` (n_sensor, 3); `model` and
-    `test` (n_pair, n_sensor), what each side says the sensors read.
-    """
-
-    @property
-    def mesh(self) -> Mesh: ...  # noqa: D102
-    @property
-    def shapes(self) -> Floats: ...  # noqa: D102
-    @property
-    def sensors(self) -> Floats: ...  # noqa: D102
-    @property
-    def axes(self) -> Floats: ...  # noqa: D102
-    @property
-    def model(self) -> Floats: ...  # noqa: D102
-    @property
-    def test(self) -> Floats: ...  # noqa: D102
-
-
-def shapes(drawn: PairedShapes, pairs: Sequence[PairRow], colours: Sequence[str]) -> Any:
+def shapes(drawn: Overlay, pairs: Sequence[PairRow], colours: Sequence[str]) -> Any:
     """Return the paired shapes as a figure: the model deformed, the sensors where the test says.
 
     Parameters
     ----------
-    drawn : PairedShapes
+    drawn : Overlay
         The pairs of a run, in its order.
     pairs : sequence of PairRow
         The same pairs, for the headings.
@@ -87,12 +56,12 @@ def shapes(drawn: PairedShapes, pairs: Sequence[PairRow], colours: Sequence[str]
     return made
 
 
-def misfit(drawn: PairedShapes, names: Sequence[str], ramp: Sequence[str]) -> Any:
+def misfit(drawn: Overlay, names: Sequence[str], ramp: Sequence[str]) -> Any:
     """Return where model and test differ as a figure: rms over the pairs at each sensor.
 
     Parameters
     ----------
-    drawn : PairedShapes
+    drawn : Overlay
     names : sequence of str
         Of the sensors, ``NODE:DIRECTION``.
     ramp : sequence of str
@@ -119,7 +88,7 @@ def misfit(drawn: PairedShapes, names: Sequence[str], ramp: Sequence[str]) -> An
     return made
 
 
-def _wires(axes: Any, mesh: Mesh, xyz: Floats, colour: str, width: float) -> None:
+def _wires(axes: Any, mesh: DrawnMesh, xyz: Floats, colour: str, width: float) -> None:
     edges = [mesh.lines, *(mesh.faces[:, [k, (k + 1) % 4]] for k in range(4))]
     ends = np.unique(np.sort(np.vstack(edges), axis=1), axis=0)
     axes.add_collection3d(_lines(xyz[ends[ends[:, 0] != ends[:, 1]]], colour, width))

@@ -8,10 +8,10 @@ import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints
 from ....core.data.geometry import Geometry
+from ....core.results.paired_shapes import DrawnMesh
 from ..html.markup import centred, esc, short, svg, svg_text, tag
 from .colour import STEPS
 from .seen_surface import (
-    Surface,
     View,
     coarsened,
     depth_buffer,
@@ -90,7 +90,7 @@ def scene(
     return tag("figure", caption, tag("div", *pictures, class_="row"))
 
 
-def still(mesh: Surface, title: str, values: Floats, width: int = 480, height: int = 420) -> str:
+def still(mesh: DrawnMesh, title: str, values: Floats, width: int = 480, height: int = 420) -> str:
     """Return one view of a mesh, its faces coloured by values of 0..1 at its rows."""
     plain = replace(mesh, node_of=np.arange(len(mesh.xyz)))
     shot = _shot(plain, isometric(), [], len(mesh.faces) + len(mesh.lines))
@@ -102,11 +102,11 @@ class _Shot:
     """What is seen in one view: the mesh without its hidden faces, and which of the marks."""
 
     view: View
-    mesh: Surface
+    mesh: DrawnMesh
     visible: Bools
 
 
-def _shot(fine: Surface, view: View, marks: Sequence[Mark], most: int) -> _Shot:
+def _shot(fine: DrawnMesh, view: View, marks: Sequence[Mark], most: int) -> _Shot:
     mesh = coarsened(fine, 2 * most)
     projected = view.project(mesh.xyz)
     buffer, seen = depth_buffer(projected, mesh.faces)
@@ -120,7 +120,7 @@ def _shot(fine: Surface, view: View, marks: Sequence[Mark], most: int) -> _Shot:
 
 
 def _picture(
-    fine: Surface,
+    fine: DrawnMesh,
     shot: _Shot,
     marks: Sequence[Mark],
     shown: Sequence[bool],
@@ -148,7 +148,7 @@ def _picture(
     return svg("scene", (page.width, page.height), label, body)
 
 
-def _nearby(marks: Sequence[Mark], mesh: Surface) -> list[Mark]:
+def _nearby(marks: Sequence[Mark], mesh: DrawnMesh) -> list[Mark]:
     """Return the marks that are on the picture at all: within a size of the structure."""
     middle = (mesh.xyz.min(axis=0) + mesh.xyz.max(axis=0)) / 2.0
     reach = 1.5 * mesh.size if mesh.size > 0.0 else np.inf
@@ -179,7 +179,7 @@ class _Page:
         return np.asarray(projected[..., :2] * self.scale + self.shift)
 
 
-def _mesh(mesh: Surface, view: View, page: _Page, values: Floats | None) -> str:
+def _mesh(mesh: DrawnMesh, view: View, page: _Page, values: Floats | None) -> str:
     """Painter's order by slices of depth, one path a slice and colour; units of half a pixel."""
     if not len(mesh.faces) + len(mesh.lines):
         return ""
@@ -212,7 +212,7 @@ def _outline(pixels: Ints) -> str:
     return f"M{pixels[0, 0]} {pixels[0, 1]}l{rest.strip()}"
 
 
-def _face_classes(mesh: Surface, values: Floats | None) -> list[str]:
+def _face_classes(mesh: DrawnMesh, values: Floats | None) -> list[str]:
     corners = mesh.xyz[mesh.faces]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     flat = np.linalg.norm(normal, axis=1) == 0.0
@@ -228,14 +228,14 @@ def _face_classes(mesh: Surface, values: Floats | None) -> list[str]:
     return [f"c{c}" if c >= 0 else f"f{s}" for c, s in zip(step, shade, strict=True)]
 
 
-def _line_classes(mesh: Surface, values: Floats | None) -> list[str]:
+def _line_classes(mesh: DrawnMesh, values: Floats | None) -> list[str]:
     if values is None:
         return ["~bar"] * len(mesh.lines)
     steps = _steps(mesh, values, mesh.lines)
     return [f"~bar k{max(c, _PALEST)}" if c >= 0 else "~bar" for c in steps]
 
 
-def _steps(mesh: Surface, values: Floats, cells: Ints) -> Ints:
+def _steps(mesh: DrawnMesh, values: Floats, cells: Ints) -> Ints:
     """Return the step of the ramp of faces or lines, the mean of their nodes; −1 unknown."""
     coloured = _node_means(mesh, values)[cells]
     known = np.isfinite(coloured)
@@ -244,7 +244,7 @@ def _steps(mesh: Surface, values: Floats, cells: Ints) -> Ints:
     return np.asarray(np.where(known.any(axis=1), step, -1))
 
 
-def _node_means(mesh: Surface, values: Floats) -> Floats:
+def _node_means(mesh: DrawnMesh, values: Floats) -> Floats:
     known = np.isfinite(values)
     rows, n = mesh.node_of[known], len(mesh.xyz)
     total = np.bincount(rows, weights=values[known], minlength=n)

@@ -7,31 +7,10 @@ import numpy as np
 from ....core.arrays import Bools, Floats, Ints
 from ....core.data.geometry import Geometry
 from ....core.data.shapes import SHAPES
-from ....core.noun import Noun
+from ....core.results.paired_shapes import DrawnMesh
 
 
-@dataclass(frozen=True, eq=False)
-class Surface(Noun):
-    """A mesh to draw.
-
-    `xyz` (n, 3); `faces` (n_face, 4) rows of `xyz`, a triangle repeats its last corner;
-    `lines` (n_line, 2); `node_of` (n_original,) the row that each original node went to, and
-    `original` (n,) the original node that stands at each row.
-    """
-
-    xyz: Floats
-    faces: Ints
-    lines: Ints
-    node_of: Ints
-    original: Ints
-
-    @property
-    def size(self) -> float:
-        """Diagonal of the bounding box."""
-        return float(np.linalg.norm(np.ptp(self.xyz, axis=0))) if len(self.xyz) else 0.0
-
-
-def surface(geometry: Geometry) -> Surface:
+def surface(geometry: Geometry) -> DrawnMesh:
     """Return the faces of shells, the outer faces of solids, and the lines of a geometry."""
     tables = geometry.elements
     shells = [_four(tables[k][:, :n]) for k, n in (("tria", 3), ("quad", 4)) if k in tables]
@@ -43,7 +22,7 @@ def surface(geometry: Geometry) -> Surface:
     ]
     skin = _met_once(np.vstack(solids)) if solids else np.zeros((0, 4), np.int64)
     lines = tables.get("line", np.zeros((0, 2), np.int64))[:, :2]
-    return Surface(
+    return DrawnMesh(
         np.asarray(geometry.xyz),
         np.vstack([*shells, skin]),
         np.asarray(lines),
@@ -52,7 +31,7 @@ def surface(geometry: Geometry) -> Surface:
     )
 
 
-def coarsened(fine: Surface, most: int) -> Surface:
+def coarsened(fine: DrawnMesh, most: int) -> DrawnMesh:
     """Return a mesh of at most about `most` faces and lines, or the mesh itself if it is small.
 
     Nodes in one cell of a regular grid become one: the member nearest their mean, so that it
@@ -150,7 +129,7 @@ def depth_buffer(projected: Floats, faces: Ints, cells: int = 320) -> tuple[Dept
     return buffer, np.asarray(seen)
 
 
-def with_neighbours(chosen: Bools, mesh: Surface) -> Bools:
+def with_neighbours(chosen: Bools, mesh: DrawnMesh) -> Bools:
     """Return the chosen faces and those that share a node with one, (n_face,)."""
     touched = np.zeros(len(mesh.xyz), bool)
     touched[mesh.faces[chosen].ravel()] = True
@@ -168,7 +147,7 @@ def _met_once(faces: Ints) -> Ints:
     return np.asarray(faces[np.sort(first[counts == 1])])
 
 
-def _clustered(fine: Surface, pitch: float, inner: Bools) -> Surface:
+def _clustered(fine: DrawnMesh, pitch: float, inner: Bools) -> DrawnMesh:
     cell = np.floor((fine.xyz - fine.xyz.min(axis=0)) / pitch + 0.5).astype(np.int64)
     _, group = np.unique(_keys(cell), return_inverse=True)
     n = int(group.max()) + 1
@@ -178,7 +157,7 @@ def _clustered(fine: Surface, pitch: float, inner: Bools) -> Surface:
     )
     order = np.lexsort((np.linalg.norm(fine.xyz - mean[group], axis=1), inner, group))
     first = order[np.searchsorted(group[order], np.arange(n))]
-    return Surface(
+    return DrawnMesh(
         fine.xyz[first],
         _distinct(group[fine.faces], 3),
         _distinct(group[fine.lines], 2),
@@ -187,7 +166,7 @@ def _clustered(fine: Surface, pitch: float, inner: Bools) -> Surface:
     )
 
 
-def _on_edge(mesh: Surface) -> Bools:
+def _on_edge(mesh: DrawnMesh) -> Bools:
     """Nodes on a free edge or on a line."""
     sides = mesh.faces[:, [0, 1, 1, 2, 2, 3, 3, 0]].reshape(-1, 2)
     sides = np.sort(sides[sides[:, 0] != sides[:, 1]], axis=1)

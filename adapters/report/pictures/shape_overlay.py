@@ -1,46 +1,14 @@
 """The paired shapes, analysis over test, reduced to what a page can carry."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Numbers
 from ....core.data.geometry import Geometry
 from ....core.data.modes import Modes
-from ....core.noun import Noun
-from ....core.results.correlation import Compared, PairRow
-from .seen_surface import Surface, coarsened, surface
-
-
-@dataclass(frozen=True, eq=False)
-class Overlay(Noun):
-    """Pairs of shapes on a drawable mesh.
-
-    Parameters
-    ----------
-    mesh : Surface
-        Coarse enough to embed.
-    shapes : (n_pair, n_node, 3) float
-        Analysis displacement at the nodes of `mesh`, the largest of each pair 1.
-    sensors : (n_sensor, 3) float
-        Positions.
-    axes : (n_sensor, 3) float
-        Measured directions.
-    model, test : (n_pair, n_sensor) float
-        What each side says the sensors read, in the scale of `shapes`; the test fitted to the
-        model by least squares.
-    pairs : tuple of PairRow
-        As many as there are shapes.
-    """
-
-    mesh: Surface
-    shapes: Floats
-    sensors: Floats
-    axes: Floats
-    model: Floats
-    test: Floats
-    pairs: tuple[PairRow, ...]
+from ....core.results.correlation import Compared
+from ....core.results.paired_shapes import Overlay as Overlay
+from .seen_surface import coarsened, surface
 
 
 def overlay(

@@ -61,7 +61,7 @@ def _read_2420(source: Source, section: Section, into: Gathered) -> int:
     for row, (number, kind, *_), name, matrix in _each(lines, 2, starts, 12):
         if np.abs(matrix[:3] @ matrix[:3].T - np.eye(3)).max() > 1e-3:
             raise lines.error(row, f"the axes of system {number} are not orthogonal unit vectors")
-        found[number] = CoordinateSystem(KINDS[kind], matrix[:3], matrix[3], name)
+        found[number] = CoordinateSystem(KINDS[kind], matrix[3], matrix[:3], name)
     return _defined(found, source, into)
 
 

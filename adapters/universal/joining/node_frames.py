@@ -77,7 +77,7 @@ def _placed(
         system = _system(int(number), systems, undefined, int(rows.sum()))
         if system is not BASIC:
             xyz[rows] = system.positions(xyz[rows])
-        if system.kind != "cartesian":
+        if system.kind != "rectangular":
             warnings.append(
                 f"{where}: {rows.sum()} node(s) have {system.kind} coordinates; their "
                 "angles are taken in degrees"
@@ -86,7 +86,7 @@ def _placed(
     for number in np.unique(table.displacement):
         rows = table.displacement == number
         system = _system(int(number), systems, undefined, int(rows.sum()))
-        frames[rows] = system.frames(xyz[rows])
+        frames[rows] = system.directions(xyz[rows])
         on_axis = table.ids[rows][system.on_axis(xyz[rows])]
         if len(on_axis):
             warnings.append(

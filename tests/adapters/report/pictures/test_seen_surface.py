@@ -12,7 +12,6 @@ from hypothesis.extra import numpy as hnp
 
 from trueup.adapters.report.pictures.scene import Mark, scene
 from trueup.adapters.report.pictures.seen_surface import (
-    Surface,
     _keys,
     coarsened,
     depth_buffer,
@@ -21,6 +20,7 @@ from trueup.adapters.report.pictures.seen_surface import (
     with_neighbours,
 )
 from trueup.core.data.geometry import Geometry
+from trueup.core.results.paired_shapes import DrawnMesh
 
 
 def block(n: int) -> Geometry:
@@ -34,13 +34,13 @@ def block(n: int) -> Geometry:
     return Geometry(np.arange(len(xyz)) + 1, xyz, "mm", {"hexa": hexa})
 
 
-def sheet(n: int, height: float = 0.0) -> Surface:
+def sheet(n: int, height: float = 0.0) -> DrawnMesh:
     """A square of n² quads across the line of sight, `height` nearer to the eye."""
     side = np.arange(n + 1) / n
     xyz = np.stack(np.meshgrid(side, side, [-height], indexing="ij"), -1).reshape(-1, 3)
     at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
     faces = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], -1).reshape(-1, 4)
-    return Surface(xyz, faces, np.zeros((0, 2), int), np.arange(len(xyz)), np.arange(len(xyz)))
+    return DrawnMesh(xyz, faces, np.zeros((0, 2), int), np.arange(len(xyz)), np.arange(len(xyz)))
 
 
 @pytest.mark.parametrize("n", [1, 2, 5])
