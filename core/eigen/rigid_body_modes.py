@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,7 +85,8 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     motions: list[tuple[Ints, Floats]] = []
     pieces: list[Ints] = []
     held = 0
-    for rows in _groups(label):
+    order = np.argsort(label, kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
         free = _strain_free(u, mu, ku, noise[rows])
@@ -120,12 +121,6 @@ def _pieces(model: Model, pencil: Pencil) -> Ints:
     node = sp.csr_matrix((np.ones(len(row)), (row, np.arange(len(row)))), (len(nodes), len(row)))
     graph = sp.bmat([[pencil.pattern, None], [node @ T, sp.csr_matrix((len(nodes),) * 2)]])
     return np.asarray(connected_components(graph, directed=False)[1][: pencil.n], np.int64)
-
-
-def _groups(label: Ints) -> Iterator[Ints]:
-    """Rows of each piece."""
-    order = np.argsort(label, kind="stable")
-    yield from np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
 def _geometric(model: Model) -> tuple[Floats, Numbers]:

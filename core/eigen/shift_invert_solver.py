@@ -19,23 +19,10 @@ from .pencil import Pencil, Spectrum, refuse_indefinite_mass
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of the iteration.
+    """What is asked of the iteration; see `normal_modes.solve`.
 
-    Parameters
-    ----------
-    wanted : int or None
-        Modes asked for, rigid-body modes included; None: all below `limit`.
-    limit : float or None
-        Largest eigenvalue of interest.
-    backend : {"pardiso", "superlu"}
-    tolerance : float
-        Of the Ritz residuals beside the Ritz values.
-    count : bool
-        Whether to prove by the inertia that none is missing.
-    keep_factor : bool
-        Whether the factor of K - sigma M stays in the spectrum.
-    seed : int
-        Of the start vectors.
+    `wanted` modes, rigid-body modes included, or where that is None all up to the eigenvalue
+    `limit`; `tolerance` is that of the Ritz residuals beside the Ritz values.
     """
 
     wanted: int | None
@@ -174,7 +161,9 @@ def _converged(
         if lanczos.exhausted or lanczos.size >= check_at or lanczos.full:
             theta, residual = lanczos.ritz()
             if theta[-1] < -EIGEN.negative * theta[0]:
-                _refuse_negative(pencil, sigma, factor)
+                if factor.negative:
+                    diagnose(None, pencil, sigma, factor.backend)
+                raise InputError(NEGATIVE_MASS)
             loose = int(np.argmin(np.append(residual <= EIGEN.guard_tolerance * theta, False)))
             tight = bool((residual <= request.tolerance * theta)[:elastic].all())
             if lanczos.exhausted:
@@ -192,13 +181,6 @@ def _converged(
     found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(firm), theta[:firm])
     ahead = sigma + 1.0 / theta[firm : max(loose, firm)]
     return replace(found, complete=lanczos.exhausted, ahead=ahead)
-
-
-def _refuse_negative(pencil: Pencil, sigma: float, factor: Factorisation) -> None:
-    """Raise `InputError` for a negative eigenvalue of (K - sigma M)^-1 M."""
-    if factor.negative:
-        diagnose(None, pencil, sigma, factor.backend)
-    raise InputError(NEGATIVE_MASS)
 
 
 def _polished(

@@ -80,7 +80,7 @@ def bar_stiffness(
     K = np.zeros((n, 12, 12))
     add_spring(K, 0, E * A / L)
     add_spring(K, 3, G * J / L)
-    EI = _symmetric2(E * I1, E * I12, E * I2)
+    EI = np.moveaxis(np.array([[E * I1, E * I12], [E * I12, E * I2]]), -1, 0)
     shear = np.zeros((n, 2, 2))
     for i, k in enumerate((k1, k2)):
         stiff = np.asarray(k * A * G, float)
@@ -214,10 +214,6 @@ def release(K: Floats, pins: Numbers) -> Floats:
 def from_axes(K: Floats, xa: Floats, xb: Floats, v: Floats) -> Floats:
     """Turn matrices (n, 12, 12) of two ends from element axes to the basic frame."""
     return congruent(K, arms(bar_axes(xa, xb, v), np.zeros((len(K), 2, 3))))
-
-
-def _symmetric2(a: Floats, b: Floats, c: Floats) -> Floats:
-    return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
 
 
 def lumped_ends(mass: Floats) -> Floats:

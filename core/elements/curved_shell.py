@@ -146,11 +146,6 @@ def _covariant_shear(rule: _Rule, xyz: Floats, points: Floats, direction: int) -
     return out
 
 
-def _natural_to_plane(k: _Kinematics) -> Floats:
-    """Physical shears from covariant ones, (n, m, 2, 2)."""
-    return np.asarray(np.linalg.inv(k.J @ transpose(k.frame)[..., :2]))
-
-
 def _integral(B: Floats, C: Floats, D: Floats, weight: Floats) -> Floats:
     n, rows = len(B), B.shape[1] * B.shape[2]
     CD = (C[:, None] @ D.reshape(*D.shape[:3], -1)) * weight[..., None, None]
@@ -185,9 +180,8 @@ def _shear(rule: _Rule, xyz: Floats) -> Floats:
     """Transverse shear strains at the points of a rule, (n, m, 2, k, 6)."""
     _, k = _at(rule, xyz, rule.points)
     natural = [_covariant_shear(rule, xyz, rule.points, d) for d in (0, 1)]
-    return np.asarray(
-        np.einsum("npab,npbkd->npakd", _natural_to_plane(k), np.stack(natural, axis=2))
-    )
+    to_plane = np.linalg.inv(k.J @ transpose(k.frame)[..., :2])
+    return np.asarray(np.einsum("npab,npbkd->npakd", to_plane, np.stack(natural, axis=2)))
 
 
 def _hourglass(section: ShellSection, xyz: Floats, area: Floats) -> Floats:

@@ -134,7 +134,9 @@ def _stiffness(
     K = np.zeros((len(xyz), 24, 24))
     _add_plane(K, section, local, detJ, inverse)
     add_shear(K, section, local, detJ)
-    _add_drilling(K, section.drilling * k6rot * 1e-6, local)
+    J = AT_NODES @ local[:, None]
+    weight = (section.drilling * k6rot * 1e-6)[:, None] * (4.0 * np.linalg.det(J))
+    add_drilling(K, weight, np.linalg.inv(J) @ AT_NODES)
     return congruent(K, corner_motions(axes, local, height, offset, normals))
 
 
@@ -207,7 +209,7 @@ def add_shear(
     `uniform` scales it, `epsilon` is the share that a linear shear force sees.
     """
     area = detJ.sum(axis=1)
-    along, across = _strips(local)
+    along, across = np.moveaxis(2.0 * AT_CENTRE @ local, 1, 0)
     dx, dy = along[:, 0], across[:, 1]
     D1, D2 = strip_stiffness(section.D, along)
     bends = (D1 > 0.0) & (D2 > 0.0)
@@ -235,12 +237,6 @@ def add_shear(
     add_plate(K, np.linalg.solve(G, edge_shear_operator(edge, _EDGES, 4)), C)
 
 
-def _strips(local: Floats) -> tuple[Floats, Floats]:
-    """Vectors between the middles of opposite sides, along xi and along eta, each (n, 2)."""
-    middle = 2.0 * AT_CENTRE @ local
-    return middle[:, 0], middle[:, 1]
-
-
 def edge_shear_operator(edge: Floats, ends: tuple[tuple[int, int], ...], n_node: int) -> Floats:
     """Shear strain along edges times their length, (n, m, 3 n_node), from w, then rx, then ry."""
     V = np.zeros((len(edge), len(ends), 3 * n_node))
@@ -258,15 +254,11 @@ def add_plate(K: Floats, V: Floats, C: Floats) -> None:
     K[:, plate[:, None], plate] += transpose(V) @ C @ V
 
 
-def _add_drilling(K: Floats, stiffness: Floats, local: Floats) -> None:
-    """Penalty on the difference of the grids' rotation and that of the plane, at each node."""
-    J = AT_NODES @ local[:, None]
-    weight = stiffness[:, None] * (4.0 * np.linalg.det(J))
-    add_drilling(K, weight, np.linalg.inv(J) @ AT_NODES)
-
-
 def add_drilling(K: Floats, weight: Floats, g: Floats) -> None:
-    """Add penalties (n, m) at the nodes, with the gradients (n, m, 2, m) of the plane there."""
+    """Penalty on the difference of the grids' rotation and that of the plane, at each node.
+
+    Shapes: `weight` (n, m), gradients `g` (n, m, 2, m) of the plane at the nodes.
+    """
     m = g.shape[-1]
     r = np.zeros((len(K), m, 3 * m))
     r[:, :, :m] = 0.5 * g[:, :, 1]

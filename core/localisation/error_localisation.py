@@ -192,13 +192,7 @@ def _stiffness(
             continue
         strain = root_of(K, moved[group.coordinates(rows)])
         middle = geometry.xyz[group.corners[rows]].mean(axis=1)
-        near = patches_of(centres, middle, max(radius, _spacing(middle)))
+        apart = cKDTree(middle).query(middle, k=[2])[0].max() if len(middle) > 1 else 0.0
+        near = patches_of(centres, middle, max(radius, float(apart)))
         best = np.maximum(best, stiffness_evidence(lin, strain, near).explained)
     return best
-
-
-def _spacing(xyz: Floats) -> float:
-    """Distance within which every point has another, or 0."""
-    if len(xyz) < 2:
-        return 0.0
-    return float(np.max(cKDTree(xyz).query(xyz, k=[2])[0]))

@@ -99,15 +99,9 @@ def expand(sample: Sample, lower: Floats, upper: Floats, tolerance: float) -> Ex
         return Expansion((), points[:0], np.zeros((0, 0)))
     chosen = scipy.linalg.qr(values[:, kept].T, mode="r", pivoting=True)[1][: len(kept)]
     indices = np.stack(np.unravel_index(kept, sizes), axis=1)
-    series = tuple(
-        tuple(_series(bases[i][j]) for i, j in enumerate(product)) for product in indices
-    )
+    own = ([bases[i][j] for i, j in enumerate(product)] for product in indices)
+    series = tuple(tuple(tuple(c.tolist()) if c[1:].any() else None for c in cs) for cs in own)
     return Expansion(series, points[chosen], np.linalg.inv(values[np.ix_(chosen, kept)]))
-
-
-def _series(coefficients: Floats) -> tuple[float, ...] | None:
-    constant = not coefficients[1:].any()
-    return None if constant else tuple(float(c) for c in coefficients)
 
 
 def _basis(

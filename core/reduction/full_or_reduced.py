@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,33 +15,9 @@ from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
 from .reduced_model import ReducedModel, ReducedModes, build_reduced
 
 
-class Order(Protocol):
-    """Modes and their derivatives at any factors, seen by the sensors of a test."""
-
-    @property
-    def model(self) -> Model:
-        """What is solved, in full or reduced."""
-        ...
-
-    @property
-    def sensors(self) -> sp.csr_matrix | Floats:
-        """(n_sensor, n): sensor displacements from the vectors of `solve`."""
-        ...
-
-    def solve(self, p: Floats) -> Spectral:
-        """Modes at the factors `p`, (n_parameter,)."""
-        ...
-
-    def sensitivities(
-        self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool
-    ) -> Sensitivities:
-        """As `sensitivity.sensitivities`, shapes at the sensors where asked for."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class FullOrder:
-    """The model itself."""
+    """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`."""
 
     model: Model
     sensors: sp.csr_matrix
@@ -63,7 +38,10 @@ class FullOrder:
 
 @dataclass(frozen=True, eq=False)
 class ReducedOrder:
-    """The model on the modes of one parameter point and their static answers to parameters."""
+    """The model on the modes of one parameter point and their static answers to parameters.
+
+    `sensors` (n_sensor, n_basis) read the vectors of `solve`.
+    """
 
     reduced: ReducedModel
     sensors: Floats
@@ -85,6 +63,10 @@ class ReducedOrder:
         assert isinstance(solution, ReducedModes)
         at = self.sensors if with_shapes else None
         return self.reduced.sensitivities(p, T, tuple(active), at, solution)
+
+
+Order = FullOrder | ReducedOrder
+"""Modes and their derivatives at any factors, seen by the sensors of a test."""
 
 
 def reduce_around(

@@ -152,8 +152,10 @@ class ReducedModel(Noun):
         Sensitivities
         """
         whole = None if solution is None else solution.whole
-        everything = self._finite(whole or self.solve(p, self.size))
-        count = len(everything.eigenvalues)
+        everything = whole or self.solve(p, self.size)
+        span = everything.eigenvalues - self.solution.sigma
+        count = int(np.count_nonzero(span < DERIVATIVES.mass * span[0]))  # those with mass
+        everything = everything.take(count)
         given = np.asarray(modes)
         if given.ndim == 2:
             given = np.vstack([given, np.zeros((max(count - len(given), 0), given.shape[1]))])
@@ -166,11 +168,6 @@ class ReducedModel(Noun):
             return z.reshape(len(z), len(cluster), len(changes))
 
         return differentiate(T, by_position, everything, changes, sensors, change_of)
-
-    def _finite(self, modes: ReducedModes) -> ReducedModes:
-        """Leave out the vectors of the basis without mass."""
-        span = modes.eigenvalues - self.solution.sigma
-        return modes.take(int(np.count_nonzero(span < DERIVATIVES.mass * span[0])))
 
 
 def build_reduced(

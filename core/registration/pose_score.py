@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Floats, Ints, Numbers
-from ..data.dofs import Dofs
 from ..data.geometry import Geometry
 from ..data.modes import Modes
 from ..sensors.closest_point import place
@@ -100,7 +99,8 @@ def scorer_of(
     scale : float
         Analysis length units in one test length unit.
     """
-    rows = _few_sensors(test_modes.dofs)
+    n = len(test_modes.dofs)  # few of them, evenly through the list
+    rows = np.linspace(0, n - 1, min(n, ALIGN.most_sensors)).round().astype(np.int64)
     sensors = test_modes.dofs.take(rows)
     test = test_modes.shapes[rows]
     length = np.linalg.norm(test, axis=0)
@@ -117,12 +117,6 @@ def scorer_of(
         band,
         size,
     )
-
-
-def _few_sensors(sensors: Dofs) -> Ints:
-    """Rows of at most `most_sensors` sensors, evenly through the list."""
-    n = len(sensors)
-    return np.unique(np.linspace(0, n - 1, min(n, ALIGN.most_sensors)).round().astype(np.int64))
 
 
 def _bands(analysis_hz: Floats, test_hz: Floats, most: int) -> tuple[Ints, Ints]:

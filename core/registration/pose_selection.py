@@ -112,7 +112,7 @@ class _Judge:
         short = np.maximum(least - self.worth(poses), 0.0)
         spoiled = np.maximum(self._rms(poses) / (ALIGN.calm * self.floor) - 1.0, 0.0)
         lost = ALIGN.calm_short * short + ALIGN.calm_off * spoiled
-        return np.asarray(-_angles(poses) - lost)
+        return np.asarray(-Rotation.from_matrix(poses.rotation).magnitude() - lost)
 
     def margin(self, worth: float) -> float:
         """Difference of worth that does not count."""
@@ -172,10 +172,6 @@ def _calmest(judge: _Judge, family: Family, where: Floats, value: float, step: F
     calm = judge.calm(family.at(where), least)
     start = int(np.argmax(calm))
     return _climb(family, where[start], calm[start], step, lambda p: judge.calm(p, least))[0]
-
-
-def _angles(poses: Poses) -> Floats:
-    return np.asarray(Rotation.from_matrix(poses.rotation).magnitude())
 
 
 def _coordinates(family: Family, poses: Poses) -> Floats:

@@ -212,7 +212,7 @@ def _typed(kind: Any, value: object, where: str) -> Any:
             return Table(members, inner[0]) if origin is Table else origin(members)
     elif origin is dict and isinstance(value, Mapping):
         return {k: _typed(inner[1], v, f"{where}.{k}") for k, v in value.items()}
-    elif kind is float and (value is None or _is_number(value)):
+    elif kind is float and (value is None or isinstance(value, float) or type(value) is int):
         return math.nan if value is None else value
     elif kind is Any or (isinstance(kind, type) and isinstance(value, kind)):
         return value
@@ -224,10 +224,6 @@ def _parts(kind: Any) -> tuple[Any, tuple[Any, ...]]:
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     alias = getattr(origin, "__value__", None)  # numpy 2.5 makes NDArray a `type` statement
     return (origin, inner) if alias is None else _parts(alias[inner])
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _dataclass(kind: type[T], values: Mapping[str, object], where: str, beside: Any) -> T:

@@ -72,7 +72,9 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
     bound = surface.nearest_grid(points)[1]
     rows, facets = _candidates(surface, points, bound, reach)
     s, t, distance = _feet(surface, points[rows], facets)
-    order = np.lexsort((-surface.kind[facets], _tied(distance, surface.size), rows))
+    step = PLACEMENT.tied * surface.size if surface.size > 0 else 1.0
+    tied = np.round(distance / step)  # so that a face wins over the line on its edge
+    order = np.lexsort((-surface.kind[facets], tied, rows))
     first = order[np.unique(rows[order], return_index=True)[1]]
     facets, s, t = facets[first], s[first], t[first]
     s, t = _on_warped_quads(surface, points, facets, s, t)
@@ -99,12 +101,6 @@ def _candidates(surface: Surface, points: Floats, bound: Floats, reach: float) -
         rows.append(np.repeat(np.arange(len(points)), count))
         facets.append(of_level[np.concatenate([*found, []]).astype(np.int64)])
     return np.concatenate(rows), np.concatenate(facets)
-
-
-def _tied(distance: Floats, size: float) -> Floats:
-    """Distances rounded so that a face wins over the line on its edge."""
-    step = PLACEMENT.tied * size if size > 0 else 1.0
-    return np.round(distance / step)
 
 
 def _feet(surface: Surface, points: Floats, facets: Ints) -> tuple[Floats, Floats, Floats]:

@@ -137,7 +137,7 @@ def surface_of(
     parts = [part for part in parts if len(part[0])]
     if not parts:
         parts = [(np.flatnonzero(usable)[:, None], POINT, False)]
-    corners = np.concatenate([_padded(c) for c, _, _ in parts])
+    corners = np.concatenate([c[:, np.minimum(range(4), kind - 1)] for c, kind, _ in parts])
     kinds = np.concatenate([np.full(len(c), k, np.int64) for c, k, _ in parts])
     solid = np.concatenate([np.full(len(c), s) for c, _, s in parts])
     attached = np.unique(corners)
@@ -174,11 +174,6 @@ def fold_tria(kind: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats]:
     """Fold points of the unit square into the unit triangle where the facet is a tria."""
     out = (kind == TRIA) & (s + t > 1)
     return np.where(out, 1 - s, s), np.where(out, 1 - t, t)
-
-
-def _padded(corners: Ints) -> Ints:
-    last = np.repeat(corners[:, -1:], 4 - corners.shape[1], axis=1)
-    return np.concatenate([corners, last], axis=1)
 
 
 def _content(xyz: Floats, corners: Ints, kind: Ints) -> Floats:

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, shelled
+from ..reduction.elements_and_supports import Structure, shelled
 from .effect_numbers import EFFECTS
 from .element_patches import Patch
 
@@ -26,7 +26,8 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
     for number, rows in own:
         m = structure.members[number]
         xyz = structure.centroids(m)
-        length = _lengths(structure, m, rows)
+        ends = structure.model.geometry.xyz[m.corners[rows, :2]]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         whole = float(length.sum())
         out.append(Patch(number, np.sort(rows), xyz[rows].mean(axis=0), True))
         for a, b in _stretches(len(rows), least):
@@ -60,11 +61,6 @@ def _bars(structure: Structure) -> list[tuple[int, Ints]]:
         for number, free in bare_bars(structure)
         for rows in _chains(structure.members[number].corners[free, :2], through, g.xyz)
     ]
-
-
-def _lengths(structure: Structure, m: Members, rows: Ints) -> Floats:
-    ends = structure.model.geometry.xyz[m.corners[rows, :2]]
-    return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
 
 
 def _stretches(n: int, least: int) -> list[tuple[int, int]]:

@@ -104,8 +104,11 @@ def _own_basis(
     modes = int(np.count_nonzero(state.eigenvalues < SEARCH.own_above * top)) + SEARCH.own_more
     solution = solve((K, M), n_modes=modes, count=False)
     phi = solution.vectors
-    asked = phi[:, _asked(solution.eigenvalues, top)]
-    A = factorise((K + _shift(solution.eigenvalues) * M).tocsr(), definite=True)
+    values = solution.eigenvalues
+    elastic = values > SEARCH.rigid * values.max()
+    asked = phi[:, elastic & (values < SEARCH.own_reached * top)]
+    shift = SEARCH.own_shift * float(values[elastic].min())
+    A = factorise((K + shift * M).tocsr(), definite=True)
     local = [x if isinstance(x, np.ndarray) else x @ asked for x in loads]
     V = np.asarray(phi)
     if local:
@@ -129,14 +132,3 @@ def _own_basis(
         )
         chosen.append((one, U[None]))
     return basis, chosen, phi.shape[1]
-
-
-def _asked(eigenvalues: Floats, top: float) -> Bools:
-    """Modes whose change with the parameters counts: elastic ones that the test may hold."""
-    elastic = eigenvalues > SEARCH.rigid * eigenvalues.max()
-    return np.asarray(elastic & (eigenvalues < SEARCH.own_reached * top))
-
-
-def _shift(eigenvalues: Floats) -> float:
-    positive = eigenvalues[eigenvalues > SEARCH.rigid * eigenvalues.max()]
-    return SEARCH.own_shift * float(positive.min())

@@ -159,14 +159,11 @@ def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None)
     """
     wide = replace(searcher, problem=softened(searcher.problem))
     found = grown(wide, enough(wide), progress)
-    levels = [_by_the_test(searcher, f) for f in found.levels]
+    levels = []
+    for f in found.levels:  # by the noise of the test, every suspect at its best neighbour
+        f = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
+        levels.append(searcher.refined(f) if f.suspects else f)
     best = int(np.argmin([f.objective for f in levels]))
     if not best:
         return Found(tuple(levels[:1]), ((),))
     return grown(searcher, enough(searcher), progress, levels[: best + 1])
-
-
-def _by_the_test(searcher: Searcher, f: Fit) -> Fit:
-    """Return a fit by the noise of the test, every suspect at its best neighbour."""
-    start = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
-    return searcher.refined(start) if f.suspects else start
