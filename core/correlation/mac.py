@@ -51,16 +51,9 @@ def deviation_percent(analysis_hz: Numbers, test_hz: Numbers) -> Floats:
 
 
 def principal(shapes: Numbers) -> Numbers:
-    """Return each complex column turned to its principal phase; real shapes as they are.
+    """Return complex columns (n_sensor, n_mode) turned to their principal phase, real as they are.
 
-    Parameters
-    ----------
-    shapes : (n_sensor, n_mode) float or complex
-
-    Returns
-    -------
-    (n_sensor, n_mode) float or complex
-        The phase θ maximises |Re(φ e^{-iθ})|², i.e. θ = ½ arg Σ φ².
+    The phase θ maximises |Re(φ e^{-iθ})|², i.e. θ = ½ arg Σ φ².
     """
     if not np.iscomplexobj(shapes):
         return np.asarray(shapes, dtype=float)
@@ -69,14 +62,5 @@ def principal(shapes: Numbers) -> Numbers:
 
 
 def realised(shapes: Numbers) -> Floats:
-    """Return real shapes: each complex column turned to its principal phase, real part kept.
-
-    Parameters
-    ----------
-    shapes : (n_sensor, n_mode) float or complex
-
-    Returns
-    -------
-    (n_sensor, n_mode) float
-    """
+    """Return shapes (n_sensor, n_mode) turned to their principal phase, real part kept."""
     return np.asarray(principal(shapes).real)

@@ -53,13 +53,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
 
     Sensors are checked against each other first; then known parameters and missing effects of
     every kind and place compete for the rest of the misfit. A part of the modes and sensors is
-    kept out of the search.
-
-    Parameters
-    ----------
-    request : Request
-    progress : callable
-        Told what happens, a few words at a time.
+    kept out of the search. `progress` is told what happens, a few words at a time.
     """
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)

@@ -28,13 +28,8 @@ def spring_stiffness(k: Floats, ends: int) -> Floats:
 def rigid_mass(mass: Floats, arm: Floats, inertia: Floats) -> Floats:
     """Mass of rigid bodies at grids, (n, 6, 6), basic frame.
 
-    Parameters
-    ----------
-    mass : (n,) float
-    arm : (n, 3) float
-        From the grid to the centre of gravity.
-    inertia : (n, 3, 3) float
-        Tensor about the centre of gravity.
+    `arm` (n, 3) leads from the grid to the centre of gravity, `inertia` (n, 3, 3) is the tensor
+    about it.
     """
     S = skew(arm)
     M = np.zeros((len(mass), 6, 6))

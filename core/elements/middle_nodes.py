@@ -38,19 +38,10 @@ def quadratic(L: Floats, dL: Floats, edges: Ints) -> tuple[Floats, Floats]:
 
 
 def spread(edges: Ints, kept: Bools) -> Floats | None:
-    """Values at all nodes from those that are there: a missing one takes the mean of its edge.
+    """Values at all nodes from those that are `kept`: a missing one takes the mean of its edge.
 
-    Parameters
-    ----------
-    edges : (m, 2) int
-        Ends of the edge of each middle node.
-    kept : (n_node,) bool
-        Which nodes are there.
-
-    Returns
-    -------
-    (n_node, n_there) float or None
-        None where all are there.
+    (n_node, n_kept), None where all are there; `edges` (m, 2) are the ends of the edge of each
+    middle node.
     """
     if kept.all():
         return None

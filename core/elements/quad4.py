@@ -52,16 +52,9 @@ LINEAR_MASS = np.array([[4, 2, 1, 2], [2, 4, 2, 1], [1, 2, 4, 2], [2, 1, 2, 4]])
 
 
 def quad4_axes(xyz: Floats) -> Floats:
-    """Element axes as Nastran's: x bisects the angle of the diagonals, z is normal to both.
+    """Element axes (n, 3, 3) of nodes (n, 4, 3) as Nastran's, rows are unit vectors, basic frame.
 
-    Parameters
-    ----------
-    xyz : (n, 4, 3) float
-
-    Returns
-    -------
-    (n, 3, 3) float
-        Rows are the unit vectors x, y, z in the basic frame.
+    x bisects the angle of the diagonals, z is normal to both.
     """
     d1, d2 = unit(xyz[:, 2] - xyz[:, 0]), unit(xyz[:, 3] - xyz[:, 1])
     z = unit(np.cross(d1, d2))

@@ -29,16 +29,9 @@ LINEAR_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0
 
 
 def tria3_axes(xyz: Floats) -> Floats:
-    """Element axes as Nastran's: x from node 1 to node 2, z normal.
+    """Element axes (n, 3, 3) of nodes (n, 3, 3) as Nastran's, rows are unit vectors, basic frame.
 
-    Parameters
-    ----------
-    xyz : (n, 3, 3) float
-
-    Returns
-    -------
-    (n, 3, 3) float
-        Rows are the unit vectors x, y, z in the basic frame.
+    x from node 1 to node 2, z normal.
     """
     x = unit(xyz[:, 1] - xyz[:, 0])
     z = unit(np.cross(x, xyz[:, 2] - xyz[:, 0]))

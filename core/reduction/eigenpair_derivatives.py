@@ -179,11 +179,8 @@ def differentiate(
 def clusters(T: Floats, solution: Spectral) -> Iterator[Ints]:
     """Positions of the modes, ascending, that must be differentiated together.
 
-    Parameters
-    ----------
-    T : (n_mode, n) float
-        Modes that share a column belong together, and so do repeated eigenvalues and the
-        rigid-body modes. Groups without any entry are left out.
+    Modes that share a column of T (n_mode, n) belong together, and so do repeated eigenvalues and
+    the rigid-body modes. Groups without any entry are left out.
     """
     lam = solution.eigenvalues
     near = np.diff(lam) <= DERIVATIVES.repeated * np.abs(lam[1:])

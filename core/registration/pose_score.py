@@ -90,14 +90,8 @@ def scorer_of(
 ) -> Scorer:
     """Prepare the score of poses.
 
-    Parameters
-    ----------
-    geometry, modes : Geometry, Modes
-        Of the analysis, rigid-body modes may be among them.
-    test_geometry, test_modes : Geometry, Modes
-        Of the test, on the measured directions (see `measured.measured_directions`).
-    scale : float
-        Analysis length units in one test length unit.
+    Of the analysis rigid-body modes may be among the modes; those of the test are on the measured
+    directions (see `measured_directions`); `scale` is analysis length units in one of the test.
     """
     n = len(test_modes.dofs)  # few of them, evenly through the list
     rows = np.linspace(0, n - 1, min(n, ALIGN.most_sensors)).round().astype(np.int64)

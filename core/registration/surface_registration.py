@@ -57,21 +57,12 @@ def rms_of(surface: Surface, points: Floats, poses: Poses) -> Floats:
 
 
 def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = ALIGN.keep) -> Poses:
-    """Find the poses that lay points on a surface, best first.
+    """Find the poses that lay points (n, 3) on a surface, best first; `keep` of them are polished.
 
     Starts: the principal axes of points and surface in their 24 right-handed orders, and
     uniformly random rotations, each with the points' centre at the surface's centre, its box's
     centre and random places on it. A coarse iterated fit to sampled points (Chen and Medioni,
     1992, with weights that ignore outliers) thins them out, `polish` finishes.
-
-    Parameters
-    ----------
-    cloud : Cloud
-    points : (n, 3) float
-    seed : int
-        Of the random starts.
-    keep : int
-        How many poses to polish.
     """
     few = points[farthest_points(points, ALIGN.points)]
     R, t = _starts(cloud, points, np.random.default_rng(seed))

@@ -208,18 +208,8 @@ class ReleaseLaw:
     def coupled(self, rows: Ints, lost: Floats, log_p: Floats) -> tuple[ReleaseLaw, Floats]:
         """Return the release on a basis that lacks flexibility which its coordinates share.
 
-        Parameters
-        ----------
-        rows : (n,) int
-        lost : (n, q, q) float
-            Flexibility among the coordinates of each that the basis does not have.
-        log_p : (n_parameter,) float
-
-        Returns
-        -------
-        law : ReleaseLaw
-        W : (n, q, q) float
-            Its coordinates are W times those before.
+        `lost` (n, q, q) is the flexibility among the coordinates of each that the basis does not
+        have. With the law comes W (n, q, q): its coordinates are W times those before.
         """
         own, q = self.own[rows], self.own.shape[1]
         left = -lost
@@ -254,22 +244,11 @@ class ReleaseLaw:
 
 
 def directions(A: Floats, free: int) -> tuple[Floats, Floats]:
-    """Take stiffness matrices apart into coordinates that are freed one by one.
+    """Take stiffness matrices A (n, q, q) apart into coordinates that are freed one by one.
 
     The first `free` coordinates are condensed out, then each part is turned to its principal
     directions: the inverse of A + k S, with S nil on the first `free` coordinates and the
-    identity on the others, is Wᵀ diag(1 / (d + k s)) W for every k.
-
-    Parameters
-    ----------
-    A : (n, q, q) float
-        Symmetric.
-    free : int
-
-    Returns
-    -------
-    d : (n, q) float
-    W : (n, q, q) float
+    identity on the others, is Wᵀ diag(1 / (d + k s)) W for every k, d (n, q) and W (n, q, q).
     """
     n, q, _ = A.shape
     d, W = np.empty((n, q)), np.zeros((n, q, q))

@@ -36,12 +36,8 @@ def sentence(
 ) -> str:
     """Say what is missing, where, what shows it, and how sure.
 
-    Parameters
-    ----------
-    modes : list of int
-        Test modes, from 1, that it gives more damping than they have without.
-    times : float
-        How many times less likely it is that there is none.
+    `modes` are the test modes, from 1, that it gives more damping than they have without; that
+    there is none is so many `times` less likely.
     """
     which = f"mode{'s' if len(modes) > 1 else ''} {', '.join(map(str, modes))}"
     along = "".join(map(str, components))

@@ -89,20 +89,10 @@ def added(u: Floats, omega: Floats) -> Floats:
 def complex_modes(omega: Floats, D: Floats) -> tuple[Numbers, Numbers]:
     """Return poles with Im > 0 and complex modes of s² + s D + diag(ω²), each near one mode.
 
-    Parameters
-    ----------
-    omega : (n,) float
-        rad/s.
-    D : (n, n) float
-        Damping on unit modal masses.
-
-    Returns
-    -------
-    poles : (n,) complex
-        Number k is that of the complex mode that undamped mode k takes the largest part in, one
-        to one; NaN where so many are overdamped that none is left.
-    shapes : (n, n) complex
-        Columns on the undamped modes, component k of column k equal to 1.
+    Of frequencies `omega` (n,) [rad/s] and damping D (n, n) on unit modal masses. Pole number k
+    (n,) is that of the complex mode that undamped mode k takes the largest part in, one to one; NaN
+    where so many are overdamped that none is left. Columns of the shapes (n, n) are on the undamped
+    modes, component k of column k equal to 1.
     """
     n = len(omega)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(omega**2), -D]])
@@ -157,22 +147,10 @@ def imaginary(u: Floats, modes: Oriented, sensors: Floats) -> tuple[Floats, Floa
     """Return what a dashpot of unit damping makes of the shapes, first order.
 
     Parts of modes that turn freely with one another are left out: the test's real shapes decide
-    how those lie.
-
-    Parameters
-    ----------
-    u : (n_place, n) float
-        Motion of the places in the modes.
-    modes : Oriented
-    sensors : (n_sensor, n) float
-        Shapes of unit modal mass at the sensors, in the coordinates of `modes`.
-
-    Returns
-    -------
-    turned : (n_place, count, n) float
-        Coordinates of the imaginary parts on the modes.
-    gram : (n, n) float
-        Their inner products at the sensors.
+    how those lie. `u` (n_place, n) is the motion of the places in the modes, `sensors`
+    (n_sensor, n) are shapes of unit modal mass in the coordinates of `modes`. Returned are the
+    coordinates of the imaginary parts on the modes, (n_place, count, n), and their inner products
+    at the sensors, (n, n).
     """
     lam = modes.omega**2
     gap = lam[None, :] - lam[: modes.count, None]

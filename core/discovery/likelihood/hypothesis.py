@@ -60,16 +60,11 @@ class Problem:
     def turned(
         self, T: Floats, rest: Floats | None = None, held: Sequence[Suspect] = ()
     ) -> Problem:
-        """Return the problem on the basis ``vectors @ T``.
+        """Return the problem on the basis ``vectors @ T``, T (r, s).
 
-        Parameters
-        ----------
-        T : (r, s) float
-        rest : (r, r - s) float, optional
-            What T leaves out, each vector divided by the root of its eigenvalue, so that the
-            static response that is lost can be put back into the laws.
-        held : sequence of Suspect, optional
-            Those whose model has the vectors T as modes: of what they do nothing is lost.
+        `rest` (r, r - s) is what T leaves out, each vector divided by the root of its eigenvalue,
+        so that the static response that is lost can be put back into the laws. Of what those `held`
+        do, whose model has the vectors T as modes, nothing is lost.
         """
         return replace(
             self,
@@ -175,11 +170,7 @@ def unmatched(
 ) -> tuple[list[int], list[Suspect]]:
     """Return numbers of the suspects of the best that `f` does not have, and what it has instead.
 
-    Parameters
-    ----------
-    best, f : Fit
-    same : callable
-        Whether a suspect of the best and one of `f` are one.
+    `same` says whether a suspect of the best and one of `f` are one.
     """
     left, alone = list(f.suspects), []
     for k, s in enumerate(best.suspects):

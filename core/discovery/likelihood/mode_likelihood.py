@@ -123,18 +123,9 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
 
 
 def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) -> Floats:
-    """Misfit of every test mode with every analysis mode.
+    """Misfit of every test mode with every analysis mode, (..., n_test, n); see `joint_macs`.
 
-    Parameters
-    ----------
-    e : Evidence
-    eigenvalues, cross, gram
-        See `joint_macs`.
-
-    Returns
-    -------
-    (..., n_test, n) float
-        (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
+    (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
     """
     omega2 = targets(e)
     floor = LIKELIHOOD.least_eigenvalue * omega2.min()
@@ -147,21 +138,11 @@ def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) ->
 
 
 def mixing(eigenvalues: Floats, size: float) -> Floats:
-    """How much of mode l a mode k may hold that a slightly different model would not.
+    """How much of mode l a mode k may hold that a slightly different model would not, (..., n, n).
 
     A relative change ε of the stiffness mixes two modes by ε λ / (λ_k − λ_l). Over changes of the
-    size `size` the share of l that says nothing against k is 1 / (1 + (gap / size)²): all of it
-    for a repeated eigenvalue, nothing for modes far apart.
-
-    Parameters
-    ----------
-    eigenvalues : (..., n) float
-    size : float
-
-    Returns
-    -------
-    (..., n, n) float
-        Symmetric, ones on the diagonal.
+    size `size` the share of l that says nothing against k is 1 / (1 + (gap / size)²): all of it for
+    a repeated eigenvalue (..., n), nothing for modes far apart. Symmetric, ones on the diagonal.
     """
     log = np.log(np.maximum(eigenvalues, np.finfo(float).tiny))
     gap = log[..., :, None] - log[..., None, :]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ...arrays import Bools, Floats
 from ...registration.alignment import Alignment
-from ..effects.candidates import Suspect
+from ..effects.candidates import Candidates, Suspect
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
@@ -44,15 +46,13 @@ def build_discovery(
 
     `held_out` are the test modes and the sensors that were kept out of the search.
     """
-    best = found.levels[verdict.accepted]
+    outcome = _Outcome(request, searcher, found, verdict)
+    best = outcome.best
     spread = deviations(best, verdict.scale)
     ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
     own = np.split(spread, ends[:-1])[1:]
-    alternatives = _alternatives(request, searcher, found, verdict)
-    findings = [
-        _finding(request, searcher, found, k, verdict, deviation, alternatives)
-        for k, deviation in enumerate(own)
-    ]
+    alternatives = _alternatives(outcome)
+    findings = [_finding(outcome, k, off, alternatives) for k, off in enumerate(own)]
     nodes = request.placed.observation.sensors.node
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, spread)
@@ -66,7 +66,7 @@ def build_discovery(
         word = "effect"
     elif findings:
         word = "undecided"
-        decide = (*decide, *_would_decide(request, searcher, found, verdict, held_out[0]))
+        decide = (*decide, *_would_decide(outcome, held_out[0]))
     elif verdict.scale > NARRATIVE.unexplained:
         word = "undecided"
         decide = (
@@ -104,55 +104,70 @@ def frame_needed(alignment: Alignment) -> tuple[str, ...]:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class _Outcome:
+    """What was asked, what was found, and what it amounts to."""
+
+    request: Request
+    searcher: Searcher
+    found: Found
+    verdict: Judgement
+
+    @property
+    def best(self) -> Fit:
+        """The hypothesis that is accepted."""
+        return self.found.levels[self.verdict.accepted]
+
+    @cached_property
+    def rivals(self) -> list[Fit]:
+        """Hypotheses that say something else."""
+        return contenders(self.searcher, self.found, self.verdict.accepted)
+
+    def behind(self, f: Fit) -> float:
+        """Return by how much a hypothesis costs more than the best."""
+        here = cost(self.searcher, self.best, self.verdict.scale)
+        return cost(self.searcher, f, self.verdict.scale) - here
+
+    def of(self, s: Suspect) -> Candidates:
+        """Return the candidates that a suspect is one of."""
+        return self.searcher.problem.catalogue[s.kind]
+
+    def region(self, s: Suspect) -> str:
+        """Say where a suspect is."""
+        return region(self.request.structure.model.geometry, self.of(s).xyz[s.row])
+
+
 def _finding(
-    request: Request,
-    searcher: Searcher,
-    found: Found,
-    number: int,
-    verdict: Judgement,
-    deviation: Floats,
-    alternatives: tuple[Alternative, ...],
+    o: _Outcome, number: int, deviation: Floats, alternatives: tuple[Alternative, ...]
 ) -> Finding:
-    best = found.levels[verdict.accepted]
+    best, scale, masses = o.best, o.verdict.scale, o.request.masses
     s = best.suspects[number]
-    c = searcher.problem.catalogue[s.kind]
-    geometry = request.structure.model.geometry
-    sizes = np.exp(s.theta)
-    places = credible_places(searcher, best, number, verdict.scale)
+    c, spot, sizes = o.of(s), o.region(s), np.exp(s.theta)
+    places = credible_places(o.searcher, best, number, scale)
     error = [m.place_error for m in c.kind.magnitudes]
     spread = np.hypot(np.hypot(deviation, error), between(places))
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
-    spot = region(geometry, c.xyz[s.row])
-    magnitude = magnitude_of(c, s.row, sizes, intervals, request.masses)
-    first = intervals[0] * (request.masses.card if c.kind.magnitudes[0].is_mass else 1.0)
+    magnitude = magnitude_of(c, s.row, sizes, intervals, masses)
+    first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
-    modes = [int(request.numbers[j]) for j in explained(searcher, best, number, verdict.scale)]
+    modes = [int(o.request.numbers[j]) for j in explained(o.searcher, best, number, scale)]
     next_best = alternatives[0] if alternatives else None
-    return Finding(
-        "model",
-        c.kind.name,
-        Where.of(c.where[s.row], c.xyz[s.row], region=spot),
-        magnitude,
-        interval,
-        _credible(searcher, found, verdict, number, places),
-        _confidence(verdict),
-        sentence_of(c.kind, magnitude, spot, interval, modes, request.masses, next_best),
-    )
+    where = Where.of(c.where[s.row], c.xyz[s.row], region=spot)
+    text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, next_best)
+    credible, sure = _credible(o, number, places), _confidence(o.verdict)
+    return Finding("model", c.kind.name, where, magnitude, interval, credible, sure, text)
 
 
-def _credible(
-    searcher: Searcher, found: Found, verdict: Judgement, number: int, places: Sequence[Place]
-) -> tuple[Where, ...]:
+def _credible(o: _Outcome, number: int, places: Sequence[Place]) -> tuple[Where, ...]:
     """Places, and effects of other kinds, that explain the data about as well as one finding."""
-    catalogue = searcher.problem.catalogue
-    own = [(p.suspect.kind, p.suspect.row, p.weight) for p in places]
-    others = [(s.kind, s.row, w) for s, w in instead(searcher, found, verdict, number)]
-    total = sum(w for _, _, w in (*own, *others))
+    others = instead(o.searcher, o.found, o.verdict, number)
+    every = [*((p.suspect, p.weight) for p in places), *others]
+    total = sum(w for _, w in every)
     return tuple(
-        Where.of(c.where[row], c.xyz[row], weight=w / total, kind=c.kind.name)
-        for kind, row, w in (*own, *others)
-        for c in [catalogue[kind]]
+        Where.of(c.where[s.row], c.xyz[s.row], weight=w / total, kind=c.kind.name)
+        for s, w in every
+        for c in [o.of(s)]
     )
 
 
@@ -180,69 +195,51 @@ def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
     )
 
 
-def _alternatives(
-    request: Request, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Alternative, ...]:
+def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
     """Best rival of every combination of kinds, and the known parameters alone.
 
     One of the kinds that were found counts where it says something else: another place.
     """
-    catalogue = searcher.problem.catalogue
-    best = found.levels[verdict.accepted]
-
-    def behind(f: Fit) -> float:
-        return cost(searcher, f, verdict.scale) - cost(searcher, best, verdict.scale)
 
     def named(f: Fit) -> list[Suspect]:
-        return sorted(f.suspects, key=lambda s: catalogue[s.kind].kind.name)
+        return sorted(f.suspects, key=lambda s: o.of(s).kind.name)
 
     def kinds_of(f: Fit) -> tuple[str, ...]:
-        return tuple(catalogue[s.kind].kind.name for s in named(f))
+        return tuple(o.of(s).kind.name for s in named(f))
 
-    other = contenders(searcher, found, verdict.accepted)
     seen: dict[tuple[str, ...], Fit] = {}
-    for f in sorted((f for level in found.rivals for f in level), key=behind):
-        if kinds_of(f) != kinds_of(best) or any(f is g for g in other):
+    for f in sorted((f for level in o.found.rivals for f in level), key=o.behind):
+        if kinds_of(f) != kinds_of(o.best) or any(f is g for g in o.rivals):
             seen.setdefault(kinds_of(f), f)
     out = []
     for kinds, f in seen.items():
-        xyz = [catalogue[s.kind].xyz[s.row] for s in named(f)]
-        regions = tuple(region(request.structure.model.geometry, x) for x in xyz)
+        xyz = [o.of(s).xyz[s.row] for s in named(f)]
+        regions = tuple(map(o.region, named(f)))
         said = " and ".join(
             f"{k.replace('_', ' ')} {r}" for k, r in zip(kinds, regions, strict=True)
         )
-        out.append(alternative(kinds, xyz, times(behind(f)), said, regions))
-    if verdict.accepted:
-        out.append(
-            alternative((), (), times(behind(found.levels[0])), "the known parameters alone")
-        )
+        out.append(alternative(kinds, xyz, times(o.behind(f)), said, regions))
+    if o.verdict.accepted:
+        ratio = times(o.behind(o.found.levels[0]))
+        out.append(alternative((), (), ratio, "the known parameters alone"))
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
 
 
-def _would_decide(
-    request: Request, searcher: Searcher, found: Found, verdict: Judgement, held: Bools
-) -> tuple[str, ...]:
+def _would_decide(o: _Outcome, held: Bools) -> tuple[str, ...]:
     """Say which sensors and modes tell the best hypotheses apart."""
-    best = found.levels[verdict.accepted]
-    simpler = found.levels[: verdict.accepted][-1:]
-    rivals = sorted(
-        (*contenders(searcher, found, verdict.accepted), *simpler),
-        key=lambda f: cost(searcher, f, verdict.scale),
-    )
-    here, scale, most = cost(searcher, best, verdict.scale), verdict.scale, NARRATIVE.rivals
-    near = [f for f in rivals if cost(searcher, f, scale) - here < NARRATIVE.rival] or rivals[:1]
-    told_apart = tuple((_in_words(request, searcher, f), f) for f in near[:most])
-    p, model = searcher.problem, request.structure.model
+    simpler = o.found.levels[: o.verdict.accepted][-1:]
+    rivals = sorted((*o.rivals, *simpler), key=o.behind)
+    near = [f for f in rivals if o.behind(f) < NARRATIVE.rival] or rivals[:1]
+    told_apart = tuple((_in_words(o, f), f) for f in near[: NARRATIVE.rivals])
+    p, model = o.searcher.problem, o.request.structure.model
     return (
-        *further_sensors(p, model, best, told_apart, request.numbers[~held]),
-        *further_modes(p, model, best, told_apart),
+        *further_sensors(p, model, o.best, told_apart, o.request.numbers[~held]),
+        *further_modes(p, model, o.best, told_apart),
     )
 
 
-def _in_words(request: Request, searcher: Searcher, f: Fit) -> str:
+def _in_words(o: _Outcome, f: Fit) -> str:
     if not f.suspects:
         return "the known parameters alone"
     last = f.suspects[-1]
-    c = searcher.problem.catalogue[last.kind]
-    spot = region(request.structure.model.geometry, c.xyz[last.row])
-    return f"{'' if len(f.suspects) < 2 else 'one with '}{c.kind.words} {spot}"
+    return f"{'' if len(f.suspects) < 2 else 'one with '}{o.of(last).kind.words} {o.region(last)}"

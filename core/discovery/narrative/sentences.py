@@ -32,17 +32,10 @@ def alternative(
 def magnitude_of(
     c: Candidates, row: int, sizes: Floats, intervals: Floats, masses: MassUnit
 ) -> dict[str, Any]:
-    """Return the magnitudes of a finding by the words of the interface.
+    """Return the magnitudes of a finding by the words of the interface, masses as cards have them.
 
-    Parameters
-    ----------
-    c : Candidates
-    row : int
-    sizes : (t,) float
-    intervals : (t, 2) float
-        95 %; that of the first magnitude stands beside the magnitudes, in the finding.
-    masses : MassUnit
-        Masses are given as cards have them.
+    Of `sizes` (t,) and `intervals` (t, 2), 95 %; that of the first magnitude stands beside the
+    magnitudes, in the finding.
     """
     said: dict[str, Any] = {}
     for k, (m, size, interval) in enumerate(zip(c.kind.magnitudes, sizes, intervals, strict=True)):
@@ -91,14 +84,7 @@ def sentence_of(
 
 
 def region(geometry: Geometry, xyz: Floats) -> str:
-    """Say where a point is, for round structures by angle and height.
-
-    Parameters
-    ----------
-    geometry : Geometry
-        Of the analysis.
-    xyz : (3,) float
-    """
+    """Say where a point (3,) of the analysis is, for round structures by angle and height."""
     nearest = int(geometry.ids[np.argmin(np.linalg.norm(geometry.xyz - xyz, axis=1))])
     x, y, z = (float(v) for v in xyz)
     axis = _round_axis(geometry.xyz)

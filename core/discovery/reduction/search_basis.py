@@ -91,15 +91,9 @@ def _lengths(X: Floats, M: sp.spmatrix) -> Floats:
 
 
 def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
-    """Return an M-orthonormal basis of what X adds to M-orthonormal vectors.
+    """Return an M-orthonormal basis of what X (n, k) adds to M-orthonormal vectors `phi` (n, m).
 
-    Parameters
-    ----------
-    X : (n, k) float
-    phi : (n, m) float
-    M : (n, n) sparse
-    least : float
-        Directions with less than this share of the largest squared length are left out.
+    Directions with less than the share `least` of the largest squared length are left out.
     """
     before = _lengths(X, M)
     for _ in range(2):
@@ -115,13 +109,9 @@ def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
 def structural(T: Floats, own: Floats) -> Floats:
     """Return vectors that span those of the structure in modes that have coordinates of their own.
 
-    Parameters
-    ----------
-    T : (r, n) float
-        The structure's part of mass-orthonormal modes.
-    own : (q, n) float
-        What else moves in them, of unit mass: a mode in which hardly anything else does has no
-        independent part of the structure's.
+    T (r, n) is the structure's part of mass-orthonormal modes, `own` (q, n) what else moves in
+    them, of unit mass: a mode in which hardly anything else does has no independent part of the
+    structure's.
     """
     values, vectors = np.linalg.eigh(np.eye(T.shape[1]) - own.T @ own)
     if values[0] > REDUCTION.own:

@@ -48,21 +48,10 @@ def shifts(
 
 
 def noticeable(slopes: Floats, alike: Groups, spread: float) -> list[tuple[int, ...]]:
-    """Return groups of parameters that would be noticed if they were wrong.
+    """Return groups of parameters that would be noticed if they were wrong by `spread` of ln p.
 
-    Parameters
-    ----------
-    slopes : (n, n_mode) float
-        See `shifts`.
-    alike : sequence of tuple of int
-        Rows that have one value in the deck.
-    spread : float
-        Of ln p: how far each may be wrong.
-
-    Returns
-    -------
-    list of tuple of int
-        Rows that move together, at most `most` groups: each alone where it is noticed alone.
+    Of rows of `slopes` (n, n_mode), see `shifts`, each moves alone where it is noticed alone, and
+    those `alike`, with one value in the deck, together; `most` groups at the most.
     """
     effect = spread * np.abs(slopes).max(axis=1, initial=0.0)
     groups: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(effect >= SCREENING.noticed)]

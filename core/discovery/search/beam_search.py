@@ -46,16 +46,9 @@ def grown(
 ) -> Found:
     """Grow the beam until one more suspect no longer earns its place.
 
-    Parameters
-    ----------
-    searcher : Searcher
-    enough : callable
-        ``enough(previous, next, share)``: whether the richer fit is not worth that share of
-        what its suspects cost.
-    progress : callable
-        Told what happens.
-    first : sequence of Fit
-        Hypotheses of no suspect, one and more, the last of which is grown.
+    ``enough(previous, next, share)`` says whether the richer fit is not worth that share of what
+    its suspects cost; `first` are hypotheses of no suspect, one and more, the last of which is
+    grown.
     """
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]

@@ -55,17 +55,8 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
 def first_places(c: Candidates, factors: Rows, columns: int, size: float) -> Ints:
     """Return the places that the first scan looks at: spread over the structure.
 
-    Of a kind with one direction at a place, those where something moves that way.
-
-    Parameters
-    ----------
-    c : Candidates
-    factors : (n, q, r) float
-        Their rows on a basis.
-    columns : int
-        The first so many vectors of the basis count.
-    size : float
-        Of the structure.
+    Of a kind with one direction at a place, those where something moves that way, by its rows
+    `factors` (n, q, r) on the first `columns` vectors of a basis; `size` is that of the structure.
     """
     if not c.kind.across:
         return c.first
