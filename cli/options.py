@@ -19,8 +19,7 @@ JsonOption = Annotated[
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run folder.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no tables.")]
 InPlaceOption = Annotated[
-    bool,
-    typer.Option("-ip", "--in-place", help="Change the deck itself as well; keeps backups."),
+    bool, typer.Option("-ip", "--in-place", help="Change the deck itself as well; keeps backups.")
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
 

@@ -22,11 +22,7 @@ if TYPE_CHECKING:
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
-_BRIEF = {
-    "deviation %": "dev.\n%",
-    "rotation °": "turned\n°",
-    "standard error": "std. error",
-}
+_BRIEF = {"deviation %": "dev.\n%", "rotation °": "turned\n°", "standard error": "std. error"}
 
 
 def result_tables(answer: RunTables, width: int = 110) -> Iterator[RenderableType]:

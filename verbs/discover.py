@@ -27,10 +27,7 @@ from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import InputError
 from ..core.localisation.error_localisation import Disagreement, agrees, disagreement
 from ..core.results.correlation import compared
-from ..core.results.discovery import (
-    JudgementTable,
-    gap_table,
-)
+from ..core.results.discovery import JudgementTable, gap_table
 from ..core.results.evidence import damping_table, misfit_table, response_table
 from ..core.results.plain import Table
 from ..core.results.update import ParameterRow

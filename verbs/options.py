@@ -72,10 +72,7 @@ class DiscoverOptions(CorrelateOptions, total=False):
 
 
 def study_of(
-    verb: str,
-    study: Study | Files | None,
-    given: Mapping[str, object],
-    known: Mapping[str, object],
+    verb: str, study: Study | Files | None, given: Mapping[str, object], known: Mapping[str, object]
 ) -> Study:
     """Return what a verb is asked: the study (a file is read) with keyword arguments on top.
 

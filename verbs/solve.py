@@ -85,11 +85,7 @@ class Solved(SolveTables, Folder):
 
 @checked_call
 def solve(
-    deck: Source,
-    number: int | None = None,
-    fmax: float | None = None,
-    *,
-    progress: Say = unheard,
+    deck: Source, number: int | None = None, fmax: float | None = None, *, progress: Say = unheard
 ) -> Solved:
     """Find the normal modes of a deck with the embedded solver.
 

@@ -75,10 +75,7 @@ def write_store(
 
     target = Path(path)
     try:
-        with (
-            replacing(target) as fresh,
-            h5py.File(fresh, "w", libver=("earliest", "v110")) as file,
-        ):
+        with replacing(target) as fresh, h5py.File(fresh, "w", libver=("earliest", "v110")) as file:
             file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
             for key, noun in (("geometry", geometry), ("test_geometry", test_geometry)):
                 if noun is not None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...core.files import release
 from .text.layout58 import HEADER_LINES, REALS, columns, form, records
+from .text.number_fields import integers
 from .universal_content import Skipped
 
 _NUMBER = re.compile(rb"[ \t]{0,9}(\d{1,5})(b|B)?(?=[ \t\r\n]|\Z)([^\r\n]*)")
@@ -97,7 +98,7 @@ class Scan:
         number, line = int(opened[1]), self._line_at(opened.start())
         begin = self._after_line(opened.end())
         binary = opened[2] is not None
-        header = _integers(opened[3]) if binary else ()
+        header = tuple(integers(opened[3])) if binary else ()
         whole = self._past_binary(begin, header) if binary else None
         if number == 58 and not binary:
             whole = self._past_text(begin)
@@ -240,13 +241,3 @@ class Scan:
             self._mapped = offset
         self._counted = max(self._counted, offset)
         return self._line
-
-
-def _integers(text: bytes) -> tuple[int, ...]:
-    """Return the leading integers of a line."""
-    found: list[int] = []
-    for token in text.split():
-        if not re.fullmatch(rb"[+-]?\d+", token):
-            break
-        found.append(int(token))
-    return tuple(found)

@@ -1,5 +1,6 @@
 """What a universal file holds, in one screen."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -35,10 +36,9 @@ def describe_universal(path: Path) -> dict[str, Any]:
 
 def _datasets(datasets: Sequence[Dataset]) -> list[dict[str, Any]]:
     """One entry for each kind of dataset: how many there are and where the first stands."""
-    found: dict[int, dict[str, Any]] = {}
-    for d in datasets:
-        entry = found.setdefault(
-            d.number, {"number": d.number, "what": d.what, "datasets": 0, "line": d.line}
-        )
-        entry["datasets"] += 1
-    return [found[k] for k in sorted(found)]
+    counts = Counter(d.number for d in datasets)
+    first = {d.number: d for d in reversed(datasets)}
+    return [
+        {"number": n, "what": first[n].what, "datasets": counts[n], "line": first[n].line}
+        for n in sorted(counts)
+    ]

@@ -12,10 +12,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ...core.data.frfs import Frfs
 from ...core.data.measurement import Measurement
 from ...core.errors import InputError
 from ...core.late_imports import optional
+from .datasets.write_functions import spacing
 from .write_universal import write_universal
 
 SAID = "pyuff's sets"
@@ -24,6 +24,7 @@ SAID = "pyuff's sets"
 
 def sets_of(test: Measurement) -> list[dict[str, Any]]:
     """Return a test as pyuff's dictionaries; see `ModalTest.to_pyuff`."""
+    even = test.frfs is not None and spacing(test.frfs.frequencies_hz)[2]
     with _file() as path:
         write_universal(
             path,
@@ -31,7 +32,7 @@ def sets_of(test: Measurement) -> list[dict[str, Any]]:
             modes=test.modes,
             frfs=test.frfs,
             units=test.length_unit,
-            binary=test.frfs is not None and _is_even(test.frfs),
+            binary=even,  # of uneven spacing pyuff reads garbage in binary
         )
         return _sets(optional("pyuff", "pyuff").UFF(str(path)))
 
@@ -67,32 +68,25 @@ def file_of(source: Any) -> Iterator[Path]:
 
 
 def _write(file: Any, each: dict[str, Any], number: int) -> None:
-    """Write one set; what pyuff raises is of any kind."""
-    what = f"set {number} (type {each.get('type')})"
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            file.write_sets([each], "add")
-    except Exception as error:
-        raise InputError(f"{SAID}: {what} cannot be written by pyuff: {error}") from error
+    with _theirs(f"{SAID}: set {number} (type {each.get('type')}) cannot be written by pyuff"):
+        file.write_sets([each], "add")
 
 
 def _sets(file: Any) -> list[dict[str, Any]]:
-    """Read all sets; what pyuff raises is of any kind."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = file.read_sets()
-    except Exception as error:
-        raise InputError(f"{SAID} cannot be read by pyuff: {error}") from error
+    with _theirs(f"{SAID} cannot be read by pyuff"):
+        found = file.read_sets()
     return [found] if isinstance(found, dict) else list(found)
 
 
-def _is_even(frfs: Frfs) -> bool:
-    """Whether pyuff can read the responses in binary: it takes uneven spacing for garbage."""
-    from .datasets.write_functions import spacing
-
-    return bool(spacing(frfs.frequencies_hz)[2])
+@contextmanager
+def _theirs(fault: str) -> Iterator[None]:
+    """Keep pyuff quiet, and say what went wrong: what it raises is of any kind."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except Exception as error:
+        raise InputError(f"{fault}: {error}") from error
 
 
 @contextmanager

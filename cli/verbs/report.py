@@ -8,10 +8,7 @@ import typer
 from ..options import QuietOption
 
 
-def report(
-    run: Annotated[Path, typer.Argument(metavar="RUN")],
-    quiet: QuietOption = False,
-) -> None:
+def report(run: Annotated[Path, typer.Argument(metavar="RUN")], quiet: QuietOption = False) -> None:
     """Make the report of a run folder again."""
     from ...verbs.report import report as make
 

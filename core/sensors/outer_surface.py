@@ -126,8 +126,7 @@ def surface_of(
     for name, kind in (("quad", QUAD), ("tria", TRIA), ("line", LINE), ("point", POINT)):
         if name in geometry.elements:
             parts.append((geometry.elements[name].reshape(-1, kind), kind, False))
-    solids = [(k, v) for k, v in geometry.elements.items() if SHAPES[k].faces and len(v)]
-    parts += [(faces, faces.shape[1], True) for faces in _outer_faces(solids, len(xyz))]
+    parts += [(faces, faces.shape[1], True) for faces in outer_faces(geometry)]
     if alone is not None:
         drawn = np.zeros(len(xyz), bool)
         for c, _, _ in parts:
@@ -137,7 +136,7 @@ def surface_of(
     parts = [part for part in parts if len(part[0])]
     if not parts:
         parts = [(np.flatnonzero(usable)[:, None], POINT, False)]
-    corners = np.concatenate([c[:, np.minimum(range(4), kind - 1)] for c, kind, _ in parts])
+    corners = np.concatenate([padded(c) for c, _, _ in parts])
     kinds = np.concatenate([np.full(len(c), k, np.int64) for c, k, _ in parts])
     solid = np.concatenate([np.full(len(c), s) for c, _, s in parts])
     attached = np.unique(corners)
@@ -176,6 +175,12 @@ def fold_tria(kind: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats]:
     return np.where(out, 1 - s, s), np.where(out, 1 - t, t)
 
 
+def padded(corners: Ints) -> Ints:
+    """Return the corners of facets four a row, the last one repeated."""
+    last = np.repeat(corners[:, -1:], 4 - corners.shape[1], axis=1)
+    return np.concatenate([corners, last], axis=1)
+
+
 def _content(xyz: Floats, corners: Ints, kind: Ints) -> Floats:
     """Area of faces, length of lines; mixed models get lines of a width that makes them count."""
     p = xyz[corners]
@@ -201,17 +206,16 @@ def _levels(xyz: Floats, corners: Ints) -> tuple[tuple[cKDTree, Ints, float], ..
     return tuple(levels)
 
 
-def _outer_faces(solids: list[tuple[str, Ints]], n_grid: int) -> list[Ints]:
-    """Faces that belong to one solid only, trias and quads apart."""
-    found: list[Ints] = []
-    keys: list[Numbers] = []
-    for name, elements in solids:
-        for face in SHAPES[name].faces:
-            corners = elements[:, list(face)]
-            found.append(corners)
-            keys.append(_face_key(corners, n_grid))
+def outer_faces(geometry: Geometry) -> list[Ints]:
+    """Return the faces that belong to one solid only, as rows of the nodes; trias, quads apart."""
+    found = [
+        elements[:, list(face)]
+        for name, elements in geometry.elements.items()
+        for face in (SHAPES[name].faces if len(elements) else ())
+    ]
     if not found:
         return []
+    keys = [_face_key(corners, len(geometry.ids)) for corners in found]
     _, group, count = np.unique(np.concatenate(keys), return_inverse=True, return_counts=True)
     outer = np.split(count[group] == 1, np.cumsum([len(f) for f in found])[:-1])
     kept = [f[o] for f, o in zip(found, outer, strict=True)]

@@ -7,11 +7,7 @@ from ....core.correlation.comparison import Placed, compare
 from ....core.correlation.mode_pairing import Criteria
 from ....core.data.parametric_model import Model
 from ....core.discovery.findings import Discovery
-from ....core.discovery.screening.completed_model import (
-    SolvedModel,
-    sound_test,
-    written_factor,
-)
+from ....core.discovery.screening.completed_model import SolvedModel, sound_test, written_factor
 from ....core.eigen.normal_modes import modes_of
 from ....core.errors import InputError
 from ..assembly.read_back import read_back

@@ -52,9 +52,7 @@ def stiffness_and_mass(
 
 
 def model_of_matrices(
-    stiffness: Sequence[NastranMatrix],
-    mass: Sequence[NastranMatrix],
-    deck: Deck | None = None,
+    stiffness: Sequence[NastranMatrix], mass: Sequence[NastranMatrix], deck: Deck | None = None
 ) -> Model:
     """Make a model of exported matrices alone.
 

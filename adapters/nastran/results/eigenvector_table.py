@@ -1,5 +1,6 @@
 """Eigenvectors as a results file holds them: by subcase and superelement, in the file's axes."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -111,3 +112,20 @@ def room(n_point: int, n_mode: int, is_complex: bool) -> Numbers:
     """Return an array for the values of a table, to be filled mode by mode."""
     kind = np.complex128 if is_complex else np.float64
     return np.empty((6 * n_point, n_mode), kind, order="F")
+
+
+def rows_of(summary: Floats, numbers: Ints) -> Floats | None:
+    """Return the rows of some modes of a summary (mode, eigenvalue, mass) that lists each once."""
+    row = {int(n): k for k, n in enumerate(summary[:, 0])}
+    at = [row.get(int(n), -1) for n in numbers]
+    return summary[at] if len(row) == len(summary) and min(at, default=-1) >= 0 else None
+
+
+def generalized_mass(summaries: Iterable[Floats], numbers: Ints, eigenvalues: Numbers) -> Floats:
+    """Return the masses of the summary that lists these eigenvalues; NaN where none does."""
+    scale = np.abs(eigenvalues).max(initial=0.0)
+    for summary in () if np.iscomplexobj(eigenvalues) else summaries:
+        rows = rows_of(summary, numbers)
+        if rows is not None and np.allclose(rows[:, 1], eigenvalues, rtol=1e-5, atol=1e-6 * scale):
+            return np.asarray(rows[:, 2])
+    return np.full(len(numbers), np.nan)

@@ -56,11 +56,7 @@ def tables_of(
 
 
 def _table(
-    subcase: int,
-    superelement: int,
-    vectors: list[Vector],
-    path: Path,
-    masses: Mapping[int, float],
+    subcase: int, superelement: int, vectors: list[Vector], path: Path, masses: Mapping[int, float]
 ) -> ModeTable:
     columns = [_column(v, path) for v in vectors]
     points, scalar, _ = columns[0]

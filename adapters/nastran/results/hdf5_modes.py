@@ -10,7 +10,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError, Place
-from .eigenvector_table import ModeHead, ModeTable, room
+from .eigenvector_table import ModeHead, ModeTable, generalized_mass, room
 
 _DOMAINS = "NASTRAN/RESULT/DOMAINS"
 _REAL = "NASTRAN/RESULT/NODAL/EIGENVECTOR"
@@ -127,7 +127,7 @@ def _groups(
             scalar=scalar,
             numbers=numbers,
             eigenvalues=eigenvalues,
-            generalized_mass=_generalized_mass(file, numbers, eigenvalues),
+            generalized_mass=generalized_mass(_summaries(file), numbers, eigenvalues),
             basic=False,
         )
         yield _Group(name, head, rows)
@@ -172,19 +172,11 @@ def _table(file: Any, group: _Group, path: Path) -> ModeTable:
     return ModeTable(**vars(head), values=values)
 
 
-def _generalized_mass(file: Any, numbers: Ints, eigenvalues: Numbers) -> Floats:
-    """Return the masses of the summary that lists these eigenvalues; NaN where none does."""
-    unknown = np.full(len(numbers), np.nan)
-    if _SUMMARY not in file or np.iscomplexobj(eigenvalues):
-        return unknown
-    summary = file[_SUMMARY][()]
-    scale = np.abs(eigenvalues).max(initial=0.0)
-    for domains in (None, *np.unique(summary["DOMAIN_ID"])):
-        rows = summary if domains is None else summary[summary["DOMAIN_ID"] == domains]
-        row_of = {int(n): k for k, n in enumerate(rows["MODE"])}
-        if len(row_of) < len(rows) or not set(numbers.tolist()) <= row_of.keys():
-            continue
-        at = np.array([row_of[int(n)] for n in numbers], np.int64)
-        if np.allclose(rows["EIGEN"][at], eigenvalues, rtol=1e-6, atol=1e-9 * scale):
-            return np.asarray(rows["MASS"][at], np.float64)
-    return unknown
+def _summaries(file: Any) -> list[Floats]:
+    """Return mode number, eigenvalue and generalized mass, (n, 3), of all domains and of each."""
+    if _SUMMARY not in file:
+        return []
+    told = file[_SUMMARY][()]
+    every = np.column_stack([told[name] for name in ("MODE", "EIGEN", "MASS")])
+    domains = told["DOMAIN_ID"]
+    return [every, *(every[domains == domain] for domain in np.unique(domains))]

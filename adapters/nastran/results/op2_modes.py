@@ -10,7 +10,7 @@ import numpy as np
 
 from ....core.arrays import Floats, Ints, Numbers
 from ....core.errors import InputError, Place
-from .eigenvector_table import ModeHead, ModeTable, room
+from .eigenvector_table import ModeHead, ModeTable, generalized_mass, room, rows_of
 from .op2_records import Op2Block, Op2File, Op2Record
 
 _GRID, _SCALAR = 1, 2
@@ -192,7 +192,7 @@ def _head(file: Op2File, group: Sequence[_Vector]) -> ModeHead:
         scalar=kinds[rows] == _SCALAR,
         numbers=numbers,
         eigenvalues=eigenvalues,
-        generalized_mass=_generalized_mass(summaries, numbers, eigenvalues),
+        generalized_mass=generalized_mass(summaries, numbers, eigenvalues),
         basic=first.basic,
     )
 
@@ -258,25 +258,7 @@ def _summaries(file: Op2File) -> list[Floats]:
     return found
 
 
-def _rows_of(summary: Floats, numbers: Ints) -> Floats | None:
-    rows = {int(n): k for k, n in enumerate(summary[:, 0])}
-    at = [rows.get(int(n), -1) for n in numbers]
-    return summary[at] if min(at, default=-1) >= 0 else None
-
-
 def _listed(summaries: list[Floats], numbers: Ints, eigenvalues: Numbers) -> Numbers:
     """Eigenvalues of the one summary that has these modes, for headers that leave them out."""
-    found = [rows for s in summaries if (rows := _rows_of(s, numbers)) is not None]
+    found = [rows for s in summaries if (rows := rows_of(s, numbers)) is not None]
     return found[0][:, 1] if len(found) == 1 else eigenvalues
-
-
-def _generalized_mass(summaries: list[Floats], numbers: Ints, eigenvalues: Numbers) -> Floats:
-    """Return the masses of the LAMA table that lists these eigenvalues; NaN where none does."""
-    scale = np.abs(eigenvalues).max(initial=0.0)
-    for summary in summaries:
-        rows = _rows_of(summary, numbers)
-        if rows is None or np.iscomplexobj(eigenvalues):
-            continue
-        if np.allclose(rows[:, 1], eigenvalues, rtol=1e-5, atol=1e-6 * scale):
-            return np.asarray(rows[:, 2])
-    return np.full(len(numbers), np.nan)

@@ -11,14 +11,7 @@ from ....core.data.geometry import Geometry
 from ....core.results.paired_shapes import DrawnMesh
 from ..html.markup import centred, esc, short, svg, svg_text, tag
 from .colour import STEPS
-from .seen_surface import (
-    View,
-    coarsened,
-    depth_buffer,
-    isometric,
-    surface,
-    with_neighbours,
-)
+from .seen_surface import View, coarsened, depth_buffer, isometric, surface, with_neighbours
 
 _SHADES = 6
 _SLICES = 48

@@ -6,25 +6,19 @@ import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints
 from ....core.data.geometry import Geometry
-from ....core.data.shapes import SHAPES
 from ....core.results.paired_shapes import DrawnMesh
+from ....core.sensors.outer_surface import outer_faces, padded
 
 
 def surface(geometry: Geometry) -> DrawnMesh:
     """Return the faces of shells, the outer faces of solids, and the lines of a geometry."""
     tables = geometry.elements
-    shells = [_four(tables[k][:, :n]) for k, n in (("tria", 3), ("quad", 4)) if k in tables]
-    solids = [
-        _four(tables[k][:, list(corners)])
-        for k, shape in SHAPES.items()
-        if k in tables
-        for corners in shape.faces
-    ]
-    skin = _met_once(np.vstack(solids)) if solids else np.zeros((0, 4), np.int64)
-    lines = tables.get("line", np.zeros((0, 2), np.int64))[:, :2]
+    shells = [tables[shape] for shape in ("tria", "quad") if shape in tables]
+    faces = [padded(corners) for corners in (*shells, *outer_faces(geometry))]
+    lines = tables.get("line", np.zeros((0, 2), np.int64))
     return DrawnMesh(
         np.asarray(geometry.xyz),
-        np.vstack([*shells, skin]),
+        np.vstack([np.zeros((0, 4), np.int64), *faces]),
         np.asarray(lines),
         np.arange(len(geometry.ids)),
         np.arange(len(geometry.ids)),
@@ -134,17 +128,6 @@ def with_neighbours(chosen: Bools, mesh: DrawnMesh) -> Bools:
     touched = np.zeros(len(mesh.xyz), bool)
     touched[mesh.faces[chosen].ravel()] = True
     return np.asarray(touched[mesh.faces].any(axis=1))
-
-
-def _four(corners: Ints) -> Ints:
-    return np.asarray(corners if corners.shape[1] == 4 else corners[:, [0, 1, 2, 2]])
-
-
-def _met_once(faces: Ints) -> Ints:
-    """Faces that belong to one solid only."""
-    keys = _keys(np.sort(faces, axis=1))
-    _, first, counts = np.unique(keys, return_index=True, return_counts=True)
-    return np.asarray(faces[np.sort(first[counts == 1])])
 
 
 def _clustered(fine: DrawnMesh, pitch: float, inner: Bools) -> DrawnMesh:

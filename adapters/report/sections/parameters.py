@@ -131,9 +131,7 @@ def _by_stage(
     ]
 
 
-def _counted_through(
-    steps: Sequence[Iteration],
-) -> tuple[list[float], list[tuple[float, str]]]:
+def _counted_through(steps: Sequence[Iteration]) -> tuple[list[float], list[tuple[float, str]]]:
     """Return the x of each step, and where a new stage begins.
 
     Iterations that start again with every stage are counted through.

@@ -139,11 +139,7 @@ def _known(value: float) -> float:
 
 
 def _shape(
-    source: Source,
-    section: Section,
-    head: _Head,
-    modal: tuple[float, float, float],
-    into: Gathered,
+    source: Source, section: Section, head: _Head, modal: tuple[float, float, float], into: Gathered
 ) -> Shape | Skipped | None:
     if head.analysis != 2 and head.analysis not in _COMPLEX_MODES:
         kind = _ANALYSES.get(head.analysis, f"analysis type {head.analysis}")

@@ -98,11 +98,7 @@ def _placed(
 
 
 def _first_of_each(
-    ids: Ints,
-    xyz: Floats,
-    tables: Sequence[NodeTable],
-    warnings: list[str],
-    skipped: list[Skipped],
+    ids: Ints, xyz: Floats, tables: Sequence[NodeTable], warnings: list[str], skipped: list[Skipped]
 ) -> Ints:
     """Rows of the first mention of each node; `tables` are those of the rows."""
     unique, first, inverse = np.unique(ids, return_index=True, return_inverse=True)

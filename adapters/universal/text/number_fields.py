@@ -7,6 +7,8 @@ did not fit. Whatever is not a number is an error here, never a zero.
 
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -51,17 +53,9 @@ def floats(lines: Sequence[bytes]) -> Floats:
 def numbers_of(line: bytes, widths: Sequence[int], row: int = 0) -> list[float]:
     """Numbers of one line of fields, told apart by blanks, signs and letters, else by columns."""
     try:
-        return [float(token) for token in line.split()]
-    except ValueError:
-        pass
-    try:
-        return [value for token in line.split() for value in _repaired(token, row)]
+        return _tokens(line, row)
     except NotANumber:
-        fields, at = [], 0
-        for width in widths:
-            fields.append(line[at : at + width].strip())
-            at += width
-        return [value for f in fields if f for value in _repaired(f, row)]
+        return [value for f in _fields(line, widths) if f for value in _repaired(f, row)]
 
 
 def table(lines: Sequence[bytes], widths: Sequence[int]) -> Floats:
@@ -127,21 +121,24 @@ def _repaired(token: bytes, row: int) -> list[float]:
     return [float(_LETTERLESS.sub(rb"E\1", part).translate(_TO_E)) for part in _ONE.findall(token)]
 
 
-def _row(line: bytes, widths: Sequence[int], row: int) -> list[float]:
+def _tokens(line: bytes, row: int) -> list[float]:
     try:
-        values = [value for token in line.split() for value in _repaired(token, row)]
-    except NotANumber:
-        values = []
-    return values if len(values) == len(widths) else _columns(line, widths, row)
+        return [float(token) for token in line.split()]
+    except ValueError:
+        return [value for token in line.split() for value in _repaired(token, row)]
 
 
-def _columns(line: bytes, widths: Sequence[int], row: int) -> list[float]:
-    found, at = [], 0
-    for width in widths:
-        field = line[at : at + width].strip()
-        numbers = _repaired(field, row) if field else []
-        if len(numbers) != 1:
-            raise NotANumber(row, text(line))
-        found.append(numbers[0])
-        at += width
-    return found
+def _fields(line: bytes, widths: Sequence[int]) -> list[bytes]:
+    stops = list(accumulate(widths, initial=0))
+    return [line[a:b].strip() for a, b in pairwise(stops)]
+
+
+def _row(line: bytes, widths: Sequence[int], row: int) -> list[float]:
+    with suppress(NotANumber):
+        values = _tokens(line, row)
+        if len(values) == len(widths):
+            return values
+    found = [_repaired(field, row) if field else [] for field in _fields(line, widths)]
+    if any(len(numbers) != 1 for numbers in found):
+        raise NotANumber(row, text(line))
+    return [numbers[0] for numbers in found]
