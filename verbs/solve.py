@@ -13,7 +13,7 @@ from ..core.data.parametric_model import Model
 from ..core.eigen import normal_modes
 from ..core.errors import InputError, Place, naming, path_of
 from ..core.noun import BESIDE
-from ..core.results.modes import Checks, ModeRow, SolveTables
+from ..core.results.modes import ModeRow, SolveTables
 from ..core.results.plain import Table
 from .folder import Folder
 from .options import Say, checked_call, unheard
@@ -134,7 +134,7 @@ def solve(
         rigid_body_modes=solution.rigid_body_modes,
         mass=mass.mass if mass else None,
         centre_of_gravity=mass.centre_of_gravity if mass else None,
-        checks=Checks(**solution.checks),
+        checks=solution.checks,
         degrees_of_freedom=model.n_free,
         backend=solution.backend,
         seconds=solution.seconds,

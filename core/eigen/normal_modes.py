@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,6 +22,37 @@ from .rigid_body_modes import RigidBody, rigid_body
 from .shift_invert_solver import Request, sparse_modes
 
 
+@dataclass(frozen=True)
+class Checks:
+    """What an eigensolution was checked by.
+
+    `residual` is the largest ||x - (lambda - sigma) A^-1 M x||_M over the elastic modes, with
+    A = K - sigma M, which bounds the relative error of lambda - sigma; `orthonormality` the
+    largest entry of X^T M X - 1; `missed` the eigenvalues that the inertia of K - s M (Sturm
+    count) shows below s but the solution does not have; None where they were not counted.
+    """
+
+    residual: float
+    orthonormality: float
+    missed: int | None
+
+    def __post_init__(self) -> None:
+        if not self.residual <= EIGEN.residual:
+            raise CheckError(
+                f"the eigensolution has a residual of {self.residual:.1e} "
+                f"(limit {EIGEN.residual:g}): the matrices are too badly conditioned"
+            )
+        if not self.orthonormality <= EIGEN.orthonormal:
+            raise CheckError(
+                f"the modes are orthonormal to {self.orthonormality:.1e} only "
+                f"(limit {EIGEN.orthonormal:g})"
+            )
+        if self.missed:
+            raise CheckError(
+                f"the inertia count shows {self.missed} mode(s) that the eigensolution missed"
+            )
+
+
 @dataclass(frozen=True, eq=False)
 class Eigensolution(Noun):
     """The lowest modes of K x = lambda M x, checked.
@@ -36,12 +66,7 @@ class Eigensolution(Noun):
         Mass-normalised: X^T M X = 1. The largest entry of each is positive.
     rigid_body_modes : int
         The first so many modes are rigid-body modes, by rank.
-    checks : dict
-        ``residual``: largest ||x - (lambda - sigma) A^-1 M x||_M over the elastic modes, with
-        A = K - sigma M, which bounds the relative error of lambda - sigma; ``orthonormality``:
-        largest entry of X^T M X - 1; ``missed``: eigenvalues that the inertia of K - s M
-        (Sturm count) shows below s but the solution does not have (0, or `solve` raises; None
-        where the count was not asked for).
+    checks : Checks
     backend : str
         ``pardiso``, ``superlu`` or ``lapack``.
     seconds : float
@@ -57,7 +82,7 @@ class Eigensolution(Noun):
     eigenvalues: Floats
     vectors: Floats
     rigid_body_modes: int
-    checks: dict[str, Any]
+    checks: Checks
     backend: str
     seconds: float
     sigma: float
@@ -173,12 +198,11 @@ def solve(
     notes += _notes(pencil, body, n_zero, wanted if limit is None else None, len(values))
     X = vectors[:, :keep]
     gram = X.T @ (pencil.M @ X)
-    checks = {
-        "residual": float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0)),
-        "orthonormality": float(np.abs(gram - np.eye(keep)).max(initial=0.0)),
-        "missed": spectrum.missed,
-    }
-    _verify(checks)
+    checks = Checks(
+        float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0)),
+        float(np.abs(gram - np.eye(keep)).max(initial=0.0)),
+        spectrum.missed,
+    )
     factor = None
     if keep_factor:
         factor = spectrum.factor or factorise(pencil.shifted(spectrum.sigma), True, chosen)
@@ -268,20 +292,3 @@ def _notes(
             f"{wanted} modes were asked for but the mass matrix allows only {found}: all are given"
         )
     return notes
-
-
-def _verify(checks: dict[str, Any]) -> None:
-    if not checks["residual"] <= EIGEN.residual:
-        raise CheckError(
-            f"the eigensolution has a residual of {checks['residual']:.1e} "
-            f"(limit {EIGEN.residual:g}): the matrices are too badly conditioned"
-        )
-    if not checks["orthonormality"] <= EIGEN.orthonormal:
-        raise CheckError(
-            f"the modes are orthonormal to {checks['orthonormality']:.1e} only "
-            f"(limit {EIGEN.orthonormal:g})"
-        )
-    if checks["missed"]:
-        raise CheckError(
-            f"the inertia count shows {checks['missed']} mode(s) that the eigensolution missed"
-        )

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..data.dofs import Dofs
+from ..eigen.normal_modes import Checks
 from ..identification.result import Identification
 from ..noun import key
 from .plain import Table, Tables
@@ -112,15 +113,6 @@ class ModeRow:
 
     frequency_hz: float = field(metadata={"unit": "Hz"})
     generalized_mass: float
-
-
-@dataclass(frozen=True)
-class Checks:
-    """What an eigensolution was checked by; `missed` by the Sturm count, None: not counted."""
-
-    residual: float
-    orthonormality: float
-    missed: int | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
