@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from ..text.deck_text import DeckText
-from ..text.source_file import TextFile
+from ..text.source_file import BLANK, CONTINUATION, TextFile
 from .deck_diff import changes
 
 
@@ -29,47 +29,19 @@ def written_cards(before: DeckText, after: DeckText) -> tuple[str, ...]:
 
 
 def _cards(old: TextFile, new: TextFile) -> Iterator[str]:
-    done = 0
-    for _, _, first, stop in changes(old, new):
-        row = max(_head(new, first), done)
+    keys, done = new.lines.keys, 0
+    for _, _, row, stop in changes(old, new):
+        while 0 < row < len(keys) and keys[row] == CONTINUATION:
+            row -= 1
+        row = max(row, done)
         while row < stop:
-            end = _end(new, row)
-            if not _comment(new, row):
-                yield "\n".join(
-                    new.line(r).decode(new.encoding, "replace").rstrip()
-                    for r in range(row, end)
-                    if not _comment(new, r)
-                )
-            row = done = end
-
-
-def _comment(file: TextFile, row: int) -> bool:
-    line = file.line(row).lstrip()
-    return not line or line.startswith(b"$")
-
-
-def _continues(file: TextFile, row: int) -> bool:
-    """Whether a line goes on with the card before it."""
-    line = file.line(row)
-    return not _comment(file, row) and (
-        line[:1] in (b"+", b"*", b",", b"\t") or not line[:8].strip()
-    )
-
-
-def _head(file: TextFile, row: int) -> int:
-    while row > 0 and row < len(file.lines) and _continues(file, row):
-        row -= 1
-    return row
-
-
-def _end(file: TextFile, row: int) -> int:
-    """Return the first row that is no longer of the card, or comment, at `row`."""
-    end = row + 1
-    if _comment(file, row):
-        return end
-    for r in range(row + 1, len(file.lines)):
-        if _continues(file, r):
-            end = r + 1
-        elif not _comment(file, r):
-            break
-    return end
+            rows = [row]
+            if keys[row] != BLANK:
+                for k in range(row + 1, len(keys)):
+                    if keys[k] > CONTINUATION:
+                        break
+                    if keys[k] == CONTINUATION:
+                        rows.append(k)
+                lines = (new.line(r).decode(new.encoding, "replace").rstrip() for r in rows)
+                yield "\n".join(lines)
+            row = done = rows[-1] + 1
