@@ -1,7 +1,5 @@
 """Read-only array construction shared by the neutral nouns."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Packages that are used where they are installed, names that are imported when first used."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any

@@ -1,7 +1,5 @@
 """How the nouns show themselves: one line, never their arrays; what stands in tables."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping, Sized
 from pathlib import Path

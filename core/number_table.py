@@ -5,8 +5,6 @@ A table is a frozen dataclass whose fields are made by `number`, and its one ins
 elsewhere: counts of directions and degrees of freedom, and the constants of formulas.
 """
 
-from __future__ import annotations
-
 from dataclasses import field
 from typing import TypeVar
 

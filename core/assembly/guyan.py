@@ -1,7 +1,5 @@
 """Static (Guyan) condensation."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse import linalg as spla

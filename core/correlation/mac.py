@@ -1,7 +1,5 @@
 """The modal assurance criterion and frequency deviations."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats, Numbers

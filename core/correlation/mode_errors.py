@@ -1,7 +1,5 @@
 """What the standard errors of identified modes weigh in correlation and updating."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

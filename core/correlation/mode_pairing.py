@@ -1,7 +1,5 @@
 """Pair test modes with analysis modes, close ones turned onto the test first."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

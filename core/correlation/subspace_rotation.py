@@ -8,8 +8,6 @@ test shapes that the cluster explains best are taken, and the whole cluster is t
 them at once by an orthogonal matrix, which keeps it mass-orthonormal.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sensors that do not read what they should, and what they should have read."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

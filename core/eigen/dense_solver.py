@@ -1,7 +1,5 @@
 """All modes of a small model by LAPACK, exact for singular mass matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg as sl
 

@@ -3,8 +3,6 @@
 Or from motions of free grids that look like those of a rigid body, of a structure that is held.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp

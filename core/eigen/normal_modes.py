@@ -1,7 +1,5 @@
 """Normal modes: K x = lambda M x, lowest first, every solution checked."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Rigid-body motions, recognised by the rank of the stiffness and not by a frequency."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

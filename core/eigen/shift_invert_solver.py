@@ -1,7 +1,5 @@
 """The lowest modes of a large model: shift, block Lanczos iteration, inertia count."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

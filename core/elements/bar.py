@@ -1,7 +1,5 @@
 """Straight bars and rods as Nastran's CBAR, CROD, CONROD and CTUBE."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats, Numbers

@@ -1,7 +1,5 @@
 """Small helpers for work on batches of element matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

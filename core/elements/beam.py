@@ -1,7 +1,5 @@
 """Tapered beams as Nastran's CBEAM."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 
 import numpy as np

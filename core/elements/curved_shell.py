@@ -1,7 +1,5 @@
 """Second-order curved shells as Nastran's CQUAD8 and CTRIA6."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

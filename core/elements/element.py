@@ -1,7 +1,5 @@
 """What the rest of trueup asks of an element."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

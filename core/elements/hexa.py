@@ -1,7 +1,5 @@
 """Bricks as Nastran's CHEXA, eight and twenty nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats

@@ -1,7 +1,5 @@
 """Springs, bushings and masses at grids, as CELASi, CBUSH, CMASSi, CONM2."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Second-order elements: interpolation, middle nodes left out, lumped mass all at middle nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Bools, Floats, Ints

@@ -6,8 +6,6 @@ normals at a grid (PARAM,SNORM) and lets each element take the rotation about th
 from its own in-plane rotation, so that this rotation carries nothing.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats, Ints

@@ -1,7 +1,5 @@
 """Wedges as Nastran's CPENTA, six and fifteen nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats

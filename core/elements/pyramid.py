@@ -1,7 +1,5 @@
 """Pyramids as Nastran's CPYRAM, five and thirteen nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats

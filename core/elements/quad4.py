@@ -1,7 +1,5 @@
 """Four-node shell as Nastran's CQUAD4."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Bools, Floats

@@ -1,7 +1,5 @@
 """Shells with rotation about the normal as Nastran's CQUADR and CTRIAR."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ Natural coordinates run from -1 to 1 for hexahedra and along the axis of wedges 
 triangles and tetrahedra use area and volume coordinates.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats

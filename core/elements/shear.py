@@ -1,7 +1,5 @@
 """Shear panels as Nastran's CSHEAR."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

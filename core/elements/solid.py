@@ -4,8 +4,6 @@ Nodes are numbered as usual: corners of the first face, corners of the second, t
 edge by edge. Strains stand in the order xx, yy, zz, xy, yz, zx.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial

@@ -4,8 +4,6 @@ Four nodes: constant strain. Ten nodes: five points, exact for straight edges; w
 this is MSC Nastran's matrix to seven digits.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Floats

@@ -1,7 +1,5 @@
 """Three-node shell as Nastran's CTRIA3."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

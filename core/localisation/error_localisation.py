@@ -1,7 +1,5 @@
 """Where a model and a test disagree: by mode, by sensor, and over the structure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,7 +1,5 @@
 """Which places of a structure could explain a misfit: first-order maps of mass and stiffness."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where model and test disagree: by mode, by sensor, and spread over the structure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How noisy measured shapes are, judged by what no smooth shape explains."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Block Lanczos iteration with full reorthogonalisation and thick restart."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

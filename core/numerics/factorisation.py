@@ -4,8 +4,6 @@ MKL PARDISO where the optional ``mkl`` wheel is installed, else scipy's SuperLU 
 on a minimum degree order of the nodes. Which one is used is an argument, never a global setting.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from typing import Literal, Protocol

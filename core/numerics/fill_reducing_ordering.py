@@ -1,7 +1,5 @@
 """A fill-reducing order of a sparse symmetric matrix, found on its nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla

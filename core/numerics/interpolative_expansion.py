@@ -9,8 +9,6 @@ alone (an interpolative decomposition: Cheng, Gimbutas, Martinsson, Rokhlin, SIA
 26, 2005).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

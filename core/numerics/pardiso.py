@@ -4,8 +4,6 @@ Only the two symmetric real types are used: 2 (positive definite, Cholesky) and 
 Bunch-Kaufman pivots inside supernodes, which gives the inertia).
 """
 
-from __future__ import annotations
-
 import ctypes
 import functools
 import importlib.metadata

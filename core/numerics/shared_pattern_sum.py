@@ -5,8 +5,6 @@ places; such matrices share their index arrays, so that a sum is one of data and
 once for all of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Derivatives of eigenvalues and mode shapes by the parameters, repeated eigenvalues included."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple, Protocol

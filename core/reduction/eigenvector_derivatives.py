@@ -1,7 +1,5 @@
 """Derivatives of mode shapes, exact outside the known modes by preconditioned solves."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A model to be solved again and again: in full, or reduced around one parameter point."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

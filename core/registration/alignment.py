@@ -1,7 +1,5 @@
 """Put the test into the frame of the analysis."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

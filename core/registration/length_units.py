@@ -1,7 +1,5 @@
 """Length units of deck and test: converting, checking, inferring."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

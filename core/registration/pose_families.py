@@ -1,7 +1,5 @@
 """Poses that fit alike: ways in which a test can slide on its model, and samples along them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

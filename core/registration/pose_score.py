@@ -1,7 +1,5 @@
 """How well test shapes correlate with analysis shapes when the test stands in a given pose."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Choose among the positions in which a test fits on a model."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

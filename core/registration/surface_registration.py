@@ -1,7 +1,5 @@
 """Rigid moves that lay points on a surface: registration from many starts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where points lie on a model: the nearest facet and the foot on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

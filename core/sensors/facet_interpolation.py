@@ -1,7 +1,5 @@
 """Displacement and rotation of a placed point from those of the corner grids of its facet."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

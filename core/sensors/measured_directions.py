@@ -1,7 +1,5 @@
 """Which directions a test really measured."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

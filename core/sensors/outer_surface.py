@@ -1,7 +1,5 @@
 """The outer surface of a model: what a sensor can lie on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

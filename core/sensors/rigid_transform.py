@@ -1,7 +1,5 @@
 """Moves from test coordinates to analysis coordinates."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

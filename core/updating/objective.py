@@ -1,7 +1,5 @@
 """What an update minimises, equation (2) of the source paper, and its linearisation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

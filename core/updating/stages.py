@@ -1,7 +1,5 @@
 """What an update is asked stage by stage, and what comes of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 

@@ -1,7 +1,5 @@
 """Move parameters so that the analysis meets the test, equations (1)–(6) of the source paper."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial

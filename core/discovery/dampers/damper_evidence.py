@@ -1,7 +1,5 @@
 """A dashpot weighed on the model that a search ended with."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ sizes to first order, the best of them by the exact quadratic eigenproblem; plac
 the structure has of damping by itself are integrated out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

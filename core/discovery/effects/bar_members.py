@@ -1,7 +1,5 @@
 """Bars of a frame, from one joint to the next, and stretches of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components, depth_first_order

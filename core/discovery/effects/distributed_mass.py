@@ -1,7 +1,5 @@
 """Mass spread over a region: insulation, paint, liquid, cabling."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..reduction.elements_and_supports import Structure

@@ -1,7 +1,5 @@
 """A spring to ground: a cable, a hose, a suspension, a contact that the model does not have."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..reduction.elements_and_supports import Structure

@@ -1,7 +1,5 @@
 """A joint that gives: the end of a beam that is not rigidly connected."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 

@@ -4,8 +4,6 @@ It changes D by c·uuᵀ and neither K nor M, so it does not compete in the sear
 afterwards, see `dampers`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 

@@ -1,7 +1,5 @@
 """Stiffness lost or gained over a patch of elements: a crack, a repair, a doubler."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..reduction.elements_and_supports import Structure

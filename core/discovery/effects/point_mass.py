@@ -1,7 +1,5 @@
 """An attached mass: equipment, a bracket, ballast, a sensor's own mass."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Figures in the words of the one who reads them: kilograms, odds, ranges of modes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Edges along which shells are held, and the stretches of them that may give."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Points of a structure at which an effect may sit, and how they move."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A support that gives: a clamp that is not rigid, a foot that turns, an edge that moves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

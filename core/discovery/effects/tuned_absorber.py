@@ -1,7 +1,5 @@
 """A mass on a spring of its own: a vibration absorber, a pendulum, equipment on soft mounts."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...arrays import Floats

@@ -11,8 +11,6 @@ Adhikari (2013), Structural Dynamic Analysis with Generalized Damping Models, se
 Tisseur, Meerbergen (2001), The quadratic eigenvalue problem, SIAM Review 43, 235-286.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Measured frequency responses laid onto a model and held against its hypotheses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

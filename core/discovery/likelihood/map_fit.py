@@ -1,7 +1,5 @@
 """Fit known parameters and the magnitudes of suspects together, on the small basis."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

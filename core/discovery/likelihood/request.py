@@ -1,7 +1,5 @@
 """What discovery is asked."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From the hypotheses that are left to what a person is told."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

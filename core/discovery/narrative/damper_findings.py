@@ -1,7 +1,5 @@
 """From what the damping says to what a person is told."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

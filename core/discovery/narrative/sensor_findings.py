@@ -1,7 +1,5 @@
 """What a person is told of the sensors."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

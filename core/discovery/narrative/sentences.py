@@ -1,7 +1,5 @@
 """The sentence a person reads first, and places in words."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Places that explain the data about as well as the one that was found."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

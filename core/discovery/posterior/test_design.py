@@ -1,7 +1,5 @@
 """What to measure next: the sensors and modes that tell rival hypotheses apart."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -11,8 +11,6 @@ wave. What lumping does to them is therefore known, and taken out before anythin
 the free end of a cantilever of four lumped bars it is 2.8 % of the first frequency.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where on a structure something may be missing."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What loads displace themselves and each other by, and how much of it a basis does not have."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 

@@ -1,7 +1,5 @@
 """Whether the model completed by what was found bears the verdict out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar

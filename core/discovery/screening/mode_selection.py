@@ -1,7 +1,5 @@
 """Which modes take part: those of the model as it is, and of the test those that are elastic."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints

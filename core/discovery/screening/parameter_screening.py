@@ -6,8 +6,6 @@ the frequency of a mode in the measured band noticeably; values alike that are t
 noticed alone move together where all of them can be noticed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any

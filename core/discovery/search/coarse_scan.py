@@ -6,8 +6,6 @@ Where a kind has very many sizes, those that promise most to first order are eva
 places that do. Every figure that comes back is an exact evaluation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every place and size of one kind of effect, evaluated exactly on a small basis."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...arrays import Floats, Ints

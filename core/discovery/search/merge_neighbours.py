@@ -4,8 +4,6 @@ The catalogue has round and elongated patches and points; a mass of another shap
 of them. What a person is told is one effect with what both amount to.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

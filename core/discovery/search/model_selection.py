@@ -1,7 +1,5 @@
 """Does a richer hypothesis earn its place, how sure is it, and what else could it be."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ of its own eigenvectors; suspects are fitted together, moved to better neighbour
 one is taken out and looked for anew.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

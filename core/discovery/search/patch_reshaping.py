@@ -7,8 +7,6 @@ next row of elements on one side or all round, or give one up, or stop at the pr
 as long as each step gains more than trying so many shapes is worth.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

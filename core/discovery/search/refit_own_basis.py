@@ -5,8 +5,6 @@ spring does in its own neighbourhood. Here the modes are those of the model with
 it, and the static response to each effect and each parameter is added.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -7,8 +7,6 @@ effect did, the search runs again with all kinds, and the likelier of the two ou
 does so too where something was found in a model small enough for a second opinion.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

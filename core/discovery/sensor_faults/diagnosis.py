@@ -6,8 +6,6 @@ All that a node may be competes in one list, the model being wrong there include
 fault that is told is the share of its evidence.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Each alternative is a map from motion to reading with a prior of its unknowns; i
 likelihood averaged over that prior, so that a richer one pays for itself.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 

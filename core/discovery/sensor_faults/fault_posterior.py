@@ -1,7 +1,5 @@
 """All that the nodes which were set aside may be, weighed against each other."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

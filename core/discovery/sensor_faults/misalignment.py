@@ -1,7 +1,5 @@
 """A sensor, or a set of two or three, turned on its node."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

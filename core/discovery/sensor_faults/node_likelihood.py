@@ -1,7 +1,5 @@
 """How likely the readings of a node are if it reads what a fault would make of its motion."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which nodes contradict all the others, and how noisy the others are."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints

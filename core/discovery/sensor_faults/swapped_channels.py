@@ -4,8 +4,6 @@ A file gives each reading as a vector; which way along its line a lone sensor lo
 So two lone sensors that look opposite ways seem to be exchanged and wired backwards both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
