@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +18,7 @@ from .card_definition import Card
 from .case_control import CaseControl, read_case_control
 from .deck_length_unit import find_length_unit
 from .logical_lines import read_sections
+from .number_spaces import space_of
 from .pynastran_bridge import bdf_of
 
 _NOT_KNOWN = "this card is not known"
@@ -78,13 +80,13 @@ class Deck(Noun):
         return self.changed or read_deck_text(self.path)
 
     def __repr__(self) -> str:
-        named = {"grids": "id", "elements": "eid", "properties": "pid"}
-        numbers = {name: card.number for name, card in self.bulk.definitions.items()}
-        held = (
-            f"{sum(n for c, n in self.counts.items() if numbers.get(c) == number):,} {what}"
-            for what, number in named.items()
+        held = Counter[str]()
+        for name, count in self.counts.items():
+            held[space_of(name, self.bulk.definitions)] += count
+        return (
+            f"Deck({self.path.name!r}: {self.counts.get('GRID', 0):,} grids, "
+            f"{held['element']:,} elements, {held['property']:,} properties)"
         )
-        return f"Deck({self.path.name!r}: {', '.join(held)})"
 
     def to_pynastran(self) -> Any:
         """Return pyNastran's `BDF` of this deck, without cross-references.

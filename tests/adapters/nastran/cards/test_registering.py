@@ -10,6 +10,7 @@ import trueup
 from trueup.adapters.nastran import (
     FieldRef,
     build_model,
+    free_id,
     parse_parameter,
     read_deck,
     read_deck_text,
@@ -145,19 +146,22 @@ ENDDATA
 """
     layout = definitions()["CQUAD4"].layout
     thin = replace(ELEMENTS["quad4"], name="mine")
-    mine = Family("mine", (Card("CMINE", layout, "eid", elements="mine", properties="PSHELL"),))
-    decks = [tmp_path / "cquad4.bdf", tmp_path / "cmine.bdf"]
+    mine = Family("mine", (Card("MINE", layout, "eid", elements="mine", properties="PSHELL"),))
+    decks = [tmp_path / "cquad4.bdf", tmp_path / "mine.bdf"]
     decks[0].write_text(square)
-    decks[1].write_text(square.replace("CQUAD4", "CMINE"))
+    decks[1].write_text(square.replace("CQUAD4", "MINE"))
     register_element(thin)
     register_family(mine)
     try:
         theirs, ours = (build_model(read_deck(path)) for path in decks)
+        (told,) = trueup.inspect(decks[1]).files
+        free = free_id(read_deck_text(decks[1]), "element")
     finally:
         FAMILIES.remove(mine)
         del ELEMENTS["mine"]
     assert (ours.K() != theirs.K()).nnz == 0
     assert ours.geometry.elements["quad"].tolist() == [[0, 1, 2, 3]]
+    assert (told.contents["elements"], free) == ({"MINE": 1}, 2)
 
 
 def net(n=4):
