@@ -30,6 +30,7 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 from ....core.elements import ELEMENTS, Element
+from ....core.errors import InputError
 from ..text.real_numbers import parse_real
 from .movable_values import Moves
 
@@ -365,6 +366,8 @@ def _field(word: str) -> Field:
     kind, has_default, default = tail.partition("=")
     value: Any = MISSING if kind.endswith("!") else None
     kind = kind.rstrip("!")
+    if kind not in CONVERT:
+        raise InputError(f"{word!r}: no kind of value is {kind!r}; known: {' '.join(CONVERT)}")
     if has_default:
         try:
             value = CONVERT[kind](default)

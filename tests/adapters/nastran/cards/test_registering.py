@@ -125,9 +125,19 @@ def test_what_is_wrong_with_it_is_said_as_of_any_card(cables, deck, line, wrong)
     assert told.value.line == lines.index(line) + 1
 
 
-def test_a_card_that_is_there_already_is_refused():
-    with pytest.raises(InputError, match="a card CONM2 already"):
-        register_family(Family("mine", (Card("CONM2", "EID:i!", "eid"),)))
+@pytest.mark.parametrize(
+    ("card", "wrong"),
+    [
+        (Card("CONM2", "EID:i!", "eid"), "a card CONM2 already"),
+        (Card("MINE", "EID:q!", "eid"), "'EID:q!': no kind of value is 'q'; known: i r w"),
+        (Card("MINE", "EID:i!", "eid", elements="mine"), "MINE: there is no element 'mine'"),
+        (Card("MINE", "EID:i!", "id"), "MINE: no field of its layout is 'id', its number"),
+        (3, "a card of a family is given as int; it must be Card"),
+    ],
+)
+def test_a_card_that_is_there_already_or_not_sound_is_refused(card, wrong):
+    with pytest.raises(InputError, match=wrong):
+        register_family(Family("mine", (card,)))
 
 
 def test_a_shell_of_ones_own_needs_no_routine(tmp_path):
