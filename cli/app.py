@@ -98,6 +98,11 @@ _WORDS = {
     "give force=True": "give --force",
     "give lossy=True": "give --lossy",
     "another run folder": "another --out",
+    " deck_length_unit=": " --deck-length-unit ",
+    "with deck_length_unit": "with --deck-length-unit",
+    "modes= gives": "--modes gives",
+    "from_='": "--from '",
+    "to='": "--to '",
 }
 """What the library's sentences ask for, as the command line is asked for it."""
 

@@ -108,7 +108,7 @@ def _files(sources: Source) -> list[Path]:
 
 def _check(sources: list[Path], destination: Path, kind: str | None, force: bool) -> None:
     if kind is not None and kind not in KINDS:
-        raise InputError(f"--from {kind} is not known; give one of {', '.join(KINDS)}")
+        raise InputError(f"from_={kind!r} is not known; give one of {', '.join(KINDS)}")
     existing(sources)
     if any(destination.exists() and destination.samefile(p) for p in sources):
         raise Place(destination).fault("is a source as well; give the destination another name")

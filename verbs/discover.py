@@ -88,7 +88,7 @@ def discover(
     asked = study_of("discover", study, options, accepted)
     deck, test = both_given(deck, test, asked)
     if asked.modes is not None:
-        raise InputError("--modes gives fixed modes, which no effect can change; leave it out")
+        raise InputError("modes= gives fixed modes, which no effect can change; leave it out")
     if isinstance(deck, Model):
         raise InputError("discover completes a deck, and a model has none; give the deck")
     for kind in KINDS:

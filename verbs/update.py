@@ -80,7 +80,7 @@ def update(
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
     if asked.modes is not None:
         raise InputError(
-            "--modes gives fixed modes, which no parameter can move; leave it out to update"
+            "modes= gives fixed modes, which no parameter can move; leave it out to update"
         )
     if isinstance(deck, Model):
         raise InputError("update changes a deck, and a model has none; give the deck")

@@ -109,6 +109,15 @@ def test_a_parameter_that_names_no_card(
     assert sentence in refused(call, inputs, "-p", parameter, verb="update")
 
 
+@pytest.mark.parametrize("option", ["--from", "--to"])
+def test_a_format_that_is_none_is_named_by_its_option(
+    call: Call, inputs: Path, option: str
+) -> None:
+    said = call("convert", inputs / "duct.bdf", inputs / "a.h5", option, "xyz")
+    assert said.status == 1
+    assert said.sentence.startswith(f"{option} 'xyz' is n")
+
+
 def test_an_update_of_nothing(call: Call, inputs: Path) -> None:
     out = inputs.parent / "run"
     said = call("update", inputs / "duct.bdf", inputs / "duct_test.unv", "--out", out)

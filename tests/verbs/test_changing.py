@@ -76,7 +76,7 @@ def test_what_a_discovery_saved_is_opened_again(tmp_path: Path) -> None:
         ({}, "no parameter is named"),
         ({"parameters": 3}, "'parameters' has a value of the wrong type: 3"),
         ({"parameters": ["PBAR 999 I1"]}, "PBAR 999"),
-        ({"parameters": FRONT, "modes": "x.op2"}, "--modes gives fixed modes"),
+        ({"parameters": FRONT, "modes": "x.op2"}, "modes= gives fixed modes"),
         ({"parameters": FRONT, "out": "run"}, "update: unknown key 'out'"),
         ({"parameters": FRONT, "residuals": "everything"}, "residuals is 'everything'"),
         ({"parameters": FRONT, "max_iterations": 0}, "max_iterations must be at least 1"),
