@@ -43,7 +43,7 @@ def convert(
     Parameters
     ----------
     sources : path, sequence of paths, or a noun
-        A noun is a Measurement, Modes, Frfs, Geometry, StoreContent or what a verb gave.
+        A noun is a Deck, Measurement, Modes, Frfs, Geometry, StoreContent or what a verb gave.
     destination : path
     from_, to : str, optional
         Kind of the sources and format of the destination; default: told by the contents and by

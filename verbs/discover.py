@@ -125,7 +125,7 @@ def discover(
     own = SolvedModel(before, solution, structure.damping)
     return Discovered(
         deck_file=f"deck/{done.deck.name}",
-        input_deck=str(deck.path),
+        input_deck=deck.told,
         test_files=tuple(map(str, side.files)),
         verdict=found.verdict,
         findings=Table(

@@ -105,7 +105,7 @@ def update(
     assert analysis.deck is not None
     return Updated(
         deck_file=f"deck/{changed.name}",
-        input_deck=str(analysis.deck.path),
+        input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),
         parameters=parameter_rows(analysis.model.parameters, done, values),
         history=history,

@@ -109,6 +109,7 @@ def test_the_updated_deck_is_taken_where_a_deck_is(better: trueup.Updated, tmp_p
     assert deck.path == FILES[0]
     assert deck.files == trueup.read_deck(FILES[0]).files
     after = trueup.correlate(better.deck, FILES[1], deck_length_unit="mm")
+    assert (after.study.deck, after.deck_file) == (None, "duct.bdf (an object, not the file)")
     assert after.summary == trueup.correlate(deck, FILES[1], deck_length_unit="mm").summary
     assert after.summary.pairs == better.after.summary.pairs
     assert trueup.solve(better.deck, 8).modes[6].frequency_hz == pytest.approx(

@@ -73,6 +73,13 @@ class Deck(Noun):
     warnings: tuple[str, ...] = ()
     refused: tuple[InputError, ...] = field(default=(), repr=False)
     changed: DeckText | None = field(default=None, repr=False)
+    on_disk: bool = True
+    """Whether `path` holds what was read: not of a changed deck or of an object of pyNastran."""
+
+    @property
+    def told(self) -> str:
+        """How results name it."""
+        return str(self.path) if self.on_disk else f"{self.path.name} (an object, not the file)"
 
     @property
     def text(self) -> DeckText:
@@ -161,6 +168,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections), *unfound),
         refused=refused,
         changed=changed,
+        on_disk=changed is None,
     )
 
 
