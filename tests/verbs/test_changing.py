@@ -80,6 +80,11 @@ def test_what_a_discovery_saved_is_opened_again(tmp_path: Path) -> None:
         ({"parameters": FRONT, "out": "run"}, "update: unknown key 'out'"),
         ({"parameters": FRONT, "residuals": "everything"}, "residuals is 'everything'"),
         ({"parameters": FRONT, "max_iterations": 0}, "max_iterations must be at least 1"),
+        ({"parameters": FRONT, "test_modes": []}, "update: test_modes is empty"),
+        (
+            {"parameters": FRONT, "residuals": []},
+            "'residuals' has a value of the wrong",
+        ),
         ({"parameters": FRONT, "test_modes": [0]}, "test_modes are mode numbers"),
         ({"parameters": FRONT, "test_modes": 99}, "test_modes names mode 99"),
         ({"parameters": FRONT, "stages": [{"parameters": ["rear"]}]}, "'rear'"),
