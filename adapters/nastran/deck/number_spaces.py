@@ -1,7 +1,5 @@
 """What the numbers of cards count: elements, properties, grids, ..., asked of their definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from .card_definition import Card
