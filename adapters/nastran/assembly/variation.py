@@ -14,9 +14,10 @@ import numpy as np
 from ....core.arrays import Floats
 from ....core.data.parameter import Parameter
 from ....core.errors import InputError, Place
-from ..deck.bulk import Bulk, fields_of
-from ..deck.card_definition import Fields
+from ..deck.bulk import Bulk
+from ..deck.field_values import Fields
 from ..deck.movable_values import after
+from ..deck.raw_cards import fields_of
 from ..deck.read_deck import Deck
 from ..fields.layouts import field_position
 from ..fields.parameter_references import FieldRef, ParameterSpec

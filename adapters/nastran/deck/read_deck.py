@@ -13,13 +13,14 @@ from ....core.errors import InputError, Place
 from ....core.noun import Noun
 from ..text.deck_text import DeckText, read_deck_text
 from ..text.real_numbers import parse_real
-from .bulk import Bulk, Raw, fields_of, read_bulk
+from .bulk import Bulk, read_bulk
 from .card_definition import Card
 from .case_control import CaseControl, read_case_control
 from .deck_length_unit import find_length_unit
 from .logical_lines import read_sections
 from .number_spaces import space_of
 from .pynastran_bridge import bdf_of
+from .raw_cards import Raw, fields_of
 
 _NOT_KNOWN = "this card is not known"
 
