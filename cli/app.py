@@ -61,10 +61,9 @@ _register()
 def run() -> int:
     """Run the command line and return the exit status.
 
-    0 done; 1 the input is at fault; 2 wrong usage; 3 the work did not meet its own check. No
-    exception leaves here: what trueup raises on purpose is said in its own sentence, anything
-    else in one that tells it apart from a fault of the user's, with status 1. With
-    TRUEUP_TRACEBACK set, the traceback of either comes before the sentence.
+    0 done; 1 the input is at fault; 2 wrong usage; 3 the work did not meet its own check; 70 a
+    fault of trueup's own. No exception leaves here: each is said in one sentence. With
+    TRUEUP_TRACEBACK set, its traceback comes before.
     """
     from ..core.errors import CheckError, TrueupError
 
@@ -89,7 +88,7 @@ def run() -> int:
         return _say(
             f"a fault of trueup's own, not of your input as far as it can tell ({what}); set "
             f"{_TRACEBACK}=1, run it again and report what is printed",
-            1,
+            70,
         )
     return 0
 
@@ -99,6 +98,11 @@ _WORDS = {
     "give force=True": "give --force",
     "give lossy=True": "give --lossy",
     "another run folder": "another --out",
+    " deck_length_unit=": " --deck-length-unit ",
+    "with deck_length_unit": "with --deck-length-unit",
+    "modes= gives": "--modes gives",
+    "from_='": "--from '",
+    "to='": "--to '",
 }
 """What the library's sentences ask for, as the command line is asked for it."""
 

@@ -91,7 +91,8 @@ def comparing(
         output = Output(**spoken)
         filed = read_study(study_file) if study_file else Study()
         try:
-            study = merge(filed, given, given, "options")
+            there = {name: value for name, value in given.items() if value not in (None, [], ())}
+            study = merge(filed, there, given, "options")
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
         if study.deck is None or not study.test:

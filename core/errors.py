@@ -64,6 +64,12 @@ def path_of(given: object, what: str, instead: str = "a path") -> Path:
     return Path(given)
 
 
+def require_kind(given: object, kind: type, what: str) -> None:
+    """Raise `InputError` when `what` is given as something else than it should be."""
+    if not isinstance(given, kind):
+        raise InputError(f"{what} is given as {type(given).__name__}; it must be {kind.__name__}")
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where something stands: ``CBAR 12 (models/wing.bdf line 40)``, ``models/wing.bdf line 40``.

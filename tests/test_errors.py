@@ -25,8 +25,8 @@ def built(path: Path) -> object:
     return nastran.build_model(trueup.read_deck(path))
 
 
-def moved(path: Path) -> object:
-    return nastran.build_model(trueup.read_deck(path), [nastran.parse_parameter("PROD 7 J")])
+def moved(path: Path, value: str = "PROD 7 J") -> object:
+    return nastran.build_model(trueup.read_deck(path), [nastran.parse_parameter(value)])
 
 
 def written(path: Path) -> object:
@@ -47,6 +47,7 @@ CASES: list[tuple[str, str, Callable[[Path], object], int | None, str | None, st
     ("j.bdf", ROD + "CAABSF,8,1,1\n", built, 6, "CAABSF 8", "{} line 6: CAABSF 8"),
     ("k.bdf", ROD, moved, 4, "PROD 7", "parameter 'PROD 7 J': J is blank on PROD 7 ({} line 4)"),
     ("l.bdf", ROD, lambda p: find_card(read_deck_text(p), "PBAR", 3), None, "PBAR 3", ""),
+    ("t.bdf", ROD, lambda p: moved(p, "PBAR 9 I1"), None, "PBAR 9", "{}: parameter 'PBAR 9 I1': "),
     ("m.bdf", ROD.replace("7,1,1.", "7,1,x"), written, 4, None, "m.bdf line 4: PROD 7 A is"),
     ("n.unv", "no universal file", trueup.read_test, None, None, "{} is not a universal file"),
     ("o.unv", "    -1\n  2411\n 1 1 1\n", trueup.read_test, 2, None, "{} line 2: the file ends"),

@@ -132,7 +132,7 @@ def named(study: Study, deck: Deck | None, test: Measured, modes: Source | None)
     from_file = modes if isinstance(modes, str | Path) else None
     return replace(
         study,
-        deck=None if deck is None else deck.path,
+        deck=deck.path if deck and deck.on_disk else None,
         test=test.files,
         modes=None if from_file is None else Path(from_file),
     )

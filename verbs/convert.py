@@ -43,7 +43,7 @@ def convert(
     Parameters
     ----------
     sources : path, sequence of paths, or a noun
-        A noun is a Measurement, Modes, Frfs, Geometry, StoreContent or what a verb gave.
+        A noun is a Deck, Measurement, Modes, Frfs, Geometry, StoreContent or what a verb gave.
     destination : path
     from_, to : str, optional
         Kind of the sources and format of the destination; default: told by the contents and by
@@ -108,7 +108,7 @@ def _files(sources: Source) -> list[Path]:
 
 def _check(sources: list[Path], destination: Path, kind: str | None, force: bool) -> None:
     if kind is not None and kind not in KINDS:
-        raise InputError(f"--from {kind} is not known; give one of {', '.join(KINDS)}")
+        raise InputError(f"from_={kind!r} is not known; give one of {', '.join(KINDS)}")
     existing(sources)
     if any(destination.exists() and destination.samefile(p) for p in sources):
         raise Place(destination).fault("is a source as well; give the destination another name")

@@ -55,7 +55,7 @@ def correlate(
     tables = compared(found)
     return Correlated(
         **vars(tables),
-        deck_file=str(analysis.deck.path) if analysis.deck else "",
+        deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
         content=content_of(found, tables),
         study=named(asked, analysis.deck, side, modes),

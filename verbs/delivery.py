@@ -25,7 +25,7 @@ class Target:
 
 
 def target_of(path: Path, name: str | None) -> Target:
-    """Return the format that ``--to`` names or the suffix tells.
+    """Return the format that `name` names or the suffix tells.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def target_of(path: Path, name: str | None) -> Target:
     """
     key = (name or path.suffix).lower().lstrip(".")
     if key not in TARGETS:
-        what = f"--to {name}" if name else f"{path}: suffix '{path.suffix}'"
+        what = f"to={name!r}" if name else f"{path}: suffix '{path.suffix}'"
         raise InputError(f"{what} is no format that can be written; known are {', '.join(TARGETS)}")
     return TARGETS[key]
 
@@ -170,4 +170,4 @@ TARGETS: dict[str, Target] = {
     "pch": _PUNCH,
     "dmig": _PUNCH,
 }
-"""Formats that can be written, by suffix or by what ``--to`` says."""
+"""Formats that can be written, by suffix or by what `name` says."""

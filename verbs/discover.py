@@ -13,6 +13,7 @@ from ..core.correlation.comparison import Comparison, Placed, compare
 from ..core.correlation.mode_errors import with_scatter
 from ..core.data.parametric_model import Model
 from ..core.discovery import discover as core
+from ..core.discovery.effects import KINDS
 from ..core.discovery.findings import Discovery
 from ..core.discovery.likelihood.frf_evidence import place_responses
 from ..core.discovery.reduction.elements_and_supports import Structure
@@ -80,15 +81,18 @@ def discover(
     from ..adapters.nastran.discovery.build_structure import build_structure
     from ..adapters.nastran.discovery.complete_deck import CompletedDeck, complete
     from ..adapters.nastran.discovery.doubted_parameters import doubted, settled
+    from ..adapters.nastran.discovery.writers import writer_of
 
     start = time.perf_counter()
     accepted = {**DiscoverOptions.__annotations__, "modes": None}
     asked = study_of("discover", study, options, accepted)
     deck, test = both_given(deck, test, asked)
     if asked.modes is not None:
-        raise InputError("--modes gives fixed modes, which no effect can change; leave it out")
+        raise InputError("modes= gives fixed modes, which no effect can change; leave it out")
     if isinstance(deck, Model):
         raise InputError("discover completes a deck, and a model has none; give the deck")
+    for kind in KINDS:
+        writer_of(kind)
     progress("reading and placing")
     side = measured(test)
     top = side.highest(asked.frequency_tolerance)
@@ -121,7 +125,7 @@ def discover(
     own = SolvedModel(before, solution, structure.damping)
     return Discovered(
         deck_file=f"deck/{done.deck.name}",
-        input_deck=str(deck.path),
+        input_deck=deck.told,
         test_files=tuple(map(str, side.files)),
         verdict=found.verdict,
         findings=Table(

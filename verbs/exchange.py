@@ -13,6 +13,7 @@ from ..core.data.measurement import Measurement
 from ..core.data.modes import Modes
 from ..core.errors import InputError, Place
 from .read import DECK, FILE_KINDS, OP4, PUNCH, RESULTS, RUNS, STORE, UNIVERSAL, kind_of_file
+from .sources import is_changed, read_deck
 
 if TYPE_CHECKING:
     from ..adapters.store import StoreContent
@@ -104,19 +105,22 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
 
 
 def cargo_of(source: object) -> Cargo:
-    """Return the content of nouns: a test, modes, functions, a geometry, what a store holds.
+    """Return the content of nouns: a deck, a test, modes, a geometry, what a store holds.
 
     Raises
     ------
     InputError
         Something else, or two geometries.
     """
+    from ..adapters.nastran import Deck
     from ..adapters.store import StoreContent
 
-    cargo = Cargo()
-    for noun in source if isinstance(source, list | tuple) else [source]:
+    cargo, every = Cargo(), source if isinstance(source, list | tuple) else [source]
+    for noun in every:
         held = getattr(noun, "content", noun)
-        if isinstance(noun, Measurement):
+        if isinstance(noun, Deck) or is_changed(noun):
+            _deck(noun, len(every) == 1, cargo)
+        elif isinstance(noun, Measurement):
             _set_geometry(cargo, noun.geometry, Path("test"))
             cargo.add("modes", "test", noun.modes)
             cargo.add("frfs", "test", noun.frfs)
@@ -130,8 +134,8 @@ def cargo_of(source: object) -> Cargo:
             _stored(held, Path("the store"), cargo)
         else:
             raise InputError(
-                f"{type(noun).__name__} cannot be converted; give files, a test, modes, frequency "
-                "responses, a geometry or what a verb gave"
+                f"{type(noun).__name__} cannot be converted; give files, a deck, a test, modes, "
+                "frequency responses, a geometry or what a verb gave"
             )
     return cargo
 
@@ -144,20 +148,20 @@ def _set_geometry(cargo: Cargo, geometry: Geometry | None, path: Path) -> None:
     cargo.geometry = geometry
 
 
-def _deck(path: Path, alone: bool, cargo: Cargo) -> Any:
-    from ..adapters.nastran import build_model, deck_geometry, model_matrices, read_deck
+def _deck(source: object, alone: bool, cargo: Cargo) -> Any:
+    from ..adapters.nastran import build_model, deck_geometry, model_matrices
 
-    deck = read_deck(path)
+    deck = read_deck(source)
     cargo.notes += deck.warnings
     cargo.from_deck = True
     if alone:
         model = build_model(deck)
         cargo.notes += [w for w in model.warnings if w not in cargo.notes]
-        cargo.geometry = model.geometry
+        _set_geometry(cargo, model.geometry, deck.path)
         for m in model_matrices(model):
             cargo.add("matrices", m.name, m)
     else:
-        cargo.geometry = deck_geometry(deck)
+        _set_geometry(cargo, deck_geometry(deck), deck.path)
     return deck
 
 

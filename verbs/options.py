@@ -44,10 +44,10 @@ class CorrelateOptions(CompareOptions, total=False):
 class UpdateOptions(CompareOptions, total=False):
     """What ``update`` can be told besides `CompareOptions`.
 
-    ``residuals`` ("frequencies", "shapes", "both", others with commas); ``test_modes`` that take
-    part, from 1;
-    ``max_iterations`` of a stage; ``frequency_sigma``, ``shape_sigma`` and ``regularisation``
-    weigh the residuals and the parameters; ``stages`` of a strategy.
+    ``residuals`` ("frequencies", "shapes", others with commas; None: "both"); ``test_modes`` that
+    take part, from 1 (None: all); ``max_iterations`` of a stage; ``frequency_sigma``,
+    ``shape_sigma`` and ``regularisation`` weigh the residuals and the parameters; ``stages`` of a
+    strategy.
     """
 
     residuals: str | None

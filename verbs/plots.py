@@ -41,7 +41,8 @@ class Plots:
         from ..adapters.report.pictures.colour import series
 
         drawn = self._drawn(test_modes)
-        return shapes(drawn, drawn.pairs, series(2, dark=False))
+        left_out = self.run.final.unpaired_test if test_modes is None else ()
+        return shapes(drawn, drawn.pairs, series(2, dark=False), left_out)
 
     def misfit(self, test_modes: int | Sequence[int] | None = None) -> Any:
         """Return where the paired shapes differ, on the structure."""

@@ -127,7 +127,7 @@ def solve(
     modes = normal_modes.modes_of(model, solution)
     mass = weight(read) if read else None
     return Solved(
-        deck_file=str(read.path) if read else "",
+        deck_file=read.told if read else "",
         modes=Table(
             map(ModeRow, modes.frequencies_hz.tolist(), modes.generalized_mass.tolist()), ModeRow
         ),

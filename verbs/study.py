@@ -159,7 +159,7 @@ def read_study(path: Path) -> Study:
 def merge(
     study: Study, given: Mapping[str, object], known: Mapping[str, object], who: str
 ) -> Study:
-    """Return the study with what was given on top; what is None or empty was not given.
+    """Return the study with what was given on top; what is None was not given.
 
     Parameters
     ----------
@@ -179,14 +179,12 @@ def merge(
     fields = {name: kind for name, kind in _FIELDS.items() if name in known}
     if "residuals" in known:
         fields |= _sigma_fields()
-    there = {k: v for k, v in given.items() if k not in fields or not _absent(v)}
+    there = {k: v for k, v in given.items() if k not in fields or v is not None}
     values = _study_values(there, fields, Place(shown=who))
+    if values.get("test_modes") == ():
+        raise InputError(f"{who}: test_modes is empty; give mode numbers, or None for all modes")
     values["sigmas"] = {**study.sigmas, **values.get("sigmas", {})}
     return dataclasses.replace(study, **values)
-
-
-def _absent(value: object) -> bool:
-    return value is None or (isinstance(value, list | tuple) and not value)
 
 
 def study_toml(study: Study) -> str:

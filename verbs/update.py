@@ -80,7 +80,7 @@ def update(
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
     if asked.modes is not None:
         raise InputError(
-            "--modes gives fixed modes, which no parameter can move; leave it out to update"
+            "modes= gives fixed modes, which no parameter can move; leave it out to update"
         )
     if isinstance(deck, Model):
         raise InputError("update changes a deck, and a model has none; give the deck")
@@ -105,7 +105,7 @@ def update(
     assert analysis.deck is not None
     return Updated(
         deck_file=f"deck/{changed.name}",
-        input_deck=str(analysis.deck.path),
+        input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),
         parameters=parameter_rows(analysis.model.parameters, done, values),
         history=history,

@@ -5,14 +5,13 @@ from typing import Any
 
 from ...core.data.geometry import Geometry
 from ...core.errors import InputError
-from .cards import definitions
 from .deck.case_control import CaseControl
+from .deck.number_spaces import space_of
 from .deck.read_deck import Deck, EigenRequest
 from .deck_reader import read_deck
 from .properties.grids import read_points
 
 _FORMAT = "Nastran deck"
-_NOT_ELEMENTS = ("CORD", "CSET")
 
 
 def describe_deck(path: Path | str) -> dict[str, Any]:
@@ -64,7 +63,8 @@ def _contents(deck: Deck) -> dict[str, Any]:
         box = _box(deck)
         if box is not None:
             found["bounding_box"] = box
-    elements = {n: k for n, k in deck.counts.items() if _is_element(n)}
+    known = deck.bulk.definitions
+    elements = {n: k for n, k in deck.counts.items() if space_of(n, known) == "element"}
     if elements:
         found["elements"] = elements
     found["other_cards"] = {n: k for n, k in deck.counts.items() if n not in (*elements, "GRID")}
@@ -93,14 +93,6 @@ def _box(deck: Deck) -> list[float] | None:
     except InputError:  # a part of a deck: the systems may stand in another file
         return None
     return [float(edge) for edge in xyz.max(axis=0) - xyz.min(axis=0)]
-
-
-def _is_element(name: str) -> bool:
-    known = definitions().get(name)
-    if known and known.number:
-        return known.number == "eid"
-    is_one = name.startswith(("C", "R")) and not name.startswith(_NOT_ELEMENTS)
-    return is_one and "SUP" not in name and name not in ("RELEASE", "RFORCE")
 
 
 def _request(eigen: EigenRequest) -> dict[str, Any]:

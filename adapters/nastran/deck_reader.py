@@ -1,5 +1,6 @@
 """Read a deck by the cards of the registry."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,5 +25,7 @@ def read_deck(path: str | Path | DeckText | Any) -> Deck:
     InputError
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
-    source = path if isinstance(path, DeckText) else file_of(path)
-    return by_definitions.read_deck(source, definitions())
+    if isinstance(path, DeckText):
+        return by_definitions.read_deck(path, definitions())
+    file = file_of(path)
+    return replace(by_definitions.read_deck(file, definitions()), on_disk=file is path)

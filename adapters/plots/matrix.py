@@ -30,17 +30,18 @@ def mac(found: Compared, rotated: bool, ramp: Sequence[str]) -> Any:
     """
     table = found.mac_rotated if rotated else found.mac
     values, rows, columns = table.values, np.array(table.test), _kept(found, table.values)
-    values = values[:, columns]
+    values, beyond = 100.0 * values[:, columns], values.shape[1] - len(columns)
     n, m = values.shape
     cell = min(0.36, 11.0 / max(m, 1))
     made = figure(2.2 + cell * m, 1.4 + max(cell * n, 1.0))
     axes = made.add_subplot()
     colours = optional("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("mac", ramp)
-    picture = axes.imshow(values, vmin=0.0, vmax=1.0, cmap=colours)
+    picture = axes.imshow(values, vmin=0.0, vmax=100.0, cmap=colours)
     axes.set_xticks(range(m), _named(columns + 1, found.analysis_hz[columns]), rotation=90)
     axes.set_yticks(range(n), _named(rows, found.test_hz[rows - 1]))
     axes.tick_params(labelsize=7, colors=INK, length=0)
-    axes.set_xlabel("analysis mode, Hz", color=INK)
+    more = f"\n({beyond} more are like none of the test's)" if beyond else ""
+    axes.set_xlabel(f"analysis mode, Hz{more}", color=INK)
     axes.set_ylabel("test mode, Hz", color=INK)
     axes.set_title("MAC" + " after rotation of close modes" * rotated, color=INK, fontsize=11)
     for side in axes.spines.values():
@@ -50,12 +51,13 @@ def mac(found: Compared, rotated: bool, ramp: Sequence[str]) -> Any:
     for pair in found.pairs:
         corner = (place[pair.analysis] - 0.5, table.test.index(pair.test) - 0.5)
         axes.add_patch(box(corner, 1.0, 1.0, fill=False, edgecolor=INK, linewidth=1.2))
-    for i, j in zip(*np.nonzero(values >= _TOLD), strict=True) if max(n, m) <= _ROOM else ():
-        ink = "white" if values[i, j] >= _ALIKE else INK
-        text = f"{100 * values[i, j]:.0f}"
+    told = np.nonzero(values >= 100.0 * _TOLD)
+    for i, j in zip(*told, strict=True) if max(n, m) <= _ROOM else ():
+        ink = "white" if values[i, j] >= 100.0 * _ALIKE else INK
+        text = f"{values[i, j]:.0f}"
         axes.text(j, i, text, ha="center", va="center", color=ink, fontsize=6.5)
     bar = made.colorbar(picture, ax=axes, shrink=0.8, pad=0.02)
-    bar.set_label("MAC", color=INK)
+    bar.set_label("MAC, %", color=INK)
     bar.outline.set_visible(False)
     bar.ax.tick_params(labelsize=8, colors=INK)
     return made

@@ -19,7 +19,9 @@ _NAMED = 5
 """Sensors of the largest misfit that are named."""
 
 
-def shapes(drawn: Overlay, pairs: Sequence[PairRow], colours: Sequence[str]) -> Any:
+def shapes(
+    drawn: Overlay, pairs: Sequence[PairRow], colours: Sequence[str], left_out: Sequence[int]
+) -> Any:
     """Return the paired shapes as a figure: the model deformed, the sensors where the test says.
 
     Parameters
@@ -30,6 +32,8 @@ def shapes(drawn: Overlay, pairs: Sequence[PairRow], colours: Sequence[str]) -> 
         The same pairs, for the headings.
     colours : sequence of str
         Of the model and of the test.
+    left_out : sequence of int
+        Test modes without a partner.
     """
     across = min(_ACROSS, max(len(pairs), 1))
     down = -(-len(pairs) // across)
@@ -37,19 +41,21 @@ def shapes(drawn: Overlay, pairs: Sequence[PairRow], colours: Sequence[str]) -> 
     scale = _REACH * np.linalg.norm(np.ptp(drawn.mesh.xyz, axis=0))
     for k, pair in enumerate(pairs):
         axes = made.add_subplot(down, across, k + 1, projection="3d")
-        _wires(axes, drawn.mesh, drawn.mesh.xyz + scale * drawn.shapes[k], colours[0], 0.4)
+        deformed = drawn.mesh.xyz + scale * drawn.shapes[k]
+        _wires(axes, drawn.mesh, deformed, colours[0], 0.4)
         ends = drawn.sensors + scale * drawn.test[k][:, None] * drawn.axes
         model = drawn.sensors + scale * drawn.model[k][:, None] * drawn.axes
         axes.add_collection3d(_lines(np.stack([model, ends], axis=1), colours[1], 1.2))
         axes.scatter(*ends.T, s=8, color=colours[1], depthshade=False)
-        _frame(axes, drawn.mesh.xyz)
+        _frame(axes, np.vstack([drawn.mesh.xyz, deformed, ends, model]))
         axes.set_title(
             f"test {pair.test}: {pair.test_hz:.4g} Hz\nanalysis {pair.analysis}: "
             f"{pair.analysis_hz:.4g} Hz, MAC {100 * pair.mac:.0f} %",
             fontsize=8, color=INK, pad=0,
         )  # fmt: skip
+    lost = f"\ntest modes without a partner: {', '.join(map(str, left_out))}" if left_out else ""
     made.suptitle(
-        "Model (mesh) and test (points, each joined to where the model puts its sensor)",
+        f"Model (mesh) and test (points, each joined to where the model puts its sensor){lost}",
         fontsize=11,
         color=INK,
     )
@@ -84,7 +90,7 @@ def misfit(drawn: Overlay, names: Sequence[str], ramp: Sequence[str]) -> Any:
     bar.set_label("rms difference over the pairs, % of each shape's largest", color=INK, fontsize=9)
     bar.outline.set_visible(False)
     bar.ax.tick_params(labelsize=8, colors=INK)
-    axes.set_title("Where model and test differ", fontsize=11, color=INK)
+    axes.set_title(f"Where model and test differ, {len(drawn.test)} pairs", fontsize=11, color=INK)
     return made
 
 
@@ -106,7 +112,7 @@ def _frame(axes: Any, xyz: Floats) -> None:
     middle, half = (low + high) / 2.0, reach / 2.0
     limits = zip("xyz", middle - half, middle + half, strict=True)
     axes.set(**{f"{d}lim": (a, b) for d, a, b in limits})
-    axes.set_box_aspect(tuple(reach), zoom=1.15)
+    axes.set_box_aspect(tuple(reach), zoom=1.0)
     axes.set_axis_off()
     arm = 0.15 * reach.max()
     for k, name in enumerate("xyz"):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.arrays import Floats, Ints, Numbers, frozen
+from ...core.arrays import Floats, Ints, Numbers, hold
 from ...core.data.frfs import Frfs
 from ...core.data.geometry import Geometry
 from ...core.data.modes import Modes
@@ -116,8 +116,8 @@ class Function(Noun):
     codes: tuple[int, ...] = (0, 0, 0, 0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "abscissa", frozen(self.abscissa, np.float64))
-        object.__setattr__(self, "values", frozen(self.values))
+        hold(self, "abscissa", np.float64)
+        hold(self, "values")
 
 
 @dataclass(frozen=True, eq=False)

@@ -165,7 +165,7 @@ def place_test(
         raise InputError(
             f"the test is {own.size / moved.size:.3g} times smaller than the model and only "
             f"{seen.within.mean():.0%} of its sensors lie on it in the best position: the length "
-            "units of the two cannot both be right; state the deck's with --deck-length-unit, the "
+            "units of the two cannot both be right; state the deck's with deck_length_unit, the "
             "test's in dataset 164"
         )
     rows = np.flatnonzero(seen.within)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, frozen
+from ..arrays import Floats, Numbers, hold
 from ..errors import InputError
 from ..noun import Noun
 from .correlation_numbers import CORRELATION
@@ -27,8 +27,7 @@ class ModeErrors(Noun):
     shape: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "frequency", frozen(self.frequency, np.float64))
-        object.__setattr__(self, "shape", frozen(self.shape, np.float64))
+        hold(self, "frequency shape", np.float64)
 
     @property
     def length(self) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, frozen, require_shape
+from ..arrays import Floats, hold
 from ..errors import InputError
 from ..noun import Noun
 
@@ -33,10 +33,8 @@ class Frame(Noun):
     axes: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "origin", frozen(self.origin, np.float64))
-        object.__setattr__(self, "axes", frozen(self.axes, np.float64))
-        require_shape(self.origin, (3,), "the origin of a coordinate system")
-        require_shape(self.axes, (3, 3), "the axes of a coordinate system")
+        hold(self, "origin", np.float64, (3,), "the origin of a coordinate system")
+        hold(self, "axes", np.float64, (3, 3), "the axes of a coordinate system")
 
     @property
     def is_basic(self) -> bool:

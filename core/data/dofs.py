@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints, frozen, require_shape
+from ..arrays import Floats, Ints, hold
+from ..errors import InputError
 from ..noun import Noun
 
 _AXES = np.vstack([np.eye(3), np.eye(3)])
@@ -32,12 +33,13 @@ class Dofs(Noun):
     axis: Floats = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "node", frozen(self.node, np.int64))
-        object.__setattr__(self, "component", frozen(self.component, np.int64))
-        require_shape(self.component, self.node.shape, "components")
-        axis = _AXES[self.component - 1] if self.axis is None else self.axis
-        object.__setattr__(self, "axis", frozen(axis, np.float64).reshape(-1, 3))
-        require_shape(self.axis, (len(self.node), 3), "axes")
+        hold(self, "node", np.int64, ("n",))
+        hold(self, "component", np.int64, self.node.shape)
+        if not np.isin(self.component, range(1, 7)).all():
+            raise InputError("component of Dofs must be 1 to 3 (translation) or 4 to 6 (rotation)")
+        if self.axis is None:
+            object.__setattr__(self, "axis", _AXES[self.component - 1])
+        hold(self, "axis", np.float64, (len(self.node), 3))
 
     def __len__(self) -> int:
         return len(self.node)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Ints, Numbers, frozen, require_finite, require_shape
+from ..arrays import Floats, Ints, Numbers, hold, require_finite
+from ..errors import require_kind
 from ..noun import Noun
 from .dofs import Dofs
 
@@ -39,10 +40,11 @@ class Frfs(Noun):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "frequencies_hz", frozen(self.frequencies_hz, np.float64))
-        object.__setattr__(self, "values", frozen(self.values, np.complex128))
+        require_kind(self.responses, Dofs, "responses of Frfs")
+        require_kind(self.references, Dofs, "references of Frfs")
+        hold(self, "frequencies_hz", np.float64, ("n",), "the frequency axis")
         shape = (len(self.responses), len(self.references), len(self.frequencies_hz))
-        require_shape(self.values, shape, "frequency responses")
+        hold(self, "values", np.complex128, shape, "frequency responses")
         require_finite(self.frequencies_hz, "the frequency axis")
 
     def at(self, rows: Ints, columns: Ints | None = None) -> Frfs:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Floats, Ints, frozen, require_finite, require_shape
-from ..errors import InputError
+from ..arrays import Floats, Ints, frozen, hold, require_finite
+from ..errors import InputError, require_kind
 from ..noun import Noun
 
 
@@ -43,15 +44,16 @@ class Geometry(Noun):
     element_ids: dict[str, Ints] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "ids", frozen(self.ids, np.int64))
-        object.__setattr__(self, "xyz", frozen(self.xyz, np.float64).reshape(-1, 3))
-        require_shape(self.xyz, (len(self.ids), 3), "positions")
+        hold(self, "ids", np.int64, ("n",))
+        hold(self, "xyz", np.float64, (len(self.ids), 3), "positions")
         require_finite(self.xyz, "positions")
         unique, counts = np.unique(self.ids, return_counts=True)
         if len(unique) < len(self.ids):
             raise InputError(f"node {unique[counts > 1][0]} is defined twice")
         for name in ("elements", "element_ids"):
-            tables = {k: frozen(v, np.int64) for k, v in getattr(self, name).items()}
+            said, given = f"{name} of Geometry", getattr(self, name)
+            require_kind(given, Mapping, said)
+            tables = {k: frozen(v, np.int64, said) for k, v in given.items()}
             object.__setattr__(self, name, tables)
 
     def index_of(self, ids: Ints) -> Ints:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..arrays import Floats
-from ..errors import InputError
+from ..errors import InputError, require_kind
 from ..noun import Noun
 from .frfs import Frfs
 from .geometry import Geometry
@@ -50,6 +50,10 @@ class Measurement(Noun):
     shape_std: Floats | None = None
 
     def __post_init__(self) -> None:
+        require_kind(self.geometry, Geometry, "geometry of Measurement")
+        for given, kind in ((self.modes, Modes), (self.frfs, Frfs)):
+            if given is not None:
+                require_kind(given, kind, f"{kind.__name__} of Measurement")
         if self.modes is None and self.frfs is None:
             raise InputError("the test holds neither modes nor frequency responses")
         for what, dofs in (

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, frozen, require_finite, require_shape
+from ..arrays import Floats, Numbers, hold, require_finite
+from ..errors import require_kind
 from ..noun import Noun
 from .dofs import Dofs
 
@@ -45,17 +46,17 @@ class Modes(Noun):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "frequencies_hz", frozen(self.frequencies_hz, np.float64))
-        object.__setattr__(self, "shapes", frozen(self.shapes))
+        require_kind(self.dofs, Dofs, "dofs of Modes")
+        of = f"of {self.source or 'modes'}"
+        hold(self, "frequencies_hz", np.float64, ("n",), f"frequencies {of}")
         n = len(self.frequencies_hz)
-        require_shape(self.shapes, (len(self.dofs), n), f"mode shapes of {self.source or 'modes'}")
-        require_finite(self.frequencies_hz, f"frequencies of {self.source or 'modes'}")
-        require_finite(self.shapes, f"mode shapes of {self.source or 'modes'}")
+        hold(self, "shapes", None, (len(self.dofs), n), f"mode shapes {of}")
+        require_finite(self.frequencies_hz, f"frequencies {of}")
+        require_finite(self.shapes, f"mode shapes {of}")
         for name in ("damping", "generalized_mass"):
-            value = getattr(self, name)
-            value = np.full(n, np.nan) if value is None else value
-            object.__setattr__(self, name, frozen(value, np.float64))
-            require_shape(getattr(self, name), (n,), name)
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, np.full(n, np.nan))
+            hold(self, name, np.float64, (n,))
 
     def __len__(self) -> int:
         return len(self.frequencies_hz)

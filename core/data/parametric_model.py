@@ -8,8 +8,8 @@ from math import prod
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, frozen
-from ..errors import InputError
+from ..arrays import Floats, frozen, require_shape
+from ..errors import InputError, require_kind
 from ..noun import Noun
 from ..numerics.shared_pattern_sum import weighted_sum
 from .dofs import Dofs
@@ -116,14 +116,16 @@ class Model(Noun):
     idle: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        n = self.expansion.shape[1]
-        if self.expansion.shape[0] != len(self.dofs):
-            raise InputError(
-                f"the expansion has {self.expansion.shape[0]} rows for {len(self.dofs)} dofs"
-            )
+        require_kind(self.geometry, Geometry, "geometry of Model")
+        require_kind(self.dofs, Dofs, "dofs of Model")
+        for name in ("stiffness", "mass", "parameters"):
+            require_kind(getattr(self, name), tuple, f"{name} of Model")
+        require_shape(self.expansion, (len(self.dofs), "n"), "the expansion")
         for t in (*self.stiffness, *self.mass):
-            if t.matrix.shape != (n, n):
-                raise InputError(f"a matrix term has shape {t.matrix.shape}, expected {(n, n)}")
+            require_kind(t, Term, "a part of stiffness or mass")
+            require_shape(t.matrix, (self.n_free, self.n_free), "a matrix term")
+        for q in self.parameters:
+            require_kind(q, Parameter, "a parameter of Model")
         names = [q.name for q in self.parameters]
         repeated = sorted({name for name in names if names.count(name) > 1})
         if repeated:

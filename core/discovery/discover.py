@@ -17,7 +17,6 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates
 from .effects.effect_kind import Scale
-from .effects.effect_laws import ReleaseLaw
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
@@ -285,7 +284,7 @@ def _missing(
     """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
     if not c.rows_each:
         return None
-    if isinstance(c.law, ReleaseLaw):
+    if c.law.shared:
         loads = c.root if c.loads is None else c.loads
         turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
         return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)

@@ -6,7 +6,7 @@ An element is one file that declares its facts in an `Element`, and one line her
 
 from __future__ import annotations
 
-from ..errors import InputError
+from ..errors import InputError, require_kind
 from .bar import BAR, ROD
 from .beam import BEAM
 from .curved_shell import QUAD8, TRIA6
@@ -35,6 +35,7 @@ def register_element(element: Element) -> None:
     InputError
         Its name is taken.
     """
+    require_kind(element, Element, "what is registered")
     if element.name in ELEMENTS:
         raise InputError(f"there is an element {element.name!r} already")
     ELEMENTS[element.name] = element

@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, frozen, require_shape
+from ..arrays import Floats, Numbers, hold
 from ..data.shapes import LINE
 from .bar import add_spring, from_axes, lumped_ends, release
 from .batch import congruent, symmetric, transpose
@@ -37,8 +37,7 @@ class BeamSections:
     def __post_init__(self) -> None:
         shape = np.asarray(self.station).shape
         for field in fields(self):
-            object.__setattr__(self, field.name, frozen(getattr(self, field.name), np.float64))
-            require_shape(getattr(self, field.name), shape, f"beam property {field.name}")
+            hold(self, field.name, np.float64, shape, f"beam property {field.name}")
 
     def __len__(self) -> int:
         return len(self.station)

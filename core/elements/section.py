@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, frozen, require_shape
+from ..arrays import Floats, Numbers, hold
 from .batch import CHUNK, in_chunks, symmetric, transpose
 
 _RIGID = 1e9
@@ -47,10 +47,8 @@ class ShellSection:
     def __post_init__(self) -> None:
         n = len(np.asarray(self.drilling))
         for name, shape in (("A", (3, 3)), ("B", (3, 3)), ("D", (3, 3)), ("S", (2, 2))):
-            object.__setattr__(self, name, frozen(getattr(self, name), np.float64))
-            require_shape(getattr(self, name), (n, *shape), f"shell stiffness {name}")
-        object.__setattr__(self, "drilling", frozen(self.drilling, np.float64))
-        require_shape(self.drilling, (n,), "drilling stiffness")
+            hold(self, name, np.float64, (n, *shape), f"shell stiffness {name}")
+        hold(self, "drilling", np.float64, (n,), "drilling stiffness")
 
     def __len__(self) -> int:
         return len(self.drilling)

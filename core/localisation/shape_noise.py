@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Bools, Floats, Ints, frozen
+from ..arrays import Bools, Floats, Ints, hold
 from ..errors import InputError
 from .localisation_numbers import MAPS
 
@@ -36,8 +36,7 @@ class Noise:
     explained: Floats
 
     def __post_init__(self) -> None:
-        for name in ("sigma", "outlier", "gain", "explained"):
-            object.__setattr__(self, name, frozen(getattr(self, name)))
+        hold(self, "sigma outlier gain explained")
 
 
 def given_noise(test_shapes: Floats, relative: float) -> Noise:

@@ -68,7 +68,7 @@ def reconcile_units(analysis: Geometry, test: Geometry, deck_unit: str | None = 
         for unit in METRES
     }
     unit = _plausible(surface, test, choices)
-    silent, option = ("deck", " with --deck-length-unit") if measured else ("test", "")
+    silent, option = ("deck", " with deck_length_unit") if measured else ("test", "")
     sizes = _sizes(surface, test, deck, measured)
     if unit is None:
         raise InputError(
@@ -103,7 +103,7 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     ):
         return replace(units, warnings=(f"{said}; check the length units of both",))
     advice = (
-        f"if the deck is in {better}, say so with --deck-length-unit {better}; else the test's "
+        f"if the deck is in {better}, say so with deck_length_unit={better}; else the test's "
         f"own unit ({measured}) is wrong"
         if better
         else "check the length units of both, and that they are the same structure"
@@ -116,7 +116,7 @@ def _alike(surface: Surface, test: Geometry) -> Units:
     if not ALIGN.possible[0] <= ratio <= ALIGN.possible[1]:
         raise InputError(
             "neither the deck nor the test states its length unit and their sizes differ "
-            f"({_sizes(surface, test, None, None)}); state the deck's with --deck-length-unit"
+            f"({_sizes(surface, test, None, None)}); state the deck's with deck_length_unit"
         )
     said = "neither the deck nor the test states its length unit; taken to be the same"
     return Units(None, None, 1.0, (said,))

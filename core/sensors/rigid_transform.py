@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, frozen, require_finite, require_shape
+from ..arrays import Floats, hold, require_finite
 from ..errors import InputError
 from ..noun import Noun
 from .placement_numbers import PLACEMENT
@@ -34,10 +34,8 @@ class Transform(Noun):
     scale: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "rotation", frozen(self.rotation, np.float64))
-        object.__setattr__(self, "translation", frozen(self.translation, np.float64))
-        require_shape(self.rotation, (3, 3), "the rotation of the test frame")
-        require_shape(self.translation, (3,), "the translation of the test frame")
+        hold(self, "rotation", np.float64, (3, 3), "the rotation of the test frame")
+        hold(self, "translation", np.float64, (3,), "the translation of the test frame")
         require_finite(self.rotation, "the rotation of the test frame")
         require_finite(self.translation, "the translation of the test frame")
         R = self.rotation

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Bools, Floats, Ints, Numbers, frozen, require_shape
+from ..arrays import Bools, Floats, Ints, Numbers, hold, require_shape
 from ..data.dofs import Dofs
 from ..data.geometry import Geometry
 from ..errors import InputError
@@ -59,11 +59,9 @@ class Observation(Noun):
 
     def __post_init__(self) -> None:
         n = len(self.sensors)
-        require_shape(np.empty(self.matrix.shape[0]), (n,), "the sensor matrix")
+        require_shape(self.matrix, (n, "n"), "the sensor matrix")
         for name in _BY_SENSOR:
-            value = frozen(getattr(self, name))
-            object.__setattr__(self, name, value)
-            require_shape(value, (n, 3) if name == "xyz" else (n,), name)
+            hold(self, name, None, (n, 3) if name == "xyz" else (n,))
 
     def __len__(self) -> int:
         return len(self.sensors)

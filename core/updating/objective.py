@@ -133,7 +133,7 @@ class Objective:
         _, s, vt = np.linalg.svd(lin.gradient, full_matrices=False)
         data = sum(len(r.squared(state.seen)) for r in residuals)
         scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
-        sound = (s > UPDATING.unidentifiable * s.max(initial=0.0)) & (s > 0.0)
+        sound = s > UPDATING.unidentifiable * s.max(initial=1.0)
         said = vt[sound] ** 2 / s[sound, None] ** 2
         error[list(active)] = np.sqrt(np.sum(said, axis=0) * scatter)
         factors = np.asarray(state.factors)

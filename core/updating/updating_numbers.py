@@ -16,7 +16,7 @@ class UpdatingNumbers:
     modes: int = number(40, "modes", "of an eigensolution, unless said otherwise", "time")
     tolerance: float = number(1e-3, "of a factor", "moves that settle an update, unless said otherwise", CHECK)
 
-    unidentifiable: float = number(1e-4, "of the largest singular value", "of a direction that the test does not determine", CHECK)
+    unidentifiable: float = number(1e-4, "of the largest singular value, at least of 1", "of a direction that the test does not determine", CHECK)
     unsure: float = number(0.5, "of a factor", "standard error from which on it is said to be hardly determined", CHECK)
     part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
     least_gain: float = number(1e-3, "of the objective", "by which the pairs that are kept must be closer", CHECK)

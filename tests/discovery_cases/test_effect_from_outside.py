@@ -90,3 +90,13 @@ def test_a_name_that_is_taken_is_refused(sliding):
         register_effect(sliding)
     with pytest.raises(InputError, match="sliding_mass"):
         register_writer("sliding_mass", WRITERS["point_mass"])
+    with pytest.raises(InputError, match="what is registered is given as int"):
+        register_effect(3)
+    with pytest.raises(InputError, match="the writer is given as int"):
+        register_writer("mine", 3)
+
+
+def test_without_a_writer_no_search_is_begun(sliding, monkeypatch):
+    monkeypatch.delitem(WRITERS, "sliding_mass")
+    with pytest.raises(InputError, match="no cards can be written for sliding_mass: register_wr"):
+        trueup.discover("no.bdf", "no.unv")

@@ -39,6 +39,28 @@ def test_what_is_no_path_is_refused(name: str, given: object) -> None:
         getattr(verb, name)(given)
 
 
+@pytest.mark.parametrize(
+    ("noun", "given", "wrong"),
+    [
+        ("Dofs", (1, 2), r"node of Dofs has shape \(\), expected \(n,\)"),
+        ("Dofs", ([1], [7]), "component of Dofs must be 1 to 3"),
+        ("Dofs", ([1], [1], [1, 2]), r"axis of Dofs has shape \(2,\), expected \(1, 3\)"),
+        ("Geometry", ("a", "b"), "ids of Geometry must be an array of numbers"),
+        ("Geometry", ([1], [[0, 0, 0]], None, 3), "elements of Geometry is given as int"),
+        ("Geometry", ([1], [[0, 0, 0]], None, {"tria": "a"}), "elements of Geometry must be"),
+        ("Modes", (1, 2, 3), "dofs of Modes is given as int; it must be Dofs"),
+        ("Modes", ([1.0], [["a"]], trueup.Dofs([1], [1])), "mode shapes of modes must be an array"),
+        ("Frfs", (1, 2, 3, 4), "responses of Frfs is given as int"),
+        ("Measurement", (1,), "geometry of Measurement is given as int"),
+        ("Measurement", (trueup.Geometry([1], [[0, 0, 0]]), 1), "Modes of Measurement is given"),
+        ("Model", (1, 2, 3, 4, 5), "geometry of Model is given as int"),
+    ],
+)
+def test_what_makes_no_noun_is_refused(noun: str, given: tuple[Any, ...], wrong: str) -> None:
+    with pytest.raises(trueup.InputError, match=wrong):
+        getattr(verb, noun)(*given)
+
+
 @pytest.mark.parametrize("name", ["read", "open_run", "report"])
 def test_a_list_of_nothing_is_refused(name: str) -> None:
     with pytest.raises(trueup.InputError):

@@ -76,10 +76,15 @@ def test_what_a_discovery_saved_is_opened_again(tmp_path: Path) -> None:
         ({}, "no parameter is named"),
         ({"parameters": 3}, "'parameters' has a value of the wrong type: 3"),
         ({"parameters": ["PBAR 999 I1"]}, "PBAR 999"),
-        ({"parameters": FRONT, "modes": "x.op2"}, "--modes gives fixed modes"),
+        ({"parameters": FRONT, "modes": "x.op2"}, "modes= gives fixed modes"),
         ({"parameters": FRONT, "out": "run"}, "update: unknown key 'out'"),
         ({"parameters": FRONT, "residuals": "everything"}, "residuals is 'everything'"),
         ({"parameters": FRONT, "max_iterations": 0}, "max_iterations must be at least 1"),
+        ({"parameters": FRONT, "test_modes": []}, "update: test_modes is empty"),
+        (
+            {"parameters": FRONT, "residuals": []},
+            "'residuals' has a value of the wrong",
+        ),
         ({"parameters": FRONT, "test_modes": [0]}, "test_modes are mode numbers"),
         ({"parameters": FRONT, "test_modes": 99}, "test_modes names mode 99"),
         ({"parameters": FRONT, "stages": [{"parameters": ["rear"]}]}, "'rear'"),
@@ -109,6 +114,7 @@ def test_the_updated_deck_is_taken_where_a_deck_is(better: trueup.Updated, tmp_p
     assert deck.path == FILES[0]
     assert deck.files == trueup.read_deck(FILES[0]).files
     after = trueup.correlate(better.deck, FILES[1], deck_length_unit="mm")
+    assert (after.study.deck, after.deck_file) == (None, "duct.bdf (an object, not the file)")
     assert after.summary == trueup.correlate(deck, FILES[1], deck_length_unit="mm").summary
     assert after.summary.pairs == better.after.summary.pairs
     assert trueup.solve(better.deck, 8).modes[6].frequency_hz == pytest.approx(

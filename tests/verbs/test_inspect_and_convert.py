@@ -35,6 +35,12 @@ def test_nouns_are_converted_like_the_files_they_came_from(tmp_path: Path) -> No
     assert len(again) == 8
 
 
+def test_a_deck_is_converted_like_its_file(tmp_path: Path) -> None:
+    for name, source in (("a", DUCT / "duct.bdf"), ("b", trueup.read_deck(DUCT / "duct.bdf"))):
+        trueup.convert(source, tmp_path / f"{name}.op4")
+    assert (tmp_path / "a.op4").read_bytes() == (tmp_path / "b.op4").read_bytes()
+
+
 @pytest.mark.parametrize(
     ("sources", "destination", "said"),
     [

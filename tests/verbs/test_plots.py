@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import trueup
@@ -22,8 +23,12 @@ def found() -> trueup.Correlated:
 def test_the_mac_figure_frames_every_pair(found: trueup.Correlated) -> None:
     figure = found.plot.mac()
     axes, bar = figure.axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("analysis mode, Hz", "test mode, Hz")
-    assert bar.get_ylabel() == "MAC"
+    shown = len(axes.get_xticks())
+    assert axes.get_ylabel() == "test mode, Hz"
+    assert axes.get_xlabel().startswith("analysis mode, Hz")
+    assert f"({len(found.mac.analysis) - shown} more " in axes.get_xlabel()
+    assert bar.get_ylabel() == "MAC, %"
+    assert axes.get_images()[0].get_clim() == (0.0, 100.0)
     assert len(axes.patches) == len(found.pairs)
     assert axes.get_yticklabels()[0].get_text() == "1 · 33.91"
     assert axes.get_title() == "MAC after rotation of close modes"
@@ -43,6 +48,12 @@ def test_shapes_are_those_of_the_modes_that_are_asked_for(found: trueup.Correlat
     assert [a.get_title().split("\n")[0] for a in figure.axes] == [
         "test 1: 33.91 Hz", "test 3: 55.47 Hz",
     ]  # fmt: skip
+    assert "without a partner" not in figure.get_suptitle()
+    assert "without a partner: 7, " in found.plot.shapes().get_suptitle()
+    for axes in figure.axes:
+        for points in (np.concatenate(c._segments3d) for c in axes.collections[:2]):
+            low, high = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()]).T
+            assert ((points >= low - 1e-9) & (points <= high + 1e-9)).all()
     with pytest.raises(trueup.InputError, match="test mode 7 has no partner to draw"):
         found.plot.shapes([1, 7])
 

@@ -13,10 +13,11 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.data.parameter import Parameter
-from ....core.errors import InputError
-from ..deck.bulk import Bulk, fields_of
-from ..deck.card_definition import Fields
+from ....core.errors import InputError, Place
+from ..deck.bulk import Bulk
+from ..deck.field_values import Fields
 from ..deck.movable_values import after
+from ..deck.raw_cards import fields_of
 from ..deck.read_deck import Deck
 from ..fields.layouts import field_position
 from ..fields.parameter_references import FieldRef, ParameterSpec
@@ -152,7 +153,9 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     if raw is None:
         known = sorted(bulk.numbered.get(ref.card, {}))
         there = f"; the deck has {ref.card} {_list(known)}" if known else ""
-        raise InputError(f"parameter {name!r}: there is no {ref.card} {ref.id} in the deck{there}")
+        card = f"{ref.card} {ref.id}"
+        said = f"parameter {name!r}: there is no {card} in the deck{there}"
+        raise Place(bulk.files[0]).error(said, card)
     fields = fields_of(raw.lines)
     shift = bulk.definitions[ref.card].several * raw.part
 

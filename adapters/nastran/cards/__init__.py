@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from ....core.errors import InputError
+from ....core.elements import ELEMENTS
+from ....core.errors import InputError, require_kind
 from ..deck import control_cards
 from ..deck.card_definition import Card
 from ..deck.movable_values import Moves
@@ -94,8 +95,15 @@ def register_family(family: Family) -> None:
     Raises
     ------
     InputError
-        The name of one of its cards is taken.
+        The name of one of its cards is taken, or the card is not sound: what it lacks.
     """
+    require_kind(family, Family, "what is registered")
+    for card in family.cards:
+        require_kind(card, Card, "a card of a family")
+        if lost := set(card.elements.split()) - ELEMENTS.keys():
+            raise InputError(f"{card.name}: there is no element {min(lost)!r}, register it before")
+        if card.number not in ("", *card.type._fields):
+            raise InputError(f"{card.name}: no field of its layout is {card.number!r}, its number")
     taken = definitions().keys() & {card.name for card in family.cards}
     if taken:
         raise InputError(f"there is a card {min(taken)} already")

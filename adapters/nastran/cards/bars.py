@@ -7,7 +7,8 @@ import numpy as np
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements.bar import bar_mass, bar_stiffness
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card, Fields, Known, take
+from ..deck.card_definition import Card, Known
+from ..deck.field_values import Fields, take
 from ..deck.movable_values import Doubt, Moves, Read, Variable, after
 from ..properties.cross_sections import dimension_count, dimensions, section
 from ..properties.materials import isotropic

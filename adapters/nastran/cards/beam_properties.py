@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ..deck.card_definition import Card, FieldError, Fields, Known, take
+from ..deck.card_definition import Card, Known
+from ..deck.field_values import FieldError, Fields, take
 from ..deck.movable_values import Moves, Read, Variable, after
 from ..properties.cross_sections import dimension_count, dimensions
 from ..text.real_numbers import parse_real

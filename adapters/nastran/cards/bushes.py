@@ -12,7 +12,8 @@ from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements.lumped import BUSH, GROUNDED_BUSH, bush_stiffness
 from ....core.errors import Place
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card, FieldError, Fields, Known, Values, take
+from ..deck.card_definition import Card, Known, Values
+from ..deck.field_values import FieldError, Fields, take
 from ..deck.movable_values import Moves, Read, Variable
 from .element_group import Context, Group, distinct_properties
 

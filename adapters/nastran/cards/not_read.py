@@ -12,7 +12,7 @@ _IGNORED = {
     "LOADCYN LOADCYH CLOAD ACSRCE BOLTFOR BOLTLD",
     "it belongs to response analyses": "FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 TSTEP TSTEP1 TSTEPNL "
     "TABLED1 TABLED2 TABLED3 TABLED4 TABDMP1 TABRND1 TABRNDG TABLES1 TABLEST RANDPS RANDT1 NLPARM "
-    "NLPCI NLCNTL NLCNTL2 EIGC EIGB EIGP EPOINT TF NOLIN1 NOLIN2 NOLIN3 NOLIN4 RCROSS RSPINR "
+    "NLPCI NLCNTL NLCNTL2 EIGC EIGB EIGP TF NOLIN1 NOLIN2 NOLIN3 NOLIN4 RCROSS RSPINR "
     "RSPINT ROTORG ROTORD UNBALNC SDAMP HYBDAMP DTEMP",
     "damping does not enter normal modes": "CDAMP5 PDAMP5 CVISC2 PDAMPT PELAST PBUSHT TABDMP2",
     "it belongs to heat transfer": "MAT4 MAT5 MATT4 MATT5 CHBDYE CHBDYG CHBDYP PHBDY CONV CONVM "
@@ -42,24 +42,25 @@ _REFUSED = {
     "CBEND CBEAM3 CWELD CFAST CSEAM CINTC CGAP CBUSH2D CRAC2D CRAC3D CTRIAX CTRIAX6 CQUADX "
     "CQUADX4 CQUADX8 CTRAX3 CTRAX6 CQUAD CPLSTN3 CPLSTN4 CPLSTN6 CPLSTN8 CPLSTS3 CPLSTS4 CPLSTS6 "
     "CPLSTS8 CCONEAX CDUM1 CDUM2 CDUM3 CDUM4 CDUM5 CDUM6 CDUM7 CDUM8 CDUM9 GENEL CIFHEX CIFPENT "
-    "CIFQUAD CBELL BOLT CHEXCZ CPENTCZ CFLUID2 CFLUID3 CFLUID4 CAXIF2 CAXIF3 CAXIF4 CSLOT3 CSLOT4 "
-    "CHACAB CHACBR CAABSF ACMODL MFLUID",
+    "CIFQUAD CBELL CHEXCZ CPENTCZ CFLUID2 CFLUID3 CFLUID4 CAXIF2 CAXIF3 CAXIF4 CSLOT3 CSLOT4 "
+    "CHACAB CHACBR CAABSF",
     "this rigid element or constraint is not supported":
-    "RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT RGYRO CYJOIN CYAX",
+    "RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT",
     "glue and contact are not supported":
-    "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP",
+    "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP BOLT",
     "component modes (sets q, b, c) are not supported: give the model without this reduction":
     "QSET QSET1 BSET BSET1 CSET CSET1 BNDFIX BNDFIX1 BNDFREE BNDFREE1 DYNRED SENQSET",
     "superelements are not supported: give the assembled deck":
     "CSUPER CSUPEXT SEELT SESET SECONCT SEBULK SELOC SETREE RELEASE SEBNDRY SECSET SEBSET SEQSET "
     "SEUSET EXTRN",
     "it defines or constrains points in a way that is not supported":
-    "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1",
+    "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1 RGYRO "
+    "CYJOIN CYAX ACMODL MFLUID",
 }  # fmt: skip
 """Cards that carry stiffness, mass or constraint and are not supported: the sentence, the names."""
 
 _SAID = ("CHBDY", "CONV", "CAERO", "CDAMP", "CVISC")
-"""Those that connect grids: leaving them out is said in a warning too."""
+"""Those that connect grids: elements, and leaving them out is said in a warning too."""
 
 _LAYOUTS = {
     "MAT3": "MID:i EX:r ETH:r EZ:r NUXTH:r NUTHZ:r NUZX:r RHO:r / - - GZX:r AX:r ATH:r AZ:r TREF:r "
@@ -78,7 +79,7 @@ CARDS = (
     *(
         Card(
             name,
-            _LAYOUTS.get(name, ""),
+            _LAYOUTS.get(name, "EID:i" if name.startswith(_SAID) else ""),
             ignored=why,
             warned=name.startswith(_SAID),
             moves=Moves() if name in _LAYOUTS else None,
@@ -86,5 +87,9 @@ CARDS = (
         for why, names in _IGNORED.items()
         for name in names.split()
     ),
-    *(Card(name, refused=why) for why, names in _REFUSED.items() for name in names.split()),
+    *(
+        Card(name, "EID:i" if "stiffness" in why or "rigid" in why else "", refused=why)
+        for why, names in _REFUSED.items()
+        for name in names.split()
+    ),
 )

@@ -54,6 +54,8 @@ def read_sections(source: Path | DeckText) -> Sections:
     files = [f.path for f in deck.files]
     marks = {"CEND": -1, "BEGIN": -1}
     for k, line in enumerate(lines):
+        if line.text.lstrip()[:4].upper() not in ("CEND", "BEGI"):
+            continue
         head = line.text[:80].split("$", 1)[0].upper().split()
         if head and head[0].startswith("CEND") and marks["CEND"] < 0 > marks["BEGIN"]:
             marks["CEND"] = k

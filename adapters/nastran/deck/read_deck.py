@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,12 +13,14 @@ from ....core.errors import InputError, Place
 from ....core.noun import Noun
 from ..text.deck_text import DeckText, read_deck_text
 from ..text.real_numbers import parse_real
-from .bulk import Bulk, Raw, fields_of, read_bulk
+from .bulk import Bulk, read_bulk
 from .card_definition import Card
 from .case_control import CaseControl, read_case_control
 from .deck_length_unit import find_length_unit
 from .logical_lines import read_sections
+from .number_spaces import space_of
 from .pynastran_bridge import bdf_of
+from .raw_cards import Raw, fields_of
 
 _NOT_KNOWN = "this card is not known"
 
@@ -71,6 +74,13 @@ class Deck(Noun):
     warnings: tuple[str, ...] = ()
     refused: tuple[InputError, ...] = field(default=(), repr=False)
     changed: DeckText | None = field(default=None, repr=False)
+    on_disk: bool = True
+    """Whether `path` holds what was read: not of a changed deck or of an object of pyNastran."""
+
+    @property
+    def told(self) -> str:
+        """How results name it."""
+        return str(self.path) if self.on_disk else f"{self.path.name} (an object, not the file)"
 
     @property
     def text(self) -> DeckText:
@@ -78,13 +88,13 @@ class Deck(Noun):
         return self.changed or read_deck_text(self.path)
 
     def __repr__(self) -> str:
-        named = {"grids": "id", "elements": "eid", "properties": "pid"}
-        numbers = {name: card.number for name, card in self.bulk.definitions.items()}
-        held = (
-            f"{sum(n for c, n in self.counts.items() if numbers.get(c) == number):,} {what}"
-            for what, number in named.items()
+        held = Counter[str]()
+        for name, count in self.counts.items():
+            held[space_of(name, self.bulk.definitions)] += count
+        return (
+            f"Deck({self.path.name!r}: {self.counts.get('GRID', 0):,} grids, "
+            f"{held['element']:,} elements, {held['property']:,} properties)"
         )
-        return f"Deck({self.path.name!r}: {', '.join(held)})"
 
     def to_pynastran(self) -> Any:
         """Return pyNastran's `BDF` of this deck, without cross-references.
@@ -159,6 +169,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections), *unfound),
         refused=refused,
         changed=changed,
+        on_disk=changed is None,
     )
 
 

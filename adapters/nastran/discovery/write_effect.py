@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 from ....core.discovery.findings import Finding
-from ....core.errors import InputError
 from ..deck.read_deck import Deck
 from ..editing.changed_cards import written_cards
 from ..text.deck_text import DeckText
-from .writers import WRITERS
+from .writers import writer_of
 from .writers.site import Site
 
 
@@ -35,7 +34,5 @@ def adopt(text: DeckText, deck: Deck, finding: Finding) -> Adopted:
     InputError
         A kind that has no cards here, or a deck that cannot take them.
     """
-    if finding.kind not in WRITERS:
-        raise InputError(f"there is no way yet to write a {finding.kind} into a deck")
-    done = WRITERS[finding.kind](text, Site(deck, finding))
+    done = writer_of(finding.kind)(text, Site(deck, finding))
     return Adopted(done, written_cards(text, done))

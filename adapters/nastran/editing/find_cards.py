@@ -8,20 +8,12 @@ import numpy as np
 
 from ....core.errors import InputError
 from ..cards import definitions
+from ..deck.number_spaces import SPACES, space_of
 from ..text.deck_text import DeckText, Segment
 from ..text.source_file import CONTINUATION, REPLICATION, Keys, name_of
 from .cells import CardLine
 
 MOST_DIGITS = 99_999_999
-
-_KINDS = {
-    "element": re.compile(r"C(?!ORD)[A-Z]|R[A-Z]|PLOTEL|GENEL"),
-    "property": re.compile(r"P(?!ARAM|LOTEL)[A-Z]"),
-    "material": re.compile(r"MAT"),
-    "grid": re.compile(r"GRID$|SPOINT|EPOINT"),
-    "coordinate": re.compile(r"CORD"),
-    "set": re.compile(r"SPC|MPC|SUPORT1|EIG|LOAD|NSM|SET|METHOD"),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +123,7 @@ def names_in(deck: DeckText) -> list[str]:
 
 
 def free_id(deck: DeckText, kind: str) -> int:
-    """Return a number that no card of a kind has, in any file of the deck.
+    """Return a number that no card of a kind, or of an unknown one, has in any file of the deck.
 
     Parameters
     ----------
@@ -149,16 +141,18 @@ def free_id(deck: DeckText, kind: str) -> int:
     Raises
     ------
     InputError
-        Replicated cards, whose numbers are not written out.
+        No such kind; replicated cards, whose numbers are not written out.
     """
-    used = _used(deck, _KINDS[kind])
+    if kind not in SPACES.values():
+        raise InputError(f"there are no numbers of {kind!r}: ask for {', '.join(SPACES.values())}")
+    used = _used(deck, kind)
     top = max(used, default=0)
     if top < MOST_DIGITS:
         return top + 1
     return next(n for n in range(1, MOST_DIGITS) if n not in used)
 
 
-def _used(deck: DeckText, kind: re.Pattern[str]) -> set[int]:
+def _used(deck: DeckText, kind: str) -> set[int]:
     used: set[int] = set()
     for segment in deck.segments:
         rows = np.flatnonzero(_keys(deck, segment) == REPLICATION)
@@ -167,7 +161,7 @@ def _used(deck: DeckText, kind: re.Pattern[str]) -> set[int]:
                 "cards are replicated by '=', so free numbers are not known; write the cards out"
             )
     for name in names_in(deck):
-        if not kind.match(name):
+        if space_of(name, definitions()) not in (kind, ""):
             continue
         for segment in deck.segments:
             found = deck.rows_in(segment, name)

@@ -9,9 +9,9 @@ import scipy.sparse as sp
 from ....core.arrays import Ints, Numbers
 from ....core.errors import Place
 from ....core.files import reading
-from ..deck.bulk import cut, fields_of
-from ..deck.card_definition import Fields
+from ..deck.field_values import Fields
 from ..deck.logical_lines import Line
+from ..deck.raw_cards import cut, fields_of
 from ..text.real_numbers import parse_real
 from .dmig_punched import parts, punched_columns
 from .exported_matrix import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised

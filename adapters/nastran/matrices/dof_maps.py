@@ -7,9 +7,9 @@ import numpy as np
 from ....core.arrays import Ints
 from ....core.errors import InputError, Place
 from ....core.files import reading
-from ..deck.bulk import cut, fields_of
-from ..deck.card_definition import Fields
+from ..deck.field_values import Fields
 from ..deck.logical_lines import Line
+from ..deck.raw_cards import cut, fields_of
 from ..deck.read_deck import Deck
 from ..properties.grids import read_points
 from .exported_matrix import DofMap

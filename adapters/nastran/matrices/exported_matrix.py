@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ....core.arrays import Ints, frozen, require_shape
+from ....core.arrays import Ints, hold
 from ....core.data.dofs import Dofs
 from ....core.noun import Noun
 
@@ -35,9 +35,8 @@ class DofMap(Noun):
     component: Ints
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", frozen(self.point, np.int64))
-        object.__setattr__(self, "component", frozen(self.component, np.int64))
-        require_shape(self.component, self.point.shape, "components")
+        hold(self, "point", np.int64)
+        hold(self, "component", np.int64, self.point.shape)
 
     def __len__(self) -> int:
         return len(self.point)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from ....core.errors import Place
-from ..deck.card_definition import Fields, take
+from ..deck.field_values import Fields, take
 
 
 class Section(NamedTuple):

@@ -24,6 +24,7 @@ CARDS = (
     ),
     Card("GRDSET", "- CP:i=0 - - - CD:i=0 PS:c SEID:i=0"),
     Card("SPOINT", "ID>nodes:*"),
+    Card("EPOINT", "ID>nodes:*", ignored="it belongs to response analyses"),
 )
 
 

@@ -12,7 +12,8 @@ from ....core.arrays import Floats, Ints
 from ....core.elements import Element
 from ....core.errors import Place
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card, Fields, Known, Values, numbers
+from ..deck.card_definition import Card, Known, Values
+from ..deck.field_values import Fields, numbers
 from ..deck.movable_values import Moves
 from ..deck.read_deck import Deck
 from .grids import Points

@@ -8,7 +8,8 @@ import numpy as np
 
 from ....core.arrays import Floats, skew
 from ....core.errors import Place
-from ..deck.card_definition import Card, FieldError, Fields, Known, Values, numbers, take
+from ..deck.card_definition import Card, Known, Values
+from ..deck.field_values import FieldError, Fields, numbers, take
 from .grids import Points
 
 _ENDS = "EID:i! GA>nodes:i! GB>nodes:i!"

@@ -10,7 +10,8 @@ import numpy as np
 
 from ....core.errors import InputError, Place
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card, FieldError, Fields, Known, Values, take
+from ..deck.card_definition import Card, Known, Values
+from ..deck.field_values import FieldError, Fields, take
 from ..deck.read_deck import Deck
 from ..text.real_numbers import parse_real
 

@@ -5,7 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....core.arrays import Bools, Floats, Ints, Numbers, frozen, require_finite, require_shape
+from ....core.arrays import (
+    Bools,
+    Floats,
+    Ints,
+    Numbers,
+    hold,
+    require_finite,
+    require_shape,
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,11 +49,8 @@ class ModeHead:
 
     def __post_init__(self) -> None:
         n_point, n_mode = len(self.points), len(self.numbers)
-        for name in ("points", "scalar", "numbers", "eigenvalues", "generalized_mass"):
-            object.__setattr__(self, name, frozen(getattr(self, name)))
-        require_shape(self.scalar, (n_point,), "scalar points")
-        require_shape(self.eigenvalues, (n_mode,), "eigenvalues")
-        require_shape(self.generalized_mass, (n_mode,), "generalized masses")
+        hold(self, "points scalar", None, (n_point,))
+        hold(self, "numbers eigenvalues generalized_mass", None, (n_mode,))
         require_finite(self.eigenvalues, "the eigenvalues")
 
     @property

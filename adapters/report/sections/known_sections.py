@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ....core.errors import InputError
+from ....core.errors import InputError, require_kind
 from .alignment import ALIGNMENT
 from .alternatives import ALTERNATIVES
 from .damping import DAMPING
@@ -44,8 +44,11 @@ def register_section(section: Section[Any], before: Section[Any] | None = None) 
     Raises
     ------
     InputError
-        Its anchor is taken.
+        Its anchor is taken; the other is not in the report.
     """
+    require_kind(section, Section, "what is registered")
+    if before not in (None, *SECTIONS):
+        raise InputError(f"{before!r} is no section of the report")
     if any(s.anchor == section.anchor for s in SECTIONS):
         raise InputError(f"a section with the anchor '{section.anchor}' is there already")
     SECTIONS.insert(len(SECTIONS) if before is None else SECTIONS.index(before), section)

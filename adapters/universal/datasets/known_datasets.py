@@ -1,6 +1,6 @@
 """The datasets of universal files that are read and written, one line each."""
 
-from ....core.errors import InputError
+from ....core.errors import InputError, require_kind
 from .coordinate_systems import SYSTEMS_18, SYSTEMS_2420
 from .dataset_kind import DatasetKind
 from .elements import ELEMENTS
@@ -36,6 +36,7 @@ def register_dataset(kind: DatasetKind) -> None:
     InputError
         Its number is taken.
     """
+    require_kind(kind, DatasetKind, "what is registered")
     taken = dataset_of(kind.number)
     if taken is not None:
         raise InputError(f"dataset {kind.number} is taken: {taken.name}")

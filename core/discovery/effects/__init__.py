@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...errors import InputError
+from ...errors import InputError, require_kind
 from . import (
     distributed_mass,
     ground_spring,
@@ -46,6 +46,7 @@ def register_effect(kind: EffectKind) -> None:
     InputError
         A name that another kind has.
     """
+    require_kind(kind, EffectKind, "what is registered")
     if kind.name in KINDS:
         raise InputError(f"there is a kind of effect named {kind.name} already")
     KINDS[kind.name] = kind

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -19,29 +20,55 @@ class Rows(Protocol):
         ...
 
 
-class Law(Protocol):
-    """How the magnitudes enter: the matrix of an effect is ``value(θ) · A`` with θ = ln sizes."""
+class Law(ABC):
+    """How the magnitudes enter: the matrix of an effect is ``value(θ) · A`` with θ = ln sizes.
 
-    @property
-    def on(self) -> str:
-        """Which matrix it changes, ``K`` or ``M``; ``A`` where a coordinate of its own is added."""
-        ...
+    A law derives from this class.
 
+    Attributes
+    ----------
+    on : str
+        Which matrix it changes, ``K`` or ``M``; ``A`` where each of its rows gets a coordinate of
+        its own, of mass `value` on a spring of `flexibility`.
+    shared : bool
+        Whether its rows share the flexibility that a basis lacks: what is `missing` is then
+        (n, q, q).
+    turn : (n, q, q) float or None
+        Its rows are this times those of the candidates.
+    """
+
+    on: ClassVar[str]
+    shared: ClassVar[bool] = False
+    turn: Floats | None = None
+
+    @abstractmethod
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return the factors on the q rows of `rows` at `theta` (n, t): (n, q or 1)."""
-        ...
 
+    @abstractmethod
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return their derivatives by each θ, (n, t, q or 1)."""
-        ...
 
+    def flexibility(self, theta: Floats, rows: Ints) -> Floats:
+        """Return that between the structure and coordinates of its own, (n, q)."""
+        raise NotImplementedError
+
+    def flexibility_slope(self, theta: Floats) -> Floats:
+        """Return its derivatives by each θ, (n, t)."""
+        raise NotImplementedError
+
+    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats | None:
+        """Return the derivative of the value by ln p of a known parameter, None where it is nil."""
+        return None
+
+    @abstractmethod
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the law of some rows alone on a basis.
 
         Parameters
         ----------
         rows : (n,) int
-        missing : (n, q) float or None
+        missing : (n, q) or, `shared`, (n, q, q) float or None
             Flexibility of each row that the basis does not have. What is released or attached on
             a basis that is too stiff by it would do too little.
         log_p : (n_parameter,) float
@@ -49,10 +76,9 @@ class Law(Protocol):
         top : float
             An eigenvalue above those of interest.
         """
-        ...
 
 
-class _Mass:
+class _Mass(Law):
     """A mass m = e^θ."""
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
@@ -68,7 +94,7 @@ class _Mass:
 class MassLaw(_Mass):
     """A mass m = e^θ adds m·A to M."""
 
-    on: str = "M"
+    on = "M"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the mass on the spring that the basis lacks."""
@@ -86,25 +112,23 @@ class AttachedLaw(_Mass):
 
     missing: Rows
     top: float
-    on: str = "A"
+    on = "A"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the mass on the spring that this basis lacks."""
         return self if missing is None else AttachedLaw(missing, top)
 
-    def own(self, theta: Floats) -> tuple[Floats, Floats]:
-        """Return the flexibility of its spring on any basis (n, 1), and its slopes (n, t)."""
-        rigid = EFFECTS.rigid / (np.exp(theta) * self.top)
-        return rigid, -rigid
+    def own(self, theta: Floats) -> Floats:
+        """Return the flexibility of its spring on any basis, (n, 1)."""
+        return np.asarray(EFFECTS.rigid / (np.exp(theta) * self.top))
 
-    def springs(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the stiffness between the structure and the mass, (n, q)."""
-        return np.asarray(1.0 / (self.missing[rows] + self.own(theta)[0]))
+    def flexibility(self, theta: Floats, rows: Ints) -> Floats:
+        """Return what the basis lacks and the spring's own."""
+        return np.asarray(self.missing[rows] + self.own(theta))
 
-    def springs_slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return the derivatives of these stiffnesses by each θ, (n, t, q)."""
-        k = self.springs(theta, rows)
-        return np.asarray(-self.own(theta)[1][:, :, None] * k[:, None, :] ** 2)
+    def flexibility_slope(self, theta: Floats) -> Floats:
+        """Return that of the spring's own."""
+        return -self.own(theta)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,17 +152,20 @@ class TunedLaw(AttachedLaw):
         m = np.exp(theta[:, :1])
         return np.stack([m, np.zeros_like(m)], axis=1)
 
-    def own(self, theta: Floats) -> tuple[Floats, Floats]:
-        """Return 1/(m (2πf)²) and its slopes."""
-        soft = np.exp(-theta[:, :1] - 2.0 * theta[:, 1:]) / (2.0 * np.pi) ** 2
-        return soft, np.hstack([-soft, -2.0 * soft])
+    def own(self, theta: Floats) -> Floats:
+        """Return 1/(m (2πf)²)."""
+        return np.asarray(np.exp(-theta[:, :1] - 2.0 * theta[:, 1:]) / (2.0 * np.pi) ** 2)
+
+    def flexibility_slope(self, theta: Floats) -> Floats:
+        """Return those by ln m and ln f."""
+        return np.hstack([-self.own(theta), -2.0 * self.own(theta)])
 
 
 @dataclass(frozen=True)
-class FactorLaw:
+class FactorLaw(Law):
     """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
 
-    on: str = "K"
+    on = "K"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the law as it is."""
@@ -154,14 +181,14 @@ class FactorLaw:
 
 
 @dataclass(frozen=True, eq=False)
-class SpringLaw:
+class SpringLaw(Law):
     """A spring k = e^θ adds k·A to K.
 
     On a basis that lacks the flexibility `missing` (n, 1) it is worth k / (1 + k·missing).
     """
 
     missing: Rows
-    on: str = "K"
+    on = "K"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the spring in line with what the basis lacks."""
@@ -180,7 +207,7 @@ class SpringLaw:
 
 
 @dataclass(frozen=True, eq=False)
-class ReleaseLaw:
+class ReleaseLaw(Law):
     """A connection that was rigid gets the stiffness k = f e^θ.
 
     Each freed coordinate, condensed, takes f q qᵀ / (e^θ + d) from K, with q the forces that its
@@ -194,32 +221,22 @@ class ReleaseLaw:
     elasticity: Floats
     log_p: Floats
     free: int = 0
-    on: str = "K"
+    turn: Floats | None = None
+    on = "K"
+    shared = True
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the release as it is, parameters where they stand."""
-        return replace(
-            self,
-            own=self.own[rows],
-            elasticity=self.elasticity[rows],
-            log_p=log_p,
-        )
-
-    def coupled(self, rows: Ints, lost: Floats, log_p: Floats) -> tuple[ReleaseLaw, Floats]:
-        """Return the release on a basis that lacks flexibility which its coordinates share.
-
-        `lost` (n, q, q) is the flexibility among the coordinates of each that the basis does not
-        have. With the law comes W (n, q, q): its coordinates are W times those before.
-        """
+        """Return the release, parameters where they stand, by coordinates that are sprung alone."""
         own, q = self.own[rows], self.own.shape[1]
-        left = -lost
+        if missing is None:
+            return replace(self, own=own, elasticity=self.elasticity[rows], log_p=log_p)
+        left = -missing
         left[:, np.arange(q), np.arange(q)] += own
         least = EFFECTS.least_left * own.max(axis=1, keepdims=True)
         d, W = directions(left, self.free)
         weight = W**2 * own[:, None, :]
         elasticity = weight @ self.elasticity[rows] / weight.sum(axis=2, keepdims=True)
-        law = ReleaseLaw(np.maximum(d, least), elasticity, log_p, self.free)
-        return law, W
+        return ReleaseLaw(np.maximum(d, least), elasticity, log_p, self.free, W)
 
     def factor(self, rows: Ints) -> Floats:
         """Return f, (n, q)."""

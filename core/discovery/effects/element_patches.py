@@ -17,7 +17,7 @@ from ..reduction.elements_and_supports import Members, Structure, thinned
 from ..reduction.search_basis import Basis
 from .candidates import Candidates
 from .effect_kind import EffectKind
-from .effect_laws import Law, MassLaw, Rows
+from .effect_laws import Law, Rows
 from .effect_numbers import EFFECTS
 
 
@@ -200,7 +200,7 @@ class PatchCandidates(Candidates):
     @property
     def of_unit_mass(self) -> bool:
         """Whether the matrix of a patch is scaled to unit mass."""
-        return isinstance(self.law, MassLaw)
+        return self.law.on == "M"
 
 
 def masses(M: Floats) -> Floats:

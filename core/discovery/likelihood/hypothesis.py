@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ..effects.candidates import Catalogue, Suspect
-from ..effects.effect_laws import Law, ReleaseLaw, Rows
+from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
 from .frf_likelihood import Heard
 from .likelihood_numbers import LIKELIHOOD
@@ -89,16 +89,13 @@ class Problem:
         missing = None if known is None else known[rows]
         held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
         if self.rest is not None and c.rows_each and not held.all():
-            lost = _flexibility(U @ self.rest, isinstance(c.law, ReleaseLaw))
+            lost = _flexibility(U @ self.rest, c.law.shared)
             lost[held] = 0.0
             missing = lost if missing is None else missing + lost
-        if isinstance(c.law, ReleaseLaw) and missing is not None:
-            law, W = c.law.coupled(rows, missing, log_p)
-            U = np.matmul(W, U)
-            return U if self.turn is None else U @ self.turn, law
         top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        plain = c.law.on_basis(rows, missing, log_p, top)
-        return U if self.turn is None else U @ self.turn, plain
+        law = c.law.on_basis(rows, missing, log_p, top)
+        U = U if law.turn is None else np.matmul(law.turn, U)
+        return U if self.turn is None else U @ self.turn, law
 
 
 def _flexibility(F: Floats, shared: bool) -> Floats:

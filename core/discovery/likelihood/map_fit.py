@@ -9,7 +9,6 @@ import scipy.linalg as la
 from ...arrays import Floats, Ints
 from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import Suspect, changed, magnitudes
-from ..effects.effect_laws import AttachedLaw, ReleaseLaw
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
 from .mode_likelihood import joint_macs, matched, mode_costs, targets
@@ -28,8 +27,8 @@ def _matrices(
         rows, law = problem.part(s.kind, np.array([s.row]), nuisance)
         U, theta = rows[0], np.array([s.theta])
         c = law.value(theta, _FIRST)[0]
-        if isinstance(law, AttachedLaw):
-            k = law.springs(theta, _FIRST)[0]
+        if law.on == "A":
+            k = 1.0 / law.flexibility(theta, _FIRST)[0]
             K += (U.T * k) @ U
             own.append((-(U.T * (k / np.sqrt(c))), k / c))
         else:
@@ -238,21 +237,21 @@ def _products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats
         rows, law = problem.part(s.kind, np.array([s.row]), now.nuisance)
         U, theta = rows[0], np.array([s.theta])
         u, slopes = U @ S, law.slope(theta, _FIRST)[0]
-        if isinstance(law, AttachedLaw):
+        if law.on == "A":
             x = V[own : own + len(U)] / np.sqrt(law.value(theta, _FIRST)[0])[:, None]
             own += len(U)
-            stretch, springs = u - x, law.springs_slope(theta, _FIRST)[0]
-            for dk, dm in zip(springs, slopes, strict=True):
-                a[i], b[i] = (stretch.T * dk) @ stretch[:, k], (x.T * dm) @ x[:, k]
+            stretch, soft = u - x, law.flexibility(theta, _FIRST)[0]
+            for df, dm in zip(law.flexibility_slope(theta)[0], slopes, strict=True):
+                a[i], b[i] = (stretch.T * (-df / soft**2)) @ stretch[:, k], (x.T * dm) @ x[:, k]
                 i += 1
             continue
         for c in slopes:
             (a if law.on == "K" else b)[i] = (u.T * c) @ u[:, k]
             i += 1
-        if isinstance(law, ReleaseLaw):
-            for j, q in enumerate(active):
-                if q < len(p):
-                    a[j] += (u.T * law.by_parameter(theta, _FIRST, q)[0]) @ u[:, k]
+        for j, q in enumerate(active):
+            change = law.by_parameter(theta, _FIRST, q) if q < len(p) else None
+            if change is not None:
+                a[j] += (u.T * change[0]) @ u[:, k]
     return a, b
 
 

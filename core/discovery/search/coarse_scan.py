@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Candidates
-from ..effects.effect_laws import AttachedLaw, Rows
+from ..effects.effect_laws import Rows
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.mode_likelihood import Evidence, targets
 from ..reduction.elements_and_supports import thinned
@@ -32,7 +32,7 @@ class Look:
 def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
     """Evaluate the places `rows` of a kind, see `scan`; some that promise nothing are left out."""
     c = problem.catalogue[kind]
-    if len(c.trials) > SEARCH.sizes_many:
+    if c.law.on == "A" and len(c.trials) > SEARCH.sizes_many:
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)
         rows_kept = np.argsort(guess.min(axis=1), kind="stable")[: SEARCH.sizes_places]
         sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, : SEARCH.sizes_each]]
@@ -92,17 +92,16 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     shape are missed. See `scan` for the arguments; kinds with a coordinate of their own only.
     """
     U, law = problem.part(kind, rows, state.nuisance)
-    assert isinstance(law, AttachedLaw)
     modes = state.vectors[: problem.basis.size]
     U, seen = U @ modes, problem.sensors @ modes
     lam, aim = np.maximum(state.eigenvalues, 0.0), targets(problem.evidence)
     inertia = 1.0 / (law.value(trials, rows)[:, :1] * aim)
-    own = law.own(trials)[0][:, :1] - inertia
     out = []
     for start in range(0, len(rows), SEARCH.at_once):
         part = np.arange(len(rows))[start : start + SEARCH.at_once]
-        flexibility = law.missing[part][:, :1, None] + own
-        out.append(_misfit(problem.evidence, seen, lam, U[part, 0], flexibility))
+        each = [np.broadcast_to(t, (len(part), len(t))) for t in trials]
+        own = np.stack([law.flexibility(t, part)[:, :1] for t in each], axis=1)
+        out.append(_misfit(problem.evidence, seen, lam, U[part, 0], own - inertia))
     return np.concatenate(out)
 
 

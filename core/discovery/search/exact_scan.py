@@ -3,7 +3,6 @@
 import numpy as np
 
 from ...arrays import Floats, Ints
-from ..effects.effect_laws import AttachedLaw
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.mode_likelihood import matched, mode_costs
 from .search_numbers import SEARCH
@@ -47,8 +46,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         for j in range(trials.shape[1]):
             at = trials[part, j]
             c = law.value(at, places)
-            if isinstance(law, AttachedLaw):
-                values, Z = _attached(lam, u, c, law.springs(at, places))
+            if law.on == "A":
+                values, Z = _attached(lam, u, c, 1.0 / law.flexibility(at, places))
             else:
                 values, Z = _changed(lam, u, c, law.on)
             values, Z = values[:, :n], Z[:, :, :n]

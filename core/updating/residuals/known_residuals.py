@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ...errors import InputError
+from ...errors import InputError, require_kind
 from ..updating_numbers import UPDATING
 from .declaration import Residual
 from .frequencies import FREQUENCIES
@@ -29,6 +29,7 @@ def register_residual(residual: Residual) -> None:
     InputError
         A name or a key that another has.
     """
+    require_kind(residual, Residual, "what is registered")
     names = [BOTH, *(r.name for r in RESIDUALS)]
     if residual.name in names or residual.weight in [r.weight for r in RESIDUALS]:
         raise InputError(f"there is a residual '{residual.name}' or '{residual.weight}' already")

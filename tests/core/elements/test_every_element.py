@@ -63,6 +63,8 @@ def test_a_rigid_motion_costs_nothing(structure, element):
     assert np.abs(K @ R).max() < 1e-9 * np.abs(K).max()
 
 
-def test_a_name_is_given_once():
+def test_a_name_is_given_once_and_to_an_element():
+    with pytest.raises(InputError, match="what is registered is given as int; it must be Element"):
+        register_element(3)
     with pytest.raises(InputError, match="an element 'quad4' already"):
         register_element(ELEMENTS["quad4"])

@@ -148,7 +148,7 @@ def test_round_structures_in_any_frame_fit_and_their_turn_is_left_open(name):
 
 def test_unit_confusion_on_a_real_case_is_refused_by_name():
     model, _, geometry, _, _ = case("panel_spring")
-    with pytest.raises(InputError, match=r"1000 times smaller.*--deck-length-unit mm"):
+    with pytest.raises(InputError, match=r"1000 times smaller.*deck_length_unit=mm"):
         reconcile_units(replace(model.geometry, length_unit="m"), geometry)
     silent = replace(model.geometry, length_unit=None)
     assert reconcile_units(silent, geometry).deck == "mm"

@@ -82,7 +82,7 @@ def test_wrong_deck_unit_is_named_with_the_right_one(truth, declared, words, shi
         assert "times smaller than the model" in units.warnings[0]
         return
     number, _, way = words.partition(" ")
-    with pytest.raises(InputError, match=f"--deck-length-unit {truth}") as caught:
+    with pytest.raises(InputError, match=f"deck_length_unit={truth}") as caught:
         reconcile_units(plate(declared), test)
     message = str(caught.value)
     assert way in message
@@ -97,7 +97,7 @@ def test_a_test_that_shrinks_to_a_corner_of_the_model_does_not_count_as_lying_on
     model = replace(model, xyz=model.xyz - [200.0, 200.0, 50.0])
     test = sensors(1e-3, "m")
     test = replace(test, xyz=test.xyz - [0.2, 0.2, 0.05])
-    with pytest.raises(InputError, match="--deck-length-unit mm"):
+    with pytest.raises(InputError, match="deck_length_unit=mm"):
         reconcile_units(model, test)
 
 
@@ -148,5 +148,5 @@ def test_both_silent_are_taken_alike_or_refused():
 
 
 def test_nothing_plausible_is_refused():
-    with pytest.raises(InputError, match="state it with --deck-length-unit"):
+    with pytest.raises(InputError, match="state it with deck_length_unit"):
         reconcile_units(plate(None), sensors(1e-6, "m"))

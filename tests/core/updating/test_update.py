@@ -283,6 +283,15 @@ def test_a_parameter_without_any_effect_is_said():
     assert "does not determine k1: a change leaves" in done.warnings[0]
 
 
+def test_a_parameter_alone_whose_effect_is_rounding_is_said_so_too():
+    model = chain([[]])
+    lost = Term(1e-12 * sp.identity(N, format="csr"), (proportional(0, 0.1, 10),))
+    model = replace(model, stiffness=(*model.stiffness, lost))
+    done = update(model, measured(model, [1.0], noise=0.01), [Stage((0,))], n_modes=8)
+    assert np.isnan(done.standard_error[0])
+    assert "does not determine k0: a change leaves" in done.warnings[0]
+
+
 def test_parameters_outside_all_stages_keep_the_deck():
     model = chain(HALVES)
     done = update(model, measured(model, [1.2, 1.0]), [Stage((0,))], n_modes=8)

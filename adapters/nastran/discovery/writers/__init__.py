@@ -1,6 +1,8 @@
 """The writers of cards: one module a kind of effect, one list."""
 
-from .....core.errors import InputError
+from collections.abc import Callable
+
+from .....core.errors import InputError, require_kind
 from . import (
     distributed_mass,
     ground_spring,
@@ -33,6 +35,21 @@ def register_writer(kind: str, writer: Writer) -> None:
     InputError
         A kind that has a writer.
     """
+    require_kind(kind, str, "the kind of effect")
+    require_kind(writer, Callable, "the writer")  # type: ignore[arg-type]
     if kind in WRITERS:
         raise InputError(f"there is a writer of {kind} already")
     WRITERS[kind] = writer
+
+
+def writer_of(kind: str) -> Writer:
+    """Return the writer of a kind of effect.
+
+    Raises
+    ------
+    InputError
+        It has none.
+    """
+    if kind not in WRITERS:
+        raise InputError(f"no cards can be written for {kind}: register_writer gives it a writer")
+    return WRITERS[kind]

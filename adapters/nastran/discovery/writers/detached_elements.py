@@ -5,6 +5,7 @@ from typing import Any
 
 from .....core.errors import InputError
 from ...deck.card_definition import Card as Definition
+from ...deck.number_spaces import space_of
 from ...deck.read_deck import Deck
 from ...editing.find_cards import Card, find_card, free_id
 from ...editing.set_values import edit_cards
@@ -22,7 +23,7 @@ def attached(deck: Deck, grid: int) -> list[int]:
     """
     found = []
     for name, definition in deck.bulk.definitions.items():
-        connects = definition.number == "eid"
+        connects = space_of(name, deck.bulk.definitions) == "element"
         for number, card in deck.bulk.table(name).items() if connects else ():
             if grid in definition.grids_of(card):
                 if not _is_material(definition):

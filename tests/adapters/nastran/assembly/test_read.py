@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from trueup.adapters.nastran import build_model, read_deck
-from trueup.adapters.nastran.deck.bulk import fields_of
+from trueup.adapters.nastran.deck.raw_cards import fields_of
 from trueup.adapters.nastran.text.real_numbers import parse_real
 from trueup.core.errors import InputError
 

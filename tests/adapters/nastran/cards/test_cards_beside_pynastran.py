@@ -13,7 +13,8 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.cards import definitions
-from trueup.adapters.nastran.deck.card_definition import MISSING
+from trueup.adapters.nastran.deck.field_values import MISSING
+from trueup.adapters.nastran.deck.raw_cards import fields_of
 
 bdf = pytest.importorskip("pyNastran.bdf.bdf", reason="the peer is not installed")
 
@@ -218,7 +219,8 @@ def test_every_value_is_the_one_pynastran_reads(name, data, tmp_path_factory):
     path = tmp_path_factory.getbasetemp() / "card.bdf"
     path.write_text(BEFORE.get(name, "") + text)
     bulk = read_deck(path).bulk
-    ours = [*bulk.table(name).values(), *bulk.listed(name)][-1]
+    ours, raw = [*bulk.table(name).values(), *bulk.listed(name)][-1], bulk.raw[name][-1]
+    assert ours == bulk.reader.read(raw, fields_of(raw.lines))  # by columns and by itself
     model = bdf.BDF(debug=None)
     model.read_bdf(str(path), punch=True, xref=False)
     found = list(objects(model, name))

@@ -10,6 +10,7 @@ import trueup
 from trueup.adapters.nastran import (
     FieldRef,
     build_model,
+    free_id,
     parse_parameter,
     read_deck,
     read_deck_text,
@@ -124,9 +125,19 @@ def test_what_is_wrong_with_it_is_said_as_of_any_card(cables, deck, line, wrong)
     assert told.value.line == lines.index(line) + 1
 
 
-def test_a_card_that_is_there_already_is_refused():
-    with pytest.raises(InputError, match="a card CONM2 already"):
-        register_family(Family("mine", (Card("CONM2", "EID:i!", "eid"),)))
+@pytest.mark.parametrize(
+    ("card", "wrong"),
+    [
+        (Card("CONM2", "EID:i!", "eid"), "a card CONM2 already"),
+        (Card("MINE", "EID:q!", "eid"), "'EID:q!': no kind of value is 'q'; known: i r w"),
+        (Card("MINE", "EID:i!", "eid", elements="mine"), "MINE: there is no element 'mine'"),
+        (Card("MINE", "EID:i!", "id"), "MINE: no field of its layout is 'id', its number"),
+        (3, "a card of a family is given as int; it must be Card"),
+    ],
+)
+def test_a_card_that_is_there_already_or_not_sound_is_refused(card, wrong):
+    with pytest.raises(InputError, match=wrong):
+        register_family(Family("mine", (card,)))
 
 
 def test_a_shell_of_ones_own_needs_no_routine(tmp_path):
@@ -145,19 +156,22 @@ ENDDATA
 """
     layout = definitions()["CQUAD4"].layout
     thin = replace(ELEMENTS["quad4"], name="mine")
-    mine = Family("mine", (Card("CMINE", layout, "eid", elements="mine", properties="PSHELL"),))
-    decks = [tmp_path / "cquad4.bdf", tmp_path / "cmine.bdf"]
+    mine = Family("mine", (Card("MINE", layout, "eid", elements="mine", properties="PSHELL"),))
+    decks = [tmp_path / "cquad4.bdf", tmp_path / "mine.bdf"]
     decks[0].write_text(square)
-    decks[1].write_text(square.replace("CQUAD4", "CMINE"))
+    decks[1].write_text(square.replace("CQUAD4", "MINE"))
     register_element(thin)
     register_family(mine)
     try:
         theirs, ours = (build_model(read_deck(path)) for path in decks)
+        (told,) = trueup.inspect(decks[1]).files
+        free = free_id(read_deck_text(decks[1]), "element")
     finally:
         FAMILIES.remove(mine)
         del ELEMENTS["mine"]
     assert (ours.K() != theirs.K()).nnz == 0
     assert ours.geometry.elements["quad"].tolist() == [[0, 1, 2, 3]]
+    assert (told.contents["elements"], free) == ({"MINE": 1}, 2)
 
 
 def net(n=4):

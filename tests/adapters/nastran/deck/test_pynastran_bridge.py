@@ -98,6 +98,7 @@ def test_a_deck_goes_to_pynastran_and_back():
     bdf = deck.to_pynastran()
     assert len(bdf.nodes) == deck.counts["GRID"]
     again = read_deck(bdf)
+    assert (deck.told, again.told) == (str(DUCT), "duct.bdf (an object, not the file)")
     there, back = build_model(deck), build_model(again)
     for a, b in zip(there.stiffness + there.mass, back.stiffness + back.mass, strict=True):
         assert abs(a.matrix - b.matrix).max() <= 1e-9 * abs(a.matrix).max()

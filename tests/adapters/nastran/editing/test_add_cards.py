@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, strategies as st
 
-from trueup.adapters.nastran.deck.bulk import fields_of
+from trueup.adapters.nastran.deck.raw_cards import fields_of
 from trueup.adapters.nastran.editing.add_cards import add_cards
 from trueup.adapters.nastran.editing.find_cards import find_card
 from trueup.adapters.nastran.editing.rewrite_fields import format_card

@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from tests.adapters.nastran.editing import written_decks
 
 from trueup.adapters.nastran import read_deck_text, split_property, write_deck, write_in_place
-from trueup.adapters.nastran.deck.bulk import cut, fields_of
 from trueup.adapters.nastran.deck.logical_lines import read_sections
+from trueup.adapters.nastran.deck.raw_cards import cut, fields_of
 from trueup.adapters.nastran.editing.add_cards import add_cards
 from trueup.adapters.nastran.editing.deck_diff import unified_diff
 from trueup.adapters.nastran.editing.find_cards import find_card, free_id

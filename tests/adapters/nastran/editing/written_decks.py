@@ -7,8 +7,8 @@ import pytest
 from hypothesis import strategies as st
 
 from trueup.adapters.nastran.cards import definitions
-from trueup.adapters.nastran.deck.bulk import cut, fields_of
 from trueup.adapters.nastran.deck.logical_lines import read_sections
+from trueup.adapters.nastran.deck.raw_cards import cut, fields_of
 from trueup.adapters.nastran.editing.find_cards import find_card
 from trueup.adapters.nastran.fields.parameter_references import FieldRef
 from trueup.adapters.nastran.text.deck_text import DeckText, read_deck_text

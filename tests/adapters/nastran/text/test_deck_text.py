@@ -128,6 +128,7 @@ def test_an_empty_deck_has_no_cards(tmp_path):
         ("element", "CONM2*                12\nPLOTEL  8", 13),
         ("property", "PSHELL,7\nPARAM,POST,-1\nMAT1,90", 8),
         ("property", "PELAS,4,1.,,,25,2.", 26),
+        ("element", "XLINK,30,1,2\nFORCE,7\nRFORCE,40", 41),
         ("material", "MAT1,7\nMAT8,12\nPSHELL,90", 13),
         ("grid", "GRID,7\nSPOINT,20,THRU,30", 31),
         ("grid", "GRID,99999999\nGRID,1\nGRID,2", 3),
@@ -144,3 +145,5 @@ def test_a_free_number_is_free_in_all_files(tmp_path, kind, bulk, free):
 def test_free_numbers_are_not_guessed_where_cards_are_replicated(tmp_path):
     with pytest.raises(InputError, match="line 2: cards are replicated"):
         free_id(read_deck_text(write(tmp_path, deck_bdf="GRID,1\n=,*(1),==\n=(5)\n")), "grid")
+    with pytest.raises(InputError, match="no numbers of 'rigid': ask for element, property"):
+        free_id(read_deck_text(write(tmp_path, deck_bdf="GRID,1\n")), "rigid")

@@ -30,7 +30,11 @@ def test_each_section_stands_once_in_the_list():
     assert len({s.anchor for s in SECTIONS}) == len({s.title for s in SECTIONS}) == len(SECTIONS)
 
 
-def test_an_anchor_that_is_taken_is_refused():
+def test_an_anchor_that_is_taken_is_refused_and_so_is_no_section():
+    with pytest.raises(InputError, match="what is registered is given as int"):
+        register_section(3)
+    with pytest.raises(InputError, match="'pairs' is no section of the report"):
+        register_section(Section("Mine", "mine", RunTables), before="pairs")
     with pytest.raises(InputError, match="anchor 'pairs' is there already"):
         register_section(Section("Mine", "pairs", RunTables))
 

@@ -40,7 +40,9 @@ def test_each_dataset_stands_once_in_the_list():
     assert len(set(numbers)) == len(numbers) == 12
 
 
-def test_a_number_that_is_taken_is_refused():
+def test_a_number_that_is_taken_is_refused_and_so_is_no_dataset():
+    with pytest.raises(InputError, match="what is registered is given as int"):
+        register_dataset(3)
     with pytest.raises(InputError, match="dataset 15 is taken: nodes"):
         register_dataset(DatasetKind(15, "mine", lambda source, section, into: 0))
 

@@ -37,9 +37,9 @@ def test_a_release_on_a_basis_that_lacks_flexibility_is_the_release_of_the_whole
     basis, rest = vectors[:, :4], vectors[:, 4:] / np.sqrt(values[4:])
     law = ReleaseLaw(d[None], np.zeros((1, q, 0)), np.zeros(0), free)
     beyond = R @ rest
-    law, W = law.coupled(np.zeros(1, int), (beyond @ beyond.T)[None], NO_PARAMETERS)
+    law = law.on_basis(np.zeros(1, int), (beyond @ beyond.T)[None], NO_PARAMETERS, 0.0)
     change = law.value(np.log([[k]]), np.zeros(1, int))[0]
-    U = W[0] @ R @ basis
+    U = law.turn[0] @ R @ basis
     soft = np.linalg.inv(np.diag(values[:4]) + (U.T * change) @ U)
     springs = np.diag([0.0] * free + [k] * (q - free))
     expected = np.linalg.inv(

@@ -8,7 +8,7 @@ import scipy.linalg as la
 from tests.core.discovery.strings import K, M, N, hidden, searcher
 
 from trueup.core.discovery.effects.candidates import Suspect, changed, magnitudes
-from trueup.core.discovery.effects.effect_laws import TunedLaw
+from trueup.core.discovery.effects.effect_laws import Law, TunedLaw
 from trueup.core.discovery.likelihood.map_fit import _normal_equations, evaluate, fit
 from trueup.core.discovery.search.coarse_scan import promising
 from trueup.core.discovery.search.exact_scan import _attached, scan
@@ -30,7 +30,7 @@ def test_one_mass_with_an_absorber_has_den_hartogs_two_frequencies(mu, tuning):
         np.array([omega**2]),
         np.array([[[1.0 / np.sqrt(big)]]]),
         RIGID.value(theta, FIRST),
-        RIGID.springs(theta, FIRST),
+        1.0 / RIGID.flexibility(theta, FIRST),
     )
     expected = np.roots([1.0, -(1.0 + tuning**2 * (1.0 + mu)), tuning**2])
     np.testing.assert_allclose(values[0] / omega**2, np.sort(expected), rtol=1e-12)
@@ -40,16 +40,58 @@ def test_flexibility_that_a_basis_lacks_is_in_line_with_its_spring():
     theta, lost = np.log([[0.2, 5.0]]), 3e-3
     law = RIGID.on_basis(FIRST, np.array([[lost]]), np.zeros(0), 0.0)
     spring = 0.2 * (2.0 * np.pi * 5.0) ** 2
-    assert law.springs(theta, FIRST)[0, 0] == pytest.approx(1.0 / (1.0 / spring + lost))
+    assert law.flexibility(theta, FIRST)[0, 0] == pytest.approx(1.0 / spring + lost)
+
+
+class Mine(Law):
+    """The law of an absorber as one might write it outside of the package."""
+
+    on = "A"
+
+    def __init__(self, theirs: TunedLaw):
+        self.theirs = theirs
+
+    def value(self, theta, rows):
+        return self.theirs.value(theta, rows)
+
+    def slope(self, theta, rows):
+        return self.theirs.slope(theta, rows)
+
+    def flexibility(self, theta, rows):
+        return self.theirs.flexibility(theta, rows)
+
+    def flexibility_slope(self, theta):
+        return self.theirs.flexibility_slope(theta)
+
+    def on_basis(self, *where):
+        return Mine(self.theirs.on_basis(*where))
+
+
+def test_a_law_of_ones_own_is_searched_and_fitted_likewise():
+    s = searcher(hidden(absorbers=[(11, 0.8, 3.0)]), scatter=(0.0, 0.0))
+    *others, absorber = s.problem.catalogue
+    mine = replace(s.problem, catalogue=(*others, replace(absorber, law=Mine(absorber.law))))
+    trials, start = np.log([[0.7, 3.1]]), (Suspect(2, 11, (np.log(0.7), np.log(3.1))),)
+    told = []
+    for p in (s.problem, mine):
+        null, every = evaluate(p, np.zeros(2), ()), np.arange(N)
+        found = fit(p, np.zeros(2), start, (0,))
+        told.append([scan(p, null, 2, every, trials), promising(p, null, 2, every, trials)])
+        told[-1] += [found.objective, magnitudes(found.suspects)]
+    for theirs, ours in zip(*told, strict=True):
+        np.testing.assert_array_equal(theirs, ours)
 
 
 def test_slopes_of_its_mass_and_spring_are_differences():
     law, theta, h = TunedLaw(np.array([[2e-3]]), 0.0), np.log([[0.3, 7.0]]), 1e-6
     for q in range(2):
         step = h * np.eye(2)[[q]]
-        for value, slope in ((law.value, law.slope), (law.springs, law.springs_slope)):
+        for value, slope in (
+            (law.value, law.slope(theta, FIRST)),
+            (law.flexibility, law.flexibility_slope(theta)),
+        ):
             numeric = (value(theta + step, FIRST) - value(theta - step, FIRST)) / (2.0 * h)
-            np.testing.assert_allclose(slope(theta, FIRST)[:, q], numeric, rtol=1e-7, atol=1e-9)
+            assert slope[0, q] == pytest.approx(numeric[0, 0], rel=1e-7, abs=1e-12)
 
 
 def test_the_gradient_of_a_fit_is_that_of_its_objective():

@@ -33,7 +33,9 @@ def test_names_are_one_residual_several_or_both():
         residuals_named("mass")
 
 
-def test_a_name_or_key_that_is_taken_is_refused():
+def test_a_name_or_key_that_is_taken_is_refused_and_so_is_no_residual():
+    with pytest.raises(InputError, match="what is registered is given as int"):
+        register_residual(3)
     with pytest.raises(InputError, match="'shapes'"):
         register_residual(RESIDUALS[1])
 
