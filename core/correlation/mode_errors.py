@@ -55,13 +55,8 @@ def with_scatter(
 ) -> ModeErrors:
     """Add the scatter of a test that its user states, the same for all modes and sensors.
 
-    Parameters
-    ----------
-    errors : ModeErrors or None
-        Of the identification, if any.
-    n_sensor, n_test : int
-    frequency, shape : float
-        Standard deviations: of a frequency over itself, of a reading over the rms of its shape.
+    Standard deviations: `frequency` of a frequency over itself, `shape` of a reading over the rms
+    of its shape; `errors` are those of the identification, if any.
 
     Raises
     ------

@@ -48,12 +48,8 @@ def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
 def refuse_unresisted(model: Model | None, pencil: Pencil, sigma: float, f: Factorisation) -> None:
     """Raise `InputError` when A = K - sigma M is singular: a motion with no stiffness or mass.
 
-    Parameters
-    ----------
-    model : Model or None
-        For the message.
-    f : Factorisation
-        Of A. One solve is all it takes, unless the answer is suspicious.
+    One solve with the factor `f` of A is all it takes, unless the answer is suspicious; the model
+    is for the message.
     """
     D = pencil.k_diagonal - sigma * pencil.m_diagonal
     if not (D > 0.0).all():
@@ -117,16 +113,10 @@ def mechanism(
     *,
     massless: bool = False,
 ) -> InputError:
-    """Return the error that names where motions without resistance are.
+    """Return the error that names where motions X (n, n_motion) without resistance are.
 
-    Parameters
-    ----------
-    X : (n, n_motion) float
-        The motions.
-    rigid : (n, n_rigid) float, optional
-        Rigid-body modes: as much of them is taken out as leaves most of the structure at rest.
-    massless : bool
-        Whether the motions have no mass either.
+    Of rigid-body modes (n, n_rigid) as much is taken out as leaves most of the structure at rest;
+    `massless` says whether the motions have no mass either.
     """
     if rigid is not None and rigid.shape[1]:
         X = _least_motion(X, rigid, _lengths(model, pencil.n))
@@ -209,11 +199,7 @@ def refuse_linkage(model: Model, pencil: Pencil, modes: Floats) -> None:
     The free grids of a four-bar linkage go sideways as in the translation of a rigid body; but
     its cranks turn about the ground. No rigid motion moves the free grids so and leaves at rest
     the grids that are held at the other ends of their elements. (A pendulum is a rigid body.)
-
-    Parameters
-    ----------
-    modes : (n_free, n_mode) float
-        Motions without strain energy that count as rigid-body modes.
+    `modes` (n_free, n_mode) are without strain energy and count as rigid-body modes.
 
     Raises
     ------

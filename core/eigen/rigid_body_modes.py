@@ -42,19 +42,9 @@ class RigidBody:
         """Tell motions that are nearly those of a rigid body from mechanisms.
 
         Springs or constraint equations between grids that are not in one place resist a rigid
-        rotation, and let the structure turn in another way that costs nothing.
-
-        Parameters
-        ----------
-        Z : (n_free, k) float
-            M-orthonormal motions without strain energy besides `modes`.
-
-        Returns
-        -------
-        nearly, mechanisms : (n_free, .) float
-            Their span divided, M-orthonormal.
-        replaced : (n_free, .) float
-            The rigid motions that `nearly` stand for.
+        rotation, and let the structure turn in another way that costs nothing. M-orthonormal
+        motions Z (n_free, k) without strain energy besides `modes` are divided into those that are
+        nearly so and mechanisms; with them come the rigid motions that the former stand for.
         """
         M = pencil.M
         G = self.motions - self.modes @ (self.modes.T @ (M @ self.motions))

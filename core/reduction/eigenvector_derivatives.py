@@ -81,15 +81,7 @@ class ShapeDerivatives:
     def of(self, cluster: Ints, changes: Sequence[tuple[sp.csr_matrix, sp.csr_matrix]]) -> Floats:
         """Differentiate a cluster as a subspace, without rotation within.
 
-        Parameters
-        ----------
-        cluster : (n_cluster,) int
-        changes : sequence of (K', M')
-            Derivative matrices by each parameter.
-
-        Returns
-        -------
-        (n_free, n_cluster, n_parameter) float
+        (n_free, n_cluster, n_parameter), from the derivative matrices (K', M') by each parameter.
 
         Raises
         ------

@@ -244,26 +244,12 @@ def static_answers(
     most: int,
     least: float,
 ) -> Floats:
-    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi.
+    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi, (n_free, k).
 
     Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
-    values, compare; of their principal directions those of largest energy are kept.
-
-    Parameters
-    ----------
-    model, p0, solution, targets, parameters
-        As in `reduced.build_reduced`.
-    factor : Factorisation
-        Of A = K - sigma M.
-    most : int
-        Most vectors kept.
-    least : float
-        Least energy of those kept, beside that of a mode, for a factor moved by one.
-
-    Returns
-    -------
-    (n_free, k) float
-        A-orthonormal, A-orthogonal to the modes, k <= `most`.
+    values, compare; of their principal directions at `most` so many are kept, those of largest
+    energy, of at `least` a share of that of a mode for a factor moved by one. A-orthonormal,
+    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes.
     """
     chosen = np.asarray(targets, np.int64)
     span = solution.eigenvalues - solution.sigma

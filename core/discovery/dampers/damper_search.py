@@ -79,25 +79,12 @@ class DamperFound:
 def find_damper(
     e: DampingEvidence, modes: Oriented, u: Floats, sensors: Floats, known: Floats, trials: Floats
 ) -> DamperFound | None:
-    """Weigh a dashpot at every place against none.
+    """Weigh a dashpot at every place against none; None where fewer than five ratios are known.
 
-    Parameters
-    ----------
-    e : DampingEvidence
-    modes : Oriented
-    u : (n_place, n) float
-        Motion of every place in the coordinates of `modes`, along the direction tried there.
-    sensors : (n_sensor, n) float
-        Likewise of the sensors.
-    known : (n, n) float
-        Dashpots that the deck has, on unit modal masses.
-    trials : (n_trial,) float
-        ln of the ratio that the mode which feels a dashpot most gets from it.
-
-    Returns
-    -------
-    DamperFound or None
-        None where fewer than five ratios are known.
+    `u` (n_place, n) is the motion of every place in the coordinates of `modes`, along the direction
+    tried there, `sensors` (n_sensor, n) likewise; `known` (n, n) are dashpots that the deck has, on
+    unit modal masses; `trials` (n_trial,) are ln of the ratio that the mode which feels a dashpot
+    most gets from it.
     """
     chosen = np.flatnonzero(e.known)
     if len(chosen) < DAMPERS.fewest or not len(u):

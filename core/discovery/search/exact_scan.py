@@ -9,25 +9,12 @@ from .search_numbers import SEARCH
 
 
 def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) -> Floats:
-    """Misfit with one more suspect at every place and size, all else as it stands.
+    """Misfit (n, n_trial) with one more suspect at every place and size, all else as it stands.
 
-    Parameters
-    ----------
-    problem : Problem
-        On a basis that holds the lowest modes of `state`.
-    state : Fit
-        As it stands on that basis: on its modes it is diagonal.
-    kind : int
-        Number in the catalogue.
-    rows : (n,) int
-        Places.
-    trials : (n_trial, t) or (n, n_trial, t) float
-        Values of θ, the same everywhere or for each place.
-
-    Returns
-    -------
-    (n, n_trial) float
-        The misfit; each entry is an exact solution of the changed eigenproblem on the basis.
+    The problem stands on a basis that holds the lowest modes of `state`, which on its own modes is
+    diagonal; `kind` is the number in the catalogue, `rows` (n,) are places, `trials` (n_trial, t)
+    or (n, n_trial, t) values of θ, the same everywhere or for each place. Each entry is an exact
+    solution of the changed eigenproblem on the basis.
     """
     U, law = problem.part(kind, rows, state.nuisance)
     own = state.vectors[: problem.basis.size]

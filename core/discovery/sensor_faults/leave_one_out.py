@@ -123,19 +123,11 @@ class Prediction:
 
 
 def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Bools) -> Prediction:
-    """Predict every node from all the other nodes.
+    """Predict every node from all the other nodes, by a span as `Span.seen`.
 
-    Parameters
-    ----------
-    survey : Survey
-    span : Span
-        As `Span.seen`.
-    sigma : float
-        Noise of a reading over the rms of the shape, besides the survey's own errors.
-    width : (n_mode,) float
-        Of ln f: how far off in frequency analysis shapes take part in each test shape.
-    masked : (n_node,) bool
-        Nodes that are left out of the predictions of all others.
+    `sigma` is the noise of a reading over the rms of the shape, besides the survey's own errors;
+    `width` (n_mode,) of ln f how far off in frequency analysis shapes take part in each test shape;
+    nodes that are `masked` (n_node,) are left out of the predictions of all others.
     """
     slots = survey.slots
     there = slots >= 0
