@@ -144,10 +144,7 @@ def _check_single(equations: Equations, fixed: Bools, label: Callable[[int], str
 
 
 def _resolve(
-    chained: sp.csr_matrix,
-    direct: sp.csr_matrix,
-    equations: Equations,
-    label: Callable[[int], str],
+    chained: sp.csr_matrix, direct: sp.csr_matrix, equations: Equations, label: Callable[[int], str]
 ) -> sp.csr_matrix:
     """Solve G = direct + chained G."""
     chained.eliminate_zeros()

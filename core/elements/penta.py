@@ -6,15 +6,7 @@ from ..arrays import Floats
 from ..data.shapes import PENTA, TRIA
 from .batch import transpose, unit
 from .quadrature import gauss_line, gauss_tria, gauss_wedge
-from .solid import (
-    Solid,
-    area_coordinates,
-    energy,
-    in_basis,
-    stacked_edges,
-    strains,
-    with_bubbles,
-)
+from .solid import Solid, area_coordinates, energy, in_basis, stacked_edges, strains, with_bubbles
 
 _SIX, _TWENTY_ONE = gauss_wedge(3, 2), gauss_wedge(7, 3)
 

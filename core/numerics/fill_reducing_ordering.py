@@ -42,10 +42,7 @@ def _minimum_degree(graph: sp.csr_matrix, start: Ints, weight: Ints) -> tuple[In
     dominant.data[:] = -1.0
     dominant = (dominant + sp.diags(np.diff(dominant.indptr) + 1.0)).tocsc()
     lu = spla.splu(
-        dominant,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+        dominant, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
     rank = np.empty(len(start), np.int64)
     rank[start] = lu.perm_c

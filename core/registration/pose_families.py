@@ -186,10 +186,8 @@ def sampled(cloud: Cloud, points: Floats, family: Family, limit: float) -> Poses
 
 def step_of(family: Family, surface: Surface) -> Floats:
     """Coordinate distance of neighbouring samples along each motion, (d,)."""
-    turn, slide = (
-        np.radians(ALIGN.turn_step) * family.radius[0],
-        ALIGN.slide_step * surface.size,
-    )
+    turn = np.radians(ALIGN.turn_step) * family.radius[0]
+    slide = ALIGN.slide_step * surface.size
     return np.where(family.turning, turn, slide)
 
 

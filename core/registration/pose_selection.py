@@ -145,11 +145,8 @@ def _explore(judge: _Judge, family: Family, samples: Poses) -> list[_Peak]:
         best, value = _climb(family, where[top], values[top], step, judge.worth)
         apart = _offsets(family, where - best)
         alike = values >= value - judge.margin(value) if judge.scorer else left
-        far = np.where(
-            family.turning,
-            np.radians(ALIGN.open_turn) * family.radius[0],
-            ALIGN.open_slide * size,
-        )
+        turn = np.radians(ALIGN.open_turn) * family.radius[0]
+        far = np.where(family.turning, turn, ALIGN.open_slide * size)
         gap = step * np.where(family.turning, ALIGN.gap_turn, ALIGN.gap_slide)
         reach, blur = _reach(apart, gap), _reach(apart[alike], gap)
         loose = tuple(np.flatnonzero(reach > far))
@@ -223,12 +220,8 @@ def _ranked(found: list[_Peak], points: Floats, size: float, scored: bool) -> Ch
             kept.append(e)
     top = kept[0].best.score or 0.0
     alike = [e for e in kept if not scored or (e.best.score or 0.0) >= top - margin_of(top)]
-    alike.sort(
-        key=lambda e: (
-            round(e.best.angle / np.radians(ALIGN.same_angle)),
-            -(e.best.score or 0.0),
-        )
-    )
+    step = np.radians(ALIGN.same_angle)
+    alike.sort(key=lambda e: (round(e.best.angle / step), -(e.best.score or 0.0)))
     ranked = alike + [e for e in kept if e not in alike]
     ambiguity = _in_words(ranked, len(alike), scored)
     decided = len(alike) == 1 and not ranked[0].flat

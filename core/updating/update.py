@@ -158,12 +158,7 @@ def _work_off(
 
 
 def _walk(
-    objective: Objective,
-    near: Order,
-    start: State,
-    stage: Stage,
-    most: int,
-    tolerance: float,
+    objective: Objective, near: Order, start: State, stage: Stage, most: int, tolerance: float
 ) -> tuple[list[State], Stop | None]:
     """Iterate on a reduced model; return the states and why it ended, None if it should go on."""
     state = objective.at(near, start.factors, stage.minimised)

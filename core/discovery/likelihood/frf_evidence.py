@@ -46,10 +46,7 @@ def place_responses(
             f"{'references' if len(rows) else 'sensors'} do not lie on the model",
         )
     whole = replace(
-        frfs,
-        responses=at.sensors,
-        references=by.sensors,
-        values=frfs.values * placed.length_factor,
+        frfs, responses=at.sensors, references=by.sensors, values=frfs.values * placed.length_factor
     )
     return Responses(whole.at(rows, columns), at.matrix[rows], by.matrix[columns]), ()
 
