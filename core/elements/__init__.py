@@ -4,8 +4,6 @@ An element is one file that declares its facts in an `Element`, and one line her
 `register_element` adds one from outside.
 """
 
-from __future__ import annotations
-
 from ..errors import InputError, require_kind
 from .bar import BAR, ROD
 from .beam import BEAM

@@ -1,7 +1,5 @@
 """The kinds of effects: one module each, one list."""
 
-from __future__ import annotations
-
 from ...errors import InputError, require_kind
 from . import (
     distributed_mass,
