@@ -52,11 +52,6 @@ class Factor:
         )
 
 
-def proportional(parameter: int, lower: float, upper: float) -> Factor:
-    """Return the factor that equals its parameter."""
-    return Factor(parameter, ((lower + upper) / 2.0, (upper - lower) / 2.0), lower, upper)
-
-
 @dataclass(frozen=True, eq=False)
 class Term(Noun):
     """A constant symmetric sparse matrix times a product of factors (none: constant)."""

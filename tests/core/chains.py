@@ -5,7 +5,7 @@ import scipy.sparse as sp
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
-from trueup.core.data.parametric_model import Model, Term
+from trueup.core.data.parametric_model import Factor, Model, Term
 
 
 def chain(n, k=1.0, m=1.0, ground=0.0):
@@ -25,3 +25,8 @@ def scalar_model(K, M):
     dofs = Dofs(np.arange(1, n + 1), np.ones(n, int))
     none = Geometry(np.zeros(0, int), np.zeros((0, 3)))
     return Model(none, dofs, sp.identity(n, format="csr"), (Term(K),), (Term(M),))
+
+
+def proportional(parameter: int, lower: float, upper: float) -> Factor:
+    """Return the factor that equals its parameter."""
+    return Factor(parameter, ((lower + upper) / 2.0, (upper - lower) / 2.0), lower, upper)

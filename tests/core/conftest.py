@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from tests.core.chains import proportional
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.parameter import Parameter
-from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.data.parametric_model import Model, Term
 from trueup.core.numerics.factorisation import best_backend
 
 

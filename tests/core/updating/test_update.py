@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from tests.core.chains import proportional
 
 from trueup.core.correlation.mode_pairing import Criteria
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.parameter import Parameter
-from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.data.parametric_model import Model, Term
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 from trueup.core.reduction import full_or_reduced

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.polynomial import chebyshev
+from tests.core.chains import proportional
 
-from trueup.core.data.parametric_model import Factor, Term, proportional
+from trueup.core.data.parametric_model import Factor, Term
 from trueup.core.discovery.reduction.residual_flexibility import (
     Compliance,
     Flexibility,

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from tests.core.chains import proportional
 
 from trueup.core.assembly.element_assembly import ElementBlock
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.parameter import Parameter
-from trueup.core.data.parametric_model import Model, Term, proportional
+from trueup.core.data.parametric_model import Model, Term
 from trueup.core.discovery.reduction.elements_and_supports import Members, Structure
 from trueup.core.discovery.screening.parameter_screening import noticeable, shifts, tied
 from trueup.core.discovery.screening.screening_numbers import SCREENING
