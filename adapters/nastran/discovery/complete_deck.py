@@ -83,17 +83,10 @@ def complete(
     changed = ChangedDeck.of(original, text)
     again = read_back(changed, n_modes)
     sound = sound_test(placed, found, model.dofs, again.model.dofs)
-    after = compare(
-        again.model.geometry,
-        modes_of(again.model, again.solution),
-        sound,
-        criteria,
-        again.solution.rigid_body_modes,
-    )
-    damping = free_damping(again.deck, again.model)
-    return CompletedDeck(
-        changed, SolvedModel(after, again.solution, damping), _standing(cards, text), tuple(refused)
-    )
+    modes, rigid = modes_of(again.model, again.solution), again.solution.rigid_body_modes
+    after = compare(again.model.geometry, modes, sound, criteria, rigid)
+    solved = SolvedModel(after, again.solution, free_damping(again.deck, again.model))
+    return CompletedDeck(changed, solved, _standing(cards, text), tuple(refused))
 
 
 def _moved(
