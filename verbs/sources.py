@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..core.errors import InputError, Place, naming, path_of
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
     from ..core.data.geometry import Geometry
     from ..core.data.parametric_model import Model
 
@@ -69,13 +70,17 @@ def read_deck(source: Source) -> Deck:
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
     from ..adapters.nastran import Deck, read_deck as read
-    from ..adapters.nastran.editing.changed_deck import ChangedDeck
 
     if isinstance(source, Deck):
         return source
-    if isinstance(source, ChangedDeck):
-        return read(source.text)
-    return read(file_or_pynastran(source, "a deck"))
+    return read(source.text if is_changed(source) else file_or_pynastran(source, "a deck"))
+
+
+def is_changed(source: Source) -> TypeGuard[ChangedDeck]:
+    """Tell the changed deck of a result."""
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+
+    return isinstance(source, ChangedDeck)
 
 
 def read_test(source: Source) -> Measurement:

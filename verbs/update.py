@@ -158,16 +158,11 @@ def _written(
     from ..adapters.nastran import read_value, set_values
     from ..adapters.nastran.assembly.read_back import read_back
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
+    from ..adapters.nastran.fields.parameter_references import moved
 
     assert analysis.deck is not None
     original = analysis.deck.text
-    moved = zip(analysis.specs, analysis.model.parameters, done.factors, strict=True)
-    wanted = {
-        ref: value * float(factor)
-        for spec, parameter, factor in moved
-        for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
-        if abs(factor - 1.0) > 1e-12
-    }
+    wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
     changed = ChangedDeck.of(original, set_values(original, wanted))
     target = done.after.solution.eigenvalues
     again = read_back(changed, len(target)).solution
