@@ -38,8 +38,11 @@ class Folder(Tables):
         return path
 
     def fill(self, work: Path) -> None:
-        """Write everything that the run folder holds into an empty one."""
-        raise NotImplementedError
+        """Write everything that the run folder holds into an empty one; here the tables."""
+        from ..adapters.run_folder.write_run import write_json
+
+        write_json(work / "result.json", self.to_dict())
+        self.write_tables(work / "tables")
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:

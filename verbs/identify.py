@@ -76,15 +76,13 @@ class Identified(IdentifyTables, Folder):
 
     def fill(self, work: Path) -> None:
         """Write everything that the run folder of an identification holds."""
-        from ..adapters.run_folder.write_run import write_json
         from ..adapters.store import write_store
 
+        super().fill(work)
         if self.modes:
             self.write(work / "modes.unv")
             self.write(work / "modes_complex.unv", complex_shapes=True)
         write_store(work / "result.h5", **vars(self.content))
-        write_json(work / "result.json", self.to_dict())
-        self.write_tables(work / "tables")
         (work / "stabilisation.html").write_text(self.page, encoding="utf-8")
 
     @classmethod

@@ -60,19 +60,16 @@ class Run(RunTables, Folder):
 
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
-        from ..adapters.run_folder.write_run import write_json
         from ..adapters.store import write_store
         from .report import render
 
-        content = self.content
+        super().fill(work)
         diff = None
         if self.deck is not None:
             self.deck.write(work / "deck")
             diff = self.deck.diff
             (work / "changes.diff").write_text(diff, encoding="utf-8", newline="")
-        write_store(work / "result.h5", **vars(content))
-        write_json(work / "result.json", self.to_dict())
-        self.write_tables(work / "tables")
+        write_store(work / "result.h5", **vars(self.content))
         study = replace(
             self.study,
             deck=self.study.deck and self.study.deck.absolute(),
@@ -80,7 +77,7 @@ class Run(RunTables, Folder):
             modes=self.study.modes and self.study.modes.absolute(),
         )
         (work / "study.toml").write_text(study_toml(study), encoding="utf-8")
-        (work / "report.html").write_text(render(self, content, diff), encoding="utf-8")
+        (work / "report.html").write_text(render(self, self.content, diff), encoding="utf-8")
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:

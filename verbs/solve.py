@@ -69,11 +69,8 @@ class Solved(SolveTables, Folder):
 
     def fill(self, work: Path) -> None:
         """Write everything that the run folder of a solution holds."""
-        from ..adapters.run_folder.write_run import write_json
-
         self.write(work / "result.h5")
-        write_json(work / "result.json", self.to_dict())
-        self.write_tables(work / "tables")
+        super().fill(work)
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:

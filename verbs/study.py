@@ -6,7 +6,7 @@ import dataclasses
 import numbers
 import os
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -222,10 +222,13 @@ def _checked(table: Mapping[str, object], fields: Mapping[str, Any], who: Place)
 
 def unknown(name: str, known: Iterable[str]) -> str:
     """Say that a key is not known, and which may have been meant."""
-    near = get_close_matches(name, known := list(known), n=1)
-    return f"unknown key '{name}'" + (
-        f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(known)}"
-    )
+    return f"unknown key '{name}'{meant(name, list(known))}"
+
+
+def meant(name: str, known: Sequence[str]) -> str:
+    """Return the end of a sentence: which name may have been meant, or all that are known."""
+    near = get_close_matches(name, known, n=1)
+    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(known)}"
 
 
 def _converted(name: str, value: object, kind: Any, who: Place) -> Any:

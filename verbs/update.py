@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
@@ -23,7 +22,7 @@ from .analysis import Analysis, both_given, correlated, named, read_analysis
 from .options import Files, Say, UpdateOptions, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
-from .study import Study
+from .study import Study, meant
 
 if TYPE_CHECKING:
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
@@ -159,16 +158,11 @@ def _written(
     from ..adapters.nastran import read_value, set_values
     from ..adapters.nastran.assembly.read_back import read_back
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
+    from ..adapters.nastran.fields.parameter_references import moved
 
     assert analysis.deck is not None
     original = analysis.deck.text
-    moved = zip(analysis.specs, analysis.model.parameters, done.factors, strict=True)
-    wanted = {
-        ref: value * float(factor)
-        for spec, parameter, factor in moved
-        for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
-        if abs(factor - 1.0) > 1e-12
-    }
+    wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
     changed = ChangedDeck.of(original, set_values(original, wanted))
     target = done.after.solution.eigenvalues
     again = read_back(changed, len(target)).solution
@@ -207,6 +201,5 @@ def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, 
 def _number(name: str, names: Sequence[str]) -> int:
     if name in names:
         return names.index(name)
-    near = get_close_matches(name, names, n=1)
-    hint = f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(names)}"
-    raise InputError(f"a stage names the parameter '{name}', which the study does not define{hint}")
+    lacks = f"a stage names the parameter '{name}', which the study does not define"
+    raise InputError(lacks + meant(name, names))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,9 @@ def test_what_an_identification_saved_is_opened_again(file: Path, tmp_path: Path
     twice = again.save(tmp_path / "again")
     for path in folder.iterdir():
         if path.is_file() and path.suffix != ".h5":
-            assert (twice / path.name).read_bytes() == path.read_bytes(), path.name
+            both = ((f / path.name).read_bytes() for f in (folder, twice))
+            there, back = (re.sub(rb"\d\d-\w{3}-\d\d \d\d:\d\d:\d\d", b"", x) for x in both)
+            assert there == back, path.name
     modes = read_universal([found.write(tmp_path / "modes.unv")]).modes
     assert modes is not None
     assert modes.frequencies_hz == pytest.approx(HZ, rel=1e-3)

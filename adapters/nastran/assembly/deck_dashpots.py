@@ -13,7 +13,7 @@ from ....core.assembly.affine_terms import parametric_terms
 from ..cards import FAMILIES, Context, Settings
 from ..deck.read_deck import Deck
 from ..properties.grids import read_points
-from .build_model import element_block
+from .deck_elements import element_block
 from .variation import read_variation
 
 

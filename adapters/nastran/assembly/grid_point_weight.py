@@ -10,7 +10,7 @@ from ....core.arrays import Floats
 from ....core.assembly.element_assembly import Members, Recipe, assemble
 from ....core.noun import Noun
 from ..deck.read_deck import Deck
-from .build_model import read_structure
+from .deck_elements import read_structure
 from .variation import read_variation
 
 

@@ -61,23 +61,14 @@ def _supports(whole: Assembly, displacement: sp.csr_matrix) -> Supports | None:
     if not len(live):
         return None
     own = held[live]
-    among = [t.matrix[own][:, own] for t in stiffness]
+    among, none = [(t, t.matrix[own][:, own]) for t in stiffness], sp.csr_matrix((len(own),) * 2)
     slopes = tuple(
-        sum(
-            (t.coefficient_derivative(p, k) * A for t, A in zip(stiffness, among, strict=True)),
-            sp.csr_matrix((len(own), len(own))),
-        ).tocsr()
+        sum((t.coefficient_derivative(p, k) * A for t, A in among), none).tocsr()
         for k in range(len(p))
     )
-    return Supports(
-        points.ids[own // 6],
-        own % 6 + 1,
-        points.xyz[own // 6],
-        _axes(points, own),
-        root[live],
-        coupling[live][:, live],
-        slopes,
-    )
+    grid, component = own // 6, own % 6 + 1
+    held_by = root[live], coupling[live][:, live], slopes
+    return Supports(points.ids[grid], component, points.xyz[grid], _axes(points, own), *held_by)
 
 
 def _axes(points: Points, dofs: Ints) -> Floats:

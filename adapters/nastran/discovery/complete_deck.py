@@ -14,7 +14,7 @@ from ..assembly.read_back import read_back
 from ..deck.read_deck import Deck
 from ..editing.changed_deck import ChangedDeck
 from ..editing.set_values import set_values
-from ..fields.parameter_references import ParameterSpec
+from ..fields.parameter_references import ParameterSpec, moved
 from ..text.deck_text import DeckText
 from .build_structure import free_damping
 from .write_effect import adopt
@@ -83,32 +83,20 @@ def complete(
     changed = ChangedDeck.of(original, text)
     again = read_back(changed, n_modes)
     sound = sound_test(placed, found, model.dofs, again.model.dofs)
-    after = compare(
-        again.model.geometry,
-        modes_of(again.model, again.solution),
-        sound,
-        criteria,
-        again.solution.rigid_body_modes,
-    )
-    damping = free_damping(again.deck, again.model)
-    return CompletedDeck(
-        changed, SolvedModel(after, again.solution, damping), _standing(cards, text), tuple(refused)
-    )
+    modes, rigid = modes_of(again.model, again.solution), again.solution.rigid_body_modes
+    after = compare(again.model.geometry, modes, sound, criteria, rigid)
+    solved = SolvedModel(after, again.solution, free_damping(again.deck, again.model))
+    return CompletedDeck(changed, solved, _standing(cards, text), tuple(refused))
 
 
 def _moved(
     text: DeckText, specs: Sequence[ParameterSpec], model: Model, found: Discovery
 ) -> DeckText:
     """Return the deck with the known properties that moved."""
-    moved = {
-        ref: plain(value * factor)
-        for m in found.parameters
-        if (factor := written_factor(found.verdict, m)) != 1.0
-        for ref, value in zip(
-            specs[m.number].fields, model.parameters[m.number].deck_values, strict=True
-        )
-    }
-    return set_values(text, moved) if moved else text
+    factors = [written_factor(found.verdict, m) for m in found.parameters]
+    known = [m.number for m in found.parameters]
+    values = moved([specs[k] for k in known], [model.parameters[k] for k in known], factors)
+    return set_values(text, {ref: plain(value) for ref, value in values.items()})
 
 
 def _standing(cards: Sequence[tuple[str, ...]], text: DeckText) -> tuple[tuple[str, ...], ...]:

@@ -10,7 +10,7 @@ from ....core.discovery.reduction.elements_and_supports import Structure
 from ....core.discovery.screening.parameter_screening import noticeable, shifts, tied
 from ....core.eigen.normal_modes import Eigensolution
 from ....core.errors import InputError
-from ..assembly.build_model import read_structure
+from ..assembly.deck_elements import read_structure
 from ..assembly.variation import read_variation, value_of
 from ..deck.read_deck import Deck
 from ..fields.layouts import movable

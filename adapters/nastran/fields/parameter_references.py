@@ -2,8 +2,10 @@
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ....core.data.parameter import Parameter
 from ....core.errors import InputError
 from .layouts import canonical_field
 
@@ -78,6 +80,18 @@ class ParameterSpec:
             )
         if not (math.isfinite(self.weight) and self.weight > 0.0):
             raise InputError(f"parameter {self.name!r}: the weight must be a positive number")
+
+
+def moved(
+    specs: Iterable[ParameterSpec], parameters: Iterable[Parameter], factors: Iterable[float]
+) -> dict[FieldRef, float]:
+    """Return the values of the fields of parameters whose factor is not 1."""
+    return {
+        ref: value * float(factor)
+        for spec, parameter, factor in zip(specs, parameters, factors, strict=True)
+        for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
+        if abs(factor - 1.0) > 1e-12
+    }
 
 
 def parse_field(text: str) -> FieldRef:

@@ -16,7 +16,7 @@ from ..deck_reader import read_deck
 from ..editing.add_cards import add_cards
 from ..editing.set_values import set_values
 from ..editing.write_deck import write_deck
-from ..fields.parameter_references import ParameterSpec, parse_parameter
+from ..fields.parameter_references import ParameterSpec, moved, parse_parameter
 from ..text.deck_text import read_deck_text
 from ..text.real_numbers import writable
 from .dmig import read_dmig
@@ -69,14 +69,8 @@ def write_runs(path: Path | str, specs: Sequence[ParameterSpec], out: Path | str
         text = add_cards(text, [_REQUEST], _WHY)
     runs = []
     for number, point in enumerate(design.points):
-        values = {
-            ref: value * float(factor)
-            for spec, parameter, factor in zip(specs, design.parameters, point, strict=True)
-            for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
-            if factor != 1.0
-        }
-        folder = out / f"run_{number:03d}"
-        top = write_deck(set_values(text, values), folder)
+        values = moved(specs, design.parameters, point)
+        top = write_deck(set_values(text, values), out / f"run_{number:03d}")
         runs.append({"deck": top.relative_to(out.absolute()).as_posix(), "factors": point.tolist()})
     index = {
         "schema": RUNS_SCHEMA,

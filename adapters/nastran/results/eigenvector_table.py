@@ -5,15 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....core.arrays import (
-    Bools,
-    Floats,
-    Ints,
-    Numbers,
-    hold,
-    require_finite,
-    require_shape,
-)
+from ....core.arrays import Bools, Floats, Ints, Numbers, hold, require_finite, require_shape
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

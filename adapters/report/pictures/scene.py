@@ -73,12 +73,12 @@ def scene(
         shots.append(_shot(fine, isometric(behind=True), marks, most))
     elsewhere = np.any([s.visible for s in shots], axis=0)
     names = ["from the front", "from behind"] if len(shots) > 1 else [""]
-    pictures = []
+    size, pictures = (width, height), []
     for shot, name in zip(shots, names, strict=True):
         shown = [m.role != "sensor" or v or not e
                  for m, v, e in zip(marks, shot.visible, elsewhere, strict=True)]  # fmt: skip
         label = ", ".join(t for t in (told, name) if t)
-        pictures.append(_picture(fine, shot, marks, shown, values, label, name, width, height))
+        pictures.append(_picture(fine, shot, size, label, marks, shown, values, name))
     caption = tag("figcaption", tag("b", esc(title)))
     return tag("figure", caption, tag("div", *pictures, class_="row"))
 
@@ -87,7 +87,7 @@ def still(mesh: DrawnMesh, title: str, values: Floats, width: int = 480, height:
     """Return one view of a mesh, its faces coloured by values of 0..1 at its rows."""
     plain = replace(mesh, node_of=np.arange(len(mesh.xyz)))
     shot = _shot(plain, isometric(), [], len(mesh.faces) + len(mesh.lines))
-    return _picture(plain, shot, [], [], values, title, "", width, height)
+    return _picture(plain, shot, (width, height), title, values=values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,25 +115,22 @@ def _shot(fine: DrawnMesh, view: View, marks: Sequence[Mark], most: int) -> _Sho
 def _picture(
     fine: DrawnMesh,
     shot: _Shot,
-    marks: Sequence[Mark],
-    shown: Sequence[bool],
-    values: Floats | None,
+    size: tuple[int, int],
     label: str,
-    name: str,
-    width: int,
-    height: int,
+    marks: Sequence[Mark] = (),
+    shown: Sequence[bool] = (),
+    values: Floats | None = None,
+    name: str = "",
 ) -> str:
     view = shot.view
-    page = _Page.around(view.project(fine.xyz), marks, view, width, height)
+    page = _Page.around(view.project(fine.xyz), marks, view, *size)
     drawn = [
         (visible, _mark(mark, view, page, fine.size))
         for mark, visible, show in zip(marks, shot.visible, shown, strict=True)
         if show
     ]
-    coarse = len(shot.mesh.xyz) < len(fine.xyz)
-    body = tag(
-        "g", _mesh(shot.mesh, view, page, values), class_="coarse mesh" if coarse else "mesh"
-    )
+    kind = "coarse mesh" if len(shot.mesh.xyz) < len(fine.xyz) else "mesh"
+    body = tag("g", _mesh(shot.mesh, view, page, values), class_=kind)
     hidden = "".join(m for visible, m in drawn if not visible)
     body += tag("g", hidden, class_="hidden") if hidden else ""
     body += "".join(m for visible, m in drawn if visible) + _triad(view, page)

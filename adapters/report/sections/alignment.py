@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ....core.arrays import Floats
 from ....core.results.correlation import RunTables
 from ....core.results.discovery import DiscoverTables
 from ..html.markup import esc, tag
@@ -18,6 +17,7 @@ def _render(run: ReportedRun[RunTables]) -> str:
     unit = f" {geometry.length_unit}" if geometry is not None and geometry.length_unit else ""
     move = ", ".join(general(0.0 if abs(v) < 1e-9 else v, 4) for v in found.translation)
     nodes = {s.node for s in found.sensors}
+    turned = np.degrees(np.arccos(np.clip((np.trace(found.rotation) - 1.0) / 2.0, -1.0, 1.0)))
     facts = (
         ("sensors", f"{len(found.sensors)} at {len(nodes)} nodes"),
         ("farthest from the model",
@@ -25,7 +25,7 @@ def _render(run: ReportedRun[RunTables]) -> str:
         ("rms distance", f"{general(found.rms, 3)}{unit}"),
         ("scale, test to deck", general(found.scale, 6)),
         ("translation", f"{move}{unit}"),
-        ("rotation", f"{fixed(_turn(found.rotation), 2)}°"),
+        ("rotation", f"{fixed(float(turned), 2)}°"),
     )  # fmt: skip
     strip = "".join(tag("div", tag("dt", esc(k)), tag("dd", esc(v))) for k, v in facts)
     body = tag("dl", strip, class_="facts")
@@ -34,11 +34,6 @@ def _render(run: ReportedRun[RunTables]) -> str:
     marks = marks_on_structure.sensors(found.sensors, geometry)
     picture = scene(geometry, "Sensors on the model", marks=marks) if marks else ""
     return tag("div", picture, body, class_="row")
-
-
-def _turn(rotation: Floats) -> float:
-    """Angle of a rotation matrix (3, 3), degrees."""
-    return float(np.degrees(np.arccos(np.clip((np.trace(rotation) - 1.0) / 2.0, -1.0, 1.0))))
 
 
 ALIGNMENT = Section("Alignment and sensors", "alignment", RunTables, render=_render)

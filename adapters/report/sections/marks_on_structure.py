@@ -34,14 +34,11 @@ def findings(
 ) -> list[Mark]:
     """Return effects and faults at their places, numbered, after the places that do as well."""
     at_sensor = {m.name: m.xyz for m in sensor_marks}
-    credible: list[Mark] = []
-    numbered: list[Mark] = []
+    credible, numbered = list[Mark](), list[Mark]()
     for k, f in enumerate(found, 1):
         if f.side == "test":
-            named = map(str, f.where.sensors or ())
-            numbered += [
-                Mark(at_sensor[s], "fault", f.sentence, str(k)) for s in named if s in at_sensor
-            ]
+            there = [at_sensor[s] for s in map(str, f.where.sensors or ()) if s in at_sensor]
+            numbered += [Mark(xyz, "fault", f.sentence, str(k)) for xyz in there]
             continue
         numbered.append(Mark(np.array(f.where.xyz), "effect", f.sentence, str(k)))
         note = f"explains the data about as well as {k}"

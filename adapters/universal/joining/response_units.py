@@ -11,21 +11,10 @@ from ..datasets.functions import Head58
 MOTION = {8: "displacement", 11: "velocity", 12: "acceleration"}
 DERIVATIVE = {"displacement": 0, "velocity": 1, "acceleration": 2}
 _MOTION_UNITS = {
-    "m/s^2": ("acceleration", 1.0),
-    "mm/s^2": ("acceleration", 1e-3),
-    "in/s^2": ("acceleration", 0.0254),
-    "ft/s^2": ("acceleration", 0.3048),
-    "g": ("acceleration", 9.80665),
-    "gn": ("acceleration", 9.80665),
-    "m/s": ("velocity", 1.0),
-    "mm/s": ("velocity", 1e-3),
-    "in/s": ("velocity", 0.0254),
-    "ft/s": ("velocity", 0.3048),
-    "m": ("displacement", 1.0),
-    "mm": ("displacement", 1e-3),
-    "um": ("displacement", 1e-6),
-    "in": ("displacement", 0.0254),
-    "ft": ("displacement", 0.3048),
+    **{unit: ("displacement", size) for unit, size in (*METRES.items(), ("um", 1e-6))},
+    **{f"{unit}/s": ("velocity", size) for unit, size in METRES.items()},
+    **{f"{unit}/s^2": ("acceleration", size) for unit, size in METRES.items()},
+    **dict.fromkeys(("g", "gn"), ("acceleration", 9.80665)),
 }
 _FORCE_UNITS = {"n": 1.0, "kn": 1e3, "lbf": 4.4482216152605, "lb": 4.4482216152605}
 _PER_FORCE = re.compile(r"/\s*\(?(kN|N|lbf?)\)?\s*$")
