@@ -111,19 +111,6 @@ def strip_stiffness(D: Floats, direction: Floats) -> tuple[Floats, Floats]:
     return D1, D2
 
 
-def bending_scale(D: Floats) -> Floats:
-    """1 / sqrt of the bending stiffness along element x and y, (n, 2); 0 without bending."""
-    diagonal = np.stack([D[:, 0, 0], D[:, 1, 1]], axis=1)
-    positive = diagonal > 0.0
-    return np.where(positive, 1.0 / np.sqrt(np.where(positive, diagonal, 1.0)), 0.0)
-
-
-def residual_flexibility(edges: Floats, scale: Floats) -> Floats:
-    """Z_b = sum(e e^T) / (24 D), (n, 2, 2), of triangles, from edges and `bending_scale`."""
-    e = edges * scale[:, None, :]
-    return np.asarray(transpose(e) @ e / 24.0)
-
-
 def finite_shear(section: ShellSection, size: Floats) -> Floats:
     """S with "infinite" replaced by a number that is large beside 12 D / size**2."""
     rigid = np.isinf(section.S).any(axis=(1, 2))

@@ -10,13 +10,7 @@ from .batch import arms, congruent, translations, transpose, unit
 from .element import Element
 from .normals import director_slopes, normal_map
 from .quad4 import add_drilling, add_plate, edge_shear_operator
-from .section import (
-    ShellSection,
-    bending_scale,
-    finite_shear,
-    residual_flexibility,
-    shell_stiffness,
-)
+from .section import ShellSection, finite_shear, shell_stiffness
 
 _NODE = 6 * np.arange(3)
 _MEMBRANE = np.concatenate([_NODE, _NODE + 1])
@@ -148,11 +142,12 @@ def _add_plane(K: Floats, section: ShellSection, g: Floats, area: Floats) -> Non
 
 
 def _add_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats) -> None:
-    scale = bending_scale(section.D)
-    bends = scale.all(axis=1)
+    D = np.stack([section.D[:, 0, 0], section.D[:, 1, 1]], axis=1)
+    bends = (D > 0.0).all(axis=1)
+    e = edge * (1.0 / np.sqrt(np.where(D > 0.0, D, 1.0)))[:, None, :]
     S = finite_shear(section, np.sqrt(area))
     S = np.where(bends[:, None, None], S, np.eye(2))
-    Z = np.linalg.inv(S) + residual_flexibility(edge, scale)
+    Z = np.linalg.inv(S) + transpose(e) @ e / 24.0  # the residual bending flexibility
     add_edge_shears(K, edge, area * bends, Z, 0.5 * np.einsum("nii->n", Z))
 
 
