@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..eigen.normal_modes import Checks
-from ..identification.result import Identification
 from ..noun import key
 from .plain import Table, Tables
+
+if TYPE_CHECKING:
+    from ..identification.result import Identification
 
 _HZ = {"unit": "Hz"}
 
