@@ -16,7 +16,7 @@ from ..core.data.frfs import Frfs
 from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
 from ..core.noun import BESIDE
-from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_rows
+from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_rows, rejected_rows
 from .folder import Folder
 from .options import Say, checked_call, unheard
 from .sources import Source, existing, files_of
@@ -144,6 +144,7 @@ def identify(
     return Identified(
         frf=tuple(map(str, files)),
         modes=mode_rows(found),
+        rejected=rejected_rows(found),
         references=place_rows(found.references),
         responses=place_rows(found.modes.dofs),
         bands=band_rows(found),

@@ -47,6 +47,7 @@ def stabilisation_page(
         warned(said),
         stabilisation_chart(found),
         html_table(modes_table(found)) if n else "",
+        html_table(rejected_table(found)) if found.rejected else "",
         tag("footer", "trueup · trueup/identify/1"),
     )
     return html_page(title or "identification", body)
@@ -116,6 +117,14 @@ def modes_table(found: Identification) -> Table:
         "component is 1, and is known where a driving point was measured."
     )
     return Table.of("Identified modes", (*named, *left("remark")), rows, note)
+
+
+def rejected_table(found: Identification) -> Table:
+    """Return what was considered and is not among the modes."""
+    rows = (
+        (hz(r.frequency_hz), fixed(100.0 * r.damping_ratio, 3), r.reason) for r in found.rejected
+    )
+    return Table.of("Considered and rejected", ("Hz", "damping %", *left("reason")), rows)
 
 
 def _frequencies(plot: Plot) -> str:

@@ -67,6 +67,8 @@ def identify(
     if verbose:
         bands = (f"{b.low_hz:.5g} to {b.high_hz:.5g} Hz" for b in found.bands)
         tell(output, "band", bands)
+        out_of = ((f"{r.frequency_hz:.2f} Hz", 100 * r.damping_ratio, r) for r in found.rejected)
+        tell(output, "rejected", (f"{hz}, {z:.2f} %: {r.reason}" for hz, z, r in out_of))
         tell(output, "skipped", (f"{s.what} at line {s.line}: {s.why}" for s in found.skipped))
     marked = ((k, m) for k, m in enumerate(found.modes, 1) if m.remark)
     poor = (f"mode {k} ({m.frequency_hz:.2f} Hz): {m.remark}" for k, m in marked)
@@ -92,4 +94,5 @@ def _headline(found: Identified) -> str:
     of += counted(len(found.references), "reference")
     poor = sum(bool(m.remark) for m in modes)
     marked = f"; {poor} marked as poor" if poor else ""
-    return f"{many} between {low:.4g} and {high:.4g} Hz from {of}{marked}."
+    left = f"; {len(found.rejected)} more considered and rejected" if found.rejected else ""
+    return f"{many} between {low:.4g} and {high:.4g} Hz from {of}{marked}{left}."

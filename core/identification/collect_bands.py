@@ -10,8 +10,10 @@ from ..data.modes import Modes
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, collect, physical
 from .poles.band_sweeps import BandFit
+from .poles.pole_candidates import Proposal
 from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
+from .rejected import rejected
 from .remarks import of_leakage, of_modes, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .survey.driving_points import driving_points, scale
@@ -25,7 +27,7 @@ from .uncertainty.standard_errors import frequency_and_damping_errors
 def assemble(
     survey: Survey,
     fits: tuple[BandFit, ...],
-    charts: tuple[Chart, ...],
+    proposals: tuple[Proposal, ...],
     geometry: Geometry | None = None,
 ) -> Identification:
     """Bring the modes of all bands into physical units, judge them, find their scale.
@@ -34,8 +36,8 @@ def assemble(
     ----------
     survey : Survey
     fits : tuple of BandFit
-    charts : tuple of Chart
-        Stabilisation of each band.
+    proposals : tuple of Proposal
+        Of each band.
     geometry : Geometry, optional
         For driving points under two numbers.
     """
@@ -76,7 +78,8 @@ def assemble(
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
         remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
-        chart=_joined_chart(fits, charts),
+        rejected=rejected(fits, proposals),
+        chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
         cmif=_cmif(survey),
         quantity=survey.quantity,
         warnings=tuple(warnings),

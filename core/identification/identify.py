@@ -72,8 +72,7 @@ def identify(
     fits = fit_range(survey, bands, proposals)
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
-    charts = tuple(p.chart for p in proposals)
-    return assemble(survey, fits, charts, geometry)
+    return assemble(survey, fits, proposals, geometry)
 
 
 def _count(lines: Floats, band: Band) -> int:

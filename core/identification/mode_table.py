@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Bools, Floats, Numbers
 from .poles.band_sweeps import BandFit
+from .poles.significance import significance
 from .survey.real_shapes import known_components, real_shapes, turned_to_principal_phase
 from .survey.survey_data import Survey
 from .survey.survey_numbers import SURVEY
@@ -56,7 +57,7 @@ def collect(fits: tuple[BandFit, ...]) -> ModeTable:
             f, c = b.fit, b.core
             parts.append(
                 (f.poles[c], f.participation[:, c], f.shapes[:, c], (e.poles + of_model)[c],
-                 e.shapes[:, c], b.significance[c], blurred[c])
+                 e.shapes[:, c], significance(b.data, b.frequencies_hz, f)[c], blurred[c])
             )  # fmt: skip
     n_output, n_input = fits[0].data.weight.shape
     empty = (

@@ -12,6 +12,7 @@ from ..data.frfs import Frfs
 from ..data.modes import Modes
 from ..noun import Noun
 from .poles.pole_stabilisation import Chart
+from .rejected import Rejected
 from .survey.modal_synthesis import modal_response
 from .survey.mode_indicator import Band
 from .survey.survey_numbers import SURVEY
@@ -93,6 +94,8 @@ class Identification(Noun):
         Share of each real shape in the rigid-body motions of the sensors; NaN unknown.
     remarks : tuple of str
         One per mode; empty for a mode without reproach.
+    rejected : tuple of Rejected
+        What was considered and is not among the modes.
     bands : tuple of Background
         Bands fitted, with their residual terms.
     chart : Chart
@@ -118,6 +121,7 @@ class Identification(Noun):
     close_pair_possible: Numbers
     rigid_share: Floats
     remarks: tuple[str, ...]
+    rejected: tuple[Rejected, ...]
     bands: tuple[Background, ...]
     chart: Chart
     cmif: Indicator

@@ -47,6 +47,15 @@ class PlaceRow:
 
 
 @dataclass(frozen=True)
+class RejectedRow:
+    """A root that was considered and is not among the modes."""
+
+    frequency_hz: float = field(metadata=_HZ)
+    damping_ratio: float
+    reason: str
+
+
+@dataclass(frozen=True)
 class BandRow:
     """A band that was fitted by itself."""
 
@@ -61,6 +70,7 @@ class IdentifyTables(Tables):
     verb = "identify"
     frf: tuple[str, ...]
     modes: Table[IdentifiedRow]
+    rejected: Table[RejectedRow]
     references: Table[PlaceRow]
     responses: Table[PlaceRow]
     bands: Table[BandRow]
@@ -99,6 +109,11 @@ def mode_rows(found: Identification) -> Table[IdentifiedRow]:
 def place_rows(dofs: Dofs) -> Table[PlaceRow]:
     """Return one row a degree of freedom."""
     return Table(map(PlaceRow, dofs.node.tolist(), dofs.directions), PlaceRow)
+
+
+def rejected_rows(found: Identification) -> Table[RejectedRow]:
+    """Return one row a root that is no mode."""
+    return Table((RejectedRow(**vars(r)) for r in found.rejected), RejectedRow)
 
 
 def band_rows(found: Identification) -> Table[BandRow]:

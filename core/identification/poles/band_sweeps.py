@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats, Numbers
+from ...arrays import Bools, Floats, Numbers
 from ..survey.modal_synthesis import modal_response
 from ..survey.mode_indicator import Band
 from ..survey.survey_data import Survey
@@ -14,10 +15,10 @@ from .moments import BandData, band_data
 from .pole_candidates import Proposal
 from .pole_numbers import POLES
 from .pole_selection import prune, select
-from .pole_splitting import plausible
-from .significance import significance
+from .pole_splitting import modes_of
+from .soundness import survey_error
 from .start_values import start_from
-from .variable_projection import Fit, fit_shapes
+from .variable_projection import Fit, fit_shapes, refine
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,18 +53,16 @@ class BandFit:
     data : BandData
         With the modes beyond the band taken away.
     fit : Fit
-    significance : (n_mode,) float
     core : (n_mode,) bool
         The modes that this band answers for.
     background : (n_mode,) bool
-        Roots beside or beneath the modes, see `plausible`.
+        Roots beside or beneath the modes, see `modes_of`.
     """
 
     band: Band
     frequencies_hz: Floats
     data: BandData
     fit: Fit
-    significance: Floats
     core: Numbers
     background: Numbers
 
@@ -71,67 +70,110 @@ class BandFit:
 def fit_range(
     survey: Survey, bands: tuple[Band, ...], proposals: tuple[Proposal, ...]
 ) -> tuple[BandFit, ...]:
-    """Fit all bands, first each for itself, then with the contributions of all others removed."""
-    owned: list[Roots] = []
-    beside: list[Roots] = []
-    for band, proposed in zip(bands, proposals, strict=True):
-        f, data = _data(survey, band, None)
-        fit = prune(data, f, start_from(data, proposed.firm))
-        owned.append(_core(f, fit, band))
-        beside.append(_background(f, fit))
-    owned = _without_doubles(owned)
-    for n, (band, proposed) in enumerate(zip(bands, proposals, strict=True)):
+    """Fit all bands, each with the contributions of the modes of all others removed.
+
+    Unless the stable poles leave far more than noise, the survey is first believed to hold one
+    set of poles and noise. Where that leaves more than noise in the end, modes are searched for
+    anew in the knowledge of the error, see `BandData`.
+    """
+    of_outputs, of_inputs = survey.measured.shape
+    none = Roots(*(np.empty(s, complex) for s in (0, (of_inputs, 0), (of_outputs, 0))))
+
+    def proposed(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
+        start = start_from(data, proposals[n].firm)
+        return refine(data, start.poles, start.participation)
+
+    def refined(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
+        return refine(data, start.poles, start.participation)
+
+    first, _ = _sweep(
+        survey, bands, _Found([none] * len(bands), [none] * len(bands)), 0.0, proposed
+    )
+    first, fits = _sweep(survey, bands, first, 0.0, refined)
+    error = _error(fits)
+    if error < POLES.error_surely:
+        fits = _searched(survey, bands, proposals, first, 0.0)
+        if _error(fits) < POLES.error_none:
+            return fits
+    return _searched(survey, bands, proposals, first, error)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Modes that each band answers for, and roots beside or beneath them."""
+
+    owned: list[Roots]
+    beside: list[Roots]
+
+
+def _searched(
+    survey: Survey,
+    bands: tuple[Band, ...],
+    proposals: tuple[Proposal, ...],
+    found: _Found,
+    error: float,
+) -> tuple[BandFit, ...]:
+    """Search all bands for modes, then settle them against each other."""
+
+    def selected(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
+        return select(data, f, start, proposals[n].more, bands[n].low, bands[n].high)
+
+    def pruned(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
+        return prune(data, f, fit_shapes(data, start.poles, start.participation))
+
+    found, fits = _sweep(survey, bands, found, error, selected)
+    for _ in range(POLES.final_sweeps):
+        found, fits = _sweep(survey, bands, found, error, pruned)
+    return fits
+
+
+def _sweep(
+    survey: Survey,
+    bands: tuple[Band, ...],
+    found: _Found,
+    error: float,
+    fitted: Callable[[int, BandData, Floats, Fit], Fit],
+) -> tuple[_Found, tuple[BandFit, ...]]:
+    owned, beside, fits = list(found.owned), list(found.beside), []
+    for n, band in enumerate(bands):
         near, far = _near_and_far(_joined(owned), band)
-        f, data = _data(survey, band, far)
+        f, data = _data(survey, band, far, error)
         near = _joined([near, beside[n]])
-        start = Fit(near.poles, near.participation, near.shapes, np.inf)
-        fit = select(data, f, start, proposed.more, band.low, band.high)
-        owned[n] = _core(f, fit, band)
-        beside[n] = _background(f, fit)
+        fit = fitted(n, data, f, Fit(near.poles, near.participation, near.shapes, np.inf))
+        modes = modes_of(data, f, fit)
+        owned[n] = _core(fit, band, modes)
+        beside[n] = _take(_roots(fit), ~modes)
         owned = _without_doubles(owned)
-    for sweep in range(POLES.final_sweeps):
-        done = []
-        for n, band in enumerate(bands):
-            near, far = _near_and_far(_joined(owned), band)
-            f, data = _data(survey, band, far)
-            near = _joined([near, beside[n]])
-            fit = prune(data, f, fit_shapes(data, near.poles, near.participation))
-            owned[n] = _core(f, fit, band)
-            owned = _without_doubles(owned)
-            beside[n] = _background(f, fit)
-            if sweep == POLES.final_sweeps - 1:
-                value = significance(data, f, fit)
-                mine = np.isin(fit.poles, owned[n].poles)
-                aside = ~plausible(f, fit)
-                done.append(BandFit(band, f, data, fit, value, mine, aside))
-    return tuple(done)
+        mine = np.isin(fit.poles, owned[n].poles)
+        fits.append(BandFit(band, f, data, fit, mine, ~modes))
+    return _Found(owned, beside), tuple(fits)
 
 
-def _data(survey: Survey, band: Band, far: Roots | None) -> tuple[Floats, BandData]:
+def _error(fits: tuple[BandFit, ...]) -> float:
+    return survey_error([(b.data, b.frequencies_hz, b.fit) for b in fits])
+
+
+def _data(survey: Survey, band: Band, far: Roots, error: float) -> tuple[Floats, BandData]:
     lines = survey.lines(band.first, band.last)
     f = survey.frequencies_hz[lines]
     values = survey.values[:, :, lines]
-    if far is not None and len(far.poles):
+    if len(far.poles):
         values = values - modal_response(
             f, far.poles, far.shapes, far.participation, survey.quantity
         )
-    return f, band_data(f, values, survey.measured, survey.order)
+    return f, band_data(f, values, survey.measured, survey.order, error)
 
 
 def _roots(fit: Fit) -> Roots:
     return Roots(fit.poles, fit.participation, fit.shapes)
 
 
-def _core(f: Floats, fit: Fit, band: Band) -> Roots:
+def _core(fit: Fit, band: Band, modes: Bools) -> Roots:
     """Modes of a fit that belong to the core of its band."""
     hz = np.abs(fit.poles) / (2.0 * np.pi)
     reach = np.abs(fit.poles.real) / (2.0 * np.pi) * POLES.same
     inside = (hz >= band.low - reach) & (hz <= band.high + reach)
-    return _take(_roots(fit), inside & plausible(f, fit))
-
-
-def _background(f: Floats, fit: Fit) -> Roots:
-    return _take(_roots(fit), ~plausible(f, fit))
+    return _take(_roots(fit), inside & modes)
 
 
 def _joined(owned: list[Roots]) -> Roots:

@@ -26,21 +26,26 @@ class Traces:
     gram : (n_decay, n_line, n_input, n_input) complex
     decay : (n_decay,) float
         In line spacings.
-    limit : float
-        What white noise hardly reaches anywhere.
+    limit : (n_decay, n_line) float
+        What white noise hardly reaches anywhere, nor the errors of the survey.
     """
 
     frequencies_hz: Floats
     explained: Floats
     gram: Numbers
     decay: Floats
-    limit: float
+    limit: Floats
+
+    def shows(self, pole: complex) -> bool:
+        """Tell whether there is a trace where a pole stands."""
+        line = int(np.argmin(np.abs(2.0 * np.pi * self.frequencies_hz - pole.imag)))
+        return bool((self.explained > self.limit)[:, max(line - 1, 0) : line + 2].any())
 
     def strongest(self, open_lines: Numbers) -> tuple[int, Candidate] | None:
         """Line and root of the strongest trace among `open_lines`; None when all is noise."""
-        value = np.where(open_lines, self.explained, 0.0)
+        value = np.where(open_lines & (self.explained > self.limit), self.explained, 0.0)
         d, line = np.unravel_index(int(np.argmax(value)), value.shape)
-        if value[d, line] < self.limit:
+        if value[d, line] == 0.0:
             return None
         # filtered = ψ lᵀ: the conjugate of the right singular vector is l
         participation = np.linalg.eigh(self.gram[d, line])[1][:, -1].conj()
@@ -51,7 +56,7 @@ class Traces:
         return int(line), Candidate(pole, participation, 0)
 
 
-def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Traces:
+def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers, error: Floats) -> Traces:
     """Look for roots in a residual with a bank of matched filters.
 
     Single modes of several decay rates, at every line, are correlated with all functions at
@@ -63,6 +68,8 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Trac
     frequencies_hz : (n_line,) float
     residual : (n_output, n_input, n_line) complex
     measured : (n_output, n_input) bool
+    error : (n_line,) float
+        Energy that the errors of the survey leave at each line, of all functions.
     """
     n_output, n_input, n_line = residual.shape
     level = np.einsum("oif,oif->f", residual.real, residual.real)
@@ -89,5 +96,14 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers) -> Trac
     energy = np.sum(np.abs(kernels) ** 2, axis=1)
     explained = np.linalg.eigvalsh(grams)[..., -1] / energy[:, None]
     freedom = (np.sqrt(2.0 * n_output) + np.sqrt(2.0 * n_input - 2.0)) ** 2
-    limit = 0.5 * float(chi2.isf(POLES.filter_risk / explained.size, freedom))
-    return Traces(frequencies_hz, explained, grams, decay, limit)
+    white = 0.5 * float(chi2.isf(POLES.filter_risk / explained.size, freedom))
+    of_errors = [
+        _summed(error, 1 + int(2.0 * POLES.seen_widths * w)) / np.maximum(smooth, 1e-300)
+        for w in decay
+    ]
+    return Traces(frequencies_hz, explained, grams, decay, np.maximum(white, of_errors))
+
+
+def _summed(values: Floats, width: int) -> Floats:
+    """Return sums over the lines around each, (n_line,)."""
+    return np.asarray(np.convolve(values, np.ones(min(width, len(values))), "same"))

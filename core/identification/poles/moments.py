@@ -43,6 +43,9 @@ class BandData:
         Stacked functions, weighted, orthogonal to `residual_terms`.
     weight : (n_output, n_input) float
         1 where measured, 0 where not.
+    error : float
+        Part of the energy around a resonance that poles common to all functions leave over in
+        this survey, beyond noise.
     """
 
     s: Numbers
@@ -50,6 +53,7 @@ class BandData:
     residual_terms: Floats
     y: Floats
     weight: Floats
+    error: float = 0.0
 
     @cached_property
     def power(self) -> float:
@@ -64,7 +68,9 @@ class BandData:
         return tuple((rows[p], np.flatnonzero(number == p)) for p in range(len(rows)))
 
 
-def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order: int) -> BandData:
+def band_data(
+    frequencies_hz: Floats, values: Numbers, measured: Numbers, order: int, error: float = 0.0
+) -> BandData:
     """Prepare the functions of a band for fitting.
 
     The modes below and above act in the band as (jω)^d [LR₂/(jω)⁴ + LR/(jω)² + UR + UR₂ (jω)²]:
@@ -77,9 +83,11 @@ def band_data(frequencies_hz: Floats, values: Numbers, measured: Numbers, order:
     measured : (n_output, n_input) bool
     order : int
         How often displacement is differentiated (0, 1, 2).
+    error : float
+        See `BandData`.
     """
     s = 2j * np.pi * frequencies_hz
-    return _projected(s, s**order, stacked(values), measured.astype(float))
+    return _projected(s, s**order, stacked(values), measured.astype(float), error)
 
 
 def excerpt(data: BandData, lines: slice, functions: Floats) -> BandData:
@@ -95,17 +103,19 @@ def excerpt(data: BandData, lines: slice, functions: Floats) -> BandData:
     n_line = len(data.s)
     halves = functions.reshape(*functions.shape[:2], 2, n_line)[..., lines]
     y = np.array(halves.reshape(*functions.shape[:2], -1))
-    return _projected(data.s[lines], data.derivative[lines], y, data.weight)
+    return _projected(data.s[lines], data.derivative[lines], y, data.weight, data.error)
 
 
-def _projected(s: Numbers, derivative: Numbers, y: Floats, weight: Floats) -> BandData:
+def _projected(
+    s: Numbers, derivative: Numbers, y: Floats, weight: Floats, error: float
+) -> BandData:
     powers = np.array([-4, -2, 0, 2])[:, None]
     lines = derivative * (s / np.mean(np.abs(s))) ** powers
     terms = stacked(np.concatenate([lines, 1j * lines])).T
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
     y -= (y @ Q) @ Q.T
     y[weight == 0.0] = 0.0
-    return BandData(s, derivative, np.ascontiguousarray(Q), y, weight)
+    return BandData(s, derivative, np.ascontiguousarray(Q), y, weight, error)
 
 
 def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:

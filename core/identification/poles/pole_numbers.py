@@ -84,5 +84,16 @@ class PoleNumbers:
     frequency_step: float = number(1e-3, "of ω", "that a frequency moves by in one step besides its bandwidth, at most", SURVEYS)
     converged: float = number(1e-3, "of the misfit per number", "decrease that ends the iteration", SURVEYS)
 
+    error_surely: float = number(6e-4, "of the energy", "left over by stable poles, above which a survey has errors besides noise", SURVEYS)
+    error_none: float = number(2e-5, "of the energy", "left over by all modes, below which it has none", SURVEYS)
+    one_resonance: float = number(3.0, WIDTHS, "within which roots belong to one resonance", SURVEYS)
+    seen_widths: float = number(2.0, WIDTHS, "to either side, in which the directions of a resonance are counted", SURVEYS)
+    direction: float = number(3.0, "-", "times the error of the survey, which a direction of a resonance is to exceed", SURVEYS)
+    scatter: float = number(25.0, "-", "the same where outputs or inputs alone tell it", SURVEYS)
+    sure: float = number(3.0, "standard deviations", "of noise, beyond which what is left over is not noise", SURVEYS)
+
+    error_most: float = number(0.15, "of a root's energy", "that its error is, at most", SURVEYS)
+
+
 
 POLES = PoleNumbers()

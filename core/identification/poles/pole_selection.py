@@ -13,6 +13,7 @@ from .pole_numbers import POLES
 from .pole_splitting import plausible, split_roots, strength
 from .pole_stabilisation import Candidate
 from .significance import allowance, best_of_noise, residual_lines, significance
+from .soundness import sound
 from .start_values import complete_participation
 from .variable_projection import Fit, fit_shapes, refine
 
@@ -45,6 +46,8 @@ def select(
     if found.strongest(open_lines) is None:
         return state
     for c in more():
+        if not found.shows(c.pole):
+            continue
         poles = np.append(state.poles, c.pole)
         part = np.column_stack([state.participation, c.participation])
         spare = fit_shapes(data, poles, complete_participation(data, poles, part))
@@ -83,16 +86,16 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
             value = value * plausible(f, fit)
         drop = int(np.argmin(value))
         if value[drop] >= 1.0:
-            doubtful = np.flatnonzero((value < POLES.beyond_doubt) & ~tested)
-            missed = [k for k in doubtful if not _is_missed(data, f, fit, int(k))]
-            tested[doubtful] = True
             doubles = split_roots(data, f, fit, value)
-            if missed:
-                drop = int(missed[int(np.argmin(value[missed]))])
-            elif doubles.any():
+            if doubles.any():
                 drop = int(np.argmin(np.where(doubles, strength(fit), np.inf)))
             else:
-                break
+                doubtful = np.flatnonzero((value < POLES.beyond_doubt) & ~tested)
+                missed = [k for k in doubtful if not _is_missed(data, f, fit, int(k))]
+                tested[doubtful] = True
+                if not missed:
+                    break
+                drop = int(missed[int(np.argmin(value[missed]))])
         keep = np.arange(len(fit.poles)) != drop
         fit = fit_shapes(data, fit.poles[keep], fit.participation[:, keep])
         tested = tested[keep]
@@ -157,6 +160,8 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
     new = len(grown.poles) - 1
     if value[new] < 1.0 or split_roots(data, f, grown, value)[new]:
         return None
+    if not sound(data, f, grown)[new]:
+        return None
     if value[new] < POLES.beyond_doubt and not _is_missed(data, f, grown, new):
         return None
     grown = prune(data, f, grown)
@@ -169,7 +174,9 @@ def _look(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Traces]:
     """Return the residual of a fit and the traces of roots in it."""
     left = residual_of(data, fit)
     n_line = len(f)
-    return left, traces(f, left[..., :n_line] + 1j * left[..., n_line:], data.weight > 0.0)
+    functions = left[..., :n_line] + 1j * left[..., n_line:]
+    power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
+    return left, traces(f, functions, data.weight > 0.0, POLES.direction * data.error * power)
 
 
 def _with_neighbours(

@@ -8,6 +8,7 @@ from ...arrays import Floats, Numbers
 from .moments import BandData
 from .pole_numbers import POLES
 from .significance import residual_is_white
+from .soundness import satellites, sound
 from .variable_projection import Fit
 
 
@@ -30,6 +31,7 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
     if len(fit.poles) < 2:
         return np.zeros(len(fit.poles), bool)
     mode, size = plausible(f, fit), strength(fit)
+    surplus = satellites(data, f, fit, size)
     ratio = size / np.maximum(size[:, None], 1e-300)
     decay, omega = np.abs(fit.poles.real), fit.poles.imag
     gap = np.abs(omega - omega[:, None])
@@ -45,7 +47,7 @@ def split_roots(data: BandData, f: Floats, fit: Fit, value: Floats) -> Numbers:
         repeats = (ratio < 1.0) & (contradict | satellite | (gap < POLES.touching * spacing))
         repeats &= _mac(fit.shapes) > POLES.one_shape * attainable
     reach = POLES.split_widths * np.maximum(decay, decay[:, None]) + POLES.split_lines * spacing
-    return np.asarray((repeats & (gap < reach) & mode & mode[:, None]).any(axis=0))
+    return np.asarray(surplus | (repeats & (gap < reach) & mode & mode[:, None]).any(axis=0))
 
 
 def _mac(vectors: Numbers) -> Floats:
@@ -57,6 +59,11 @@ def strength(fit: Fit) -> Floats:
     """Energy of each mode by itself, (n_mode,)."""
     residues = np.sum(np.abs(fit.shapes) ** 2, axis=0) * np.sum(np.abs(fit.participation) ** 2, 0)
     return np.asarray(residues / np.abs(fit.poles.real))
+
+
+def modes_of(data: BandData, f: Floats, fit: Fit) -> Numbers:
+    """Whether each root is a mode of the structure in this band, (n_mode,) bool."""
+    return np.asarray(plausible(f, fit) & sound(data, f, fit))
 
 
 def plausible(f: Floats, fit: Fit) -> Numbers:

@@ -77,7 +77,7 @@ def energy_by_line(data: BandData, fit: Fit, F: Floats) -> Floats:
     re, im = (np.einsum("oik,oik->k", a, a) for a in (r.real, r.imag))
     cross = np.einsum("oik,oik->k", r.real, r.imag)
     by_line = F[..., 0] ** 2 * re + F[..., 1] ** 2 * im + 2.0 * F[..., 0] * F[..., 1] * cross
-    return np.asarray(by_line.reshape(2, -1, len(fit.poles)).sum(axis=0))
+    return np.asarray(by_line.reshape(2, len(F) // 2, len(fit.poles)).sum(axis=0))
 
 
 def allowance(data: BandData, f: Floats, fit: Fit) -> Floats:

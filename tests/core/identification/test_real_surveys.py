@@ -13,6 +13,7 @@ from trueup.core.identification import identify
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data"
 GARTEUR = DATA / "uff" / "garteur_frf_1995.uff"
 DUCT = DATA / "cases" / "duct"
+AEROPLANE = DATA / "measured" / "aeroplane" / "survey.uff"
 
 
 def needs(path):
@@ -87,3 +88,35 @@ def test_duct_shapes_span_those_of_the_modal_test(duct):
         c, left, _, _ = np.linalg.lstsq(shapes[~twice], t[~twice], rcond=None)
         assert 1.0 - left[0] / np.sum(t[~twice] ** 2) > 0.99
         assert t[twice] == pytest.approx(shapes[twice] @ c, abs=0.05 * np.abs(t).max())
+
+
+@pytest.fixture(scope="module")
+def aeroplane():
+    content = read_universal([AEROPLANE])
+    return identify(content.frfs, fmin=15.0, fmax=180.0, geometry=content.geometry)
+
+
+@needs(AEROPLANE)
+def test_a_roving_hammer_survey_gives_each_mode_once(aeroplane):
+    """Thirteen modes that two teams found with tools of their own."""
+    known = [18.84, 40.18, 87.74, 89.63, 97.53, 105.19, 117.91, 125.20, 125.69, 129.74, 135.12,
+             143.37, 166.27]  # fmt: skip
+    found = aeroplane.modes.frequencies_hz
+    nearest = [int(np.argmin(np.abs(found - f))) for f in known]
+    assert len(set(nearest)) == 13
+    assert found[nearest] == pytest.approx(known, abs=0.3)
+    more = [r for k, r in enumerate(aeroplane.remarks) if k not in nearest]
+    assert len(more) <= 2
+    assert all(more)
+    assert aeroplane.mpc[nearest].min() > 0.9
+
+
+@needs(AEROPLANE)
+def test_what_a_survey_holds_besides_is_rejected_with_its_reason(aeroplane):
+    """The resonances of the pair at 125 Hz come again; the valley at 29 Hz holds errors only."""
+    rejected = aeroplane.rejected
+    assert len(rejected) > 10
+    again = [r for r in rejected if 125.0 < r.frequency_hz < 126.5]
+    assert len(again) >= 2
+    assert all("Hz once more" in r.reason for r in again)
+    assert any("errors of the survey" in r.reason for r in rejected if r.frequency_hz < 35.0)

@@ -1,0 +1,85 @@
+"""What was considered and is not among the modes, with the reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Bools, Numbers
+from .poles.band_sweeps import BandFit
+from .poles.pole_candidates import Proposal
+from .poles.pole_numbers import POLES
+from .poles.pole_splitting import plausible
+from .poles.soundness import left_over
+from .quality import phase_collinearity
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A root that is no mode.
+
+    Parameters
+    ----------
+    frequency_hz : float
+    damping_ratio : float
+    reason : str
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    reason: str
+
+
+def rejected(fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...]) -> tuple[Rejected, ...]:
+    """Roots beside or beneath the modes of the fits, and stable poles that no fit kept.
+
+    By rising frequency.
+    """
+    modes = np.concatenate([b.fit.poles[b.core] for b in fits])
+    found: list[Rejected] = []
+    for b, proposed in zip(fits, proposals, strict=True):
+        aside = np.flatnonzero(b.background & _inside(b, b.fit.poles))
+        reasons = _of_background(b)
+        found += [_named(b.fit.poles[k], reasons[k]) for k in aside]
+        kept = np.concatenate([modes, b.fit.poles[aside]])
+        for pole in (c.pole for c in proposed.firm):
+            if not _inside(b, np.array([pole]))[0]:
+                continue
+            gap = np.abs(kept - pole) / np.minimum(np.abs(kept.real), abs(pole.real))
+            if len(gap) and gap.min() < POLES.candidate_same:
+                kept = np.delete(kept, int(np.argmin(gap)))
+                continue
+            found.append(_named(pole, _of_candidate(pole, modes)))
+    return tuple(sorted(found, key=lambda r: r.frequency_hz))
+
+
+def _inside(b: BandFit, poles: Numbers) -> Bools:
+    hz = np.abs(poles) / (2.0 * np.pi)
+    return np.asarray((hz >= b.band.low) & (hz <= b.band.high))
+
+
+def _named(pole: complex, reason: str) -> Rejected:
+    return Rejected(float(abs(pole) / (2.0 * np.pi)), float(-pole.real / abs(pole)), reason)
+
+
+def _of_background(b: BandFit) -> list[str]:
+    wide = ~plausible(b.frequencies_hz, b.fit)
+    left = left_over(b.data, b.frequencies_hz, b.fit)
+    mpc = phase_collinearity(b.fit.shapes)
+    return [
+        "too wide for a mode of its band: serves the fit as background"
+        if wide[k]
+        else f"no more than the errors of the survey make: {100 * left[k]:.0f} % of its energy is "
+        f"left over around it, phase collinearity {mpc[k]:.2f}; serves the fit as background"
+        for k in range(len(wide))
+    ]
+
+
+def _of_candidate(pole: complex, modes: Numbers) -> str:
+    width = np.minimum(np.abs(modes.real), abs(pole.real))
+    gap = np.abs(modes.imag - pole.imag) / width
+    if len(gap) and gap.min() < POLES.one_resonance:
+        hz = np.abs(modes[int(np.argmin(gap))]) / (2.0 * np.pi)
+        return f"the resonance at {hz:.2f} Hz once more: no second direction there"
+    return "explains no more than what is left over around it"
