@@ -1,7 +1,5 @@
 """Make a neutral model of a deck: elements, constraints, parameters put together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ They do not enter normal modes. Structural damping (GE, PARAM G) sits at no plac
 and is left to what a test says.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 

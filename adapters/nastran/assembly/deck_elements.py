@@ -1,7 +1,5 @@
 """The elements of a deck over the g-set, and their matrices at parameter values."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Mass and centre of gravity of a deck, as Nastran's grid point weight generator finds them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How far a parameter may move before its cards no longer make sense."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

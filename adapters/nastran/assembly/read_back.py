@@ -1,7 +1,5 @@
 """A changed deck as its files say it: written, read back, assembled and solved."""
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path

@@ -4,8 +4,6 @@ A card at other parameter values is its own text with the numbers multiplied, re
 deck leaves blank and Nastran derives follows, just as it would in the rewritten deck.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -4,8 +4,6 @@ A family is a file with its cards and, where it makes element matrices, a routin
 to groups, and one line of `FAMILIES`; `register_family` adds one from outside.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Straight bars of constant section: CBAR."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices

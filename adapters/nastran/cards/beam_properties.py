@@ -1,7 +1,5 @@
 """Properties of beams with stations along them: PBEAM, PBEAML."""
 
-from __future__ import annotations
-
 import re
 
 from ..deck.card_definition import Card, Known

@@ -1,7 +1,5 @@
 """Beams with taper, neutral axis off the shear centre and non-structural mass: CBEAM."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

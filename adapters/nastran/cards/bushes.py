@@ -1,7 +1,5 @@
 """Bushings: CBUSH and CBUSH1D."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Dashpots: CDAMP1 ... CDAMP4, CVISC. They do not enter normal modes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Ints, Matrices

@@ -1,7 +1,5 @@
 """What every element family hands to the assembly, and helpers they share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial

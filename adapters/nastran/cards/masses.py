@@ -1,7 +1,5 @@
 """Concentrated masses: CONM1, CONM2, CMASS1 ... CMASS4."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cards that are known and not read: left out with a reason, or refused with one."""
 
-from __future__ import annotations
-
 from ..deck.card_definition import Card
 from ..deck.movable_values import Moves
 

@@ -1,7 +1,5 @@
 """Shear panels: CSHEAR."""
 
-from __future__ import annotations
-
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card
 from ..deck.movable_values import Moves

@@ -1,7 +1,5 @@
 """Shells and solids of a deck: which middle nodes they have, where they stand."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Rods: CROD, CONROD, CTUBE."""
 
-from __future__ import annotations
-
 import math
 
 from ..deck.bulk import Bulk

@@ -1,7 +1,5 @@
 """Shells: CQUAD4, CTRIA3, CQUADR, CTRIAR, CQUAD8, CTRIA6."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Solids: CHEXA, CPENTA, CTETRA, CPYRAM, without and with middle nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices

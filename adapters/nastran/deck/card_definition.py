@@ -19,8 +19,6 @@ Kinds: ``i`` integer, ``r`` real, ``w`` word, ``c`` components (digits in order,
 integer or real, ``iw`` integer or word, ``x`` the text in capitals.
 """
 
-from __future__ import annotations
-
 from collections import namedtuple
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Cards read by their definitions: one from its fields, many column by column."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import chain

@@ -1,7 +1,5 @@
 """What the case control section asks of normal modes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Continuation lines that do not follow their card, as in sorted decks: brought back by label."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from .logical_lines import Line

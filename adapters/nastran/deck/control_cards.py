@@ -1,7 +1,5 @@
 """Cards that say what to solve and in which units: EIGRL, EIGR, PARAM, DTI."""
 
-from __future__ import annotations
-
 from .card_definition import Card
 
 CARDS = (

@@ -1,7 +1,5 @@
 """The deck's length unit, where the deck says it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 

@@ -1,7 +1,5 @@
 """What a field of a card holds: its word in a layout, its kind, the value of a text."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """The lines of a deck in the order Nastran sees them, each with its file and line number."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What of a card may be a parameter: its reals, by the names that its layout gives them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

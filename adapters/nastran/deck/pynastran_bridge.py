@@ -1,7 +1,5 @@
 """pyNastran's objects where a file is taken, and given back; the library is imported when asked."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 import tempfile

@@ -1,7 +1,5 @@
 """Cards as they stand in the deck: cut from its lines, and their fields cut from them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from itertools import zip_longest

@@ -1,7 +1,5 @@
 """The analysis set: ASET, ASET1, OMIT, OMIT1."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -6,8 +6,6 @@ rectangles) and shear factors the web's share of the area, 5/6 for rectangles, 0
 0.5 for tubes, as the NX Nastran Element Library Reference gives them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Coordinate systems of a deck (CORD1R ... CORD2S), chains resolved to the basic frame."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

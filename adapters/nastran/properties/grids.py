@@ -1,7 +1,5 @@
 """Grid and scalar points: positions, displacement systems, numbering of the g-set."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any

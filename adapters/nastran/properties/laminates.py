@@ -1,7 +1,5 @@
 """Sections of shells from PSHELL, PCOMP and PCOMPG, in material axes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

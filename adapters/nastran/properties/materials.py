@@ -1,7 +1,5 @@
 """Material constants from MAT1, MAT2, MAT8 and MAT9, as elements need them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

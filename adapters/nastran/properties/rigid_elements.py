@@ -1,7 +1,5 @@
 """Rigid elements as equations: RBE1, RBE2, RBE3, RBAR, RBAR1, RROD; a routine a card, one table."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

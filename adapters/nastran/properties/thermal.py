@@ -1,7 +1,5 @@
 """Materials that depend on temperature: MATT1, MATT2, MATT8, MATT9 at the initial temperature."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
