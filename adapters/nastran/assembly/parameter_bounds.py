@@ -54,10 +54,7 @@ def admissible(
 
 
 def _probes(
-    parameter: int,
-    variation: Variation,
-    groups: Sequence[Group],
-    blocks: Sequence[ElementBlock],
+    parameter: int, variation: Variation, groups: Sequence[Group], blocks: Sequence[ElementBlock]
 ) -> Iterator[tuple[ElementBlock, Ints]]:
     """One element for each set of cards that the parameter acts on."""
     for group, block in zip(groups, blocks, strict=True):

@@ -24,19 +24,7 @@ from ..properties import (
     rigid_elements,
     thermal,
 )
-from . import (
-    bars,
-    beams,
-    bushes,
-    dashpots,
-    masses,
-    not_read,
-    panels,
-    rods,
-    shells,
-    solids,
-    springs,
-)
+from . import bars, beams, bushes, dashpots, masses, not_read, panels, rods, shells, solids, springs
 from .element_group import Context, Group, Key, Settings, property_groups
 
 

@@ -135,13 +135,7 @@ def _groups(context: Context, values_of: dict[str, Six]) -> list[Group]:
     return groups
 
 
-def _group(
-    context: Context,
-    name: str,
-    values: Six,
-    cards: list[Values],
-    grounded: bool,
-) -> Group:
+def _group(context: Context, name: str, values: Six, cards: list[Values], grounded: bool) -> Group:
     bulk = context.bulk
     ids = np.array([c.eid for c in cards], dtype=np.int64)
     used = [[c.nodes[0]] if grounded else c.nodes for c in cards]

@@ -42,11 +42,7 @@ CARDS = (
         moves=Moves(),
     ),
     Card(
-        "PMASS",
-        "PID:i! M:r=0.",
-        "pid",
-        several=2,
-        moves=replace(_M, also={"M1": "M", "MASS": "M"}),
+        "PMASS", "PID:i! M:r=0.", "pid", several=2, moves=replace(_M, also={"M1": "M", "MASS": "M"})
     ),
 )
 

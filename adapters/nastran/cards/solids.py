@@ -25,9 +25,7 @@ CARDS = (
     _card("CPENTA", 6, 15, "penta6 penta15"),
     _card("CHEXA", 8, 20, "hexa8 hexa20"),
     Card(
-        "PSOLID",
-        "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH",
-        "pid",
+        "PSOLID", "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH", "pid"
     ),
 )
 

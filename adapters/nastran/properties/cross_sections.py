@@ -84,11 +84,28 @@ def section(shape: str, dimensions: Dims, place: Place) -> Section:
         raise place.error(f"the dimensions of the section {shape} must be positive")
     try:
         found = make(*dimensions[:count])
-    except ZeroDivisionError:
-        found = None
-    if found is None or not (found.A > 0.0 and found.I1 > 0.0 and found.I2 > 0.0):
-        raise place.error(f"the dimensions of the section {shape} do not fit together")
+        _require(found.A > 0.0, found.I1 > 0.0, found.I2 > 0.0)
+    except (_Misfit, ZeroDivisionError):
+        raise place.error(f"the dimensions of the section {shape} do not fit together") from None
     return found
+
+
+class _Misfit(Exception):
+    """Dimensions that do not fit together."""
+
+
+def _require(*fits: bool) -> None:
+    if not all(fits):
+        raise _Misfit
+
+
+def _turned(s: Section) -> Section:
+    """Swap y and z."""
+    return s._replace(I1=s.I2, I2=s.I1, K1=s.K2, K2=s.K1, shear_y=s.shear_z, shear_z=s.shear_y)
+
+
+def _left_and_right(w: float, h: float, z: float, y: float) -> tuple[Rectangle, Rectangle]:
+    return (w, h, z, y), (w, h, -z, y)
 
 
 def _compose(
@@ -106,22 +123,11 @@ def _compose(
     return Section(A, I1, I2, I12, J, K[0] / A, K[1] / A, y_from, z_from)
 
 
-def _rod(r: float) -> Section:
-    A = math.pi * r**2
-    quarter = 0.25 * A * r**2
-    return Section(A, quarter, quarter, 0.0, 2.0 * quarter, 0.9, 0.9)
-
-
-def _tube(outer: float, inner: float) -> Section | None:
-    if not outer > inner:
-        return None
+def _round(outer: float, inner: float, shear: float) -> Section:
+    _require(outer > inner >= 0.0)
     A = math.pi * (outer**2 - inner**2)
     quarter = 0.25 * math.pi * (outer**4 - inner**4)
-    return Section(A, quarter, quarter, 0.0, 2.0 * quarter, 0.5, 0.5)
-
-
-def _tube2(outer: float, t: float) -> Section | None:
-    return _tube(outer, outer - t) if t <= outer else None
+    return Section(A, quarter, quarter, 0.0, 2.0 * quarter, shear, shear)
 
 
 def _bar(w: float, h: float) -> Section:
@@ -130,10 +136,9 @@ def _bar(w: float, h: float) -> Section:
     return _compose([(w, h, 0.0, 0.0)], J, (5.0 / 6.0 * w * h, 5.0 / 6.0 * w * h), None)
 
 
-def _box(b: float, h: float, t1: float, t2: float) -> Section | None:
+def _box(b: float, h: float, t1: float, t2: float) -> Section:
     inner_b, inner_h = b - 2.0 * t2, h - 2.0 * t1
-    if inner_b <= 0.0 or inner_h <= 0.0:
-        return None
+    _require(inner_b > 0.0, inner_h > 0.0)
     J = 2.0 * t1 * t2 * (b - t2) ** 2 * (h - t1) ** 2 / (b * t2 + h * t1 - t2**2 - t1**2)
     A = b * h - inner_b * inner_h
     I1 = (b * h**3 - inner_b * inner_h**3) / 12.0
@@ -141,12 +146,9 @@ def _box(b: float, h: float, t1: float, t2: float) -> Section | None:
     return Section(A, I1, I2, 0.0, J, 2.0 * t2 * inner_h / A, 2.0 * t1 * inner_b / A)
 
 
-def _box1(
-    b: float, h: float, top: float, bottom: float, left: float, right: float
-) -> Section | None:
+def _box1(b: float, h: float, top: float, bottom: float, left: float, right: float) -> Section:
     inner_b, inner_h = b - left - right, h - top - bottom
-    if inner_b <= 0.0 or inner_h <= 0.0:
-        return None
+    _require(inner_b > 0.0, inner_h > 0.0)
     width, height = b - 0.5 * (left + right), h - 0.5 * (top + bottom)
     J = (
         4.0
@@ -162,30 +164,25 @@ def _box1(
     return _compose(parts, J, ((left + right) * inner_h, (top + bottom) * inner_b), None)
 
 
-def _i(h: float, a: float, b: float, tw: float, ta: float, tb: float) -> Section | None:
+def _i(h: float, a: float, b: float, tw: float, ta: float, tb: float) -> Section:
     hw, hf = h - ta - tb, h - 0.5 * (ta + tb)
-    if hw <= 0.0 or tw > min(a, b):
-        return None
+    _require(hw > 0.0, tw <= min(a, b))
     J = (tb**3 * b + ta**3 * a + tw**3 * hf) / 3.0
-    parts = [
-        (a, ta, 0.0, 0.5 * ta),
-        (tw, hw, 0.0, ta + 0.5 * hw),
-        (b, tb, 0.0, h - 0.5 * tb),
-    ]
+    parts = [(a, ta, 0.0, 0.5 * ta), (tw, hw, 0.0, ta + 0.5 * hw), (b, tb, 0.0, h - 0.5 * tb)]
     shear_y = 0.5 * ta + tb * hf * b**3 / (tb * b**3 + ta * a**3)
     return _compose(parts, J, (tw * hw, 5.0 / 6.0 * (ta * a + tb * b)), (shear_y, 0.0))
 
 
-def _i1(overhang: float, tw: float, inner: float, h: float) -> Section | None:
+def _i1(overhang: float, tw: float, inner: float, h: float) -> Section:
     t = 0.5 * (h - inner)
-    return _i(h, overhang + tw, overhang + tw, tw, t, t) if t > 0.0 else None
+    _require(t > 0.0)
+    return _i(h, overhang + tw, overhang + tw, tw, t, t)
 
 
-def _channel(b: float, h: float, tw: float, tf: float) -> Section | None:
+def _channel(b: float, h: float, tw: float, tf: float) -> Section:
     """Web on the left along y, flanges to the right."""
     bf, hw = b - tw, h - 2.0 * tf
-    if bf <= 0.0 or hw <= 0.0:
-        return None
+    _require(bf > 0.0, hw > 0.0)
     width, height = b - 0.5 * tw, h - tf
     J = (2.0 * width * tf**3 + height * tw**3) / 3.0
     parts = [
@@ -197,74 +194,48 @@ def _channel(b: float, h: float, tw: float, tf: float) -> Section | None:
     return _compose(parts, J, (tw * hw, 2.0 * tf * bf), (0.5 * h, 0.5 * tw - out))
 
 
-def _chan1(bf: float, tw: float, inner: float, h: float) -> Section | None:
-    return _channel(bf + tw, h, tw, 0.5 * (h - inner)) if h > inner else None
+def _chan1(bf: float, tw: float, inner: float, h: float) -> Section:
+    _require(h > inner)
+    return _channel(bf + tw, h, tw, 0.5 * (h - inner))
 
 
-def _chan2(side: float, base: float, h: float, b: float) -> Section | None:
-    """Web at the bottom along z, flanges upwards."""
-    turned = _channel(h, b, base, side)
-    if turned is None:
-        return None
-    return Section(
-        turned.A, turned.I2, turned.I1, 0.0, turned.J, turned.K2, turned.K1, turned.shear_z, 0.0
-    )
-
-
-def _tee(b: float, h: float, tf: float, tw: float) -> Section | None:
+def _tee(b: float, h: float, tf: float, tw: float) -> Section:
     """Flange on top, web below."""
     hw = h - tf
-    if hw <= 0.0 or tw > b:
-        return None
+    _require(hw > 0.0, tw <= b)
     J = (tf**3 * b + tw**3 * (h - 0.5 * tf)) / 3.0
     parts = [(b, tf, 0.0, h - 0.5 * tf), (tw, hw, 0.0, 0.5 * hw)]
     return _compose(parts, J, (tw * hw, tf * b), (h - 0.5 * tf, 0.0))
 
 
-def _t2(b: float, h: float, tf: float, tw: float) -> Section | None:
+def _t2(b: float, h: float, tf: float, tw: float) -> Section:
     up = _tee(b, h, tf, tw)
-    return None if up is None else up._replace(shear_y=-up.shear_y)
+    return up._replace(shear_y=-up.shear_y)
 
 
-def _t1(height: float, web: float, flange: float, tw: float) -> Section | None:
-    """Flange along y on the right, web to the left."""
-    up = _tee(height, web + flange, flange, tw)
-    if up is None:
-        return None
-    return Section(up.A, up.I2, up.I1, 0.0, up.J, up.K2, up.K1, 0.0, up.shear_y)
-
-
-def _cross(arms: float, tv: float, h: float, th: float) -> Section | None:
-    if th > h:
-        return None
+def _cross(arms: float, tv: float, h: float, th: float) -> Section:
+    _require(th <= h)
     J = (h * tv**3 + arms * th**3) / 3.0
     half = 0.5 * arms
     parts = [
         (tv, h, 0.0, 0.0),
-        (half, th, 0.5 * (tv + half), 0.0),
-        (half, th, -0.5 * (tv + half), 0.0),
+        *_left_and_right(half, th, 0.5 * (tv + half), 0.0),
     ]
     return _compose(parts, J, (5.0 / 6.0 * h * tv, 5.0 / 6.0 * (arms + tv) * th), None)
 
 
-def _h(inner: float, flanges: float, h: float, tw: float) -> Section | None:
+def _h(inner: float, flanges: float, h: float, tw: float) -> Section:
     t = 0.5 * flanges
-    if tw > h:
-        return None
+    _require(tw <= h)
     J = (2.0 * h * t**3 + inner * tw**3) / 3.0
-    parts = [
-        (t, h, 0.5 * (inner + t), 0.0),
-        (t, h, -0.5 * (inner + t), 0.0),
-        (inner, tw, 0.0, 0.0),
-    ]
+    parts = [*_left_and_right(t, h, 0.5 * (inner + t), 0.0), (inner, tw, 0.0, 0.0)]
     return _compose(parts, J, (5.0 / 6.0 * 2.0 * t * h, inner * tw), None)
 
 
-def _zee(bf: float, tw: float, inner: float, h: float) -> Section | None:
+def _zee(bf: float, tw: float, inner: float, h: float) -> Section:
     """Upper flange to the left (negative z), lower flange to the right."""
     t = 0.5 * (h - inner)
-    if t <= 0.0:
-        return None
+    _require(t > 0.0)
     J = (2.0 * (bf + 0.5 * tw) * t**3 + (h - t) * tw**3) / 3.0
     parts = [
         (tw, h, 0.0, 0.0),
@@ -274,19 +245,17 @@ def _zee(bf: float, tw: float, inner: float, h: float) -> Section | None:
     return _compose(parts, J, (tw * inner, 2.0 * t * bf), None)
 
 
-def _angle(b: float, h: float, t1: float, t2: float) -> Section | None:
+def _angle(b: float, h: float, t1: float, t2: float) -> Section:
     """Corner at the lower left: horizontal leg of thickness t1, vertical leg of thickness t2."""
-    if t1 >= h or t2 >= b:
-        return None
+    _require(t1 < h, t2 < b)
     J = (t1**3 * (b - 0.5 * t2) + t2**3 * (h - 0.5 * t1)) / 3.0
     parts = [(b, t1, 0.5 * b, 0.5 * t1), (t2, h - t1, 0.5 * t2, t1 + 0.5 * (h - t1))]
     return _compose(parts, J, (t2 * (h - t1), t1 * (b - t2)), (0.5 * t1, 0.5 * t2))
 
 
-def _hexagon(side: float, b: float, h: float) -> Section | None:
+def _hexagon(side: float, b: float, h: float) -> Section:
     inner = b - 2.0 * side
-    if inner < 0.0:
-        return None
+    _require(inner >= 0.0)
     A = (b - side) * h
     I1 = inner * h**3 / 12.0 + side * h**3 / 24.0
     thirds = 4.0 * (side * h / 4.0) * (side**2 / 18.0 + (0.5 * inner + side / 3.0) ** 2)
@@ -295,45 +264,39 @@ def _hexagon(side: float, b: float, h: float) -> Section | None:
     return Section(A, I1, I2, 0.0, like.J, 5.0 / 6.0, 5.0 / 6.0)
 
 
-def _hat(h: float, t: float, top: float, brim: float) -> Section | None:
+def _hat(h: float, t: float, top: float, brim: float) -> Section:
     inner = top - 2.0 * t
-    if inner <= 0.0 or h <= 2.0 * t:
-        return None
+    _require(inner > 0.0, h > 2.0 * t)
     J = t**3 / 3.0 * (top + 2.0 * (h - t) + 2.0 * brim)
     parts = [
         (inner, t, 0.0, h - 0.5 * t),
-        (t, h, 0.5 * (top - t), 0.5 * h),
-        (t, h, -0.5 * (top - t), 0.5 * h),
-        (brim, t, 0.5 * (top + brim), 0.5 * t),
-        (brim, t, -0.5 * (top + brim), 0.5 * t),
+        *_left_and_right(t, h, 0.5 * (top - t), 0.5 * h),
+        *_left_and_right(brim, t, 0.5 * (top + brim), 0.5 * t),
     ]
     return _compose(parts, J, (2.0 * t * (h - 2.0 * t), t * (inner + 2.0 * brim)), None)
 
 
-def _hat1(plate: float, h: float, top: float, t: float, tp: float) -> Section | None:
+def _hat1(plate: float, h: float, top: float, t: float, tp: float) -> Section:
     rise = h - tp
     inner = top - 2.0 * t
-    if inner <= 0.0 or rise <= 2.0 * t or plate < top:
-        return None
+    _require(inner > 0.0, rise > 2.0 * t, plate >= top)
     brim = 0.5 * (plate - top)
     width, height = top - t, rise - 0.5 * t + 0.5 * tp
     closed = 4.0 * (width * height) ** 2 / (2.0 * height / t + width / t + width / tp)
     parts = [
         (plate, tp, 0.0, 0.5 * tp),
         (inner, t, 0.0, h - 0.5 * t),
-        (t, rise, 0.5 * (top - t), tp + 0.5 * rise),
-        (t, rise, -0.5 * (top - t), tp + 0.5 * rise),
-        (brim, t, 0.5 * (top + brim), tp + 0.5 * t),
-        (brim, t, -0.5 * (top + brim), tp + 0.5 * t),
+        *_left_and_right(t, rise, 0.5 * (top - t), tp + 0.5 * rise),
+        *_left_and_right(brim, t, 0.5 * (top + brim), tp + 0.5 * t),
     ]
     flat = t * inner + tp * plate + 2.0 * brim * t
     return _compose(parts, closed, (2.0 * t * (rise - 2.0 * t), flat), None)
 
 
-SHAPES: dict[str, tuple[int, Callable[..., Section | None]]] = {
-    "ROD": (1, _rod),
-    "TUBE": (2, _tube),
-    "TUBE2": (2, _tube2),
+SHAPES: dict[str, tuple[int, Callable[..., Section]]] = {
+    "ROD": (1, lambda r: _round(r, 0.0, 0.9)),
+    "TUBE": (2, lambda outer, inner: _round(outer, inner, 0.5)),
+    "TUBE2": (2, lambda outer, t: _round(outer, outer - t, 0.5)),
     "BAR": (2, _bar),
     "BOX": (4, _box),
     "BOX1": (6, _box1),
@@ -341,9 +304,9 @@ SHAPES: dict[str, tuple[int, Callable[..., Section | None]]] = {
     "I1": (4, _i1),
     "CHAN": (4, _channel),
     "CHAN1": (4, _chan1),
-    "CHAN2": (4, _chan2),
+    "CHAN2": (4, lambda side, base, h, b: _turned(_channel(h, b, base, side))),
     "T": (4, _tee),
-    "T1": (4, _t1),
+    "T1": (4, lambda h, web, flange, tw: _turned(_tee(h, web + flange, flange, tw))),
     "T2": (4, _t2),
     "CROSS": (4, _cross),
     "H": (4, _h),

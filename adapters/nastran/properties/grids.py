@@ -14,12 +14,7 @@ from ..deck.card_definition import Card
 from .deck_coordinate_systems import Frames
 
 CARDS = (
-    Card(
-        "GRID",
-        "ID:i! CP:i=0 X1,X2,X3>xyz:r=0. CD:i=0 PS:c SEID:i=0",
-        "id",
-        blanks_from="GRDSET",
-    ),
+    Card("GRID", "ID:i! CP:i=0 X1,X2,X3>xyz:r=0. CD:i=0 PS:c SEID:i=0", "id", blanks_from="GRDSET"),
     Card("GRDSET", "- CP:i=0 - - - CD:i=0 PS:c SEID:i=0"),
     Card("SPOINT", "ID>nodes:*"),
     Card("EPOINT", "ID>nodes:*", ignored="it belongs to response analyses"),

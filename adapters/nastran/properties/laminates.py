@@ -78,11 +78,7 @@ class Layup:
 
 
 def layup(
-    bulk: Bulk,
-    key: tuple[str, int],
-    place: Place,
-    own: float = 0.0,
-    share: float = 1.0,
+    bulk: Bulk, key: tuple[str, int], place: Place, own: float = 0.0, share: float = 1.0
 ) -> Layup:
     """Return the section of a shell property.
 

@@ -68,12 +68,7 @@ def _rbe3_grids(fields: Fields, _: Known) -> list[object]:
 CARDS = (
     Card("RBE1", "EID:i!", "eid", more=_rbe1_grids, extra="gn cn gm cm alpha", grids="gn gm"),
     Card(
-        "RBE2",
-        "EID:i! GN:i! CM:c",
-        "eid",
-        more=_rbe2_grids,
-        extra="gm alpha tref",
-        grids="gn gm",
+        "RBE2", "EID:i! GN:i! CM:c", "eid", more=_rbe2_grids, extra="gm alpha tref", grids="gn gm"
     ),
     Card(
         "RBE3",

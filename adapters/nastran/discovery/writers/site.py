@@ -87,7 +87,4 @@ Writer = Callable[[DeckText, Site], DeckText]
 
 def basic_companion(site: Site, grid: int, new: int, number: int) -> list[list[Any]]:
     """Return the cards of a grid `new` in basic axes that follows another rigidly."""
-    return [
-        ["GRID", new, 0, *site.middle([grid]), 0],
-        ["RBE2", number, grid, "123456", new],
-    ]
+    return [["GRID", new, 0, *site.middle([grid]), 0], ["RBE2", number, grid, "123456", new]]
