@@ -1,14 +1,15 @@
 """Beams with taper, neutral axis off the shear centre and non-structural mass: CBEAM."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements.beam import BeamSections, beam_mass, beam_stiffness
-from ....core.errors import Place
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card, Values
+from ..deck.card_definition import Card
 from ..properties.cross_sections import section
 from ..properties.materials import isotropic
 from . import beam_properties
@@ -27,40 +28,19 @@ CARDS = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class _Beam:
-    """Constants of a beam property.
-
-    Parameters
-    ----------
-    E, G, rho : float
-        Of the material.
-    stations : (m,) float
-        Fractions of the length.
-    values : (5, m) float
-        A, I1, I2, I12, J at the stations.
-    shear : (2,) float
-        K1, K2; zero: rigid in shear.
-    neutral : (2, 2) float
-        y and z of the neutral axis at ends A and B, from the shear centre.
-    nsm : (2,) float
-        Non-structural mass per length at the ends.
-    nsm_at : (2, 2) float
-        y and z of its centre of gravity.
-    nsi : (2,) float
-        Its moment of inertia per length.
-    """
+class _Beam(NamedTuple):
+    """Constants of a beam property; those at ends A and B are (2,), with y and z (2, 2)."""
 
     E: float
     G: float
     rho: float
-    stations: Floats
-    values: Floats
-    shear: Floats
-    neutral: Floats
-    nsm: Floats
-    nsm_at: Floats
-    nsi: Floats
+    stations: Floats  # (m,) fractions of the length
+    values: Floats  # (5, m) A, I1, I2, I12, J at the stations
+    nsm: Floats  # non-structural mass per length at the ends
+    shear: Sequence[float]  # K1, K2; zero: rigid in shear
+    neutral: ArrayLike  # neutral axis at the ends, from the shear centre
+    nsm_at: ArrayLike  # centre of gravity of the non-structural mass
+    nsi: ArrayLike  # its moment of inertia per length
 
 
 def beams(context: Context) -> list[Group]:
@@ -119,55 +99,26 @@ def _constants(bulk: Bulk, key: Key) -> _Beam:
     place = bulk.place(*key)
     card = bulk.table(key[0])[key[1]]
     E, G, _, rho = isotropic(bulk, card.mid, place)
-    make = _pbeam if key[0] == "PBEAM" else _pbeaml
-    return make(card, place, E, G, rho)
-
-
-def _pbeam(card: Values, place: Place, E: float, G: float, rho: float) -> _Beam:
-    stations = np.array(card.x)
-    values = np.array([card.a, card.i1, card.i2, card.i12, card.j])
-    nsm = np.array(card.nsm)
-    A, I1, I2, I12, _ = values
-    if not ((A >= 0.0) & (I1 > 0.0) & (I2 > 0.0) & (I12**2 < I1 * I2)).all():
-        raise place.error("its area and inertias are not those of a real section")
-    stations, values, nsm = _to_end(stations, values, nsm)
-    return _Beam(
-        E, G, rho, stations, values,
-        np.array([card.k1, card.k2]),
-        np.reshape(card.n, (2, 2)),
-        nsm[[0, -1]],
-        np.reshape(card.m, (2, 2)),
-        np.array(card.nsi),
-    )  # fmt: skip
-
-
-def _pbeaml(card: Values, place: Place, E: float, G: float, rho: float) -> _Beam:
-    stations = np.array(card.x)
-    found = [section(card.type, d, place) for d in card.dim]
-    order = np.argsort(stations, kind="stable")
-    stations = stations[order]
-    found = [found[k] for k in order]
-    values = np.array([[s.A, s.I1, s.I2, s.I12, s.J] for s in found]).T
-    nsm = np.array(card.nsm)[order]
-    first, last = found[0], found[-1]
-    stations, values, nsm = _to_end(stations, values, nsm)
-    return _Beam(
-        E, G, rho, stations, values,
-        np.array([first.K1, first.K2]),
-        np.array([[first.shear_y, first.shear_z], [last.shear_y, last.shear_z]]),
-        nsm[[0, -1]],
-        np.zeros((2, 2)),
-        np.zeros(2),
-    )  # fmt: skip
-
-
-def _to_end(stations: Floats, values: Floats, nsm: Floats) -> tuple[Floats, Floats, Floats]:
-    """Repeat the last section at end B where the card gives none there."""
-    if stations[-1] < 1.0:
+    stations, nsm = np.array(card.x), np.array(card.nsm)
+    if key[0] == "PBEAM":
+        values = np.array([card.a, card.i1, card.i2, card.i12, card.j])
+        A, I1, I2, I12, _ = values
+        if not ((A >= 0.0) & (I1 > 0.0) & (I2 > 0.0) & (I12**2 < I1 * I2)).all():
+            raise place.error("its area and inertias are not those of a real section")
+        shear, neutral = (card.k1, card.k2), np.reshape(card.n, (2, 2))
+        nsm_at, nsi = np.reshape(card.m, (2, 2)), card.nsi
+    else:
+        order = np.argsort(stations, kind="stable")
+        found = [section(card.type, card.dim[k], place) for k in order]
+        stations, nsm = stations[order], nsm[order]
+        values = np.array([[s.A, s.I1, s.I2, s.I12, s.J] for s in found]).T
+        shear = (found[0].K1, found[0].K2)
+        neutral = np.array([[s.shear_y, s.shear_z] for s in (found[0], found[-1])])
+        nsm_at, nsi = np.zeros((2, 2)), np.zeros(2)
+    if stations[-1] < 1.0:  # the last section holds to end B where the card gives none there
         stations = np.append(stations, 1.0)
-        values = np.column_stack([values, values[:, 0] if len(values.T) == 1 else values[:, -1]])
-        nsm = np.append(nsm, nsm[-1])
-    return stations, values, nsm
+        values = np.column_stack([values, values[:, -1]])
+    return _Beam(E, G, rho, stations, values, nsm[[0, -1]], shear, neutral, nsm_at, nsi)
 
 
 def _note_warping(context: Context) -> None:

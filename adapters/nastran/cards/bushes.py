@@ -1,8 +1,7 @@
 """Bushings: CBUSH and CBUSH1D."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Known, Values
 from ..deck.field_values import FieldError, Fields, take
 from ..deck.movable_values import Moves, Read, Variable
-from .element_group import Context, Group, distinct_properties
+from .element_group import Context, Group, connected
 
 Six = Callable[[Values], Sequence[float]]
 """The six stiffnesses or dampings of a property."""
@@ -95,23 +94,12 @@ CARDS = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class _Bush:
-    """Geometry of one bushing.
+class _Bush(NamedTuple):
+    """Geometry of one bushing."""
 
-    Parameters
-    ----------
-    axes : (3, 3) float
-        Rows are the element axes, basic frame.
-    arms : list of (3,) float
-        From each grid to the spring.
-    axial_only : bool
-        Whether only K1 and K4 have a meaning: no orientation was given.
-    """
-
-    axes: Floats
-    arms: list[Floats]
-    axial_only: bool
+    axes: Floats  # (3, 3), rows are the element axes, basic frame
+    arms: list[Floats]  # from each grid to the spring
+    axial_only: bool  # no orientation was given: only K1 and K4 have a meaning
 
 
 def bushes(context: Context) -> list[Group]:
@@ -137,11 +125,8 @@ def _groups(context: Context, values_of: dict[str, Six]) -> list[Group]:
 
 def _group(context: Context, name: str, values: Six, cards: list[Values], grounded: bool) -> Group:
     bulk = context.bulk
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    used = [[c.nodes[0]] if grounded else c.nodes for c in cards]
-    ends = context.points.rows(used, name, ids)
-    pids = np.array([c.pid for c in cards])
-    keys, of = distinct_properties(bulk, name, ids, pids)
+    grids = [[c.nodes[0]] if grounded else c.nodes for c in cards]
+    ids, ends, keys, of = connected(context, name, cards, grids)
     bushes = [_geometry(context, name, c, e) for c, e in zip(cards, ends, strict=True)]
     axes = np.stack([b.axes for b in bushes])
     arm_a, arm_b = (np.stack([b.arms[k] for b in bushes]) for k in (0, -1))

@@ -7,7 +7,7 @@ from ....core.elements.lumped import BUSH, bush_stiffness
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card
 from ..deck.movable_values import Moves
-from .element_group import Context, Group, distinct_properties
+from .element_group import Context, Group, connected
 from .springs import ENDS, scalar_groups
 
 CARDS = (
@@ -30,13 +30,10 @@ def dashpots(context: Context) -> list[Group]:
 
 def _viscous(context: Context) -> list[Group]:
     """CVISC: a dashpot along the line of two grids, and one about it."""
-    bulk = context.bulk
-    cards = list(bulk.table("CVISC").values())
+    cards = list(context.bulk.table("CVISC").values())
     if not cards:
         return []
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    ends = context.points.rows([c.nodes for c in cards], "CVISC", ids)
-    keys, of = distinct_properties(bulk, "CVISC", ids, np.array([c.pid for c in cards]))
+    ids, ends, keys, of = connected(context, "CVISC", cards)
     along = np.diff(context.points.xyz[ends], axis=1)[:, 0]
     length = np.linalg.norm(along, axis=1)
     axes = np.zeros((len(cards), 3, 3))

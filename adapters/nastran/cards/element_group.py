@@ -2,13 +2,12 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements import Element
-from ....core.errors import InputError, Place
+from ....core.errors import InputError
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Values
 from ..properties.grids import Points
@@ -126,33 +125,40 @@ def element_sources(
     )
 
 
-def property_of(
-    bulk: Bulk, names: Sequence[str], number: int | None, asked_by: Callable[[], Place]
-) -> tuple[str, Values]:
-    """Return a property card and its name.
+def property_key(bulk: Bulk, card: str, eid: int, number: int | None) -> Key:
+    """Return the property card with the number that an element gives as its PID.
 
     Raises
     ------
     InputError
-        There is none of these kinds with that number.
+        There is none of its kinds with that number.
     """
+    names = bulk.definitions[card].properties.split()
     found = None if number is None else bulk.find(names, int(number))
-    if found is None:
-        raise asked_by().fault(
+    if number is None or found is None:
+        raise bulk.place(card, eid).fault(
             f"refers to property {number}, but there is no {' or '.join(names)} {number}"
         )
-    return found
+    return found[0], int(number)
 
 
-def distinct_properties(bulk: Bulk, card: str, ids: Ints, pids: Ints) -> tuple[list[Key], Ints]:
-    """Properties used by elements of one card as (card, number), and which each element uses."""
-    names = bulk.definitions[card].properties.split()
+def connected(
+    context: Context, name: str, cards: Sequence[Values], grids: Sequence[Sequence[int]] = ()
+) -> tuple[Ints, Ints, list[Key], Ints]:
+    """Return the numbers of elements of one card, their grid rows, properties, which each has.
+
+    `grids` are those that count where they are not all of the cards'; an element whose card
+    knows no properties is its own.
+    """
+    ids = np.array([c.eid for c in cards], dtype=np.int64)
+    nodes = context.points.rows(grids or [c.nodes for c in cards], name, ids)
+    if not context.bulk.definitions[name].properties:
+        return ids, nodes, [(name, int(i)) for i in ids], np.arange(len(ids))
+    pids = np.array([c.pid for c in cards])
     numbers, first, of = np.unique(pids, return_index=True, return_inverse=True)
-    keys = []
-    for number, k in zip(numbers, first, strict=True):
-        asked_by = partial(bulk.place, card, int(ids[k]))
-        keys.append((property_of(bulk, names, int(number), asked_by)[0], int(number)))
-    return keys, of.astype(np.int64)
+    asked = zip(ids[first], numbers, strict=True)
+    keys = [property_key(context.bulk, name, int(eid), int(pid)) for eid, pid in asked]
+    return ids, nodes, keys, of.astype(np.int64)
 
 
 def property_groups(context: Context, name: str, constants: Constants) -> list[Group]:
@@ -175,19 +181,12 @@ def property_groups(context: Context, name: str, constants: Constants) -> list[G
     cards = list(bulk.table(name).values())
     if not cards:
         return []
-    definition = bulk.definitions[name]
-    element = definition.element
+    element = bulk.definitions[name].element
     if element is None:
         raise InputError(f"the definition of {name} names no element")
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    nodes = context.points.rows([c.nodes for c in cards], name, ids)
+    ids, nodes, keys, of = connected(context, name, cards)
     xyz = context.points.xyz[nodes]
     check_shape(context, name, element, ids, xyz)
-    if definition.properties:
-        pids = np.array([c.pid for c in cards])
-        keys, of = distinct_properties(bulk, name, ids, pids)
-    else:
-        keys, of = [(name, int(i)) for i in ids], np.arange(len(ids))
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         used, position = np.unique(of[rows], return_inverse=True)

@@ -17,7 +17,7 @@ from .element_group import (
     Group,
     Key,
     check_shape,
-    distinct_properties,
+    connected,
     element_sources,
     with_material,
 )
@@ -68,9 +68,7 @@ def line_groups(context: Context, name: str, make: Make) -> list[Group]:
     element = context.bulk.definitions[name].element
     if not cards or element is None:
         return []
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
-    ends = context.points.rows([c.nodes for c in cards], name, ids)
-    keys, of = distinct_properties(context.bulk, name, ids, np.array([c.pid for c in cards]))
+    ids, ends, keys, of = connected(context, name, cards)
     lines = line_axes(context, name, cards, ids, ends)
 
     def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:

@@ -9,7 +9,7 @@ from ....core.arrays import Floats, Ints
 from ....core.elements import ELEMENTS, Element
 from ....core.elements.middle_nodes import spread
 from ..deck.card_definition import Values
-from .element_group import Context, Key, check_shape, distinct_properties
+from .element_group import Context, Key, check_shape, connected
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,18 +65,16 @@ def placed(context: Context, may_have: str) -> Iterator[Placed]:
 def _placed(
     context: Context, name: str, element: Element, cards: list[Values], present: tuple[bool, ...]
 ) -> Placed:
-    ids = np.array([c.eid for c in cards], dtype=np.int64)
     kept = np.zeros(element.nodes, dtype=bool)
     kept[: element.corners] = True
     kept[element.corners :][: len(present)] = present
     used = [[n for n, there in zip(c.nodes, kept, strict=False) if there] for c in cards]
-    nodes = context.points.rows(used, name, ids)
+    ids, nodes, keys, of = connected(context, name, cards, used)
     if element.dimension == 3:
         _refuse_repeated(context, name, ids, nodes)
     T = spread(element.edges, kept)
     xyz = context.points.xyz[nodes] if T is None else T @ context.points.xyz[nodes]
     check_shape(context, name, element, ids, xyz)
-    keys, of = distinct_properties(context.bulk, name, ids, np.array([c.pid for c in cards]))
     return Placed(name, element, cards, ids, nodes, xyz, T, keys, of)
 
 

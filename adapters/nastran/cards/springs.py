@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from ....core.elements.lumped import SPRING, spring_stiffness
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values
 from ..deck.movable_values import Moves
-from .element_group import Context, Group, Key, numbered, property_of
+from .element_group import Context, Group, Key, numbered, property_key
 
 ENDS = "G1>nodes:i=0 C1>components:i=0 G2>nodes:i=0 C2>components:i=0"
 """Two ends of a scalar element; 0 is the ground."""
@@ -69,7 +68,12 @@ def scalar_groups(context: Context, definition: Card, attribute: str, kind: int)
         if not members:
             continue
         cards = [m[0] for m in members]
-        keys = [_key(context, definition, card) for card in cards]
+        keys = [
+            property_key(context.bulk, name, c.eid, c.pid)
+            if definition.properties
+            else (name, c.eid)
+            for c in cards
+        ]
         sources, source_of = numbered(frozenset([k]) for k in keys)
         groups.append(
             Group(
@@ -91,14 +95,6 @@ def _dofs(context: Context, name: str, card: Values) -> list[int]:
     scalars = getattr(card, "scalars", None)
     ends = zip(scalars or card.nodes, (0, 0) if scalars else card.components, strict=True)
     return [context.points.dof(point, component, place) for point, component in ends if point]
-
-
-def _key(context: Context, definition: Card, card: Values) -> Key:
-    if not definition.properties:
-        return definition.name, card.eid
-    names = definition.properties.split()
-    place = partial(context.bulk.place, definition.name, card.eid)
-    return property_of(context.bulk, names, card.pid, place)[0], card.pid
 
 
 def _routine(
