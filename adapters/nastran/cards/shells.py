@@ -1,18 +1,17 @@
 """Shells: CQUAD4, CTRIA3, CQUADR, CTRIAR, CQUAD8, CTRIA6."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices
-from ....core.elements import Element
 from ....core.elements.normals import corner_normals, grid_normals
 from ....core.elements.section import ShellSection, rotate_section
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values
 from ..properties import laminates
 from ..properties.laminates import Layup, layup
-from .element_group import Context, Group, Key, element_sources
+from .element_group import Context, Group, element_sources
 from .placed_elements import Placed, placed
 
 _HEAD = "EID:i! PID:i=EID"
@@ -46,35 +45,12 @@ _FROM_AXES = ("CQUAD8",)
 """Whose THETA counts from the element's x axis; from side 1-2 on the others."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Elements:
-    """Facts of the elements that do not depend on parameters.
+class _Facts(NamedTuple):
+    """What of shells does not depend on parameters; one value an element."""
 
-    Parameters
-    ----------
-    angle : (n,) float
-        From the element's x axis to the material's [rad], about the normal.
-    own, share : (n,) float
-        The mean thickness is ``own + share * T`` with T of the property: corners may have
-        thicknesses of their own.
-    offset : (n,) float
-        ZOFFS.
-    normals : (n, m, 3) float or None
-        Of the grids at the corners, basic frame.
-    spread : (n_node, n_there) float or None
-        All nodes from those that are there (`middle_nodes.spread`).
-    """
-
-    ids: Ints
-    xyz: Floats
-    keys: list[Key]
-    of: Ints
-    angle: Floats
-    own: Floats
+    angle: Floats  # from the element's x axis to the material's [rad], about the normal
+    own: Floats  # mean thickness is own + share * T: corners may have thicknesses of their own
     share: Floats
-    offset: Floats
-    normals: Floats | None
-    spread: Floats | None
 
 
 def shells(context: Context) -> list[Group]:
@@ -105,86 +81,63 @@ def _axes(shell: Placed) -> Floats:
 
 
 def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
-    bulk, element, cards, ids = context.bulk, shell.element, shell.cards, shell.ids
-    keys, of = shell.keys, shell.of
-    own, share = _thickness(cards, element.corners)
+    bulk, element, ids, keys = context.bulk, shell.element, shell.ids, shell.keys
+    own, share = _thickness(shell.cards, element.corners)
     any_thickness = [layup(bulk, key, bulk.place(*key), own=1.0, share=0.0) for key in keys]
-    turned = np.array([not section.isotropic for section in any_thickness])[of]
+    turned = np.array([not section.isotropic for section in any_thickness])[shell.of]
     angle = np.zeros(len(ids))
     if turned.any():
-        angle[turned] = material_angle(context, shell, np.flatnonzero(turned))
-    facts = _Elements(
-        ids,
-        shell.xyz,
-        keys,
-        of,
-        angle,
-        own,
-        share,
-        np.array([c.zoffs for c in cards], dtype=np.float64),
-        normals,
-        shell.whole(),
-    )
+        angle[turned] = _material_angle(context, shell, np.flatnonzero(turned))
+    offset = np.array([c.zoffs for c in shell.cards], dtype=np.float64)
+    facts = _Facts(angle, own, share)
     of_property = [
         frozenset([key, *section.materials])
         for key, section in zip(keys, any_thickness, strict=True)
     ]
-    sources, source_of = element_sources(context, ids, of_property, of)
+    sources, source_of = element_sources(context, ids, of_property, shell.of)
+    T = shell.whole()
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
-        return _matrices(context, element, facts, values, rows, wanted)
+        section, density = _sections_of(shell, facts, values, rows)
+        K = M = None
+        if wanted[0]:
+            at_corners = None if normals is None else normals[rows]
+            settings = context.settings
+            K = element.stiffness(
+                shell.xyz[rows], section, settings.k6rot, offset[rows], at_corners
+            )
+        if wanted[1] and element.mass:
+            density = density + context.extra_mass(values, ids[rows])
+            M = element.mass(shell.xyz[rows], density, context.settings.coupled)
+        if T is not None:
+            K, M = (None if X is None else T.T @ X @ T for X in (K, M))
+        return K, M
 
     return Group(shell.name, ids, element, shell.nodes, matrices, sources, source_of)
 
 
-def _matrices(
-    context: Context,
-    element: Element,
-    facts: _Elements,
-    bulk: Bulk,
-    rows: Ints,
-    wanted: tuple[bool, bool],
-) -> Matrices:
-    section, density = sections_of(context, facts, bulk, rows)
-    xyz = facts.xyz[rows]
-    K = M = None
-    if wanted[0]:
-        normals = None if facts.normals is None else facts.normals[rows]
-        offset = facts.offset[rows]
-        K = element.stiffness(xyz, section, context.settings.k6rot, offset, normals)
-    if wanted[1] and element.mass:
-        density = density + context.extra_mass(bulk, facts.ids[rows])
-        M = element.mass(xyz, density, context.settings.coupled)
-    T = facts.spread
-    if T is not None:
-        K, M = (None if X is None else T.T @ X @ T for X in (K, M))
-    return K, M
-
-
-def sections_of(
-    context: Context, facts: _Elements, bulk: Bulk, rows: Ints
+def _sections_of(
+    shell: Placed, facts: _Facts, bulk: Bulk, rows: Ints
 ) -> tuple[ShellSection, Floats]:
     """Sections in element axes and mass per area of each element.
 
     Elements with the same property and no thickness of their own share one layup.
     """
     distinct, position = _distinct(
-        np.column_stack([facts.of[rows], facts.own[rows], facts.share[rows]])
+        np.column_stack([shell.of[rows], facts.own[rows], facts.share[rows]])
     )
     layups: list[Layup] = []
     for number, own, share in distinct:
-        key = facts.keys[int(number)]
-        layups.append(layup(bulk, key, context.bulk.place(*key), float(own), float(share)))
+        key = shell.keys[int(number)]
+        layups.append(layup(bulk, key, bulk.place(*key), float(own), float(share)))
     section = ShellSection(
-        A=np.array([part.A for part in layups]),
-        B=np.array([part.B for part in layups]),
-        D=np.array([part.D for part in layups]),
-        S=np.array([part.S for part in layups]),
-        drilling=np.array([part.drilling for part in layups]),
+        **{
+            name: np.array([getattr(part, name) for part in layups])
+            for name in ("A", "B", "D", "S", "drilling")
+        }
     ).take(position)
-    angle = facts.angle[rows]
-    if angle.any():
-        section = rotate_section(section, angle)
+    if facts.angle[rows].any():
+        section = rotate_section(section, facts.angle[rows])
     return section, np.array([part.density for part in layups])[position]
 
 
@@ -211,7 +164,7 @@ def _thickness(cards: list[Values], corners: int) -> tuple[Floats, Floats]:
     return own, share
 
 
-def material_angle(context: Context, shell: Placed, rows: Ints) -> Floats:
+def _material_angle(context: Context, shell: Placed, rows: Ints) -> Floats:
     """Angle from the element's x axis to the material's [rad], of the elements `rows`.
 
     THETA counts from side 1-2 (CQUAD8: from the element's x axis); a coordinate system (MCID)

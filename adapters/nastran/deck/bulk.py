@@ -91,10 +91,10 @@ class Bulk(Noun):
         card = f"{name} {number}"
         return Place(card=card) if raw is None else Place(self.files[raw.file], raw.line, card)
 
-    def place_listed(self, name: str, index: int) -> Place:
-        """``SPC1 (wing.bdf line 40)``, for messages about cards without a number of their own."""
-        raw = self.raw[name][index]
-        return Place(self.files[raw.file], raw.line, name)
+    def placed(self, name: str) -> Iterator[tuple[Values, Place]]:
+        """Yield `listed`, each card with ``SPC1 (wing.bdf line 40)``, for messages about it."""
+        for card, raw in zip(self.listed(name), self.raw.get(name, ()), strict=True):
+            yield card, Place(self.files[raw.file], raw.line, name)
 
     def at(self, raw: Raw) -> Place:
         """``models/wing.bdf line 40``, the path as it was given."""

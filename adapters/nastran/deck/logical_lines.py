@@ -59,7 +59,7 @@ def read_sections(source: Path | DeckText) -> Sections:
             marks["CEND"] = k
         elif head and head[0] == "BEGIN" and marks["BEGIN"] < 0:
             marks["BEGIN"] = k
-        if head and head[0] == "BEGIN" and not _is_bulk(head):
+        if head[:1] == ["BEGIN"] and head[1:] and not (head[1][:4] == "BULK" and not head[2:]):
             raise Place(files[line.file], line.number).error(
                 f"{line.text.strip()!r} starts a part of the deck that trueup does not read "
                 "(superelement or similar): give the assembled deck"
@@ -67,14 +67,8 @@ def read_sections(source: Path | DeckText) -> Sections:
     cend, begin = marks["CEND"], marks["BEGIN"]
     if cend >= 0 > begin:
         raise Place(path).error("there is CEND but no BEGIN BULK: the deck is not complete")
-    case_start = cend + 1
-    bulk = tuple(lines[begin + 1 :])
-    case = lines[case_start:begin] if begin >= 0 else []
-    return Sections(tuple(files), tuple(lines[: max(cend, 0)]), tuple(case), bulk)
-
-
-def _is_bulk(head: list[str]) -> bool:
-    return len(head) == 1 or (len(head) == 2 and head[1].startswith("BULK"))
+    executive, case = lines[: max(cend, 0)], lines[cend + 1 : max(begin, 0)]
+    return Sections(tuple(files), tuple(executive), tuple(case), tuple(lines[begin + 1 :]))
 
 
 def _lines(deck: DeckText) -> Iterator[Line]:

@@ -23,6 +23,7 @@ from .pynastran_bridge import bdf_of
 from .raw_cards import Raw, fields_of
 
 _NOT_KNOWN = "this card is not known"
+_MODAL = ("3", "103", "SEMODES", "MODES", "SEMFREQ", "111", "112", "SEMTRAN", "200")
 
 
 @dataclass(frozen=True)
@@ -153,9 +154,17 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     every_line = (*sections.executive, *sections.case, *sections.bulk)
     unit, unit_warnings = find_length_unit(every_line, bulk)
     skipped, refused, skip_warnings = _skipped(bulk, others)
-    counts = {name: _cards(raws) for name, raws in (*bulk.raw.items(), *others.items())}
+    counts = {
+        name: sum(raw.part == 0 for raw in raws)
+        for name, raws in (*bulk.raw.items(), *others.items())
+    }
     eigen = _eigen(bulk, case)
-    unfound = () if eigen or case.method is None else (_no_method(path, case.method),)
+    warnings = [*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections)]
+    if eigen is None and case.method is not None:
+        warnings.append(
+            f"{path}: METHOD = {case.method} selects no EIGRL or EIGR of the deck; how many modes "
+            "to find is left to trueup"
+        )
     return Deck(
         path=path,
         files=sections.files,
@@ -166,15 +175,11 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         eigen=eigen,
         counts=counts,
         skipped=skipped,
-        warnings=(*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections), *unfound),
+        warnings=tuple(warnings),
         refused=refused,
         changed=changed,
         on_disk=changed is None,
     )
-
-
-def _cards(raws: list[Raw]) -> int:
-    return sum(1 for raw in raws if raw.part == 0)
 
 
 def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:
@@ -204,23 +209,12 @@ def _eigen(bulk: Bulk, case: CaseControl) -> EigenRequest | None:
     return EigenRequest(card.f1, card.f2, nd)
 
 
-def _no_method(path: Path, method: int) -> str:
-    return (
-        f"{path}: METHOD = {method} selects no EIGRL or EIGR of the deck; how many modes to find "
-        "is left to trueup"
-    )
-
-
 def _solution(sections: Any) -> tuple[str, ...]:
     for line in sections.executive:
         words = line.text.split("$", 1)[0].upper().replace(",", " ").split()
-        if len(words) > 1 and words[0] == "SOL" and not _is_modal(words[1]):
+        if len(words) > 1 and words[0] == "SOL" and words[1] not in _MODAL:
             return (f"the deck is for SOL {words[1]}; trueup takes its structure for normal modes",)
     return ()
-
-
-def _is_modal(solution: str) -> bool:
-    return solution in ("3", "103", "SEMODES", "MODES", "SEMFREQ", "111", "112", "SEMTRAN", "200")
 
 
 def _skipped(
@@ -234,7 +228,7 @@ def _skipped(
         why = card.refused or card.ignored
         count = f"{len(raws)} cards" if len(raws) > 1 else "1 card"
         if card.refused:
-            named = f"{name}{_number(first)}"
+            named = " ".join([name, *filter(None, fields_of(first.lines)[1:2])])
             refused.append(bulk.at(first).error(f"{named}: {why}", named))
         elif card.ignored == _NOT_KNOWN:
             warnings.append(f"{file} line {first.line}: {name} is not known and was left out")
@@ -247,12 +241,7 @@ def _skipped(
 
 def _unknown(name: str) -> Card:
     """Refuse a card that nobody knows where its name is that of an element or a constraint."""
-    if name[:1] in ("C", "R") or name[:3] in ("SPC", "MPC"):
-        why = "this card is not known and its name is that of an element or a constraint"
+    if name.startswith(("C", "R", "SPC", "MPC")):
+        why = f"{_NOT_KNOWN} and its name is that of an element or a constraint"
         return Card(name, refused=why)
     return Card(name, ignored=_NOT_KNOWN)
-
-
-def _number(raw: Raw) -> str:
-    fields = fields_of(raw.lines)
-    return f" {fields[1]}" if len(fields) > 1 and fields[1] else ""

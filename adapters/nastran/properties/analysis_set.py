@@ -1,12 +1,11 @@
 """The analysis set: ASET, ASET1, OMIT, OMIT1."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from ....core.errors import Place
-from ..deck.card_definition import Card, Values
+from ..deck.card_definition import Card
 from ..deck.read_deck import Deck
 from .grids import Points
 
@@ -31,10 +30,8 @@ def read_analysis_set(deck: Deck, points: Points) -> Any:
     for name in ("ASET", "OMIT"):
         mask = np.zeros(points.n_dof, dtype=bool)
         for kind in (name, f"{name}1"):
-            for k, card in enumerate(deck.bulk.listed(kind)):
-                place = deck.bulk.place_listed(kind, k)
-                for grid, digits in _terms(kind, card, points):
-                    mask[[points.dof(grid, int(d), place) for d in digits]] = True
+            for card, place in deck.bulk.placed(kind):
+                mask[list(points.named(card, place))] = True
         masks[name] = mask
     both = np.flatnonzero(masks["ASET"] & masks["OMIT"])
     if len(both):
@@ -44,9 +41,3 @@ def read_analysis_set(deck: Deck, points: Points) -> Any:
     if masks["ASET"].any():
         return masks["ASET"]
     return ~masks["OMIT"] if masks["OMIT"].any() else None
-
-
-def _terms(kind: str, card: Values, points: Points) -> Iterable[tuple[int, str]]:
-    if kind.endswith("1"):
-        return ((grid, card.components) for grid in points.listed(card.nodes))
-    return zip(card.nodes, card.components, strict=True)

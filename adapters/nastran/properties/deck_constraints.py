@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -46,13 +46,6 @@ class Constraints:
     notes: tuple[str, ...] = ()
 
 
-class _Set(NamedTuple):
-    """A card that a set number selects, and where it stands."""
-
-    card: Values
-    place: Place
-
-
 def read_constraints(deck: Deck, points: Points) -> Constraints:
     """Collect the constraints that the case control section selects, and the rigid elements.
 
@@ -67,36 +60,33 @@ def read_constraints(deck: Deck, points: Points) -> Constraints:
     fixed = np.zeros(points.n_dof, dtype=bool)
     fixed[: points.permanent.size] = points.permanent.reshape(-1)
     if deck.case.spc is not None:
-        for name, item in _selected(deck, deck.case.spc, ("SPC", "SPC1"), notes):
-            for dof in _spc_dofs(name, item, points):
-                fixed[dof] = True
+        for card, place in _selected(deck, deck.case.spc, ("SPC", "SPC1"), notes):
+            fixed[list(points.named(card, place))] = True
     rows = Rows(points)
     for name, make in RIGID.items():
         for number, card in deck.bulk.table(name).items():
             make(rows, card, deck.bulk.place(name, number))
     if deck.case.mpc is not None:
-        for _, item in _selected(deck, deck.case.mpc, ("MPC",), notes):
-            _add_mpc(rows, item, points)
+        for card, place in _selected(deck, deck.case.mpc, ("MPC",), notes):
+            _add_mpc(rows, card, place)
     return Constraints(_equations(rows, points.n_dof), fixed, tuple(notes))
 
 
 def _selected(
     deck: Deck, number: int, names: tuple[str, ...], notes: list[str]
-) -> Iterator[tuple[str, _Set]]:
+) -> Iterator[tuple[Values, Place]]:
     """Cards of a set, sets added together resolved; what is missing goes to `notes`."""
     kind = names[0]
     wanted = {number: f"{deck.path}: case control asks for {kind} = {number}"}
-    for k, card in enumerate(deck.bulk.listed(f"{kind}ADD")):
+    for card, place in deck.bulk.placed(f"{kind}ADD"):
         if card.sid == number:
-            place = deck.bulk.place_listed(f"{kind}ADD", k)
             wanted.update({s: f"{place} adds set {s}" for s in card.sets})
-    added = len(wanted) > 1
-    found = {number} if added else set()
+    found = {number} if len(wanted) > 1 else set()
     for name in names:
-        for k, card in enumerate(deck.bulk.listed(name)):
+        for card, place in deck.bulk.placed(name):
             if card.sid in wanted:
                 found.add(card.sid)
-                yield name, _Set(card, deck.bulk.place_listed(name, k))
+                yield card, place
     notes.extend(
         f"{asked}, but the deck has no {kind} cards of that set: nothing is constrained by it"
         for missing, asked in wanted.items()
@@ -104,28 +94,15 @@ def _selected(
     )
 
 
-def _spc_dofs(name: str, item: _Set, points: Points) -> Iterator[int]:
-    """Degrees of freedom held; grids missing in a range are passed over, as in Nastran."""
-    card = item.card
-    if name == "SPC":
-        pairs = zip(card.nodes, card.components, strict=True)
-    else:
-        pairs = ((grid, card.components) for grid in points.listed(card.nodes))  # type: ignore[assignment]
-    for grid, digits in pairs:
-        for component in digits:
-            yield points.dof(grid, int(component), item.place)
-
-
-def _add_mpc(rows: Rows, item: _Set, points: Points) -> None:
-    card = item.card
+def _add_mpc(rows: Rows, card: Values, place: Place) -> None:
     dofs = [
-        points.dof(grid, int(component), item.place)
+        rows.points.dof(grid, int(component), place)
         for grid, component in zip(card.nodes, card.components, strict=True)
     ]
     coefficients = np.array(card.coefficients)
     if coefficients[0] == 0.0:
-        raise item.place.error("the first coefficient of an MPC must not be zero")
-    rows.add(dofs[0], dofs[1:], -coefficients[1:] / coefficients[0], item.place)
+        raise place.error("the first coefficient of an MPC must not be zero")
+    rows.add(dofs[0], dofs[1:], -coefficients[1:] / coefficients[0], place, least=0.0)
 
 
 def _equations(rows: Rows, n_dof: int) -> Equations:

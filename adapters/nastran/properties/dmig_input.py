@@ -45,11 +45,7 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
 
 
 def _read(deck: Deck, points: Points, name: str, asked_by: str) -> sp.csr_matrix:
-    cards = [
-        (card, deck.bulk.place_listed("DMIG", k))
-        for k, card in enumerate(deck.bulk.listed("DMIG"))
-        if card.name == name
-    ]
+    cards = [(card, place) for card, place in deck.bulk.placed("DMIG") if card.name == name]
     headers = [(card, p) for card, p in cards if card.gj == 0]
     if not headers:
         raise Place(deck.path).error(

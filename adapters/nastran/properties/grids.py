@@ -10,7 +10,7 @@ from ....core.arrays import Floats, Ints
 from ....core.errors import Place
 from ....core.noun import Noun
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card
+from ..deck.card_definition import Card, Values
 from .deck_coordinate_systems import Frames
 
 CARDS = (
@@ -113,6 +113,15 @@ class Points(Noun):
             for ids in (self.ids, self.scalar_ids):
                 within = ids[(ids >= part.start) & (ids < part.stop)]
                 yield from (int(k) for k in within if k in part)
+
+    def named(self, card: Values, place: Place) -> Iterator[int]:
+        """Yield the degrees of freedom that a card names: pairs, or components of many grids."""
+        pairs = zip(card.nodes, card.components, strict=True)
+        if isinstance(card.components, str):
+            pairs = ((grid, card.components) for grid in self.listed(card.nodes))  # type: ignore[assignment]
+        for grid, digits in pairs:
+            for component in digits:
+                yield self.dof(grid, int(component), place)
 
     def row(self, grid: int, place: Place) -> int:
         """Return the row of one grid."""

@@ -108,14 +108,12 @@ def _pshell(bulk: Bulk, card: Values, place: Place, own: float, share: float) ->
     t = own + share * (card.t or 0.0)
     if not t > 0.0:
         raise place.error(f"the thickness T is {t:g}; it must be positive")
-    mid1, mid2, mid3, mid4 = (_mid(m) for m in (card.mid1, card.mid2, card.mid3, card.mid4))
+    mid1, mid2, mid3, mid4 = (m or None for m in (card.mid1, card.mid2, card.mid3, card.mid4))
     zero = np.zeros((3, 3))
-    used: dict[int, Plane] = {}
     strain = mid2 == -1
     mid2 = None if strain else mid2
-    for mid in (mid1, mid2, mid3, mid4):
-        if mid is not None:
-            used[mid] = plane(bulk, mid, place)
+    mids = [mid for mid in (mid1, mid2, mid3, mid4) if mid is not None]
+    used = {mid: plane(bulk, mid, place) for mid in mids}
     if not used:
         raise place.fault("names no material")
     if strain and mid1 is not None:
@@ -128,15 +126,11 @@ def _pshell(bulk: Bulk, card: Values, place: Place, own: float, share: float) ->
     if mid3 is not None and mid2 is not None:
         S = used[mid3].shear * (card.shear * t)
     drilling = float(A[2, 2])  # none without a membrane
-    first = used[mid1 if mid1 is not None else next(iter(used))]
+    first = used[mids[0]]
     density = first.rho * t + card.nsm
     keys = tuple(_key(bulk, mid) for mid in used)
     same = all(m.isotropic for m in used.values())
     return Layup(A, B, D, S, drilling, density, same, keys)
-
-
-def _mid(value: int | None) -> int | None:
-    return value or None
 
 
 def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
@@ -166,8 +160,7 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     G = np.array([_turned_shear(materials[m].shear, a) for m, a in zip(mids, theta, strict=True)])
     rho = np.array([materials[m].rho for m in mids])
     total = float(t.sum())
-    z0 = card.z0
-    bottom = -0.5 * total if z0 is None else float(z0)
+    bottom = -0.5 * total if card.z0 is None else float(card.z0)
     low = bottom + np.concatenate([[0.0], np.cumsum(t)[:-1]])
     high = low + t
     A = np.einsum("p,pij->ij", high - low, Q)
@@ -200,11 +193,8 @@ def _plies(card: Values, place: Place) -> tuple[Floats, Floats, list[int]]:
     if not len(t) or not (t > 0.0).all():
         raise place.error("every ply needs a positive thickness")
     if card.lam == "SYM":  # the plies listed are the lower half
-        t, theta, mids = (
-            np.concatenate([t, t[::-1]]),
-            np.concatenate([theta, theta[::-1]]),
-            [*mids, *mids[::-1]],
-        )
+        t, theta = (np.concatenate([x, x[::-1]]) for x in (t, theta))
+        mids = [*mids, *mids[::-1]]
     return t, theta, mids
 
 

@@ -34,10 +34,8 @@ def _rbe1_grids(fields: Fields, _: Known) -> list[object]:
     if "UM" not in words:
         raise FieldError(len(fields), "UM", "is missing before the dependent grids")
     um = words.index("UM")
-    out: list[object] = []
-    for letter, first, stop in (("N", 2, um), ("M", um + 1, alpha)):
-        out += _pairs(letter, fields[:stop], first)
-    return [*out, take(fields, alpha, "ALPHA:r=0.")]
+    pairs = [*_pairs("N", fields[:um], 2), *_pairs("M", fields[:alpha], um + 1)]
+    return [*pairs, take(fields, alpha, "ALPHA:r=0.")]
 
 
 def _pairs(letter: str, fields: Fields, first: int) -> list[tuple[object, ...]]:
@@ -101,14 +99,22 @@ class Rows:
         self.columns: list[int] = []
         self.values: list[float] = []
 
-    def add(self, dependent: int, columns: Sequence[int], values: Floats, owner: Place) -> None:
-        """Add ``u[dependent] = sum(values * u[columns])``."""
+    def add(
+        self,
+        dependent: int,
+        columns: Sequence[int],
+        values: Floats,
+        owner: Place,
+        least: float = 1e-14,
+    ) -> None:
+        """Add ``u[dependent] = sum(values * u[columns])``, without what is but rounding."""
+        used = np.flatnonzero(np.abs(values) > least * np.abs(values).max(initial=1.0))
         row = len(self.dependent)
         self.dependent.append(int(dependent))
         self.owners.append(owner)
-        self.rows.extend([row] * len(columns))
-        self.columns.extend(int(c) for c in columns)
-        self.values.extend(float(v) for v in values)
+        self.rows.extend([row] * len(used))
+        self.columns.extend(int(columns[k]) for k in used)
+        self.values.extend(float(v) for v in values[used])
 
     def motion(self, row: int, origin: Floats) -> Floats:
         """Displacements (6) of grid `row`, its system, from rigid motion about `origin`, (6, 6)."""
@@ -149,9 +155,7 @@ def rbe2(rows: Rows, card: Values, place: Place) -> None:
             raise place.error(f"grid {grid} is both the independent and a dependent grid")
         T = rows.motion(row, points.xyz[centre]) @ inverse
         for c in components:
-            values = T[c - 1]
-            used = np.flatnonzero(np.abs(values) > 1e-14 * max(1.0, float(np.abs(values).max())))
-            rows.add(6 * row + c - 1, (6 * centre + used).tolist(), values[used], place)
+            rows.add(6 * row + c - 1, range(6 * centre, 6 * centre + 6), T[c - 1], place)
 
 
 def rbar(rows: Rows, card: Values, place: Place) -> None:
@@ -170,9 +174,8 @@ def rbar(rows: Rows, card: Values, place: Place) -> None:
 
 def rbar1(rows: Rows, card: Values, place: Place) -> None:
     """Components CB of GB follow the rigid motion of GA."""
-    components = card.cb or "123456"
     a, b = card.nodes
-    _rigid_body(rows, [(a, "123456")], [(b, components)], place)
+    _rigid_body(rows, [(a, "123456")], [(b, card.cb or "123456")], place)
 
 
 def rbe1(rows: Rows, card: Values, place: Place) -> None:
@@ -194,7 +197,8 @@ def _rigid_body(
     base, columns = _motions(rows, independent, origin, place)
     if len(columns) != 6:
         raise place.error(f"{len(columns)} components are independent; there must be six")
-    scale = _lengths(rows, [*independent, *dependent], origin, place)
+    at = [points.row(int(grid), place) for grid, _ in (*independent, *dependent)]
+    scale = float(np.linalg.norm(points.xyz[at] - origin, axis=1).max()) or 1.0
     balance = np.array([1.0, 1.0, 1.0, scale, scale, scale])
     unit = np.where(np.array(columns) % 6 < 3, 1.0, scale)
     if np.linalg.cond(base * unit[:, None] / balance) > 1e10:
@@ -206,8 +210,7 @@ def _rigid_body(
             raise place.error(
                 f"{points.label(dof)} (grid:component) is both independent and dependent"
             )
-        used = np.flatnonzero(np.abs(row) > 1e-13 * max(1.0, float(np.abs(row).max())))
-        rows.add(dof, [columns[k] for k in used], row[used], place)
+        rows.add(dof, columns, row, place, least=1e-13)
 
 
 def _motions(
@@ -222,15 +225,6 @@ def _motions(
             values.append(motion[c - 1])
             dofs.append(6 * row + c - 1)
     return np.array(values).reshape(-1, 6), dofs
-
-
-def _lengths(
-    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: Place
-) -> float:
-    """Return the largest distance from `origin`, 1 where all coincide."""
-    at = [rows.points.xyz[rows.points.row(int(grid), place)] for grid, _ in members]
-    largest = float(np.linalg.norm(np.array(at) - origin, axis=1).max(initial=0.0))
-    return largest if largest > 0.0 else 1.0
 
 
 def rrod(rows: Rows, card: Values, place: Place) -> None:
@@ -252,7 +246,7 @@ def rrod(rows: Rows, card: Values, place: Place) -> None:
     if abs(pivot) < 1e-3:
         raise place.error("the dependent component is (nearly) normal to the rod: give another")
     others = [k for k in range(6) if k != chosen[0] and abs(coefficients[k]) > 1e-14]
-    rows.add(dofs[chosen[0]], [dofs[k] for k in others], -coefficients[others] / pivot, place)
+    rows.add(dofs[chosen[0]], [dofs[k] for k in others], -coefficients[others] / pivot, place, 0.0)
 
 
 def rbe3(rows: Rows, card: Values, place: Place) -> None:
@@ -284,9 +278,7 @@ def rbe3(rows: Rows, card: Values, place: Place) -> None:
     values, vectors = np.linalg.eigh(normal)
     lost = vectors[:, values <= 1e-10 * values[-1]]
     components = components_of(card.refc, place)
-    own = np.zeros((6, 6))
-    own[:3, :3] = own[3:, 3:] = points.directions[reference]
-    wanted = (own / balance)[[c - 1 for c in components]]
+    wanted = (rows.motion(reference, origin) / balance)[[c - 1 for c in components]]
     if lost.size and np.abs(wanted * balance.max() @ lost).max() > 1e-6 * balance.max():
         raise place.error(
             f"the grids it averages do not determine all components {card.refc} of the "
@@ -297,7 +289,7 @@ def rbe3(rows: Rows, card: Values, place: Place) -> None:
     moved = list(zip(card.gm, card.cm, strict=True))
     if not moved:
         for dof, row in zip(targets, G, strict=True):
-            _add_trimmed(rows, dof, columns, row, place)
+            rows.add(dof, columns, row, place)
         return
     _rbe3_um(rows, moved, targets, columns, G, place)
 
@@ -327,12 +319,7 @@ def _rbe3_um(
         raise place.error("the components under UM cannot be the dependent ones")
     solved = -np.linalg.solve(equations[:, position], equations[:, rest])
     for dof, row in zip(dependent, solved, strict=True):
-        _add_trimmed(rows, dof, [every[k] for k in rest], row, place)
-
-
-def _add_trimmed(rows: Rows, dof: int, columns: list[int], row: Floats, place: Place) -> None:
-    used = np.flatnonzero(np.abs(row) > 1e-14 * max(1.0, float(np.abs(row).max())))
-    rows.add(dof, [columns[k] for k in used], row[used], place)
+        rows.add(dof, [every[k] for k in rest], row, place)
 
 
 RIGID: dict[str, Callable[[Rows, Values, Place], None]] = {

@@ -1,6 +1,6 @@
 """Materials that depend on temperature: MATT1, MATT2, MATT8, MATT9 at the initial temperature."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -129,13 +129,13 @@ def _uniform(deck: Deck, number: int) -> float:
     """Return the one temperature of a set: TEMP of the grids, TEMPD of those without."""
     own = {
         grid: (value, place)
-        for card, place in _placed(deck, "TEMP")
+        for card, place in deck.bulk.placed("TEMP")
         for grid, value in zip(card.nodes, card.t, strict=True)
         if card.sid == number
     }
     default = [
         (value, place)
-        for card, place in _placed(deck, "TEMPD")
+        for card, place in deck.bulk.placed("TEMPD")
         for sid, value in zip(card.sid, card.t, strict=True)
         if sid == number
     ]
@@ -153,11 +153,6 @@ def _uniform(deck: Deck, number: int) -> float:
             "one temperature for all grids is supported"
         )
     return float(next(iter(values)))
-
-
-def _placed(deck: Deck, name: str) -> Iterator[tuple[Values, Place]]:
-    for k, card in enumerate(deck.bulk.listed(name)):
-        yield card, deck.bulk.place_listed(name, k)
 
 
 def _value(bulk: Bulk, table: int, x: float, asked_by: Key) -> tuple[float, bool]:
