@@ -10,7 +10,6 @@ from ....core.arrays import Bools, Ints
 from ....core.assembly.affine_terms import parametric_terms
 from ....core.assembly.guyan import static_condensation
 from ....core.assembly.multipoint_constraints import Reduction, reduction, unsupported
-from ....core.data.dofs import Dofs
 from ....core.data.geometry import Geometry
 from ....core.data.parameter import Parameter
 from ....core.data.parametric_model import Model, Term
@@ -21,7 +20,7 @@ from ..fields.parameter_references import ParameterSpec
 from ..properties.analysis_set import read_analysis_set
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices
-from ..properties.grids import Points
+from ..properties.grids import Points, point_dofs
 from .deck_elements import Structure, read_structure
 from .parameter_bounds import admissible
 from .variation import Variation, read_variation
@@ -89,7 +88,7 @@ def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
     terms, expansion, kept, more = _condense(deck, points, terms, reduced)
     model = Model(
         geometry=_geometry(deck, structure),
-        dofs=_dofs(points),
+        dofs=point_dofs(points.ids, points.scalar_ids),
         expansion=(to_basic(points) @ expansion).tocsr(),
         stiffness=terms[0],
         mass=terms[1],
@@ -230,14 +229,6 @@ def to_basic(points: Points) -> sp.csr_matrix:
     columns = np.tile(triples, (1, 3)).reshape(-1)
     values = R.swapaxes(1, 2).reshape(-1)
     return (sp.diags(diagonal) + sp.coo_matrix((values, (rows, columns)), shape=(n, n))).tocsr()
-
-
-def _dofs(points: Points) -> Dofs:
-    node = np.concatenate([np.repeat(points.ids, 6), points.scalar_ids])
-    component = np.concatenate(
-        [np.tile(np.arange(1, 7), len(points.ids)), np.ones(len(points.scalar_ids), np.int64)]
-    )
-    return Dofs(node, component)
 
 
 def _geometry(deck: Deck, structure: Structure) -> Geometry:

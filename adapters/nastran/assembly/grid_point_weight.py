@@ -55,15 +55,7 @@ def weight(deck: Deck) -> Weight:
     known = k < len(points.ids) and points.ids[k] == grid
     reference = points.xyz[k] if known else np.zeros(3)
     R = np.zeros((points.n_dof, 6))
-    arm = points.xyz - reference
-    motion = np.zeros((len(points.ids), 6, 6))
-    motion[:, :3, :3] = motion[:, 3:, 3:] = points.directions
-    cross = np.zeros((len(points.ids), 3, 3))
-    cross[:, 0, 1], cross[:, 0, 2] = arm[:, 2], -arm[:, 1]
-    cross[:, 1, 0], cross[:, 1, 2] = -arm[:, 2], arm[:, 0]
-    cross[:, 2, 0], cross[:, 2, 1] = arm[:, 1], -arm[:, 0]
-    motion[:, :3, 3:] = points.directions @ cross
-    R[: 6 * len(points.ids)] = motion.reshape(-1, 6)
+    R[: 6 * len(points.ids)] = points.motions(slice(None), reference).reshape(-1, 6)
     matrix = R.T @ (M @ R)
     masses = np.diag(matrix)[:3].copy()
     total = float(masses.mean())

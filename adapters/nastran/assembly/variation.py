@@ -14,7 +14,7 @@ from ....core.data.parameter import Parameter
 from ....core.errors import InputError, Place
 from ..deck.bulk import Bulk
 from ..deck.field_values import Fields
-from ..deck.movable_values import after
+from ..deck.movable_values import index_of
 from ..deck.raw_cards import fields_of
 from ..deck.read_deck import Deck
 from ..fields.layouts import field_position
@@ -150,7 +150,8 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     raw = bulk.numbered.get(ref.card, {}).get(ref.id)
     if raw is None:
         known = sorted(bulk.numbered.get(ref.card, {}))
-        there = f"; the deck has {ref.card} {_list(known)}" if known else ""
+        shown = ", ".join([*map(str, known[:8]), *["..."] * (len(known) > 8)])
+        there = f"; the deck has {ref.card} {shown}" if known else ""
         card = f"{ref.card} {ref.id}"
         said = f"parameter {name!r}: there is no {card} in the deck{there}"
         raise Place(bulk.files[0]).error(said, card)
@@ -158,13 +159,13 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     shift = bulk.definitions[ref.card].several * raw.part
 
     def read(position: int) -> str:
-        return str(_at(fields, _index(position)) or "").upper()
+        return str(_at(fields, 1 + index_of(position)) or "").upper()
 
     position = field_position(ref.card, ref.field, read)
     place = bulk.place(ref.card, ref.id)
     if position is None:
         raise place.about(f"parameter {name!r}: {place} has no value {ref.field}")
-    index = _index(after(position, shift))
+    index = 1 + shift + index_of(position)
     text = _at(fields, index)
     if text is None:
         raise place.about(
@@ -184,16 +185,5 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     return index, value
 
 
-def _index(position: int) -> int:
-    """Index in `fields_of` of a position as the Quick Reference Guide counts."""
-    line, column = divmod(position, 10)
-    return 8 * line + column - 1
-
-
 def _at(fields: Fields, index: int) -> str | None:
     return fields[index] if index < len(fields) else None
-
-
-def _list(numbers: list[int]) -> str:
-    shown = ", ".join(map(str, numbers[:8]))
-    return f"{shown}, ..." if len(numbers) > 8 else shown

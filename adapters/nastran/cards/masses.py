@@ -46,13 +46,6 @@ CARDS = (
     ),
 )
 
-_PROPERTY: dict[str, tuple[str, str] | None] = {
-    "CMASS1": ("PMASS", "m"),
-    "CMASS2": None,
-    "CMASS3": ("PMASS", "m"),
-    "CMASS4": None,
-}
-
 
 def masses(context: Context) -> list[Group]:
     """Make the groups of concentrated masses."""
@@ -69,9 +62,7 @@ def _at_grids(context: Context, name: str, make: object) -> list[Group]:
         return []
     ids = np.array([c.eid for c in cards], dtype=np.int64)
     rows = context.points.rows([c.g for c in cards], name, ids)
-    axes = np.stack(
-        [_axes(context, name, card, int(row)) for card, row in zip(cards, rows, strict=True)]
-    )
+    axes = np.stack([_axes(context, name, c, row) for c, row in zip(cards, rows, strict=True)])
     sources, source_of = numbered(frozenset([(name, int(i))]) for i in ids)
 
     def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
@@ -84,7 +75,7 @@ def _at_grids(context: Context, name: str, make: object) -> list[Group]:
     return [Group(name, ids, MASS, rows[:, None], matrices, sources, source_of)]
 
 
-def _axes(context: Context, name: str, card: Values, row: int) -> Floats:
+def _axes(context: Context, name: str, card: Values, row: np.int64) -> Floats:
     """Axes that the card's values refer to, rows in the basic frame."""
     cid = int(card.cid or 0)
     frame = context.points.frames.get(max(cid, 0), context.bulk.place(name, card.eid))

@@ -87,5 +87,10 @@ def after(position: int, steps: int) -> int:
     >>> after(8, 3)
     13
     """
+    return position_of(index_of(position) + steps)
+
+
+def index_of(position: int) -> int:
+    """Return the data field, from 0 after the card's name, at a position."""
     line, column = divmod(position, 10)
-    return position_of(line * 8 + (column - 2) + steps)
+    return 8 * line + column - 2

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....core.errors import InputError
 from ..cards import definitions
+from ..deck.movable_values import index_of
 from ..deck.number_spaces import SPACES, space_of
 from ..text.deck_text import DeckText, Segment
 from ..text.source_file import CONTINUATION, REPLICATION, Keys, name_of
@@ -45,7 +46,7 @@ class Card:
 
     def index(self, position: int) -> int:
         """Return the data field (from 0 after the name) of a position of the guide."""
-        return 8 * (position // 10) + position % 10 - 2 + self.shift
+        return index_of(position) + self.shift
 
     def text(self, index: int) -> str:
         """Return data field `index` (from 0), stripped, in capitals, "" where blank."""

@@ -11,7 +11,7 @@ from ....core.data.geometry import Geometry
 from ....core.data.parametric_model import Model, Term
 from ....core.errors import InputError
 from ..deck.read_deck import Deck
-from ..properties.grids import Points, read_points
+from ..properties.grids import Points, point_dofs, read_points
 from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form
 
 _NOT_FOUND = np.zeros((0, 3))
@@ -137,16 +137,12 @@ def _expanded(there: DofMap, points: Points) -> tuple[Dofs, sp.csr_matrix]:
         )
     is_scalar = there.component == 0  # those of superelements need not stand in the deck
     scalar_ids = np.union1d(points.scalar_ids, there.point[is_scalar])
-    n_grid, n_scalar = len(points.ids), len(scalar_ids)
-    dofs = Dofs(
-        np.concatenate([np.repeat(points.ids, 6), scalar_ids]),
-        np.concatenate([np.tile(np.arange(1, 7), n_grid), np.ones(n_scalar, np.int64)]),
-    )
+    dofs = point_dofs(points.ids, scalar_ids)
     grid, scalar = np.flatnonzero(~is_scalar), np.flatnonzero(is_scalar)
     row = np.searchsorted(points.ids, there.point[grid])
     triple, direction = np.divmod(there.component[grid] - 1, 3)
     along = (6 * row + 3 * triple)[:, None] + np.arange(3)
-    rows = [along.ravel(), 6 * n_grid + np.searchsorted(scalar_ids, there.point[scalar])]
+    rows = [along.ravel(), 6 * len(points.ids) + np.searchsorted(scalar_ids, there.point[scalar])]
     values = [points.directions[row, direction].ravel(), np.ones(len(scalar))]
     columns = np.concatenate([np.repeat(grid, 3), scalar])
     matrix = sp.coo_matrix(

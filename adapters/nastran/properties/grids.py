@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints
+from ....core.arrays import Floats, Ints, skew
+from ....core.data.dofs import Dofs
 from ....core.errors import Place
 from ....core.noun import Noun
 from ..deck.bulk import Bulk
@@ -130,12 +131,26 @@ class Points(Noun):
             raise place.fault(f"refers to grid {grid}, which does not exist")
         return k
 
+    def motions(self, rows: Ints | slice, origin: Floats) -> Floats:
+        """Displacements of grids, their systems, from rigid motions about a point, (n, 6, 6)."""
+        R = self.directions[rows]
+        out = np.zeros((len(R), 6, 6))
+        out[:, :3, :3] = out[:, 3:, 3:] = R
+        out[:, :3, 3:] = -R @ skew(self.xyz[rows] - origin)
+        return out
+
     def label(self, dof: int) -> str:
         """``grid:component`` of a degree of freedom of the g-set."""
         grid, component = divmod(int(dof), 6)
         if grid < len(self.ids):
             return f"{self.ids[grid]}:{component + 1}"
         return f"{self.scalar_ids[dof - 6 * len(self.ids)]}:0"
+
+
+def point_dofs(ids: Ints, scalar_ids: Ints) -> Dofs:
+    """Return six degrees of freedom a grid, then one a scalar point."""
+    component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalar_ids), int)])
+    return Dofs(np.concatenate([np.repeat(ids, 6), scalar_ids]), component)
 
 
 def read_points(bulk: Bulk) -> Points:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -113,41 +113,28 @@ def read_nonstructural(deck: Deck, points: Points) -> Nonstructural:
     return Nonstructural(tuple(shares))
 
 
-def _read(
-    name: str, number: int, card: Values, measure: _Measures, place: Place
-) -> Iterable[_Share]:
+def _read(name: str, number: int, card: Values, measure: _Measures, place: Place) -> list[_Share]:
     """Shares of one card; NSM and NSML hold pairs, NSM1 and NSML1 a value and a list."""
     if card.type not in measure.kinds:
         raise place.error(f"{card.type} is not a kind of property that has mass")
+    targets: list[tuple[int | None, list[int] | None]] = [(None, None)]
     if name in ("NSM", "NSML"):
-        for k, target in enumerate(card.ids):
-            yield _share(name, number, k, card.type, [target], measure, place)
-        return
-    ids = card.ids
-    if ids is not None:
-        ids = [n for part in ids for n in (part if isinstance(part, range) else (part,))]
-    yield _share(name, number, None, card.type, ids, measure, place)
-
-
-def _share(
-    name: str,
-    number: int,
-    index: int | None,
-    kind: str,
-    ids: list[int] | None,
-    measure: _Measures,
-    place: Place,
-) -> _Share:
-    found = measure.elements(kind, ids)
-    if not found:
-        raise place.error(f"no element has the {kind} it names")
-    if name in ("NSML", "NSML1"):
-        kinds = {by_area for _, by_area in found.values()}
-        if len(kinds) > 1:
-            raise place.error("areas and lengths are mixed in one list")
-        total = sum(size for size, _ in found.values())
-        return _Share((name, number), index, dict.fromkeys(found, 1.0 / total))
-    return _Share((name, number), index, dict.fromkeys(found, 1.0))
+        targets = [(k, [target]) for k, target in enumerate(card.ids)]
+    elif card.ids is not None:
+        parts = (part if isinstance(part, range) else (part,) for part in card.ids)
+        targets = [(None, [n for part in parts for n in part])]
+    shares = []
+    for index, ids in targets:
+        found = measure.elements(card.type, ids)
+        if not found:
+            raise place.error(f"no element has the {card.type} it names")
+        share = 1.0
+        if name in ("NSML", "NSML1"):
+            if len({by_area for _, by_area in found.values()}) > 1:
+                raise place.error("areas and lengths are mixed in one list")
+            share = 1.0 / sum(size for size, _ in found.values())
+        shares.append(_Share((name, number), index, dict.fromkeys(found, share)))
+    return shares
 
 
 class _Measures:
@@ -197,8 +184,7 @@ class _Measures:
 def _size(xyz: Floats) -> list[float]:
     if xyz.shape[1] == 2:
         sizes = np.linalg.norm(xyz[:, 1] - xyz[:, 0], axis=1)
-    elif xyz.shape[1] == 3:
-        sizes = 0.5 * np.linalg.norm(np.cross(xyz[:, 1] - xyz[:, 0], xyz[:, 2] - xyz[:, 0]), axis=1)
     else:
-        sizes = 0.5 * np.linalg.norm(np.cross(xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1]), axis=1)
+        other = xyz[:, 3] - xyz[:, 1] if xyz.shape[1] == 4 else xyz[:, 1] - xyz[:, 0]
+        sizes = 0.5 * np.linalg.norm(np.cross(xyz[:, 2] - xyz[:, 0], other), axis=1)
     return [float(s) for s in sizes]

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....core.arrays import Floats, skew
+from ....core.arrays import Floats
 from ....core.errors import Place
 from ..deck.card_definition import Card, Known, Values
 from ..deck.field_values import FieldError, Fields, numbers, take
@@ -118,13 +118,7 @@ class Rows:
 
     def motion(self, row: int, origin: Floats) -> Floats:
         """Displacements (6) of grid `row`, its system, from rigid motion about `origin`, (6, 6)."""
-        R = self.points.directions[row]
-        arm = self.points.xyz[row] - origin
-        out = np.zeros((6, 6))
-        out[:3, :3] = R
-        out[:3, 3:] = -R @ skew(arm[None])[0]
-        out[3:, 3:] = R
-        return out
+        return self.points.motions(np.array([row]), origin)[0]  # type: ignore[no-any-return]
 
 
 def components_of(digits: object, place: Place) -> list[int]:

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from ....core.arrays import Ints, Numbers
-from ....core.data.dofs import Dofs
 from ....core.data.modes import Modes
 from ....core.errors import Place
 from ....core.files import reading
 from ..deck.pynastran_bridge import file_of
 from ..deck.read_deck import Deck
-from ..properties.grids import Points, read_points
+from ..properties.grids import Points, point_dofs, read_points
 from . import hdf5_modes, op2_modes
 from .eigenvector_table import ModeHead, ModeTable
 from .f06_modes import is_f06, read_f06_tables
@@ -221,12 +220,10 @@ def _modes(table: ModeTable, points: Points | None, path: Path) -> Modes:
         for mode in range(len(table.numbers)):  # one by one: peak memory
             _turn_to_basic(ids, shapes[: 6 * len(grids), mode].reshape(-1, 6), points)
     shapes.flags.writeable = False
-    node = np.concatenate([np.repeat(ids, 6), table.points[scalars]])
-    component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalars), int)])
     return Modes(
         frequencies_hz=table.frequencies_hz,
         shapes=shapes,
-        dofs=Dofs(node, component),
+        dofs=point_dofs(ids, table.points[scalars]),
         damping=table.damping,
         generalized_mass=table.generalized_mass,
         source=path.name,
