@@ -211,9 +211,8 @@ def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ..
     scalar = points.scalar_ids[dofs[dofs >= n_grid] - n_grid]
     if len(scalar):
         parts.append(f"{len(scalar)} scalar points ({', '.join(map(str, scalar[:5]))})")
-    why = "without stiffness were fixed (AUTOSPC)" if automatic else "without stiffness and mass"
-    what = why if automatic else f"{why} were fixed"
-    return (f"{len(dofs)} degrees of freedom {what}: {'; '.join(parts)}",)
+    what = "stiffness were fixed (AUTOSPC)" if automatic else "stiffness and mass were fixed"
+    return (f"{len(dofs)} degrees of freedom without {what}: {'; '.join(parts)}",)
 
 
 def to_basic(points: Points) -> sp.csr_matrix:

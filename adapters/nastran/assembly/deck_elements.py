@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices
-from ....core.assembly.element_assembly import ElementBlock, Evaluate
+from ....core.assembly.element_assembly import ElementBlock
 from ....core.errors import InputError
 from ....core.noun import Noun
 from ..cards import FAMILIES, Context, Group, Settings
@@ -111,17 +111,6 @@ def element_block(
     ]
     distinct = tuple(dict.fromkeys(sets))
     of_source = np.array([distinct.index(s) for s in sets], dtype=np.int64)
-    return ElementBlock(
-        places=group.places,
-        width=group.element.freedoms,
-        evaluate=_evaluation(group, points, variation, wtmass),
-        depends=distinct,
-        depends_of=of_source[group.source_of],
-        name=group.card,
-    )
-
-
-def _evaluation(group: Group, points: Points, variation: Variation, wtmass: float) -> Evaluate:
     at_grids = group.element.freedoms > 1
     rotated = points.rotated[group.nodes].any(axis=1) if at_grids else None
 
@@ -145,7 +134,14 @@ def _evaluation(group: Group, points: Points, variation: Variation, wtmass: floa
             K, M = (None if X is None else _turn(X, turned, R) for X in (K, M))
         return K, M
 
-    return evaluate
+    return ElementBlock(
+        places=group.places,
+        width=group.element.freedoms,
+        evaluate=evaluate,
+        depends=distinct,
+        depends_of=of_source[group.source_of],
+        name=group.card,
+    )
 
 
 def _turn(X: Floats, which: Ints, R: Floats) -> Floats:

@@ -132,7 +132,11 @@ def _group(context: Context, name: str, values: Six, cards: list[Values], ground
     arm_a, arm_b = (np.stack([b.arms[k] for b in bushes]) for k in (0, -1))
     size = 6 * ends.shape[1]
     deck = [values(bulk.table(card)[number]) for card, number in keys]
-    _check_axial(context, name, ids, bushes, [deck[k] for k in of])
+    for eid, bush, k in zip(ids, bushes, of, strict=True):
+        if bush.axial_only and any(deck[k][i] for i in (1, 2, 4, 5)):
+            raise bulk.place(name, int(eid)).fault(
+                "has lateral stiffness but neither an orientation vector nor CID: give one of them"
+            )
     half = np.array([[0.5, 0.5], [1.0, 0.0]])[int(grounded), : ends.shape[1]]
 
     def matrices(current: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
@@ -197,13 +201,3 @@ def _vector(context: Context, card: Values, row: int, place: Place) -> Floats | 
         return None
     x = np.array([v or 0.0 for v in card.x])
     return np.asarray(x @ context.points.directions[row])
-
-
-def _check_axial(
-    context: Context, name: str, ids: Ints, bushes: list[_Bush], stiffness: list[Sequence[float]]
-) -> None:
-    for number, bush, k in zip(ids, bushes, stiffness, strict=True):
-        if bush.axial_only and any(k[i] for i in (1, 2, 4, 5)):
-            raise context.bulk.place(name, int(number)).fault(
-                "has lateral stiffness but neither an orientation vector nor CID: give one of them"
-            )

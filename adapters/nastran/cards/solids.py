@@ -29,31 +29,19 @@ CARDS = (
     ),
 )
 
-_INTEGRATION = {
-    "0": "BUBBLE", "1": "GAUSS", "2": "TWO", "3": "THREE", "": "", "BUBBLE": "BUBBLE",
-    "GAUSS": "GAUSS", "TWO": "TWO", "THREE": "THREE",
-}  # fmt: skip
-_SCHEME = {"0": "REDUCED", "1": "FULL", "": "REDUCED", "REDUCED": "REDUCED", "FULL": "FULL"}
-
+_INTEGRATION = {"0": "BUBBLE", "1": "GAUSS", "2": "TWO", "3": "THREE"}
+_SCHEME = {"0": "REDUCED", "1": "FULL", "": "REDUCED"}
+"""The words that numbers and blanks of IN and ISOP stand for."""
 
 _LINEAR = {
-    ("", "REDUCED"): "bubble",
-    ("BUBBLE", "REDUCED"): "bubble",
-    ("BUBBLE", "FULL"): "bubble",
-    ("TWO", "REDUCED"): "reduced",
-    ("THREE", "REDUCED"): "reduced",
-    ("", "FULL"): "full",
-    ("TWO", "FULL"): "full",
-    ("THREE", "FULL"): "full",
+    "REDUCED": {"": "bubble", "BUBBLE": "bubble", "TWO": "reduced", "THREE": "reduced"},
+    "FULL": {"": "full", "BUBBLE": "bubble", "TWO": "full", "THREE": "full"},
 }
 _QUADRATIC = {
-    ("", "REDUCED"): "reduced",
-    ("THREE", "REDUCED"): "reduced",
-    ("TWO", "REDUCED"): "two",
-    ("TWO", "FULL"): "two",
-    ("", "FULL"): "full",
-    ("THREE", "FULL"): "full",
+    "REDUCED": {"": "reduced", "TWO": "two", "THREE": "reduced"},
+    "FULL": {"": "full", "TWO": "two", "THREE": "full"},
 }
+"""The element's word for the integration, by ISOP and IN."""
 
 
 def solids(context: Context) -> list[Group]:
@@ -101,13 +89,13 @@ def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
         raise place.error(f"FCTN {card.fctn} (fluid elements) is not supported")
     if len(element.integrations) < 2:
         return element.integrations[0]
-    words = ("" if w is None else str(w) for w in (card.integration, card.isop))
-    asked = tuple(table.get(w, w) for table, w in zip((_INTEGRATION, _SCHEME), words, strict=True))
+    integration, isop = ("" if w is None else str(w) for w in (card.integration, card.isop))
+    integration, isop = _INTEGRATION.get(integration, integration), _SCHEME.get(isop, isop)
     schemes = _QUADRATIC if len(element.edges) else _LINEAR
-    found = schemes.get((asked[0], asked[1]))
+    found = schemes.get(isop, {}).get(integration)
     if found is None:  # as the Quick Reference Guide says, PSOLID remark 10
         context.notes.append(
-            f"{place}: no integration IN = {asked[0] or 'blank'}, ISOP = {asked[1]} exists "
+            f"{place}: no integration IN = {integration or 'blank'}, ISOP = {isop} exists "
             f"for {name} with {element.nodes} nodes: the default is used, as in Nastran"
         )
         return element.integrations[0]
@@ -119,23 +107,20 @@ def _materials(
 ) -> tuple[Floats, Floats]:
     """Elastic matrices in the basic frame, (n, 6, 6), and densities, (n,)."""
     used, position = np.unique(of, return_inverse=True)
-    found = []
-    for k in used:
-        place = context.bulk.place(*keys[k])
-        found.append(elastic(bulk, bulk.table(keys[k][0])[keys[k][1]].mid, place))
+    cards = [bulk.table(keys[k][0])[keys[k][1]] for k in used]
+    places = [context.bulk.place(*keys[k]) for k in used]
+    found = [elastic(bulk, card.mid, place) for card, place in zip(cards, places, strict=True)]
     C = np.array([m.C for m in found])[position]
     rho = np.array([m.rho for m in found])[position]
-    for number, (k, material) in enumerate(zip(used, found, strict=True)):
-        if material.isotropic:
+    for number, (card, place) in enumerate(zip(cards, places, strict=True)):
+        if found[number].isotropic:
             continue
-        place = context.bulk.place(*keys[k])
-        cordm = bulk.table(keys[k][0])[keys[k][1]].cordm
-        if cordm < 0:
+        if card.cordm < 0:
             raise place.error(
                 "CORDM = -1 (element coordinates) is not supported with MAT9: name a "
                 "coordinate system"
             )
         rows = np.flatnonzero(position == number)
-        frame = context.points.frames.get(cordm, place)
+        frame = context.points.frames.get(card.cordm, place)
         C[rows] = rotate_material(C[rows], frame.directions(centre[rows]))
     return C, rho

@@ -1,6 +1,7 @@
 """Continuation lines that do not follow their card, as in sorted decks: brought back by label."""
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 from .logical_lines import Line
 
@@ -13,7 +14,11 @@ def in_order(lines: Iterable[Line]) -> list[Line]:
     the continuation belongs to the card above it.
     """
     ordered = list(lines)
-    stray = [k for k in range(1, len(ordered)) if _astray(ordered[k - 1].text, ordered[k].text)]
+    stray = [
+        k
+        for k, (above, line) in enumerate(pairwise(ordered), 1)
+        if (label := _head(line.text)) and label != _tail(above.text)
+    ]
     if not stray:
         return ordered
     waiting: dict[str, int] = {}
@@ -35,11 +40,6 @@ def in_order(lines: Iterable[Line]) -> list[Line]:
             k = behind[k]
             out.append(ordered[k])
     return out
-
-
-def _astray(above: str, text: str) -> bool:
-    head = _head(text)
-    return bool(head) and _tail(above) != head
 
 
 def _head(text: str) -> str:

@@ -49,7 +49,5 @@ def _declared(bulk: Bulk) -> Iterator[tuple[str, str]]:
 
 
 def _first_unit(text: str) -> str | None:
-    for word in re.split(r"[\s,;/()\[\]-]+", text.strip().lower()):
-        if word in _NAMES:
-            return _NAMES[word]
-    return None
+    words = re.split(r"[\s,;/()\[\]-]+", text.strip().lower())
+    return next((_NAMES[word] for word in words if word in _NAMES), None)

@@ -56,7 +56,10 @@ class Frames:
         if place in self._open:
             raise place.fault(f"is defined by itself, through {' and '.join(map(str, self._open))}")
         self._open.append(place)
-        points = self._two(card, place) if name[4] == "2" else self._one(card, place)
+        if name[4] == "2":
+            points = self.get(card.rid, place).positions(np.reshape(card.points, (3, 3)))
+        else:
+            points = self._at_grids(card, place)
         try:
             frame = frame_of_points(KIND_OF[name[5]], *points)
         except InputError as error:
@@ -65,11 +68,7 @@ class Frames:
         self._known[number] = frame
         return frame
 
-    def _two(self, card: Values, place: Place) -> Floats:
-        parent = self.get(card.rid, place)
-        return parent.positions(np.reshape(card.points, (3, 3)))
-
-    def _one(self, card: Values, place: Place) -> list[Floats]:
+    def _at_grids(self, card: Values, place: Place) -> Floats:
         points = []
         for grid in card.nodes:
             found = self._grid_system(grid)
@@ -77,4 +76,4 @@ class Frames:
                 raise place.fault(f"refers to grid {grid}, which does not exist")
             system, coordinates = found
             points.append(self.get(system, place).positions(coordinates)[0])
-        return points
+        return np.array(points)

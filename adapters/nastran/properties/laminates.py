@@ -155,6 +155,8 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     lam = card.lam or ""
     if lam not in ("", "BEND", "MEM", "SYM", "SMEAR", "SMCORE"):
         raise place.error(f"LAM {lam!r} is not one of SYM, MEM, BEND, SMEAR, SMCORE")
+    if lam == "SMCORE":
+        raise place.error("LAM SMCORE is not supported")
     materials = {mid: plane(bulk, mid, place) for mid in dict.fromkeys(mids)}
     Q = np.array([_turned(materials[m].Q, a) for m, a in zip(mids, theta, strict=True)])
     G = np.array([_turned_shear(materials[m].shear, a) for m, a in zip(mids, theta, strict=True)])
@@ -167,17 +169,15 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     B = np.einsum("p,pij->ij", 0.5 * (high**2 - low**2), Q)
     D = np.einsum("p,pij->ij", (high**3 - low**3) / 3.0, Q)
     S = _transverse_shear(Q, G, low, high)
+    zero = np.zeros((3, 3))
     if lam == "SMEAR":
-        B, D = np.zeros((3, 3)), A * total**2 / 12.0
-    elif lam == "SMCORE":
-        raise place.error("LAM SMCORE is not supported")
+        B, D = zero, A * total**2 / 12.0
     elif lam == "MEM":
-        B, D = np.zeros((3, 3)), np.zeros((3, 3))
+        B, D = zero, zero
     elif lam == "BEND":
-        A, B = np.zeros((3, 3)), np.zeros((3, 3))
-    small = 1e-12 * np.abs(A).max(initial=0.0) * total
-    if np.abs(B).max(initial=0.0) <= small:
-        B = np.zeros((3, 3))
+        A, B = zero, zero
+    if np.abs(B).max() <= 1e-12 * np.abs(A).max() * total:
+        B = zero
     density = float(rho @ t) + card.nsm
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
