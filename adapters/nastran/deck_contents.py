@@ -55,28 +55,20 @@ def deck_geometry(deck: Deck) -> Geometry:
 
 
 def _contents(deck: Deck) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    if len(deck.files) > 1:
-        found["files"] = [_shown(f, deck.path) for f in deck.files]
-    if deck.counts.get("GRID"):
-        found["grids"] = deck.counts["GRID"]
-        box = _box(deck)
-        if box is not None:
-            found["bounding_box"] = box
-    known = deck.bulk.definitions
-    elements = {n: k for n, k in deck.counts.items() if space_of(n, known) == "element"}
-    if elements:
-        found["elements"] = elements
-    found["other_cards"] = {n: k for n, k in deck.counts.items() if n not in (*elements, "GRID")}
-    found["length_unit"] = deck.length_unit or "not declared"
-    if deck.eigen is not None:
-        found["eigenvalue_request"] = _request(deck.eigen)
-    selected = _selected(deck.case)
-    if selected:
-        found["selected_by_case_control"] = selected
-    if deck.params:
-        found["params"] = deck.params
-    return {k: v for k, v in found.items() if v != {}}
+    known, counts = deck.bulk.definitions, deck.counts
+    elements = {n: k for n, k in counts.items() if space_of(n, known) == "element"}
+    found = {
+        "files": [_shown(f, deck.path) for f in deck.files] if deck.files[1:] else None,
+        "grids": counts.get("GRID"),
+        "bounding_box": _box(deck) if counts.get("GRID") else None,
+        "elements": elements,
+        "other_cards": {n: k for n, k in counts.items() if n not in (*elements, "GRID")},
+        "length_unit": deck.length_unit or "not declared",
+        "eigenvalue_request": None if deck.eigen is None else _request(deck.eigen),
+        "selected_by_case_control": _selected(deck.case),
+        "params": deck.params,
+    }
+    return {k: v for k, v in found.items() if v}
 
 
 def _shown(file: Path, main: Path) -> str:
@@ -103,9 +95,5 @@ def _request(eigen: EigenRequest) -> dict[str, Any]:
 def _selected(case: CaseControl) -> dict[str, Any]:
     names = ("subcase", "spc", "mpc", "method", "nsm", "suport1", "temperature")
     sets = {n: getattr(case, n) for n in names if getattr(case, n)}
-    matrices = {
-        n: [m for m, _ in getattr(case, n)]
-        for n in ("k2gg", "m2gg", "k2pp", "m2pp")
-        if getattr(case, n)
-    }
-    return {**sets, **matrices}
+    matrices = {n: [m for m, _ in getattr(case, n)] for n in ("k2gg", "m2gg", "k2pp", "m2pp")}
+    return {**sets, **{n: held for n, held in matrices.items() if held}}

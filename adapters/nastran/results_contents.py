@@ -60,20 +60,23 @@ def _modes(table: ModeHead) -> dict[str, Any]:
 
 
 def _is_read(name: str) -> bool:
-    starts = ("OUG", "BOUG", "OPHIG", "BOPHIG", "ROUG", "LAMA", "BLAMA", "CLAMA")
-    read = (
-        "EIGENVECTOR",
-        "DISPLACEMENTS",
-        "real eigenvalues",
-        "real eigenvectors",
-        "complex eigenvectors",
-        "NODAL/EIGENVECTOR",
-        "NODAL/EIGENVECTOR_CPLX",
-        "SUMMARY/EIGENVALUE",
-        "DOMAINS",
-        "MATPOOL",
-    )
-    return name.startswith((*starts, "MATRIX/GENERAL/")) or name in read
+    return name.startswith(_READ_STARTS) or name in _READ
 
 
+_READ_STARTS = (
+    "OUG",
+    "BOUG",
+    "OPHIG",
+    "BOPHIG",
+    "ROUG",
+    "LAMA",
+    "BLAMA",
+    "CLAMA",
+    "MATRIX/GENERAL/",
+)
+_READ = (
+    *("EIGENVECTOR", "DISPLACEMENTS", "DOMAINS", "MATPOOL", "SUMMARY/EIGENVALUE"),
+    *("real eigenvalues", "real eigenvectors", "complex eigenvectors"),
+    *("NODAL/EIGENVECTOR", "NODAL/EIGENVECTOR_CPLX"),
+)
 _LISTS = {OP2: list_op2_matrices, HDF5: list_hdf5_matrices}

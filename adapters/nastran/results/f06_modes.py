@@ -115,12 +115,9 @@ def _add_second(vector: Vector, text: str, polar: bool) -> None:
     """Put the imaginary parts, or the phases, of a point beside what its first line gave."""
     point, scalar, first = vector.rows[-1]
     second = [parse_real(v) for v in text.split()]
-    if len(second) != len(first):
-        raise ValueError(text)
     if polar:
-        row = tuple(
-            a * cmath.rect(1.0, math.radians(b)) for a, b in zip(first, second, strict=True)
-        )
+        turns = [cmath.rect(1.0, math.radians(b)) for b in second]
+        row = tuple(a * turn for a, turn in zip(first, turns, strict=True))
     else:
         row = tuple(a + 1j * b for a, b in zip(first, second, strict=True))
     vector.rows[-1] = (point, scalar, row)

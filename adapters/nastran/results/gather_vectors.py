@@ -1,7 +1,7 @@
 """Eigenvectors gathered from text, point by point, to tables."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -46,9 +46,7 @@ def tables_of(
                 )
             group[v.number].rows += v.rows
         else:
-            group[v.number] = Vector(
-                v.subcase, v.superelement, v.number, v.eigenvalue, list(v.rows)
-            )
+            group[v.number] = replace(v, rows=list(v.rows))
     return [
         _table(*key, [group[n] for n in sorted(group)], path, masses or {})
         for key, group in sorted(groups.items())

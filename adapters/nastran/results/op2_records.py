@@ -79,7 +79,7 @@ class Op2File:
         self._mark = struct.Struct(f"{self.order}i")
         self._integer = struct.Struct(self.order + ("i" if self.word == 4 else "q"))
         try:
-            self.version, self.blocks = self._read()
+            self.blocks = self._read()
         except BaseException:
             self._data.close()
             raise
@@ -167,39 +167,36 @@ class Op2File:
             raise self.damaged(at, f"a record of {words} words is expected")
         return (start, stop), stop + _MARK
 
-    def _read(self) -> tuple[str, tuple[Op2Block, ...]]:
-        version, at = "", 0
+    def _read(self) -> tuple[Op2Block, ...]:
+        at = 0
         blocks: list[Op2Block] = []
         while at < self._size:
             words, after = self._marker(at)
             if words == 0:  # the end of the file; some programs append another one
                 at = after
             elif words == _LABEL and not self._is_name(after):
-                version, at = self._label(at)
+                at = self._after_label(at)
             elif words > 0:
                 block, at = self._block(words, after)
                 blocks.append(block)
             else:
                 raise self.damaged(at, "the name of a data block is expected")
-        return version, tuple(blocks)
+        return tuple(blocks)
 
     def _is_name(self, at: int) -> bool:
         start, stop = self._record(at)
         return all(32 <= c < 127 for c in self._data[start:stop])
 
-    def _label(self, at: int) -> tuple[str, int]:
-        """Return the program's version out of the label, and where what follows starts."""
-        texts: list[str] = []
-        while True:
+    def _after_label(self, at: int) -> int:
+        """Return where what follows the label (date and program) starts."""
+        words, at = self._marker(at)
+        while words > 0:
+            _, at = self._part(at, words)
             words, at = self._marker(at)
-            if words <= 0:
-                break
-            (start, stop), at = self._part(at, words)
-            texts.append(_text(self._data[start:stop], self.word))
         words, at = self._marker(at)
         if words != 0:
             raise self.damaged(at, "the label does not end")
-        return texts[-1], at
+        return at
 
     def _block(self, words: int, at: int) -> tuple[Op2Block, int]:
         (start, stop), at = self._part(at, words)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 from ....core.errors import Place
@@ -70,10 +71,8 @@ def _blocks(lines: list[str]) -> Iterator[tuple[list[str], int, list[str]]]:
 
 def _kind(head: list[str]) -> str:
     """Return what the block is: the line after the label."""
-    for k, line in enumerate(head[:-1]):
-        if line.startswith("$LABEL"):
-            return head[k + 1][1:].strip()
-    return head[0][1:].strip()
+    below = (after for line, after in pairwise(head) if line.startswith("$LABEL"))
+    return next(below, head[0])[1:].strip()
 
 
 def _integer(head: list[str], start: str) -> int:

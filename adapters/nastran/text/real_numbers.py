@@ -34,7 +34,8 @@ def parse_real(text: str) -> float:
 
 def format_exact(value: float, width: int) -> str | None:
     """Return the text that reads back as exactly `value`, or None where `width` is too narrow."""
-    _require_finite(value)
+    if not math.isfinite(value):
+        raise InputError(f"{value} cannot be written to a deck: it is not a finite number")
     return _fitting(repr(float(value)), width)
 
 
@@ -74,11 +75,6 @@ def format_field(value: float | int | str | None, width: int) -> str | None:
     if len(text) > SMALL:
         raise InputError(f"{text!r} is longer than the eight columns of a field")
     return text
-
-
-def _require_finite(value: float) -> None:
-    if not math.isfinite(value):
-        raise InputError(f"{value} cannot be written to a deck: it is not a finite number")
 
 
 def _fitting(text: str, width: int) -> str | None:
