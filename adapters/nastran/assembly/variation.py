@@ -120,16 +120,9 @@ def read_variation(deck: Deck, specs: Sequence[ParameterSpec]) -> Variation:
             taken[key, index] = spec.name
             moves.setdefault(key, []).append(_Move(number, index, value))
             values.append(value)
-        parameters.append(
-            Parameter(
-                spec.name,
-                tuple(str(f) for f in spec.fields),
-                tuple(values),
-                spec.lower,
-                spec.upper,
-                getattr(spec, "weight", 1.0),
-            )
-        )
+        named = tuple(str(f) for f in spec.fields)
+        bounds = spec.lower, spec.upper
+        parameters.append(Parameter(spec.name, named, tuple(values), *bounds, spec.weight))
     every = {k: tuple(v) for k, v in moves.items()}
     return Variation(thermal.applied(bulk), tuple(parameters), every, thermal)
 
@@ -163,25 +156,25 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
 
     position = field_position(ref.card, ref.field, read)
     place = bulk.place(ref.card, ref.id)
+
+    def wrong(what: str) -> InputError:
+        return place.about(f"parameter {name!r}: {what}")
+
     if position is None:
-        raise place.about(f"parameter {name!r}: {place} has no value {ref.field}")
+        raise wrong(f"{place} has no value {ref.field}")
     index = 1 + shift + index_of(position)
     text = _at(fields, index)
     if text is None:
-        raise place.about(
-            f"parameter {name!r}: {ref.field} is blank on {place}, so there is no value to move: "
+        raise wrong(
+            f"{ref.field} is blank on {place}, so there is no value to move: "
             "give it one, or move the values it follows from"
         )
     try:
         value = parse_real(text)
     except ValueError:
-        raise place.about(
-            f"parameter {name!r}: {ref.field} on {place} is {text!r}, no number"
-        ) from None
+        raise wrong(f"{ref.field} on {place} is {text!r}, no number") from None
     if value == 0.0:
-        raise place.about(
-            f"parameter {name!r}: {ref.field} is zero on {place}, and a factor cannot move it"
-        )
+        raise wrong(f"{ref.field} is zero on {place}, and a factor cannot move it")
     return index, value
 
 

@@ -121,34 +121,22 @@ class Rows:
         return self.points.motions(np.array([row]), origin)[0]  # type: ignore[no-any-return]
 
 
-def components_of(digits: object, place: Place) -> list[int]:
-    """Component numbers 1..6 from digits such as 1235.
-
-    Raises
-    ------
-    InputError
-        Anything else.
-    """
-    text = str(digits or "").strip()
-    text = "" if text == "0" else text
-    if any(d not in "123456" for d in text):
-        raise place.error(f"components {text!r} are not digits from 1 to 6")
-    return sorted(int(d) for d in set(text))
+def _components(digits: str | None) -> list[int]:
+    """Component numbers of digits such as 1235; 0 and a blank name none."""
+    return [int(d) for d in digits or "" if d != "0"]
 
 
 def rbe2(rows: Rows, card: Values, place: Place) -> None:
     """Components CM of the grids GMi follow the rigid motion of GN."""
     points = rows.points
     centre = points.row(card.gn, place)
-    components = components_of(card.cm, place)
-    independent = rows.motion(centre, points.xyz[centre])
-    inverse = independent.T  # a rotation of translations and of rotations
+    inverse = rows.motion(centre, points.xyz[centre]).T  # a rotation of translations and rotations
     for grid in card.gm:
         row = points.row(int(grid), place)
         if row == centre:
             raise place.error(f"grid {grid} is both the independent and a dependent grid")
         T = rows.motion(row, points.xyz[centre]) @ inverse
-        for c in components:
+        for c in _components(card.cm):
             rows.add(6 * row + c - 1, range(6 * centre, 6 * centre + 6), T[c - 1], place)
 
 
@@ -158,11 +146,7 @@ def rbar(rows: Rows, card: Values, place: Place) -> None:
     independent = list(zip(card.nodes, named, strict=True))
     dependent = list(zip(card.nodes, (card.cma, card.cmb), strict=True))
     if not any((c or "").strip("0") for _, c in dependent):
-        free = {grid: set(components_of(c, place)) for grid, c in independent}
-        dependent = [
-            (grid, "".join(str(k) for k in range(1, 7) if k not in free[grid]))
-            for grid in card.nodes
-        ]
+        dependent = [(n, "".join(sorted({*"123456"} - {*(c or "")}))) for n, c in independent]
     _rigid_body(rows, independent, dependent, place)
 
 
@@ -181,8 +165,8 @@ def rbe1(rows: Rows, card: Values, place: Place) -> None:
 
 def _rigid_body(
     rows: Rows,
-    independent: Sequence[tuple[int, object]],
-    dependent: Sequence[tuple[int, object]],
+    independent: Sequence[tuple[int, str | None]],
+    dependent: Sequence[tuple[int, str | None]],
     place: Place,
 ) -> None:
     """Dependent components from the rigid motion that six independent components determine."""
@@ -208,14 +192,14 @@ def _rigid_body(
 
 
 def _motions(
-    rows: Rows, members: Sequence[tuple[int, object]], origin: Floats, place: Place
+    rows: Rows, members: Sequence[tuple[int, str | None]], origin: Floats, place: Place
 ) -> tuple[Floats, list[int]]:
     """Rows (m, 6) of displacements by rigid motion about `origin`, and their dofs."""
     values, dofs = [], []
     for grid, digits in members:
         row = rows.points.row(int(grid), place)
         motion = rows.motion(row, origin)
-        for c in components_of(digits, place):
+        for c in _components(digits):
             values.append(motion[c - 1])
             dofs.append(6 * row + c - 1)
     return np.array(values).reshape(-1, 6), dofs
@@ -232,8 +216,8 @@ def rrod(rows: Rows, card: Values, place: Place) -> None:
     x = along / length
     coefficients = np.concatenate([-points.directions[a] @ x, points.directions[b] @ x])
     dofs = [6 * a, 6 * a + 1, 6 * a + 2, 6 * b, 6 * b + 1, 6 * b + 2]
-    chosen = [c - 1 for c in components_of(card.cma, place)]
-    chosen += [c + 2 for c in components_of(card.cmb, place)]
+    chosen = [c - 1 for c in _components(card.cma)]
+    chosen += [c + 2 for c in _components(card.cmb)]
     if len(chosen) != 1 or chosen[0] > 5:
         raise place.error("one translation must be dependent, CMA or CMB")
     pivot = coefficients[chosen[0]]
@@ -260,7 +244,7 @@ def rbe3(rows: Rows, card: Values, place: Place) -> None:
         for grid in grids
     ]
     S, columns = _motions(rows, [(g, c) for g, c, _ in members], origin, place)
-    weights = np.array([w for _, c, w in members for _ in components_of(c, place)])
+    weights = np.array([w for _, c, w in members for _ in _components(c)])
     ends = np.array([points.xyz[points.row(g, place)] for g, _, _ in members])
     distance = np.linalg.norm(ends - origin, axis=1)
     length = float(distance.mean()) if distance.any() else 1.0
@@ -271,7 +255,7 @@ def rbe3(rows: Rows, card: Values, place: Place) -> None:
     normal = A.T @ (weights[:, None] * A)
     values, vectors = np.linalg.eigh(normal)
     lost = vectors[:, values <= 1e-10 * values[-1]]
-    components = components_of(card.refc, place)
+    components = _components(card.refc)
     wanted = (rows.motion(reference, origin) / balance)[[c - 1 for c in components]]
     if lost.size and np.abs(wanted * balance.max() @ lost).max() > 1e-6 * balance.max():
         raise place.error(
@@ -290,7 +274,7 @@ def rbe3(rows: Rows, card: Values, place: Place) -> None:
 
 def _rbe3_um(
     rows: Rows,
-    moved: list[tuple[int, object]],
+    moved: list[tuple[int, str | None]],
     targets: list[int],
     columns: list[int],
     G: Floats,
