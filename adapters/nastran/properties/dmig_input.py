@@ -34,9 +34,9 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
 
     n = points.n_dof
     totals = []
-    for entries in (("k2gg", "CK2", "k2pp", "CK3"), ("m2gg", "CM2", "m2pp", "CM3")):
+    for entries in ({"k2gg": "CK2", "k2pp": "CK3"}, {"m2gg": "CM2", "m2pp": "CM3"}):
         total = sp.csr_matrix((n, n))
-        for names, scale in zip(entries[::2], entries[1::2], strict=True):
+        for names, scale in entries.items():
             for name, factor in getattr(deck.case, names):
                 matrix = _read(deck, points, name, names.upper())
                 total = total + factor * deck.param(scale, 1.0) * matrix
@@ -45,6 +45,8 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
 
 
 def _read(deck: Deck, points: Points, name: str, asked_by: str) -> sp.csr_matrix:
+    import scipy.sparse as sp
+
     cards = [(card, place) for card, place in deck.bulk.placed("DMIG") if card.name == name]
     headers = [(card, p) for card, p in cards if card.gj == 0]
     if not headers:
@@ -69,8 +71,6 @@ def _read(deck: Deck, points: Points, name: str, asked_by: str) -> sp.csr_matrix
                 rows.append(points.dof(grid, component, at))
                 columns.append(column)
                 values.append(a)
-    import scipy.sparse as sp
-
     n = points.n_dof
     matrix = sp.coo_matrix((values, (rows, columns)), shape=(n, n)).tocsr()
     if form == _SYMMETRIC:
@@ -84,8 +84,6 @@ def _symmetrised(matrix: sp.csr_matrix) -> sp.csr_matrix:
     """Fill the other triangle, where it was not given too."""
     import scipy.sparse as sp
 
-    diagonal = sp.diags(matrix.diagonal())
     lower, upper = sp.tril(matrix, -1), sp.triu(matrix, 1)
-    if lower.nnz and upper.nnz and abs(lower - upper.T).max() <= 1e-12 * abs(matrix).max():
-        return matrix
-    return (diagonal + lower + lower.T + upper + upper.T).tocsr()
+    whole = lower.nnz and abs(lower - upper.T).max() <= 1e-12 * abs(matrix).max()
+    return matrix if whole else (matrix + lower.T + upper.T).tocsr()

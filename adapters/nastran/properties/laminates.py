@@ -9,7 +9,7 @@ from ....core.errors import Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values
 from ..deck.movable_values import Doubt, Moves
-from .materials import Plane, isotropic, plane
+from .materials import SHELL_MATERIALS, Plane, isotropic, plane
 
 _LAMINATE = "PID:i! Z0:r NSM:r=0. SB:r=0. FT:w TREF:r=0. GE:r=0. LAM:w"
 
@@ -134,7 +134,7 @@ def _pshell(bulk: Bulk, card: Values, place: Place, own: float, share: float) ->
 
 
 def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
-    found = bulk.find(("MAT1", "MAT2", "MAT8"), mid)
+    found = bulk.find(SHELL_MATERIALS, mid)
     return (found[0] if found else "MAT1"), mid
 
 

@@ -119,32 +119,39 @@ def isotropic(bulk: Bulk, mid: int | None, asked_by: Place) -> Isotropic:
     InputError
         No such MAT1, or one that is not physical.
     """
-    card = None if mid is None else bulk.table("MAT1").get(int(mid))
-    if card is None:
-        raise asked_by.fault(f"refers to material {mid}, but there is no MAT1 {mid}")
-    return _constants(bulk, card)
+    return _constants(bulk, _found(bulk, ("MAT1",), mid, asked_by)[1])
+
+
+def _found(
+    bulk: Bulk, names: tuple[str, ...], mid: int | None, asked_by: Place
+) -> tuple[str, Values]:
+    found = None if mid is None else bulk.find(names, int(mid))
+    if found is None:
+        raise asked_by.fault(
+            f"refers to material {mid}, but there is no {' or '.join(names)} {mid}"
+        )
+    return found
 
 
 def _constants(bulk: Bulk, card: Values) -> Isotropic:
-    E, G, nu = _derived(bulk, card)
+    place = bulk.place("MAT1", card.mid)
+    E, G, nu = _derived(card, place)
     if E < 0.0 or G < 0.0:
         name, value = ("E", E) if E < 0.0 else ("G", G)
-        raise bulk.place("MAT1", card.mid).error(
-            f"{name} is {value:g}; a modulus must not be negative"
-        )
+        raise place.error(f"{name} is {value:g}; a modulus must not be negative")
     if not -1.0 < nu <= 0.5:
-        raise bulk.place("MAT1", card.mid).error(
-            f"Poisson's ratio is {nu:g}; it must lie between "
-            "-1 and 0.5 (check E and G where NU is blank)"
+        raise place.error(
+            f"Poisson's ratio is {nu:g}; it must lie between -1 and 0.5 (check E and G where NU is "
+            "blank)"
         )
     return Isotropic(E, G, nu, card.rho)
 
 
-def _derived(bulk: Bulk, card: Values) -> tuple[float, float, float]:
+def _derived(card: Values, place: Place) -> tuple[float, float, float]:
     """E, G, nu, the blank one from the other two (MAT1, remark 3); alone it leaves zeros."""
     E, G, nu = card.e, card.g, card.nu
     if E is None and G is None:
-        raise bulk.place("MAT1", card.mid).error("E and G must not both be blank")
+        raise place.error("E and G must not both be blank")
     if nu is None:
         nu = 0.0 if E is None or G is None else E / (2.0 * G) - 1.0 if G else np.inf
         return E or 0.0, G or 0.0, nu
@@ -163,10 +170,7 @@ def elastic(bulk: Bulk, mid: int, asked_by: Place) -> Elastic:
     InputError
         No such material, or one that is not physical.
     """
-    found = bulk.find(("MAT1", "MAT9"), int(mid))
-    if found is None:
-        raise asked_by.fault(f"refers to material {mid}, but there is no MAT1 or MAT9 {mid}")
-    name, card = found
+    name, card = _found(bulk, ("MAT1", "MAT9"), mid, asked_by)
     if name == "MAT1":
         E, _, nu, rho = _constants(bulk, card)
         if not nu < 0.5:
@@ -186,12 +190,7 @@ def plane(bulk: Bulk, mid: int, asked_by: Place) -> Plane:
     InputError
         No such material, or one that is not physical.
     """
-    found = bulk.find(SHELL_MATERIALS, int(mid))
-    if found is None:
-        raise asked_by.fault(
-            f"refers to material {mid}, but there is no {' or '.join(SHELL_MATERIALS)} {mid}"
-        )
-    name, card = found
+    name, card = _found(bulk, SHELL_MATERIALS, mid, asked_by)
     return {"MAT1": _plane_isotropic, "MAT2": _plane_general, "MAT8": _plane_orthotropic}[name](
         bulk, card
     )
