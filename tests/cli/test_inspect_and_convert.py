@@ -252,8 +252,8 @@ def test_nothing_is_overwritten_by_mistake(tmp_path: Path, trueup: Call) -> None
         (["a.op4", "b.unv"], "nothing that a universal file can hold"),
         (["a.op4", "nowhere/b.h5"], "cannot be written"),
         (["absent.op4", "b.h5"], "does not exist"),
-        (["a.op4", "b.h5", "--from", "magic"], "--from magic"),
-        (["a.op4", "b.h5", "--to", "magic"], "--to magic"),
+        (["a.op4", "b.h5", "--from", "magic"], "--from 'magic'"),
+        (["a.op4", "b.h5", "--to", "magic"], "--to 'magic'"),
         (["a.op4", "b.h5", "--from", "universal"], "a.op4"),
     ],
 )
