@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from ...arrays import Floats, Ints, Numbers
 from ...correlation.mode_pairing import Criteria, Pair
 from ...data.parametric_model import Model
+from ...errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,11 +148,19 @@ class Residual:
 
     def squared(self, seen: Seen) -> Floats:
         """Squared length of each row of the value, (n_row,)."""
-        return np.sum(self.value(seen) ** 2, axis=1) if self.size is None else self.size(seen)
+        return np.sum(self._value(seen) ** 2, axis=1) if self.size is None else self.size(seen)
+
+    def _value(self, seen: Seen) -> Floats:
+        values = self.value(seen)
+        if values.ndim != 2:
+            raise InputError(f"residual '{self.name}': its value is no table (n_row, k)")
+        return values
 
     def linearised(self, seen: Seen, slopes: Slopes, sigma: Floats | float) -> Linearisation:
         """Weigh value and derivative by 1/σ, one σ in all or one a row."""
-        values, gradient = self.value(seen), self.derivative(seen, slopes)
+        values, gradient = self._value(seen), self.derivative(seen, slopes)
+        if gradient.shape[:-1] != values.shape:
+            raise InputError(f"residual '{self.name}': its derivative is not (n_row, k, n_active)")
         rows = np.broadcast_to(np.asarray(sigma, np.float64), len(values))
         values, gradient = values / rows[:, None], gradient / rows[:, None, None]
         return Linearisation(values.ravel(), gradient.reshape(values.size, -1))

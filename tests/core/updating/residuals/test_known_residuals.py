@@ -7,6 +7,7 @@ from tests.core.updating.test_update import N, chain, measured
 from trueup.core.errors import InputError
 from trueup.core.updating.residuals import (
     RESIDUALS,
+    Residual,
     Weights,
     register_residual,
     residuals_named,
@@ -67,3 +68,21 @@ def test_one_step_of_the_mass_alone_is_that_of_equation_four(weighing):
     g = 16.0 / 14.4 / 0.1
     assert done.factors[0] == pytest.approx(1.0 - 0.1 * g**2 / (g**2 + 50.0), rel=1e-9)
     assert done.history[0].objective == pytest.approx((0.1 * g) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("value", "derivative", "said"),
+    [
+        (lambda s: s.eigenvalues, None, r"its value is no table"),
+        (lambda s: s.eigenvalues[:, None], lambda s, d: d.eigenvalues, "its derivative is not"),
+    ],
+)
+def test_a_value_or_derivative_of_another_shape_is_refused(value, derivative, said):
+    odd = Residual("odd", weight="odd_sigma", sigma=1.0, value=value, derivative=derivative)
+    register_residual(odd)
+    try:
+        with pytest.raises(InputError, match=f"residual 'odd': {said}"):
+            update(chain(ALL[:1], ["k"]), measured(chain(ALL[:1], ["k"]), [1.1]),
+                   [Stage((0,), "odd", 1)], n_modes=8)  # fmt: skip
+    finally:
+        RESIDUALS.remove(odd)
