@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from ..arrays import Floats
-from ..noun import BESIDE, OPTIONAL
+from ..noun import BESIDE, OPTIONAL, Noun
 from .faults import Fault
 
 VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Where:
+class Where(Noun):
     """Where something is: what is there, `xyz` in deck units, `region` in words.
 
     A place that explains the data about as well has the `kind` that would explain them there, and
@@ -43,7 +43,7 @@ class Where:
 
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(Noun):
     """Something that is missing in the model or wrong in the test.
 
     `side` is ``model`` or ``test``; `magnitude` holds the words of its kind; `interval` is that of
@@ -63,7 +63,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Alternative:
+class Alternative(Noun):
     """What else was considered: `where`, how many times less likely it is, and `odds` in words.
 
     `sentence` is both in one; `xyz` and `regions` are the places, one a kind.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
@@ -62,6 +62,10 @@ class MacTable(Noun):
     def to_csv(self, path: Path | str) -> None:
         """Write a CSV file, test modes down, analysis modes across."""
         export.write_csv(path, *self._wide)
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame likewise; `InputError` where pandas is not installed."""
+        return export.frame(*self._wide)
 
     def _repr_html_(self) -> str:
         rows, columns = len(self.test), len(self.analysis)

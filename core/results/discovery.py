@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..correlation.comparison import Comparison
 from ..discovery.findings import Alternative, Discovery, Finding
 from ..discovery.screening.completed_model import ADOPTED
-from ..noun import OPTIONAL
+from ..noun import OPTIONAL, Noun
 from .correlation import Gap, PairRow, gap
 from .evidence import DampingTable, MisfitTable, ResponseTable
 from .plain import Table
@@ -25,7 +25,7 @@ class HeldOut:
 
 
 @dataclass(frozen=True)
-class GapTable:
+class GapTable(Noun):
     """How far apart model and test are before and after, and on what was held out."""
 
     before: Gap
