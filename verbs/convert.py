@@ -13,6 +13,7 @@ from .delivery import is_empty, losses, target_of
 from .exchange import KINDS, Cargo, cargo_of, load
 from .options import Files, Say, checked_call, unheard
 from .sources import Source, existing
+from .study import converted
 
 _MOST, _LONGEST = 4, 200
 
@@ -68,6 +69,8 @@ def convert(
         cannot hold.
     """
     path = path_of(destination, "the destination")
+    to = converted("to", to, str | None, Place(shown="convert"))
+    subcase = converted("subcase", subcase, int | None, Place(shown="convert"))
     target = target_of(path, to)
     files = _files(sources)
     _check(files, path, from_, force)

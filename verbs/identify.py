@@ -20,6 +20,7 @@ from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_row
 from .folder import Folder
 from .options import Say, checked_call, unheard
 from .sources import Source, existing, files_of
+from .study import converted
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function
@@ -130,9 +131,9 @@ def identify(
     from ..adapters.report.stabilisation_page import stabilisation_page
     from ..core.identification import identify as find
 
-    for name, value in (("fmin", fmin), ("fmax", fmax), ("max_order", max_order)):
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
-            raise InputError(f"{name} is {value!r}; give a number")
+    who = Place(shown="identify")
+    fmin, fmax = (converted(n, v, float | None, who) for n, v in (("fmin", fmin), ("fmax", fmax)))
+    max_order = converted("max_order", max_order, int | None, who)
     progress("reading")
     files = () if isinstance(frf, Frfs | Measurement) else tuple(files_of(frf))
     read = read_responses(files) if files else _content(frf)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -72,9 +73,9 @@ class Run(RunTables, Folder):
         write_store(work / "result.h5", **vars(self.content))
         study = replace(
             self.study,
-            deck=self.study.deck and self.study.deck.absolute(),
-            test=tuple(p.absolute() for p in self.study.test),
-            modes=self.study.modes and self.study.modes.absolute(),
+            deck=self.study.deck and _from(work, self.study.deck),
+            test=tuple(_from(work, p) for p in self.study.test),
+            modes=self.study.modes and _from(work, self.study.modes),
         )
         (work / "study.toml").write_text(study_toml(study), encoding="utf-8")
         (work / "report.html").write_text(render(self, self.content, diff), encoding="utf-8")
@@ -161,3 +162,11 @@ def content_of(
         },
         history=Table(history).to_dict(),
     )
+
+
+def _from(folder: Path, path: Path) -> Path:
+    """Return a path as seen from a folder, so that both can be moved together."""
+    try:
+        return Path(os.path.relpath(path.parent.resolve() / path.name, folder.resolve()))
+    except ValueError:  # on another drive
+        return path.absolute()

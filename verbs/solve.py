@@ -18,6 +18,7 @@ from ..core.results.plain import Table
 from .folder import Folder
 from .options import Say, checked_call, unheard
 from .sources import Source, geometry_of, read_deck
+from .study import converted
 
 if TYPE_CHECKING:
     from ..adapters.store import StoreContent
@@ -109,9 +110,12 @@ def solve(
     """
     from ..adapters.nastran import build_model, weight
 
-    if number is not None and (not isinstance(number, int) or number < 1):
+    who = Place(shown="solve")
+    number = converted("number", number, int | None, who)
+    fmax = converted("fmax", fmax, float | None, who)
+    if number is not None and number < 1:
         raise InputError(f"number is {number!r}; ask for at least one mode")
-    if fmax is not None and (not isinstance(fmax, int | float) or not fmax > 0.0):
+    if fmax is not None and fmax <= 0.0:
         raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
     read = None if isinstance(deck, Model) else read_deck(deck)
     asked = read.eigen.nd if read and read.eigen else None

@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import os
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
+from types import NoneType
+from typing import TYPE_CHECKING, Any, cast, get_args, get_origin, get_type_hints
 
 from ..core.errors import InputError, Place
 
@@ -61,6 +63,10 @@ class Study:
     source: Path | None = field(default=None, metadata={"file_key": False})
 
     def __post_init__(self) -> None:
+        for name, kind in _FIELDS.items():
+            if getattr(self, name) is not None:
+                own = converted(name, getattr(self, name), kind, Place(shown="Study"))
+                object.__setattr__(self, name, own)
         if self.deck_length_unit is not None and self.deck_length_unit not in UNITS:
             raise InputError(
                 f"deck_length_unit is '{self.deck_length_unit}'; give one of {', '.join(UNITS)}"
@@ -148,12 +154,18 @@ def read_study(path: Path) -> Study:
     values = _study_values(table, {**_FIELDS, **_sigma_fields()}, here)
     for name in ("deck", "modes", "out"):
         if values.get(name) is not None:
-            values[name] = path.parent / values[name]
-    values["test"] = tuple(path.parent / t for t in values.get("test", ()))
+            values[name] = _under(path.parent, values[name])
+    values["test"] = tuple(_under(path.parent, t) for t in values.get("test", ()))
     try:
         return Study(**values, source=path)
     except InputError as error:
         raise here.about(str(error)) from None
+
+
+def _under(folder: Path, path: Path) -> Path:
+    """Return a path of a study file in a folder, without steps up."""
+    up = ".." in path.parts
+    return Path(os.path.normpath(folder.resolve() / path)) if up else folder / path
 
 
 def merge(
@@ -216,7 +228,7 @@ def _checked(table: Mapping[str, object], fields: Mapping[str, Any], who: Place)
     for name, value in table.items():
         if name not in fields:
             raise who.error(unknown(name, fields))
-        values[name] = _converted(name, value, fields[name], who)
+        values[name] = converted(name, value, fields[name], who)
     return values
 
 
@@ -231,19 +243,24 @@ def meant(name: str, known: Sequence[str]) -> str:
     return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(known)}"
 
 
-def _converted(name: str, value: object, kind: Any, who: Place) -> Any:
+def converted(name: str, value: object, kind: Any, who: Place) -> Any:
+    """Return a value as of the kind that is wanted; `InputError` where it cannot be."""
     wrong = who.error(f"'{name}' has a value of the wrong type: {value!r}")
     of = get_args(kind)
+    if value is None and NoneType in of:
+        return None
     if StageRequest in of:
         if not isinstance(value, list | tuple):
             raise wrong
         return tuple(_stage(v, who, wrong) for v in value)
     if get_origin(kind) is tuple:
         items = value if isinstance(value, list | tuple) else [value]
-        return tuple(_converted(name, v, of[0], who) for v in items)
+        return tuple(converted(name, v, of[0], who) for v in items)
     make = of[0] if of else kind
     if isinstance(value, bool) or not isinstance(value, _MADE_FROM[make]):
         raise wrong
+    if make is float and not abs(cast(float, value)) <= sys.float_info.max:
+        raise who.error(f"'{name}' must be a finite number")
     return make(value)
 
 

@@ -81,6 +81,26 @@ def test_a_keyword_that_is_none_is_named(call: Callable[[], object]) -> None:
         call()
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mac_min": "a"}, "Study: 'mac_min' has a value of the wrong type: 'a'"),
+        ({"mac_min": 10**400}, "'mac_min' must be a finite number"),
+        ({"regularisation": float("nan")}, "'regularisation' must be a finite number"),
+        ({"frequency_tolerance": float("inf")}, "'frequency_tolerance' must be a finite number"),
+    ],
+)
+def test_a_study_holds_values_of_its_types(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(trueup.InputError, match=said):
+        trueup.Study(**given)
+    assert trueup.Study(deck="a.bdf", mac_min=1).deck == Path("a.bdf")  # type: ignore[arg-type]
+
+
+def test_a_format_is_named_by_a_word(tmp_path: Path) -> None:
+    with pytest.raises(trueup.InputError, match="'to' has a value of the wrong type: 3"):
+        verb.convert(DECK, tmp_path / "a.h5", to=3)
+
+
 @pytest.mark.parametrize("folder", [None, 3, "a\x00b"])
 def test_a_result_is_saved_to_a_path(found: trueup.Correlated, folder: Any) -> None:
     for write in (found.save, found.pairs.to_csv, found.mac.to_csv):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,18 @@ def test_a_run_of_objects_says_what_it_can_be_run_again_with(tmp_path: Path) -> 
     found = trueup.correlate(FILES[0], test, deck_length_unit="mm", modes=modes)
     assert len(found.analysis_hz) == len(modes.shapes)
     assert "test =" not in (found.save(tmp_path / "run") / "study.toml").read_text()
+
+
+def test_a_run_is_run_again_wherever_it_is_moved_with_its_inputs(
+    found: trueup.Correlated, tmp_path: Path
+) -> None:
+    shutil.copytree(FILES[0].parent, tmp_path / "here")
+    inputs = [tmp_path / "here" / f.name for f in FILES]
+    trueup.correlate(*inputs, deck_length_unit="mm").save(tmp_path / "here/runs/first")
+    (tmp_path / "here").rename(tmp_path / "there")
+    again = trueup.correlate(study=tmp_path / "there/runs/first/study.toml")
+    assert again.pairs == found.pairs
+    assert again.study.deck == tmp_path.resolve() / "there" / FILES[0].name
 
 
 def test_its_tables_are_typed(found: trueup.Correlated) -> None:
@@ -123,3 +136,8 @@ def test_a_result_that_lacks_a_key_is_refused(found: trueup.Correlated, tmp_path
     path.write_text(json.dumps(values))
     with pytest.raises(trueup.InputError, match=r"result\.json: 'pairs\[3\]\.mac' is missing"):
         trueup.open_run(tmp_path / "run")
+
+
+def test_the_mac_goes_to_pandas(found: trueup.Correlated) -> None:
+    pytest.importorskip("pandas")
+    assert found.mac.to_pandas().shape == (24, len(found.mac.analysis) + 1)

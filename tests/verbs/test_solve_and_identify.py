@@ -74,8 +74,10 @@ def test_what_an_identification_cannot_use_is_named(file: Path) -> None:
         trueup.identify(DUCT / "duct_test.unv")
     with pytest.raises(trueup.InputError, match="holds no frequency responses"):
         trueup.identify(trueup.read_test(DUCT / "duct_test.unv"))
-    with pytest.raises(trueup.InputError, match="fmin is '5'"):
+    with pytest.raises(trueup.InputError, match="'fmin' has a value of the wrong type: '5'"):
         trueup.identify(file, fmin="5")  # type: ignore[arg-type]
+    with pytest.raises(trueup.InputError, match="'max_order' has a value of the wrong type"):
+        trueup.identify(file, max_order=2.5)  # type: ignore[arg-type]
     with pytest.raises(trueup.InputError, match="a test is given as int"):
         trueup.identify(3)
 
@@ -102,9 +104,11 @@ def test_normal_modes_of_a_deck_and_of_a_model(tmp_path: Path) -> None:
     ("given", "said"),
     [
         ({"number": 0}, "number is 0"),
-        ({"number": 1.5}, "number is 1.5"),
+        ({"number": 1.5}, "'number' has a value of the wrong type: 1.5"),
+        ({"number": True}, "'number' has a value of the wrong type: True"),
         ({"fmax": -3.0}, "fmax is -3.0"),
-        ({"fmax": "high"}, "fmax is 'high'"),
+        ({"fmax": "high"}, "'fmax' has a value of the wrong type: 'high'"),
+        ({"fmax": float("inf")}, "'fmax' must be a finite number"),
     ],
 )
 def test_what_a_solution_cannot_use_is_named(given: dict[str, Any], said: str) -> None:
