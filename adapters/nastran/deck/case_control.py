@@ -1,9 +1,12 @@
 """What the case control section asks of normal modes."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
+from ....core.errors import Place
+from ..text.real_numbers import parse_real
 from .logical_lines import Line
 
 _COMMAND = re.compile(
@@ -42,11 +45,18 @@ class CaseControl:
     analysis: str = field(default="", compare=False)
 
 
-def read_case_control(lines: Iterable[Line]) -> tuple[CaseControl, tuple[str, ...]]:
+def read_case_control(
+    lines: Iterable[Line], files: Sequence[Path]
+) -> tuple[CaseControl, tuple[str, ...]]:
     """Return the facts of the first normal modes subcase, and warnings.
 
     A subcase that asks for modes is the first with METHOD (its own or the one above all
     subcases) and no other ANALYSIS; subcases that select other constraints are named in a warning.
+
+    Raises
+    ------
+    InputError
+        A factor that is no number: file and line.
     """
     above = CaseControl()
     subcases: list[CaseControl] = []
@@ -55,12 +65,17 @@ def read_case_control(lines: Iterable[Line]) -> tuple[CaseControl, tuple[str, ..
         if not match:
             continue
         key, value = match["key"].upper(), match["value"].strip()
-        if key.startswith("SUBC") and value.split()[0].isdigit():
+        if key.startswith("SUBC") and value.split()[0].isdecimal():
             subcases.append(replace(above, subcase=int(value.split()[0])))
-        elif subcases:
-            subcases[-1] = _apply(subcases[-1], key, match["option"], value)
+            continue
+        try:
+            case = _apply(subcases[-1] if subcases else above, key, match["option"], value)
+        except ValueError as error:
+            raise Place(files[line.file], line.number).error(f"{key}: {error}") from None
+        if subcases:
+            subcases[-1] = case
         else:
-            above = _apply(above, key, match["option"], value)
+            above = case
     if not subcases:
         return above, ()
     modal = [c for c in subcases if c.method is not None and c.analysis in ("", "MODES")]
@@ -76,7 +91,7 @@ def read_case_control(lines: Iterable[Line]) -> tuple[CaseControl, tuple[str, ..
 
 def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseControl:
     option = (option or "").upper()
-    number = int(value.split()[0]) if value.split()[0].isdigit() else None
+    number = int(value.split()[0]) if value.split()[0].isdecimal() else None
     if key in _SETS:
         return replace(case, **{_SETS[key]: number})  # type: ignore[arg-type]
     if key.startswith("METH") and not option.startswith("FLU"):
@@ -89,8 +104,7 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         return replace(case, analysis=value.upper())
     if key in _MATRICES:
         names = tuple(
-            (m["name"].upper(), float((m["factor"] or "1").upper().replace("D", "E")))
-            for m in _WEIGHTED.finditer(value)
+            (m["name"].upper(), parse_real(m["factor"] or "1")) for m in _WEIGHTED.finditer(value)
         )
         return replace(case, **{_MATRICES[key]: names})  # type: ignore[arg-type]
     return case

@@ -150,7 +150,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     bulk, others = read_bulk(sections.bulk, sections.files, definitions)
     if not bulk.raw:
         raise Place(path).error("no bulk data card was found: is this a Nastran deck?")
-    case, case_warnings = read_case_control(sections.case)
+    case, case_warnings = read_case_control(sections.case, sections.files)
     every_line = (*sections.executive, *sections.case, *sections.bulk)
     unit, unit_warnings = find_length_unit(every_line, bulk)
     skipped, refused, skip_warnings = _skipped(bulk, others)
