@@ -16,6 +16,7 @@ from .poles.pole_candidates import propose
 from .result import Identification
 from .survey.mode_indicator import Band, cmif, peaks, split
 from .survey.survey_data import Survey, prepare
+from .survey.wrong_signs import signs_mended
 
 
 def identify(
@@ -63,7 +64,7 @@ def identify(
     """
     if max_order is not None and max_order < 2:
         raise InputError(f"the model order {max_order} is too low; it must be 2 or more")
-    survey = prepare(frfs, fmin, fmax)
+    survey = signs_mended(prepare(frfs, fmin, fmax))
     indicator = cmif(survey.values)
     floor = float(np.sqrt(survey.values.shape[0]) + np.sqrt(survey.values.shape[1]))
     bands = split(survey.frequencies_hz, indicator, floor)

@@ -93,6 +93,7 @@ def fit_range(
     error = _error(fits)
     if error < POLES.error_surely:
         fits = _searched(survey, bands, proposals, first, 0.0)
+        error = max(error, _error(fits))
         if _error(fits) < POLES.error_none:
             return fits
     return _searched(survey, bands, proposals, first, error)

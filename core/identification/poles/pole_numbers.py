@@ -86,6 +86,7 @@ class PoleNumbers:
 
     error_surely: float = number(6e-4, "of the energy", "left over by stable poles, above which a survey has errors besides noise", SURVEYS)
     error_none: float = number(2e-5, "of the energy", "left over by all modes, below which it has none", SURVEYS)
+    error_least: float = number(1e-4, "of the energy", "that is taken for the error when directions of a resonance are counted", SURVEYS)
     one_resonance: float = number(3.0, WIDTHS, "within which roots belong to one resonance", SURVEYS)
     seen_widths: float = number(2.0, WIDTHS, "to either side, in which the directions of a resonance are counted", SURVEYS)
     direction: float = number(3.0, "-", "times the error of the survey, which a direction of a resonance is to exceed", SURVEYS)

@@ -79,7 +79,8 @@ def directions(f: Floats, fit: Fit, group: list[int], error: float) -> int:
     A frequency that scatters from output to output makes many roots of one participation, one
     that scatters from input to input many of one shape; two modes differ in both. Where they
     differ in one only (as all do before a single reference), directions must be stronger than
-    such scatter makes them.
+    such scatter makes them; but where a survey without error has no more inputs (or outputs) than
+    they show, all roots count.
 
     Parameters
     ----------
@@ -93,12 +94,16 @@ def directions(f: Floats, fit: Fit, group: list[int], error: float) -> int:
     functions = np.einsum(
         "ok,ik,kn->oin", fit.shapes[:, group], fit.participation[:, group], near, optimize=True
     )
-    both, one = [], []
+    told, strong = [], []
     for matrix in (functions, functions.transpose(1, 0, 2)):
         energy = np.linalg.svd(matrix.reshape(len(matrix), -1), compute_uv=False) ** 2
-        both.append(int(np.count_nonzero(energy > POLES.direction * error * energy[0])))
-        one.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
-    return max(1, min(both), *one)
+        limit = POLES.direction * max(error, POLES.error_least) * energy[0]
+        count = int(np.count_nonzero(energy > limit))
+        if count == len(matrix) and error == 0.0:
+            return len(group)
+        told.append(count)
+        strong.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
+    return max(min(told), *strong) if error > 0.0 else min(told)
 
 
 def satellites(data: BandData, f: Floats, fit: Fit, strength: Floats) -> Bools:

@@ -31,6 +31,10 @@ class SurveyNumbers:
     permuted_most: int = number(6, "references", "of which every exchange is tried", "time: 720")
     coincident: float = number(1e-6, "of the size of the geometry", "nodes this close are one point", ROUNDING)
 
+    signs_inputs: int = number(3, "references", "that tell which function of a point has the wrong sign", "two contradict each other")
+    signs_clear: float = number(3.0, "-", "first singular value over the second, where one mode rules", SURVEYS)
+    signs_better: float = number(0.3, "-", "of what contradicts, that is left with the sign turned, at most", SURVEYS)
+
     pair_width: float = number(0.01, "of f", "frequencies closer than this are a subspace", SURVEYS)
     known: float = number(0.3, "of a component", "standard error that one which a shape is scaled by has, at most", SURVEYS)
     doubtful: float = number(4.0, "of the median one's", "standard error above which a component is not known", SURVEYS)
