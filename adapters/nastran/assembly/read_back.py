@@ -7,7 +7,9 @@ from pathlib import Path
 from ....core.data.parametric_model import Model
 from ....core.eigen.normal_modes import Eigensolution, solve
 from ..deck.read_deck import Deck
+from ..deck_reader import read_deck
 from ..editing.changed_deck import ChangedDeck
+from .build_model import build_model
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +31,6 @@ def read_back(changed: ChangedDeck, n_modes: int) -> ReadBack:
     CheckError
         The eigensolution does not meet its own check.
     """
-    from .. import build_model, read_deck
-
     with tempfile.TemporaryDirectory(prefix="trueup-") as folder:
         deck = read_deck(changed.write(Path(folder) / "deck"))
     model = build_model(deck)
