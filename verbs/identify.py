@@ -104,6 +104,8 @@ def identify(
     fmax: float | None = None,
     max_order: int | None = None,
     *,
+    take: Sequence[float] = (),
+    refuse: Sequence[float] = (),
     progress: Say = unheard,
 ) -> Identified:
     """Find modes in measured frequency responses, close pairs included.
@@ -116,6 +118,8 @@ def identify(
         Use lines from here, up to here, Hz.
     max_order : int, optional
         Highest model order in a band.
+    take, refuse : sequence of float
+        Frequencies of rejected roots that are modes, and of modes that are none, Hz.
     progress : callable
         Told what is done, a few words at a time.
 
@@ -139,7 +143,15 @@ def identify(
     read = read_responses(files) if files else _content(frf)
     assert read.frfs is not None
     progress("identifying")
-    found = find(read.frfs, fmin=fmin, fmax=fmax, max_order=max_order, geometry=read.geometry)
+    found = find(
+        read.frfs,
+        fmin=fmin,
+        fmax=fmax,
+        max_order=max_order,
+        geometry=read.geometry,
+        take=converted("take", take, tuple[float, ...], who),
+        refuse=converted("refuse", refuse, tuple[float, ...], who),
+    )
     warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
     return Identified(

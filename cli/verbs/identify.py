@@ -25,6 +25,14 @@ def identify(
     max_order: Annotated[
         int | None, typer.Option("--max-order", help="Highest model order in a band.")
     ] = None,
+    take: Annotated[
+        list[float] | None,
+        typer.Option("--take", metavar="HZ", help="A rejected root that is a mode (repeatable)."),
+    ] = None,
+    refuse: Annotated[
+        list[float] | None,
+        typer.Option("--refuse", metavar="HZ", help="A mode that is none (repeatable)."),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -50,7 +58,7 @@ def identify(
     else:
         refuse_existing(target, force)
     with working("reading", output) as say:
-        found = find(frf, fmin, fmax, max_order, progress=say)
+        found = find(frf, fmin, fmax, max_order, take=take or (), refuse=refuse or (), progress=say)
     if alone:
         found.write(target)
     else:

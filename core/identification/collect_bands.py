@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..arrays import Floats, Numbers
@@ -29,6 +31,7 @@ def assemble(
     fits: tuple[BandFit, ...],
     proposals: tuple[Proposal, ...],
     geometry: Geometry | None = None,
+    refused: Sequence[float] = (),
 ) -> Identification:
     """Bring the modes of all bands into physical units, judge them, find their scale.
 
@@ -40,6 +43,8 @@ def assemble(
         Of each band.
     geometry : Geometry, optional
         For driving points under two numbers.
+    refused : sequence of float
+        Frequencies [Hz] of modes that the user does not want.
     """
     t = collect(fits)
     p = physical(survey, t)
@@ -78,7 +83,7 @@ def assemble(
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
         remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
-        rejected=rejected(fits, proposals),
+        rejected=rejected(fits, proposals, refused),
         chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
         cmif=_cmif(survey),
         quantity=survey.quantity,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..arrays import Floats
 from ..data.frfs import Frfs
 from ..data.geometry import Geometry
 from ..errors import InputError
+from .by_hand import by_hand
 from .collect_bands import assemble
 from .identification_numbers import IDENTIFICATION
 from .poles.band_sweeps import fit_range
@@ -26,6 +29,8 @@ def identify(
     fmax: float | None = None,
     max_order: int | None = None,
     geometry: Geometry | None = None,
+    take: Sequence[float] = (),
+    refuse: Sequence[float] = (),
 ) -> Identification:
     """Identify modes from frequency responses, close pairs included, without anybody's help.
 
@@ -45,6 +50,8 @@ def identify(
         Highest order of the denominator polynomial; default: from the peaks in each band.
     geometry : Geometry, optional
         Tells driving points whose response and reference go by two node numbers.
+    take, refuse : sequence of float
+        Frequencies [Hz] of rejected roots that are modes, and of modes that are none.
 
     Returns
     -------
@@ -56,7 +63,7 @@ def identify(
     ------
     InputError
         Functions that are no frequency responses, a frequency axis that does not rise, too few
-        lines, functions of the opposite sign convention.
+        lines, functions of the opposite sign convention, no root where one is taken or refused.
 
     References
     ----------
@@ -73,7 +80,8 @@ def identify(
     fits = fit_range(survey, bands, proposals)
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
-    return assemble(survey, fits, proposals, geometry)
+    fits = by_hand(fits, proposals, take, refuse)
+    return assemble(survey, fits, proposals, geometry, refuse)
 
 
 def _count(lines: Floats, band: Band) -> int:

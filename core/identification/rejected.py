@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Bools, Numbers
+from .identification_numbers import IDENTIFICATION
 from .poles.band_sweeps import BandFit
 from .poles.pole_candidates import Proposal
 from .poles.pole_numbers import POLES
@@ -31,7 +33,9 @@ class Rejected:
     reason: str
 
 
-def rejected(fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...]) -> tuple[Rejected, ...]:
+def rejected(
+    fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...], refused: Sequence[float] = ()
+) -> tuple[Rejected, ...]:
     """Roots beside or beneath the modes of the fits, and stable poles that no fit kept.
 
     By rising frequency.
@@ -40,7 +44,7 @@ def rejected(fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...]) -> tupl
     found: list[Rejected] = []
     for b, proposed in zip(fits, proposals, strict=True):
         aside = np.flatnonzero(b.background & _inside(b, b.fit.poles))
-        reasons = _of_background(b)
+        reasons = _of_background(b, refused)
         found += [_named(b.fit.poles[k], reasons[k]) for k in aside]
         kept = np.concatenate([modes, b.fit.poles[aside]])
         for pole in (c.pole for c in proposed.firm):
@@ -63,12 +67,16 @@ def _named(pole: complex, reason: str) -> Rejected:
     return Rejected(float(abs(pole) / (2.0 * np.pi)), float(-pole.real / abs(pole)), reason)
 
 
-def _of_background(b: BandFit) -> list[str]:
+def _of_background(b: BandFit, refused: Sequence[float]) -> list[str]:
+    hz = np.abs(b.fit.poles) / (2.0 * np.pi)
+    unwanted = [any(abs(f - r) < IDENTIFICATION.by_hand * r for r in refused) for f in hz]
     wide = ~plausible(b.frequencies_hz, b.fit)
     left = left_over(b.data, b.frequencies_hz, b.fit)
     mpc = phase_collinearity(b.fit.shapes)
     return [
-        "too wide for a mode of its band: serves the fit as background"
+        "refused by hand"
+        if unwanted[k]
+        else "too wide for a mode of its band: serves the fit as background"
         if wide[k]
         else f"no more than the errors of the survey make: {100 * left[k]:.0f} % of its energy is "
         f"left over around it, phase collinearity {mpc[k]:.2f}; serves the fit as background"

@@ -191,6 +191,8 @@ def test_one_reference_warns_of_pairs(frf: Path, call: Call) -> None:
         (["--fmin", 60, "--fmax", 40], "empty"),
         (["--fmin", 200], "frequency line"),
         (["--max-order", 1], "order"),
+        (["--refuse", 33], "no mode to refuse"),
+        (["--take", 33], "no rejected root to take"),
         (["--out", "nowhere/modes.unv"], "does not exist"),
         (["--out", "survey.unv"], "input itself"),
     ],

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trueup.core.data.dofs import Dofs
+from trueup.core.errors import InputError
 from trueup.core.identification import identify
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 from trueup.core.identification.uncertainty.uncertainty_numbers import UNCERTAINTY
@@ -313,3 +314,20 @@ def test_chart_and_indicator_fit_together(survey):
     assert result.cmif.values[:, 0] == pytest.approx(
         np.linalg.norm(frfs.values, 2, axis=(0, 1)), rel=1e-6
     )
+
+
+def test_a_mode_is_refused_and_a_rejected_root_taken_by_hand(survey):
+    frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000)
+    hz = np.sort(truth.frequencies_hz)
+    without = identify(frfs, refuse=[hz[2]])
+    assert without.modes.frequencies_hz == pytest.approx(np.delete(hz, 2), rel=1e-3)
+    (refused,) = [r for r in without.rejected if r.reason == "refused by hand"]
+    assert refused.frequency_hz == pytest.approx(hz[2], rel=1e-3)
+    left = np.sqrt(np.mean(np.abs(without.synthesised().values - frfs.values) ** 2))
+    assert left < 1.1 * np.sqrt(np.mean(truth.noise_std**2))
+    both = identify(frfs, refuse=[hz[2]], take=[hz[2]])
+    assert both.modes.frequencies_hz == pytest.approx(hz, rel=1e-3)
+    with pytest.raises(InputError, match="no mode to refuse within"):
+        identify(frfs, refuse=[15.0])
+    with pytest.raises(InputError, match="no rejected root to take"):
+        identify(frfs, take=[hz[2]])
