@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from trueup.core.errors import CheckError, InputError
 from trueup.core.numerics import factorisation as factor_module
+from trueup.core.numerics import pardiso
 from trueup.core.numerics.factorisation import NotDefinite, best_backend, factorise, upper_triangle
 from trueup.core.numerics.pardiso import library
 
@@ -131,7 +132,7 @@ def test_bad_input_is_refused_in_words():
 
 def test_a_missing_mkl_falls_back_and_is_named_when_asked_for(monkeypatch):
     monkeypatch.setattr(factor_module, "library", lambda: None)
-    monkeypatch.setattr("trueup.core.numerics.pardiso.library", lambda: None)
+    monkeypatch.setattr(pardiso, "library", lambda: None)
     assert best_backend() == "superlu"
     assert factorise(sp.identity(3)).backend == "superlu"
     with pytest.raises(InputError, match="mkl package is not installed"):
