@@ -9,8 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 from trueup.core.errors import CheckError, InputError
-from trueup.core.numerics import factorisation as factor_module
-from trueup.core.numerics import pardiso
+from trueup.core.numerics import factorisation as factor_module, pardiso
 from trueup.core.numerics.factorisation import NotDefinite, best_backend, factorise, upper_triangle
 from trueup.core.numerics.pardiso import library
 
