@@ -1,10 +1,15 @@
 """What all tests share: Hypothesis without deadlines, and the code of the documents."""
 
+import os
 import re
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+# Workers share the cores: threads of linear algebra would only wait for each other.
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # How long an example takes says more of the machine's load.
 settings.register_profile("trueup", deadline=None)
