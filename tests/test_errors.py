@@ -39,6 +39,7 @@ CASES: list[tuple[str, str, Callable[[Path], object], int | None, str | None, st
     ("b.bdf", "+A,1\n", trueup.read_deck, 1, None, "{} line 1: a continuation without its card"),
     ("c.bdf", "INCLUDE 'no.bdf'\n", trueup.read_deck, 1, None, "{} line 1: the INCLUDE file"),
     ("d.bdf", ROD + "GRID,1,,9.\n", trueup.read_deck, 6, "GRID 1", "{} line 6: GRID 1 is defined"),
+    ("u.bdf", "GRID,-3\n", built, 1, "GRID -3", "GRID -3 ({} line 1): the number"),
     ("e.bdf", "$ nothing\n", trueup.read_deck, None, None, "{}: no bulk data card was found"),
     ("f.bdf", ROD.replace("1,2\nP", "1,3\nP"), built, 3, "CROD 5", "CROD 5 ({} line 3) refers to"),
     ("g.bdf", ROD.replace("CROD,5,7", "CROD,5,8"), built, 3, "CROD 5", "CROD 5 ({} line 3) refers"),

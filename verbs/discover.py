@@ -33,7 +33,7 @@ from ..core.results.evidence import damping_table, misfit_table, response_table
 from ..core.results.plain import Table
 from ..core.results.update import ParameterRow
 from .analysis import both_given, named, placed
-from .options import DiscoverOptions, Files, Say, study_of, unheard
+from .options import DiscoverOptions, Files, Say, said_to, study_of, unheard
 from .run import Discovered, content_of
 from .sources import Measured, Source, geometry_of, measured, read_deck
 from .study import Study
@@ -86,6 +86,7 @@ def discover(
     start = time.perf_counter()
     accepted = {**DiscoverOptions.__annotations__, "modes": None}
     asked = study_of("discover", study, options, accepted)
+    said_to(progress)
     deck, test = both_given(deck, test, asked)
     if asked.modes is not None:
         raise InputError("modes= gives fixed modes, which no effect can change; leave it out")

@@ -93,7 +93,8 @@ def study_of(
 def checked_call(verb: Callable[P, R]) -> Callable[P, R]:
     """Return a verb that refuses a keyword it does not know, as the verbs that compare do.
 
-    The verb raises `InputError` that names the keyword and those that are known.
+    The verb raises `InputError` that names the keyword and those that are known, and one for a
+    `progress` that cannot be called.
     """
     known = list(signature(verb).parameters)
 
@@ -102,9 +103,16 @@ def checked_call(verb: Callable[P, R]) -> Callable[P, R]:
         for name in given:
             if name not in known:
                 raise InputError(f"{verb.__name__}: {unknown(name, known)}")
+        said_to(given.get("progress", unheard))
         return verb(*args, **given)
 
     return call
+
+
+def said_to(progress: object) -> None:
+    """Refuse a `progress` that cannot be told anything."""
+    if not callable(progress):
+        raise InputError(f"progress is {progress!r}; give a function that takes a text, or nothing")
 
 
 def unheard(_: str) -> None:

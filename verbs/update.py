@@ -19,7 +19,7 @@ from ..core.results.plain import Table
 from ..core.results.update import parameter_rows, weights_table
 from ..core.updating import update as core
 from .analysis import Analysis, both_given, correlated, named, read_analysis
-from .options import Files, Say, UpdateOptions, study_of, unheard
+from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
 from .study import Study, meant
@@ -74,6 +74,7 @@ def update(
     start = time.perf_counter()
     accepted = {**UpdateOptions.__annotations__, "parameters": None, "modes": None}
     asked = study_of("update", study, {**options, "parameters": parameters}, accepted)
+    said_to(progress)
     deck, test = both_given(deck, test, asked)
     if not asked.parameters:
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..errors import InputError
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -22,6 +24,11 @@ class Parameter:
         Bounds on the factor.
     weight : float
         Relative weight of this parameter in W_p (1: as the others).
+
+    Raises
+    ------
+    InputError
+        Bounds that leave nothing between them.
     """
 
     name: str
@@ -30,3 +37,10 @@ class Parameter:
     lower: float = 0.2
     upper: float = 5.0
     weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.lower < self.upper:
+            raise InputError(
+                f"{self.name}: bounds {self.lower:g} and {self.upper:g} leave nothing between; "
+                "give 0 < lower < upper, factors on the deck's value"
+            )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import trueup
+from trueup.core.data.parameter import Parameter
 from trueup.verbs.study import Study
 
 DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
@@ -59,6 +60,19 @@ def test_what_is_no_path_is_refused(name: str, given: object) -> None:
 def test_what_makes_no_noun_is_refused(noun: str, given: tuple[Any, ...], wrong: str) -> None:
     with pytest.raises(trueup.InputError, match=wrong):
         getattr(verb, noun)(*given)
+
+
+@pytest.mark.parametrize("bounds", [(3.0, 1.0), (0.0, 1.0), (1.0, 1.0), (float("nan"), 2.0)])
+def test_bounds_with_nothing_between_are_refused(bounds: tuple[float, float]) -> None:
+    with pytest.raises(trueup.InputError, match="PSHELL 1 T: bounds"):
+        Parameter("PSHELL 1 T", ("PSHELL 1 T",), (1.0,), *bounds)
+
+
+@pytest.mark.parametrize("name", ["solve", "update", "discover"])
+def test_a_progress_that_cannot_be_told_is_refused(name: str) -> None:
+    given = (DECK,) if name == "solve" else (DECK, TEST)
+    with pytest.raises(trueup.InputError, match="progress is 3; give a function"):
+        getattr(verb, name)(*given, progress=3)
 
 
 @pytest.mark.parametrize("name", ["read", "open_run", "report"])

@@ -159,7 +159,7 @@ def read_points(bulk: Bulk) -> Points:
     Raises
     ------
     InputError
-        No grids at all; a coordinate system that does not exist.
+        No grids at all, or one whose number is not positive; no such coordinate system.
     """
     table = bulk.table("GRID")
     cards = [table[k] for k in sorted(table)]
@@ -167,6 +167,8 @@ def read_points(bulk: Bulk) -> Points:
     if not cards and not len(scalar):
         raise Place(bulk.files[0]).error("the deck has no GRID")
     ids = np.array([c.id for c in cards], dtype=np.int64)
+    if len(ids) and ids[0] < 1:
+        raise bulk.place("GRID", int(ids[0])).error("the number of a grid must be 1 or more")
     both = np.intersect1d(ids, scalar)
     if len(both):
         raise bulk.place("GRID", int(both[0])).fault("is a scalar point (SPOINT) as well")
