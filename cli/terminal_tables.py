@@ -22,7 +22,14 @@ if TYPE_CHECKING:
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
-_BRIEF = {"deviation %": "dev.\n%", "rotation °": "turned\n°", "standard error": "std. error"}
+_MORE = 6  # and for each thing that is known of damping
+_BRIEF = {
+    "damping %": "damp.\n%",
+    "MPC %": "MPC\n%",
+    "deviation %": "dev.\n%",
+    "rotation °": "turned\n°",
+    "standard error": "std. error",
+}
 
 
 def result_tables(answer: RunTables, width: int = 110) -> Iterator[RenderableType]:
@@ -68,8 +75,10 @@ def pairs_tables(answer: RunTables, width: int = 110) -> list[Table]:
     """Return the test modes with their partners, before and after one below the other if narrow."""
     from ..adapters.report.sections.pairs import PAIRS, pairs_table
 
-    if answer.initial is None or width >= _BOTH:
-        return [_rich(table) for table in PAIRS.tables_of(answer)]
+    tables = PAIRS.tables_of(answer)
+    more = sum(c.heading in ("damping %", "MPC %") for table in tables for c in table.columns)
+    if answer.initial is None or width >= _BOTH + _MORE * more:
+        return [_rich(table) for table in tables]
     states = ((answer.initial, "before"), (answer.final, "after"))
     made = [(pairs_table([("", c)]), state) for c, state in states]
     return [_rich(table, state) for table, state in made if table is not None]

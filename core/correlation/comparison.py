@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Numbers
+from ..arrays import Floats, Numbers
 from ..data.geometry import Geometry
 from ..data.length_units import to_length_unit
 from ..data.measurement import Measurement
@@ -42,6 +42,8 @@ class Placed(Noun):
         Standard errors of `test` where it was identified here; they weigh.
     length_factor : float
         Deck length units in one of the test's own; `test` and `test_geometry` have it already.
+    mpc : (n_test,) float, optional
+        Modal phase collinearity of test modes that were identified here.
     """
 
     alignment: Alignment
@@ -51,6 +53,7 @@ class Placed(Noun):
     warnings: tuple[str, ...] = ()
     errors: ModeErrors | None = None
     length_factor: float = 1.0
+    mpc: Floats | None = None
 
     def take(self, rows: Numbers) -> Placed:
         """Return the test at some of its sensors (indices or mask)."""
@@ -178,7 +181,9 @@ def place_test(
     errors = _errors(measurement, rows)
     weighed = (told(errors, kept.sensors.labels),) if errors else ()
     said = (*warnings, *seen.warnings, *weighed)
-    return Placed(alignment, kept, at_sensors, in_frame, said, errors, units.factor)
+    return Placed(
+        alignment, kept, at_sensors, in_frame, said, errors, units.factor, measurement.mpc
+    )
 
 
 def _frequencies(modes: Modes) -> tuple[str, ...]:

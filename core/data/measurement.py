@@ -33,6 +33,8 @@ class Measurement(Noun):
         Standard errors of `modes` [Hz; fraction of critical] where they were identified here.
     shape_std : (n_dof, n_mode) float or None
         Standard errors of the shapes, in their scale.
+    mpc : (n_mode,) float or None
+        Modal phase collinearity of the complex shapes that `modes` are the real ones of.
 
     Raises
     ------
@@ -48,6 +50,7 @@ class Measurement(Noun):
     frequency_std: Floats | None = None
     damping_std: Floats | None = None
     shape_std: Floats | None = None
+    mpc: Floats | None = None
 
     def __post_init__(self) -> None:
         require_kind(self.geometry, Geometry, "geometry of Measurement")

@@ -37,4 +37,5 @@ def with_modes(measurement: Measurement) -> Measurement:
         frequency_std=found.frequency_std,
         damping_std=found.damping_std,
         shape_std=found.shape_std,
+        mpc=found.mpc,
     )

@@ -7,12 +7,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.mode_pairing import Correlation, Criteria
+from ..identification.quality import phase_collinearity
 from ..noun import Noun, key
 from . import export
-from .plain import Table, Tables
+from .plain import Table, Tables, finite
 
 _SHOWN = 12
 """Modes of either side of a MAC matrix on a page."""
@@ -20,7 +23,10 @@ _SHOWN = 12
 
 @dataclass(frozen=True)
 class PairRow:
-    """One test mode with one analysis mode; `deviation_percent` is 100·(analysis − test)/test."""
+    """One test mode with one analysis mode; `deviation_percent` is 100·(analysis − test)/test.
+
+    Damping is a fraction of critical, `test_mpc` the modal phase collinearity, 0..1; None unknown.
+    """
 
     test: int
     analysis: int
@@ -30,6 +36,9 @@ class PairRow:
     mac: float
     cluster: int | None
     rotation_deg: float | None
+    test_damping: float | None = None
+    analysis_damping: float | None = None
+    test_mpc: float | None = None
 
 
 @dataclass(frozen=True)
@@ -119,7 +128,9 @@ class Compared(Tables):
     """A model and a test, correlated.
 
     `mac` is as measured, `mac_rotated` after rotation; `test_hz` (n_test,) and `analysis_hz`
-    (n_analysis,) are the frequencies of all modes.
+    (n_analysis,) are the frequencies of all modes. `test_damping`, `analysis_damping` (fractions
+    of critical) and `test_mpc` (modal phase collinearity of the test's complex shapes) likewise,
+    NaN where unknown.
     """
 
     pairs: Table[PairRow]
@@ -134,6 +145,9 @@ class Compared(Tables):
     criteria: Criteria
     alignment: AlignmentTable
     warnings: tuple[str, ...] = ()
+    test_damping: Floats = field(default_factory=lambda: np.empty(0))
+    analysis_damping: Floats = field(default_factory=lambda: np.empty(0))
+    test_mpc: Floats = field(default_factory=lambda: np.empty(0))
 
     @property
     def test_modes(self) -> tuple[int, ...]:
@@ -194,9 +208,9 @@ class CorrelateTables(Compared, RunTables):
 
 def compared(c: Comparison) -> Compared:
     """Return the tables of a comparison."""
-    found = c.correlation
+    found, mpc = c.correlation, _collinearity(c)
     return Compared(
-        pairs=pair_rows(found),
+        pairs=_pair_rows(found, c.test.damping, c.analysis.damping, mpc),
         unpaired_test=tuple(t + 1 for t in found.unpaired_test),
         unpaired_analysis=tuple(a + 1 for a in found.unpaired_analysis),
         clusters=Table(
@@ -211,11 +225,21 @@ def compared(c: Comparison) -> Compared:
         criteria=found.criteria,
         alignment=_alignment(c),
         warnings=c.warnings,
+        test_damping=c.test.damping,
+        analysis_damping=c.analysis.damping,
+        test_mpc=mpc,
     )
 
 
-def pair_rows(found: Correlation) -> Table[PairRow]:
-    """Return the pairs of a correlation."""
+def _collinearity(c: Comparison) -> Floats:
+    if c.placed.mpc is not None:
+        return c.placed.mpc
+    return phase_collinearity(c.test.shapes) if c.test.is_complex else np.full(len(c.test), np.nan)
+
+
+def _pair_rows(
+    found: Correlation, damping: Floats, of_analysis: Floats, mpc: Floats
+) -> Table[PairRow]:
     return Table(
         PairRow(
             p.test + 1,
@@ -226,6 +250,9 @@ def pair_rows(found: Correlation) -> Table[PairRow]:
             p.mac,
             None if p.cluster is None else p.cluster + 1,
             p.rotation_deg,
+            finite(damping[p.test]),
+            finite(of_analysis[p.analysis]),
+            finite(mpc[p.test]),
         )
         for p in found.pairs
     )

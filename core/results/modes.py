@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..eigen.normal_modes import Checks
 from ..noun import key
-from .plain import Table, Tables
+from .plain import Table, Tables, finite
 
 if TYPE_CHECKING:
     from ..identification.result import Identification
@@ -96,7 +94,7 @@ def mode_rows(found: Identification) -> Table[IdentifiedRow]:
     rows = (
         IdentifiedRow(
             close_pair_possible=bool(found.close_pair_possible[k]),
-            rigid_body_share=_finite(found.rigid_share[k]),
+            rigid_body_share=finite(found.rigid_share[k]),
             suspension=bool(found.suspension[k]),
             remark=found.remarks[k],
             **{name: float(values[k]) for name, values in each.items()},
@@ -119,10 +117,6 @@ def rejected_rows(found: Identification) -> Table[RejectedRow]:
 def band_rows(found: Identification) -> Table[BandRow]:
     """Return one row a band."""
     return Table((BandRow(b.band.low, b.band.high) for b in found.bands), BandRow)
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 @dataclass(frozen=True)

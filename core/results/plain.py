@@ -146,6 +146,11 @@ def _tables(value: object, above: str) -> Iterator[tuple[str, Tabular]]:
             yield from _tables(inner, f"{above}{name}_")
 
 
+def finite(value: float) -> float | None:
+    """Return a number, None for what is none."""
+    return float(value) if math.isfinite(value) else None
+
+
 def plain(value: object) -> Json:
     """Return a value as JSON holds it: arrays as lists, what is no finite number as None."""
     if dataclasses.is_dataclass(value):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,18 @@ def test_pairs_of_an_update_fit_side_by_side(width: int) -> None:
     first = next(line for line in lines if line.split()[:2] == ["1", "10.00"])
     assert first.split() == ["1", "10.00", *["1", "9.50", "−5.00", "97.0", "30.0", "1"] * 2]
     assert max(map(len, lines)) <= width
+
+
+def test_what_is_known_of_damping_fits_beside_both_states() -> None:
+    done = update()
+    known = {"test_damping": np.array([0.004, 0.012]), "test_mpc": np.array([1.0, 0.987])}
+    done = replace(done, before=replace(done.before, **known), after=replace(done.after, **known))
+    (table,) = terminal_tables.pairs_tables(done)
+    lines = shown(table).splitlines()
+    assert max(map(len, lines)) <= 110
+    first = next(line for line in lines if line.split()[:2] == ["1", "10.00"])
+    assert first.split()[:6] == ["1", "10.00", "0.40", "100.0", "1", "9.50"]
+    assert len(terminal_tables.pairs_tables(done, 100)) == 2
 
 
 def test_a_narrow_terminal_gets_before_and_after_one_below_the_other() -> None:

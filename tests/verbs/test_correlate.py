@@ -49,6 +49,28 @@ def test_a_run_is_run_again_wherever_it_is_moved_with_its_inputs(
     assert again.study.deck == tmp_path.resolve() / "there" / FILES[0].name
 
 
+def test_what_is_known_of_damping_stands_beside_the_pairs(found: trueup.Correlated) -> None:
+    test = trueup.read_test(FILES[1])
+    assert test.modes is not None
+    turned = test.modes.shapes * np.exp(0.3j)  # of one phase all over, so a normal mode
+    turned[:, 1] += 1j * np.roll(test.modes.shapes[:, 1], 1)
+    modes = replace(test.modes, shapes=turned, damping=np.linspace(0.01, 0.02, len(test.modes)))
+    solved = trueup.solve(FILES[0], 30).shapes
+    solved = replace(solved, damping=np.full(len(solved), 0.005))
+    known = trueup.correlate(
+        FILES[0], replace(test, modes=modes), modes=solved, deck_length_unit="mm"
+    )
+    assert known.test_damping == pytest.approx(modes.damping)
+    assert known.test_mpc[0] == pytest.approx(1.0)
+    assert known.test_mpc[1] < 0.9
+    for pair in known.pairs:
+        assert pair.test_damping == modes.damping[pair.test - 1]
+        assert pair.test_mpc == known.test_mpc[pair.test - 1]
+        assert pair.analysis_damping == 0.005
+    assert found.pairs[0].analysis_damping is None
+    assert found.pairs[0].test_mpc is None  # of real shapes nothing can be said
+
+
 def test_its_tables_are_typed(found: trueup.Correlated) -> None:
     first = found.pairs[0]
     assert (first.test, first.mac > 0.7) == (1, True)

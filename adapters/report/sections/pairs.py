@@ -1,15 +1,18 @@
-"""The paper's table of pairs, and deviations and MAC by mode."""
+"""The paper's table of pairs, with what is known of damping, and deviations and MAC by mode."""
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from ....core.results.correlation import Compared, PairRow, RunTables
+from ....core.results.plain import finite
 from ..html.html_table import html_table
 from ..pictures import charts
 from ..tables.number_formats import fixed, hz, percent, signed
 from ..tables.table import Cell, Column, Heading, Table
 from .section import ReportedRun, Section
 
-_PAIR = ("analysis mode", "Hz", "deviation %", "MAC %", "rotation °", "cluster")
+_PAIR = ("analysis mode", "Hz", "damping %", "deviation %", "MAC %", "rotation °", "cluster")
 
 
 def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
@@ -19,19 +22,29 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
         return None
     partners = [{p.test: p for p in c.pairs} for _, c in states]
     every = [p for of in partners for p in of.values()]
-    keep = [0, 1, 2, 3] + [4] * any(p.rotation_deg is not None for p in every)
-    keep += [5] * any(p.cluster is not None for p in every)
-    columns: list[Heading] = ["test mode", "Hz"]
+    keep = [0, 1] + [2] * any(p.analysis_damping is not None for p in every) + [3, 4]
+    keep += [5] * any(p.rotation_deg is not None for p in every)
+    keep += [6] * any(p.cluster is not None for p in every)
+    known = {
+        heading: (of_test, digits)
+        for heading, of_test, digits in (
+            ("damping %", last.test_damping, 2),
+            ("MPC %", last.test_mpc, 1),
+        )
+        if np.isfinite(of_test).any()
+    }
+    columns: list[Heading] = ["test mode", "Hz", *known]
     columns += [Column(_PAIR[k], group) for group, _ in states for k in keep]
     rows = []
     for n in last.test_modes:
         row: list[Cell | str] = [str(n), hz(last.test_hz[n - 1])]
+        row += [percent(finite(of_test[n - 1]), digits) for of_test, digits in known.values()]
         for of in partners:
             cells = _cells(of.get(n))
             row += [cells[k] for k in keep]
         rows.append(row)
     note = "Deviation is 100·(analysis − test)/test."
-    if 4 in keep:
+    if 5 in keep:
         note += (
             " Rotation is how far the analysis mode was turned within its cluster of close modes."
         )
@@ -40,10 +53,11 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
 
 def _cells(pair: PairRow | None) -> list[Cell | str]:
     if pair is None:
-        return [Cell("none", "muted"), *[""] * 5]
+        return [Cell("none", "muted"), *[""] * 6]
     return [
         str(pair.analysis),
         hz(pair.analysis_hz),
+        percent(pair.analysis_damping, 2),
         signed(pair.deviation_percent, 2),
         Cell(percent(pair.mac, 1), bar=pair.mac),
         "" if pair.rotation_deg is None else fixed(pair.rotation_deg, 1),

@@ -42,7 +42,7 @@ def correlation_tables(c, test, analysis):
     tables = compared(
         SimpleNamespace(
             correlation=c, test=test, analysis=analysis, warnings=("one",), alignment=move,
-            observation=seen, placed=SimpleNamespace(length_factor=1000.0),
+            observation=seen, placed=SimpleNamespace(length_factor=1000.0, mpc=None),
         )
     )  # fmt: skip
     return CorrelateTables(**vars(tables), deck_file="a.bdf", test_files=("a.unv",)).to_dict()

@@ -44,6 +44,17 @@ def test_pairs_before_and_after_stand_side_by_side(update: dict[str, Any]) -> No
     assert [r[10] for r in texts(table)] == ["+1.00", "+0.50", "−0.80"]
 
 
+def test_damping_stands_beside_the_pair(correlation: dict[str, Any]) -> None:
+    correlation |= {"test_damping": [0.0035, None, 0.01], "test_mpc": [0.998, 0.9, 1.0]}
+    correlation["pairs"][0] |= {"analysis_damping": 0.02}
+    assert [row[:6] for row in texts(table_of(PAIRS, correlation))] == [
+        ["1", "10.00", "0.35", "99.8", "2", "9.00"],
+        ["2", "20.00", "–", "90.0", "1", "20.50"],
+        ["3", "31.25", "1.00", "100.0", "none", ""],
+    ]
+    assert [row[6] for row in texts(table_of(PAIRS, correlation))] == ["2.00", "–", ""]
+
+
 def test_columns_that_say_nothing_are_left_out(correlation: dict[str, Any]) -> None:
     correlation["pairs"][0] |= {"cluster": None, "rotation_deg": None}
     table = table_of(PAIRS, correlation)
