@@ -26,8 +26,6 @@ class FaultKind:
         Whether half of its sensors read what the other half should.
     like_model : bool
         Whether an error of a model may look like it.
-    accuses : bool
-        Whether it is a finding; else a remark.
     """
 
     name: str
@@ -36,7 +34,6 @@ class FaultKind:
     magnitude: str = ""
     exchanges: bool = False
     like_model: bool = True
-    accuses: bool = True
 
 
 POLARITY = FaultKind(
@@ -64,14 +61,7 @@ AXIS = FaultKind(
     "Sensor {sensors} is turned by {size:.0f}° from the axes that the test says",
     "angle_deg",
 )
-DOUBLED = FaultKind(
-    "doubled",
-    "doubled readings",
-    "sensor {sensors} reads twice what all the others say, as if two measurements of it had been "
-    "added up; its values were halved for the comparison",
-    accuses=False,
-)
-FAULTS: dict[str, FaultKind] = {k.name: k for k in (POLARITY, GAIN, SWAP, AXIS, DOUBLED)}
+FAULTS: dict[str, FaultKind] = {k.name: k for k in (POLARITY, GAIN, SWAP, AXIS)}
 
 
 @dataclass(frozen=True, eq=False)

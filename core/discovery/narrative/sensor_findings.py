@@ -14,22 +14,16 @@ from .narrative_numbers import NARRATIVE
 
 def accusations(seen: Observation, tested: Verdicts) -> list[Finding]:
     """Return the findings on the side of the test."""
-    return [_accusation(seen, f) for f in tested.faults if FAULTS[f.kind].accuses]
+    return [_accusation(seen, f) for f in tested.faults]
 
 
 def remarks(seen: Observation, tested: Verdicts) -> tuple[str, ...]:
     """Return what is odd about sensors but no finding."""
     nodes = seen.sensors.node
-    twice = tuple(
-        FAULTS[f.kind].sentence.format(sensors=int(nodes[f.sensors[0]]))
-        for f in tested.faults
-        if not FAULTS[f.kind].accuses
-    )
     odd = np.setdiff1d(nodes[tested.doubtful], nodes[tested.accused])
     if not odd.size:
-        return twice
+        return ()
     return (
-        *twice,
         f"sensor{'s' if odd.size > 1 else ''} {', '.join(map(str, odd))} may be faulty, or the "
         "model wrong there: too little to say so",
     )

@@ -12,7 +12,7 @@ from scipy.special import logsumexp
 from scipy.stats import norm, t as student
 
 from ...arrays import Floats
-from ..faults import AXIS, DOUBLED, GAIN, POLARITY, SWAP
+from ..faults import AXIS, GAIN, POLARITY, SWAP
 from .misalignment import Evidence, about, anyhow, tilted
 from .node_likelihood import Node, evidence
 from .sensor_numbers import SENSORS
@@ -95,7 +95,7 @@ def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Altern
 def _scaled(
     node: Node, rows: tuple[int, ...], share: float, of: Evidence, before: Before
 ) -> list[Alternative]:
-    """Polarity, gain, doubled readings, and a model that is wrong in proportion there."""
+    """Polarity, gain, and a model that is wrong in proportion there."""
     gains = np.exp(_LOG_GAIN)
     every = np.r_[gains, -gains]
     sure = before.faulty * share
@@ -105,12 +105,8 @@ def _scaled(
     log, reverse = np.split(of(maps), 2)
     size = max(float(np.sqrt(np.mean(node.mean[:, list(rows)] ** 2))), SENSORS.least_motion)
     step = _LOG_GAIN[1] - _LOG_GAIN[0]
-
-    def near(factor: float) -> Floats:
-        """Log prior of gains that would be `factor` if every sound gain were 1."""
-        scale = np.hypot(SENSORS.gain_scatter, before.proportion / size)
-        return np.asarray(norm.logpdf(_LOG_GAIN - np.log(factor), scale=scale) + np.log(step))
-
+    scale = np.hypot(SENSORS.gain_scatter, before.proportion / size)
+    sound = norm.logpdf(_LOG_GAIN, scale=scale) + np.log(step)
     chance, centre, scale = before.in_proportion.T[..., None]
     off = ((gains - 1.0) * size - centre) / scale
     each = chance * gains * size / scale * step
@@ -129,8 +125,7 @@ def _scaled(
         return Alternative(kind, float(logsumexp(log)) + np.log(prior), rows, size, deviation)
 
     return [
-        told(POLARITY.name, reverse + near(1.0), sure * SENSORS.polarity, -1.0),
-        told(DOUBLED.name, log + near(2.0), sure * SENSORS.doubled, 2.0),
+        told(POLARITY.name, reverse + sound, sure * SENSORS.polarity, -1.0),
         told(GAIN.name, as_fault, sure * SENSORS.gain, factor, np.sqrt(spread)),
         told("model", log + model, share, 1.0),
     ]

@@ -55,7 +55,6 @@ class SensorNumbers:
     tail: float = number(5.0, "degrees of freedom", "of what models have wrong in proportion, a t distribution")
     polarity: float = number(0.25, SHARE, "that read the opposite")
     gain: float = number(0.25, SHARE, "that have a wrong gain")
-    doubled: float = number(0.1, SHARE, "that read twice the value")
     axis: float = number(0.2, SHARE, "that are turned, where a node has several sensors")
     lonely_axis: float = number(0.05, SHARE, "that are turned, where it has one")
     exchanged: float = number(0.05, SHARE, "two of whose directions are exchanged")

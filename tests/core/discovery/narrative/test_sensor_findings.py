@@ -66,13 +66,6 @@ def test_exchanged_directions_of_one_node_are_told_as_such():
     assert f"{first} and {second} are swapped" in f.sentence
 
 
-def test_doubled_readings_are_a_remark_and_no_finding():
-    tested = verdicts(fault("doubled", (2,), 2.0))
-    assert accusations(seen(), tested) == []
-    (remark,) = remarks(seen(), tested)
-    assert "sensor 12 reads twice" in remark
-
-
 def test_what_may_be_faulty_is_remarked():
     tested = verdicts(fault("sensor_gain", (2, 3), 1.5, 0.1), doubtful=(4, 5))
     (remark,) = remarks(seen(), tested)
