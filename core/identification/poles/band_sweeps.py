@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,25 +86,30 @@ def fit_range(
     def refined(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
         return refine(data, start.poles, start.participation)
 
-    first, _ = _sweep(
-        survey, bands, _Found([none] * len(bands), [none] * len(bands)), 0.0, proposed
-    )
-    first, fits = _sweep(survey, bands, first, 0.0, refined)
-    error = _error(fits)
+    found = _Found([none] * len(bands), [none] * len(bands))
+    for _ in _sweep(survey, bands, found, 0.0, proposed):
+        pass
+    error = survey_error((b.data, b.frequencies_hz, b.fit) for b in
+                         _sweep(survey, bands, found, 0.0, refined))  # fmt: skip
     if error < POLES.error_surely:
-        fits = _searched(survey, bands, proposals, first, 0.0)
-        error = max(error, _error(fits))
-        if _error(fits) < POLES.error_none:
+        fits = _searched(survey, bands, proposals, found.copy(), 0.0)
+        left = survey_error((b.data, b.frequencies_hz, b.fit) for b in fits)
+        if left < POLES.error_none:
             return fits
-    return _searched(survey, bands, proposals, first, error)
+        error = max(error, left)
+        del fits
+    return _searched(survey, bands, proposals, found, error)
 
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """Modes that each band answers for, and roots beside or beneath them."""
+    """Modes that each band answers for, and roots beside or beneath them; sweeps renew them."""
 
     owned: list[Roots]
     beside: list[Roots]
+
+    def copy(self) -> _Found:
+        return _Found(list(self.owned), list(self.beside))
 
 
 def _searched(
@@ -122,10 +127,10 @@ def _searched(
     def pruned(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
         return prune(data, f, fit_shapes(data, start.poles, start.participation))
 
-    found, fits = _sweep(survey, bands, found, error, selected)
-    for _ in range(POLES.final_sweeps):
-        found, fits = _sweep(survey, bands, found, error, pruned)
-    return fits
+    for fitted in (selected, *[pruned] * (POLES.final_sweeps - 1)):
+        for _ in _sweep(survey, bands, found, error, fitted):
+            pass
+    return tuple(_sweep(survey, bands, found, error, pruned))
 
 
 def _sweep(
@@ -134,24 +139,19 @@ def _sweep(
     found: _Found,
     error: float,
     fitted: Callable[[int, BandData, Floats, Fit], Fit],
-) -> tuple[_Found, tuple[BandFit, ...]]:
-    owned, beside, fits = list(found.owned), list(found.beside), []
+) -> Iterator[BandFit]:
+    """Fit one band after the other; only who asks for all of them holds the data of all."""
     for n, band in enumerate(bands):
-        near, far = _near_and_far(_joined(owned), band)
+        near, far = _near_and_far(_joined(found.owned), band)
         f, data = _data(survey, band, far, error)
-        near = _joined([near, beside[n]])
+        near = _joined([near, found.beside[n]])
         fit = fitted(n, data, f, Fit(near.poles, near.participation, near.shapes, np.inf))
         modes = modes_of(data, f, fit)
-        owned[n] = _core(fit, band, modes)
-        beside[n] = _take(_roots(fit), ~modes)
-        owned = _without_doubles(owned)
-        mine = np.isin(fit.poles, owned[n].poles)
-        fits.append(BandFit(band, f, data, fit, mine, ~modes))
-    return _Found(owned, beside), tuple(fits)
-
-
-def _error(fits: tuple[BandFit, ...]) -> float:
-    return survey_error([(b.data, b.frequencies_hz, b.fit) for b in fits])
+        found.owned[n] = _core(fit, band, modes)
+        found.beside[n] = _take(_roots(fit), ~modes)
+        found.owned[:] = _without_doubles(found.owned)
+        mine = np.isin(fit.poles, found.owned[n].poles)
+        yield BandFit(band, f, data, fit, mine, ~modes)
 
 
 def _data(survey: Survey, band: Band, far: Roots, error: float) -> tuple[Floats, BandData]:

@@ -113,7 +113,7 @@ def _projected(
     lines = derivative * (s / np.mean(np.abs(s))) ** powers
     terms = stacked(np.concatenate([lines, 1j * lines])).T
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
-    y -= (y @ Q) @ Q.T
+    y -= onto(onto(y, Q), Q.T)
     y[weight == 0.0] = 0.0
     return BandData(s, derivative, np.ascontiguousarray(Q), y, weight, error)
 
@@ -123,22 +123,46 @@ def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:
 
     Without the derivative the second axis has length 1.
     """
-    near = data.derivative / (data.s - poles[:, None])
-    far = data.derivative / (data.s - poles.conj()[:, None])
-    functions = [np.stack([near + far, 1j * (near - far)], axis=1)]
-    if derivative:
-        near = near / (data.s - poles[:, None])
-        far = far / (data.s - poles.conj()[:, None])
-        functions.append(np.stack([near + far, 1j * (near - far)], axis=1))
-    flat = stacked(np.stack(functions)).reshape(-1, 2 * len(data.s)).T
-    flat = flat - data.residual_terms @ (data.residual_terms.T @ flat)
-    return np.ascontiguousarray(flat).reshape(2 * len(data.s), len(functions), len(poles), 2)
+    near = 1.0 / (data.s - poles[:, None])
+    far = 1.0 / (data.s - poles.conj()[:, None])
+    n, count = len(data.s), 1 + derivative
+    rows = np.empty((count, len(poles), 2, 2 * n))
+    for k in range(count):
+        c, conjugate = data.derivative * near ** (k + 1), data.derivative * far ** (k + 1)
+        both, apart = c + conjugate, c - conjugate
+        rows[k, :, 0, :n], rows[k, :, 0, n:] = both.real, both.imag
+        rows[k, :, 1, :n], rows[k, :, 1, n:] = -apart.imag, apart.real
+    flat = rows.reshape(-1, 2 * n)
+    flat -= (flat @ data.residual_terms) @ data.residual_terms.T
+    return np.asarray(flat.T.reshape(2 * n, count, len(poles), 2))
+
+
+def onto(y: Floats, F: Floats) -> Floats:
+    """Return inner products of functions and bases, all functions in one product of matrices.
+
+    Parameters
+    ----------
+    y : (n_output, n_input, n) float
+    F : (n, ...) float
+
+    Returns
+    -------
+    (n_output, n_input, n_basis) float
+    """
+    flat = F.reshape(len(F), int(np.prod(F.shape[1:])))
+    functions = y.reshape(y.shape[0] * y.shape[1], len(F))
+    return np.asarray((functions @ flat).reshape(*y.shape[:2], flat.shape[1]))
 
 
 def parts_of(z: Numbers) -> Floats:
     """Real and imaginary parts side by side: (..., m) complex to (..., 2 m) float."""
     pairs = np.stack([z.real, z.imag], axis=-1)
     return np.asarray(pairs.reshape(*z.shape[:-1], 2 * z.shape[-1]))
+
+
+def paired(x: Floats) -> Numbers:
+    """Join the last axis, of length 2, to one complex number: the inverse of `parts_of`."""
+    return np.asarray(np.ascontiguousarray(x).view(complex)[..., 0])
 
 
 def turned(z: Numbers) -> Floats:
@@ -178,10 +202,19 @@ def shape_normals(G: Floats, participation: Numbers) -> Floats:
         F'F, values first.
     participation : (n_input, n_mode) complex
     """
-    L = turned(participation)
-    n = 2 * participation.shape[1]
-    per_input = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, G[0, :, :, 0], L, optimize=_IN_TURN)
-    return np.asarray(per_input.reshape(len(L), n, n))
+    return _rows_turned(_columns_turned(G[0, :, :, 0], participation), participation)
+
+
+def _columns_turned(X: Floats, z: Numbers) -> Floats:
+    """Multiply X (2m, m, 2) by the transposed `turned` of each row of z: (n_input, 2m, 2m)."""
+    m = z.shape[1]
+    return parts_of(paired(X.reshape(2 * m, m, 2)) * z.conj()[:, None, :])
+
+
+def _rows_turned(X: Floats, z: Numbers) -> Floats:
+    """Multiply X (., 2m, 2m) by `turned` of each row of z from the left: (n_input, 2m, 2m)."""
+    columns = X.transpose(0, 2, 1).reshape(len(X), X.shape[2], z.shape[1], 2)
+    return np.asarray(parts_of(paired(columns) * z.conj()[:, None, :]).transpose(0, 2, 1))
 
 
 def reduced_normal(
@@ -197,15 +230,16 @@ def reduced_normal(
     add is linear in the second moments of the shapes: nothing here grows with their number.
     θ is ordered as in `Normal`.
     """
-    L = turned(participation)
     n_input, m = participation.shape
     vv, vd, dd = G[0, :, :, 0], G[0, :, :, 1], G[1, :, :, 1]
-    pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, vd, L, optimize=_IN_TURN)
-    part = np.einsum("ikaf,kfKF->ikaKF", L, vv)
+    z, by_mode = participation, (n_input, m, 2, m, 2)
+    pole = _rows_turned(_columns_turned(vd, z), z).reshape(by_mode)
+    part = _rows_turned(vv.reshape(1, 2 * m, 2 * m), z).reshape(by_mode)
     own = shape_normals(G, participation)
     tensor = np.zeros((m, 2, 1 + n_input, m, 2, 1 + n_input))
-    pole_pole = np.einsum("ikaf,kfKF,iKAF->ikaKA", L, dd, L, optimize=_IN_TURN)
-    pole_part = np.einsum("ikbf,kfKF->ikbKF", L, vd.transpose(2, 3, 0, 1))
+    pole_pole = _rows_turned(_columns_turned(dd, z), z).reshape(by_mode)
+    dv = vd.transpose(2, 3, 0, 1).reshape(1, 2 * m, 2 * m)
+    pole_part = _rows_turned(dv, z).reshape(by_mode)
     for w, rows in patterns:
         P = turned(shapes[rows])
         flat = P.reshape(len(rows), -1)

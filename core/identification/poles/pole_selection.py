@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Floats, Numbers
 from .matched_filters import Traces, traces
-from .moments import BandData, basis, excerpt, parts_of
+from .moments import BandData, basis, excerpt, onto, parts_of
 from .pole_numbers import POLES
 from .pole_splitting import plausible, split_roots, strength
 from .pole_stabilisation import Candidate
@@ -145,7 +145,7 @@ def _around(
     lines = slice(int(first), int(max(last, first + POLES.around_least)))
     F = basis(data, fit.poles[near], derivative=False)
     mine = parts_of((fit.shapes[:, None, :] * fit.participation[None, :, :])[..., near])
-    functions = left + mine @ F.reshape(len(F), -1).T
+    functions = left + onto(mine, F.reshape(len(F), -1).T)
     return excerpt(data, lines, functions), near, lines
 
 

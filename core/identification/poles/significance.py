@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ...arrays import Floats, Numbers
-from .moments import BandData, basis, parts_of, shape_normals
+from .moments import BandData, basis, onto, parts_of, shape_normals
 from .pole_numbers import POLES
 from .variable_projection import Fit, solve_shapes
 
@@ -102,7 +102,7 @@ def best_of_noise(data: BandData, f: Floats, n_output: float) -> float:
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
     """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
     model = parts_of(fit.shapes[:, None, :] * fit.participation[None, :, :])
-    left = data.y - model @ F[:, 0].reshape(len(F), 2 * len(fit.poles)).T
+    left = data.y - onto(model, F[:, 0].reshape(len(F), 2 * len(fit.poles)).T)
     return np.asarray(left * data.weight[:, :, None])
 
 

@@ -7,6 +7,8 @@ repeat its one direction, and roots, mostly wide and complex, on which its error
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ...arrays import Bools, Floats
@@ -17,7 +19,7 @@ from .significance import energy_by_line, memory_of_residual
 from .variable_projection import Fit
 
 
-def survey_error(fits: list[tuple[BandData, Floats, Fit]]) -> float:
+def survey_error(fits: Iterable[tuple[BandData, Floats, Fit]]) -> float:
     """Median over the roots of the part of the energy around them left over beyond noise."""
     shares: list[float] = []
     for data, f, fit in (x for x in fits if len(x[2].poles)):

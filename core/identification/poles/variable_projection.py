@@ -12,10 +12,11 @@ from .moments import (
     Normal,
     basis,
     normal,
+    onto,
+    paired,
     parts_of,
     reduced_normal,
     shape_normals,
-    turned,
 )
 from .pole_numbers import POLES
 
@@ -143,14 +144,13 @@ def _reduced_system(data: BandData, fit: Fit, projections: Floats) -> tuple[Floa
     S = reduced_normal(G, fit.participation, fit.shapes, data.patterns, solve_shapes)
     r = fit.shapes[:, None, :] * fit.participation[None, :, :]
     model = parts_of(r)
-    slopes = data.y @ F[:, 1].reshape(len(F), 2 * m)
-    slopes -= model @ G[0, :, :, 1].reshape(2 * m, 2 * m)
-    left = projections.reshape(slopes.shape) - model @ G[0, :, :, 0].reshape(2 * m, 2 * m)
-    mask = data.weight[:, :, None, None]
-    slopes, left = slopes.reshape(*r.shape, 2) * mask, left.reshape(*r.shape, 2) * mask
-    pole = np.einsum("oikaf,oikf->ka", turned(r), slopes)
-    part = np.einsum("okaf,oikf->kai", turned(fit.shapes), left, optimize=True)
-    return S, np.concatenate([pole.ravel(), part.ravel()])
+    slopes = onto(data.y, F[:, 1]) - onto(model, G[0, :, :, 1].reshape(2 * m, 2 * m))
+    left = projections.reshape(model.shape) - onto(model, G[0, :, :, 0].reshape(2 * m, 2 * m))
+    mask = data.weight[:, :, None]
+    by_pole, by_value = paired(slopes.reshape(*r.shape, 2)), paired(left.reshape(*r.shape, 2))
+    pole = np.einsum("oik,oik->k", r.conj(), by_pole * mask)
+    part = np.einsum("ok,oik->ki", fit.shapes.conj(), by_value * mask)
+    return S, np.concatenate([parts_of(pole), np.stack([part.real, part.imag], axis=1).ravel()])
 
 
 def solve_shapes(N: Floats, right: Floats) -> Floats:
@@ -189,22 +189,17 @@ def _with_shapes(data: BandData, poles: Numbers, participation: Numbers) -> tupl
     biggest = np.argmax(np.abs(participation), axis=0)
     participation = participation / participation[biggest, np.arange(m)]
     F = basis(data, poles, derivative=False)
-    B = data.y @ F.reshape(len(F), 2 * m)
+    B = onto(data.y, F)
     per_input = shape_normals(_gram(F), participation)
-    L = turned(participation)
+    on_modes = paired(B.reshape(n_output, n_input, m, 2))
     x = np.empty((n_output, 2 * m))
     explained = 0.0
     for w, rows in data.patterns:
-        mix = np.zeros((n_input, m, 2, m, 2))
-        mix[:, np.arange(m), :, np.arange(m), :] = (w[:, None, None, None] * L).transpose(
-            1, 0, 3, 2
-        )
-        b = B[rows].reshape(len(rows), -1) @ mix.reshape(-1, 2 * m)
+        b = parts_of(np.einsum("oik,ik->ok", on_modes[rows], w[:, None] * participation.conj()))
         N = np.tensordot(w, per_input, axes=1)
         x[rows] = solve_shapes(N, b.T).T
         explained += float(np.sum(x[rows] * (2.0 * b - x[rows] @ N)))
-    pairs = x.reshape(n_output, m, 2)
-    shapes = pairs[..., 0] + 1j * pairs[..., 1]
+    shapes = paired(x.reshape(n_output, m, 2))
     fit = Fit(poles, participation, shapes, max(data.power - explained, 0.0))
     return fit, B.reshape(n_output, n_input, m, 2)
 

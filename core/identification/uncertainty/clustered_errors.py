@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Floats
-from ..poles.moments import BandData, turned
+from ..poles.moments import BandData, onto, turned
 from ..poles.significance import residual_lines
 from ..poles.variable_projection import Fit
 from .uncertainty_numbers import UNCERTAINTY
@@ -38,7 +38,7 @@ def widened(
     """
     m, (n_output, n_input) = len(fit.poles), data.weight.shape
     left = residual_lines(data, fit, F)
-    E = (left @ F.reshape(len(F), -1)).reshape(n_output, n_input, 2, m, 2)
+    E = onto(left, F).reshape(n_output, n_input, 2, m, 2)
     r = fit.shapes[:, None, :] * fit.participation[None, :, :]
     of_shapes = np.einsum("ikaf,oikf->oika", turned(fit.participation), E[:, :, 0])
     score = -np.einsum("oxt,oix->oit", T, of_shapes.reshape(n_output, n_input, -1), optimize=True)
