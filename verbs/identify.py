@@ -106,6 +106,7 @@ def identify(
     *,
     take: Sequence[float] = (),
     refuse: Sequence[float] = (),
+    exponential_window: float | str | None = None,
     progress: Say = unheard,
 ) -> Identified:
     """Find modes in measured frequency responses, close pairs included.
@@ -120,6 +121,9 @@ def identify(
         Highest model order in a band.
     take, refuse : sequence of float
         Frequencies of rejected roots that are modes, and of modes that are none, Hz.
+    exponential_window : float or str, optional
+        Of the records: its time constant [s], or its value at their end ("1%"). The damping that
+        it added is taken out.
     progress : callable
         Told what is done, a few words at a time.
 
@@ -151,6 +155,7 @@ def identify(
         geometry=read.geometry,
         take=converted("take", take, tuple[float, ...], who),
         refuse=converted("refuse", refuse, tuple[float, ...], who),
+        exponential_window=exponential_window,
     )
     warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz

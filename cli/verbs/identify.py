@@ -33,6 +33,15 @@ def identify(
         list[float] | None,
         typer.Option("--refuse", metavar="HZ", help="A mode that is none (repeatable)."),
     ] = None,
+    exponential_window: Annotated[
+        str | None,
+        typer.Option(
+            "--exponential-window",
+            metavar="TAU|END",
+            help="Take its damping out: its time constant [s], or its value at the record's end "
+            "(1%).",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -58,7 +67,16 @@ def identify(
     else:
         refuse_existing(target, force)
     with working("reading", output) as say:
-        found = find(frf, fmin, fmax, max_order, take=take or (), refuse=refuse or (), progress=say)
+        found = find(
+            frf,
+            fmin,
+            fmax,
+            max_order,
+            take=take or (),
+            refuse=refuse or (),
+            exponential_window=exponential_window,
+            progress=say,
+        )
     if alone:
         found.write(target)
     else:

@@ -16,7 +16,7 @@ from .poles.pole_candidates import Proposal
 from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .rejected import rejected
-from .remarks import of_leakage, of_modes, pair_possible
+from .remarks import of_leakage, of_modes, of_window, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .survey.driving_points import driving_points, scale
 from .survey.modal_synthesis import modal_response
@@ -32,6 +32,7 @@ def assemble(
     proposals: tuple[Proposal, ...],
     geometry: Geometry | None = None,
     refused: Sequence[float] = (),
+    window: float = 0.0,
 ) -> Identification:
     """Bring the modes of all bands into physical units, judge them, find their scale.
 
@@ -45,12 +46,15 @@ def assemble(
         For driving points under two numbers.
     refused : sequence of float
         Frequencies [Hz] of modes that the user does not want.
+    window : float
+        What an exponential window added to all decay rates [1/s].
     """
     t = collect(fits)
     p = physical(survey, t)
     points = driving_points(survey.outputs, survey.inputs, geometry)
     scaling = scale(t.poles, p.shapes, p.participation, points, survey.inputs)
-    f_std, z_std = frequency_and_damping_errors(t.poles, t.pole_covariance)
+    poles = t.poles + window
+    f_std, z_std = frequency_and_damping_errors(poles, t.pole_covariance)
     backgrounds, quality = _backgrounds(survey, fits, t)
     sure = np.where(p.known, p.shapes, 0.0)
     mpc = phase_collinearity(sure)
@@ -59,11 +63,14 @@ def assemble(
     warnings += of_leakage(t.hz, t.blurred)
     if not len(t.hz):
         warnings.append("no mode stands out of the noise")
-    damping = -t.poles.real / np.abs(t.poles)
+    damping = -poles.real / np.abs(poles)
+    warnings += of_window(poles, damping, z_std, window)
+
+    hz = np.abs(poles) / (2.0 * np.pi)
 
     def modes(shapes: Numbers, size: Floats) -> Modes:
         mass = scaling.modal_mass / size**2
-        return Modes(t.hz, shapes / size, survey.outputs, damping, mass, survey.source)
+        return Modes(hz, shapes / size, survey.outputs, damping, mass, survey.source)
 
     indicator = _indicator_at(survey, t.hz)
     return Identification(
@@ -87,6 +94,7 @@ def assemble(
         chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
         cmif=_cmif(survey),
         quantity=survey.quantity,
+        window_decay=window,
         warnings=tuple(warnings),
     )
 

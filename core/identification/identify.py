@@ -17,6 +17,7 @@ from .poles.band_sweeps import fit_range
 from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
 from .result import Identification
+from .survey.exponential_window import decay_rate
 from .survey.mode_indicator import Band, cmif, peaks, split
 from .survey.survey_data import Survey, prepare
 from .survey.wrong_signs import signs_mended
@@ -31,6 +32,7 @@ def identify(
     geometry: Geometry | None = None,
     take: Sequence[float] = (),
     refuse: Sequence[float] = (),
+    exponential_window: float | str | None = None,
 ) -> Identification:
     """Identify modes from frequency responses, close pairs included, without anybody's help.
 
@@ -52,6 +54,8 @@ def identify(
         Tells driving points whose response and reference go by two node numbers.
     take, refuse : sequence of float
         Frequencies [Hz] of rejected roots that are modes, and of modes that are none.
+    exponential_window : float or str, optional
+        Whose damping is taken out of the modes, see `decay_rate`.
 
     Returns
     -------
@@ -63,7 +67,8 @@ def identify(
     ------
     InputError
         Functions that are no frequency responses, a frequency axis that does not rise, too few
-        lines, functions of the opposite sign convention, no root where one is taken or refused.
+        lines, functions of the opposite sign convention, no root where one is taken or refused, an
+        exponential window that no record has.
 
     References
     ----------
@@ -72,6 +77,7 @@ def identify(
     if max_order is not None and max_order < 2:
         raise InputError(f"the model order {max_order} is too low; it must be 2 or more")
     survey = signs_mended(prepare(frfs, fmin, fmax))
+    window = decay_rate(exponential_window, survey.frequencies_hz)
     indicator = cmif(survey.values)
     floor = float(np.sqrt(survey.values.shape[0]) + np.sqrt(survey.values.shape[1]))
     bands = split(survey.frequencies_hz, indicator, floor)
@@ -81,7 +87,7 @@ def identify(
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
     fits = by_hand(fits, proposals, take, refuse)
-    return assemble(survey, fits, proposals, geometry, refuse)
+    return assemble(survey, fits, proposals, geometry, refuse, window)
 
 
 def _count(lines: Floats, band: Band) -> int:

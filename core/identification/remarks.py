@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Floats, Numbers
+from ..errors import InputError
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, Physical
 from .survey.survey_data import Survey
@@ -43,6 +44,31 @@ def of_leakage(hz: Floats, blurred: Numbers) -> list[str]:
         f"{np.count_nonzero(blurred)} mode(s) ({which} Hz) are narrow for the lines and leave a "
         "residual that is not noise (leakage): their damping may be too high, as its standard "
         "error says"
+    ]
+
+
+def of_window(poles: Numbers, damping: Floats, std: Floats, decay: float) -> list[str]:
+    """Say what was taken out for an exponential window.
+
+    Raises
+    ------
+    InputError
+        The window damps more than what was measured.
+    """
+    if decay == 0.0 or not len(poles):
+        return []
+    below = damping < -SURVEY.window_sure * std
+    if below.any():
+        k = int(np.argmin(damping / std))
+        hz, share = np.abs(poles[k]) / (2.0 * np.pi), decay / np.abs(poles[k])
+        raise InputError(
+            f"an exponential window of {1.0 / decay:.4g} s makes {100.0 * share:.3g} % of damping "
+            f"at {hz:.2f} Hz, where all in all {100.0 * (damping[k] + share):.3g} % was measured: it "
+            "was not the window of these functions"
+        )
+    return [
+        f"the damping that an exponential window of {1.0 / decay:.4g} s adds is taken out of the "
+        "modes, not out of the roots rejected and the stabilisation chart"
     ]
 
 

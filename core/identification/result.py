@@ -103,6 +103,9 @@ class Identification(Noun):
     cmif : Indicator
     quantity : str
         Of the functions fitted.
+    window_decay : float
+        What an exponential window added to the decay rates of the functions, taken out of the
+        modes [1/s].
     warnings : tuple of str
     """
 
@@ -126,6 +129,7 @@ class Identification(Noun):
     chart: Chart
     cmif: Indicator
     quantity: str
+    window_decay: float
     warnings: tuple[str, ...]
 
     @property
@@ -141,7 +145,7 @@ class Identification(Noun):
         return np.asarray(omega * (-zeta + 1j * np.sqrt(np.maximum(1.0 - zeta**2, 0.0))))
 
     def synthesised(self, frequencies_hz: Floats | None = None) -> Frfs:
-        """Return the functions that modes and residual terms make, at any lines.
+        """Return the functions that modes and residual terms make, at any lines, as windowed.
 
         Parameters
         ----------
@@ -151,8 +155,9 @@ class Identification(Noun):
         """
         f = self.cmif.frequencies_hz if frequencies_hz is None else np.asarray(frequencies_hz)
         values = synthesise(
-            f, self.poles, self.modes.shapes, self.participation, self.bands, self.quantity
-        )
+            f, self.poles - self.window_decay, self.modes.shapes, self.participation, self.bands,
+            self.quantity,
+        )  # fmt: skip
         source = f"synthesised, {self.modes.source}"
         return Frfs(f, self.modes.dofs, self.references, values, self.quantity, source)
 

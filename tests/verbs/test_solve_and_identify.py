@@ -78,6 +78,8 @@ def test_what_an_identification_cannot_use_is_named(file: Path) -> None:
         trueup.identify(file, fmin="5")  # type: ignore[arg-type]
     with pytest.raises(trueup.InputError, match="'max_order' has a value of the wrong type"):
         trueup.identify(file, max_order=2.5)  # type: ignore[arg-type]
+    with pytest.raises(trueup.InputError, match="exponential window is '2 %%'"):
+        trueup.identify(file, exponential_window="2 %%")
     with pytest.raises(trueup.InputError, match="a test is given as int"):
         trueup.identify(3)
 

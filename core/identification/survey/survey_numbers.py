@@ -29,6 +29,8 @@ class SurveyNumbers:
     unreciprocal: float = number(0.3, "of H", "difference of H_ij and H_ji above which scaling is withheld", SURVEYS)
     exchanged: float = number(0.25, "of that difference", "that an exchange of references leaves, for it to be believed", SURVEYS)
     permuted_most: int = number(6, "references", "of which every exchange is tried", "time: 720")
+    window_sure: float = number(3.0, "standard deviations", "below nil, that damping less that of a window is at most", SURVEYS)
+    even: float = number(1e-3, "of the spacing", "by which lines may be unevenly spaced", "single precision of a file")
     coincident: float = number(1e-6, "of the size of the geometry", "nodes this close are one point", ROUNDING)
 
     signs_inputs: int = number(3, "references", "that tell which function of a point has the wrong sign", "two contradict each other")
