@@ -33,7 +33,7 @@ def _root(
 
 
 def _register() -> None:
-    from .options import UPDATE, comparing
+    from .options import DISCOVER, UPDATE, comparing
     from .verbs.comparing import correlate, discover, update
     from .verbs.convert import convert
     from .verbs.demo import demo
@@ -50,7 +50,7 @@ def _register() -> None:
     app.command()(identify)
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE, changes_deck=True))
-    app.command()(comparing(discover, changes_deck=True))
+    app.command()(comparing(discover, DISCOVER, changes_deck=True))
     app.command()(report)
     app.command()(demo)
 

@@ -69,6 +69,13 @@ UPDATE: dict[str, Any] = {
     "max_iterations": _option(int, "Per stage. [default: 10]"),
 }  # fmt: skip
 
+DISCOVER: dict[str, Any] = {
+    "adopt": _option(
+        str, "Which known parameters that moved are written. [default: significant]",
+        metavar="significant|all|none",
+    ),
+}  # fmt: skip
+
 
 def comparing(
     verb: Callable[[Study, Output], None],

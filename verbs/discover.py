@@ -21,7 +21,7 @@ from ..core.discovery.screening.completed_model import (
     SolvedModel,
     borne_out,
     upheld,
-    written_factor,
+    written,
 )
 from ..core.discovery.screening.mode_selection import reference_modes, said_of_others, vibrating
 from ..core.eigen.normal_modes import Eigensolution, modes_of
@@ -120,7 +120,10 @@ def discover(
             len(before.analysis),
         )  # fmt: skip
 
-    found, done = upheld(found, before, completed)
+    found, done = upheld(written(found, "significant"), before, completed)
+    if asked.adopt != "significant":
+        found = written(found, asked.adopt)
+        done = completed(found)
     after = done.after.compared
     final = replace(compared(after), warnings=())
     own = SolvedModel(before, solution, structure.damping)
@@ -222,8 +225,8 @@ def _parameters(
 ) -> Table[ParameterRow]:
     rows = []
     for m in found.parameters:
-        q, factor = model.parameters[m.number], written_factor(found.verdict, m)
-        values = tuple(v * factor for v in q.deck_values)
+        q = model.parameters[m.number]
+        values = tuple(v * m.written for v in q.deck_values)
         told = (m.factor, m.standard_error, False, m.significant)
         rows.append(ParameterRow(specs[m.number].name, q.handle, q.deck_values, values, *told))
     return Table(rows)

@@ -64,11 +64,13 @@ class DiscoverOptions(CorrelateOptions, total=False):
 
     ``parameters`` that may be off besides the usual ones, as on the command line;
     ``frequency_scatter`` and ``shape_scatter``: standard deviations of the test, of a frequency
-    over itself and of a reading over the rms of its shape.
+    over itself and of a reading over the rms of its shape; ``adopt`` ("significant", "all",
+    "none"), which of the known parameters that moved along are written into the deck.
     """
 
     frequency_scatter: float | None
     shape_scatter: float | None
+    adopt: str | None
 
 
 def study_of(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ..core.updating.residuals import Weights
 
 UNITS = ("m", "mm", "in", "ft")
+ADOPT = ("significant", "all", "none")
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ class Study:
     max_iterations: int = 10
     frequency_scatter: float | None = None
     shape_scatter: float | None = None
+    adopt: str = "significant"
     regularisation: float = 1e-2
     stages: tuple[StageRequest, ...] = ()
     out: Path | None = None
@@ -77,6 +79,8 @@ class Study:
                 raise InputError(
                     f"{name} is {value:g}; give the standard deviation as a share, 0 to 1"
                 )
+        if self.adopt not in ADOPT:
+            raise InputError(f"adopt is '{self.adopt}'; give one of {', '.join(ADOPT)}")
         if any(m < 1 for m in self.test_modes):
             raise InputError("test_modes are mode numbers in the test file and count from 1")
         self._require_accepted()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -219,20 +219,31 @@ def _reshaped(searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
 def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:
     """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again.
 
-    A hypothesis whose completed model does not solve (a release larger than what is there) stays
-    as the search left it.
+    Of one whose completed model does not solve (a release larger than what is there) the next best
+    takes the place.
     """
-    levels = list(found.levels)
     done: set[int] = set()
     verdict = judge(searcher, found)
     while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
-        for k in wanted:
-            with suppress(TrueupError):
-                levels[k] = _polished(trial, searcher, levels[k])
+        levels, most = list(found.levels), verdict.accepted
+        for k in sorted(wanted):
+            solved = _first_solved(trial, searcher, (levels[k], *found.rivals[k]))
+            if solved is None and k:
+                most = k - 1
+                break
+            levels[k] = solved or levels[k]
             done.add(k)
-        kept = Found(tuple(levels[: verdict.accepted + 1]), found.rivals[: verdict.accepted + 1])
-        verdict, found = judge(searcher, kept), kept
+        found = Found(tuple(levels[: most + 1]), found.rivals[: most + 1])
+        verdict = judge(searcher, found)
     return _contested(trial, searcher, found, verdict)
+
+
+def _first_solved(trial: _Trial, searcher: Searcher, fits: Sequence[Fit]) -> Fit | None:
+    """Return the first fit that its own completed model bears, fitted on it."""
+    for f in fits:
+        with suppress(TrueupError):
+            return _polished(trial, searcher, f)
+    return None
 
 
 def _contested(

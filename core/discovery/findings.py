@@ -80,12 +80,18 @@ class Alternative(Noun):
 
 @dataclass(frozen=True)
 class MovedParameter:
-    """A known parameter that moved along: its factor, and a standard deviation of the factor."""
+    """A known parameter that moved along: its factor, and a standard deviation of the factor.
+
+    Of a significant one both hold with those at the deck's values that are not; `together` is the
+    factor where all move. `written` is the one that the completed deck takes.
+    """
 
     number: int
     factor: float
     standard_error: float
     significant: bool
+    together: float
+    written: float = 1.0
 
 
 @dataclass(frozen=True)

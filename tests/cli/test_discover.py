@@ -120,3 +120,23 @@ def test_a_spring_to_ground_that_no_rigid_model_has_is_found(tmp_path):
     assert finding["where"]["xyz"] == [750.0, 450.0, 0.0]
     assert finding["magnitude"]["components"] == [3]
     assert finding["magnitude"]["stiffness"] == pytest.approx(15.0, rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("adopt", "moves"), [("significant", False), ("all", True)])
+def test_only_what_the_test_determines_is_written_unless_asked(adopt, moves, tmp_path):
+    result, out = discovered("panel_spring", "panel", tmp_path, "--adopt", adopt)
+    vague = [p for p in result["parameters"] if not p["significant"]]
+    assert vague
+    assert any(p["updated"] != p["initial"] for p in vague) == moves
+    lines = (out / "changes.diff").read_text().splitlines()
+    changed = {line for line in lines if line.startswith("-") and not line.startswith("---")}
+    moved = [p for p in result["parameters"] if p["updated"] != p["initial"]]
+    assert len(changed) == len({c.rsplit(" ", 1)[0] for p in moved for c in p["cards"]})
+
+
+def test_a_word_that_adopt_does_not_know_is_refused(tmp_path, call):
+    folder = CASES / "tower_joint"
+    said = call("discover", folder / "tower.bdf", folder / "tower_test.unv", "--adopt", "some")
+    assert said.status == 2
+    assert "adopt is 'some'; give one of significant, all, none" in said.err

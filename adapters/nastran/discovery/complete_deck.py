@@ -7,7 +7,7 @@ from ....core.correlation.comparison import Placed, compare
 from ....core.correlation.mode_pairing import Criteria
 from ....core.data.parametric_model import Model
 from ....core.discovery.findings import Discovery
-from ....core.discovery.screening.completed_model import SolvedModel, sound_test, written_factor
+from ....core.discovery.screening.completed_model import SolvedModel, sound_test
 from ....core.eigen.normal_modes import modes_of
 from ....core.errors import InputError
 from ..assembly.read_back import read_back
@@ -93,7 +93,7 @@ def _moved(
     text: DeckText, specs: Sequence[ParameterSpec], model: Model, found: Discovery
 ) -> DeckText:
     """Return the deck with the known properties that moved."""
-    factors = [written_factor(found.verdict, m) for m in found.parameters]
+    factors = [m.written for m in found.parameters]
     known = [m.number for m in found.parameters]
     values = moved([specs[k] for k in known], [model.parameters[k] for k in known], factors)
     return set_values(text, {ref: plain(value) for ref, value in values.items()})

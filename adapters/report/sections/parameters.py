@@ -22,6 +22,7 @@ _LOOSE = 0.5
 _STEEP = 15.0
 """Ratio of the largest objective to the smallest from which their scale is logarithmic."""
 _UNSURE = " One above half the factor: the data hardly identify the parameter."
+_NOT_CLEAR = "What the test does not say is off was left as it was, unless --adopt says otherwise. "
 _LEFT = "The deck was left as it was; the factors are those of the best explanation. "
 
 
@@ -39,14 +40,15 @@ def _moved(answer: ChangingTables) -> Table:
     columns = [*left("parameter", "cards"), *numbers, *left("")]
     used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
     note = "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
-    if isinstance(answer, DiscoverTables) and not answer.adopted:
-        note = _LEFT + note
+    if isinstance(answer, DiscoverTables):
+        note = (_NOT_CLEAR if answer.adopted else _LEFT) + note
     cells = [[r[k] for k in used] for r in rows]
     return Table.of("Parameters", [columns[k] for k in used], cells, note)
 
 
 def _row(p: ParameterRow) -> tuple[Cell, ...]:
     cards, error = ", ".join(p.cards), p.standard_error
+    left_alone = "left as it was" if p.significant is not None and p.updated == p.initial else ""
     loose = error is not None and error > _LOOSE * abs(p.factor)
     return (
         Cell(p.name),
@@ -55,7 +57,7 @@ def _row(p: ParameterRow) -> tuple[Cell, ...]:
         Cell(", ".join(general(v, 6) for v in p.updated)),
         Cell(fixed(p.factor, 4)),
         Cell(MISSING if error is None else f"± {fixed(error, 4)}", "poor" if loose else ""),
-        Cell("at bound" if p.at_bound else "", "poor"),
+        Cell("at bound", "poor") if p.at_bound else Cell(left_alone, "muted"),
     )
 
 

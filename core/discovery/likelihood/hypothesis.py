@@ -11,6 +11,7 @@ from ...arrays import Floats, Ints
 from ..effects.candidates import Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
+from .elimination import InDeck
 from .frf_likelihood import Heard
 from .likelihood_numbers import LIKELIHOOD
 from .mode_likelihood import Evidence
@@ -113,9 +114,9 @@ class Fit:
     and, last and no logarithm, the mesh error (see `discretisation_error`); `information`
     (n_unknown, n_unknown) is the Gauss-Newton Hessian of half the objective, prior included, active
     nuisance parameters first; `unseen` is the misfit of what was held out from the fit, `surplus`
-    the number of modes in the measured band that the test does not have, `in_deck` the ln p
-    (n_parameter,) that a deck with these effects needs, where no correction of its mesh helps; all
-    where they were asked for.
+    the number of modes in the measured band that the test does not have, `in_deck` what the known
+    parameters are in a deck with these effects, where no correction of its mesh helps; all where
+    they were asked for.
     """
 
     objective: float
@@ -129,7 +130,7 @@ class Fit:
     active: tuple[int, ...]
     unseen: float | None = None
     surplus: float | None = None
-    in_deck: Floats | None = None
+    in_deck: InDeck | None = None
 
     @property
     def log_p(self) -> Floats:

@@ -10,6 +10,7 @@ from ...arrays import Bools, Floats
 from ...registration.alignment import Alignment
 from ..effects.candidates import Candidates, Suspect
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
+from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.credible_places import Place, between, credible_places
@@ -53,7 +54,7 @@ def build_discovery(
     findings = [_finding(outcome, k, off, alternatives) for k, off in enumerate(own)]
     nodes = request.placed.observation.sensors.node
     accused = accusations(request.placed.observation, tested)
-    moved = _moved(best, spread)
+    moved = _moved(best, verdict.scale)
     null = found.levels[0]
     gained = (zero.objective - null.objective) / verdict.scale
     matters = gained > 2.0 * np.log(len(null.nuisance)) + NARRATIVE.matters
@@ -179,17 +180,15 @@ def _confidence(verdict: Judgement) -> float:
     return verdict.posterior * NARRATIVE.in_catalogue / left
 
 
-def _moved(best: Fit, spread: Floats) -> tuple[MovedParameter, ...]:
+def _moved(best: Fit, scale: float) -> tuple[MovedParameter, ...]:
     """Known parameters as the completed deck takes them."""
-    values = best.log_p if best.in_deck is None else best.in_deck
+    known = best.in_deck or in_deck(best.log_p, best.information, scale)
+    factor = np.exp(np.where(known.clear, known.alone, known.together))
     return tuple(
-        MovedParameter(
-            k,
-            float(np.exp(value)),
-            float(np.exp(value)) * float(spread[best.active.index(k)]),
-            abs(float(value)) > NARRATIVE.significant * float(spread[best.active.index(k)]),
+        MovedParameter(k, float(f), float(f * d), bool(c), float(np.exp(together)))
+        for k, (f, d, c, together) in enumerate(
+            zip(factor, known.deviation, known.clear, known.together, strict=True)
         )
-        for k, value in enumerate(values)
     )
 
 

@@ -13,7 +13,6 @@ class NarrativeNumbers:
     contradicted: float = number(-4.0, "2 ln L", "held-out modes and sensors that lose more by the last effect speak against it", "a likelihood ratio of exp(2)")
     unexplained: float = number(8.0, "of the assumed variance", "that a hypothesis without effects leaves where something is missing")
     matters: float = number(8.0, "2 ln L", "what known parameters must gain besides 2 ln of their number")
-    significant: float = number(3.0, "standard deviations", "by which a known parameter moved, for it to be adopted")
     in_catalogue: float = number(0.91, "-", "share of clear findings that are right", "python -m benchmarks.discovery.calibrate FOLDER")
     left_over: float = number(0.003, "-", "how it falls with the noise scale", "python -m benchmarks.discovery.calibrate FOLDER")
     interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")

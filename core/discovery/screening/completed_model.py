@@ -11,6 +11,7 @@ from ...correlation.comparison import Comparison, Placed
 from ...correlation.mode_pairing import Correlation
 from ...data.dofs import Dofs
 from ...eigen.normal_modes import Eigensolution
+from ...errors import TrueupError
 from ..effects import KINDS
 from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
@@ -44,21 +45,40 @@ C = TypeVar("C", bound=Completed)
 def upheld(
     found: Discovery, before: Comparison, complete: Callable[[Discovery], C]
 ) -> tuple[Discovery, C]:
-    """Complete the model; withdraw the verdict where that brings it no nearer to the test.
+    """Complete the model; withdraw the verdict where it cannot be, or comes no nearer to the test.
 
-    `before` is of the model as it came.
+    `before` is of the model as it came, which solves: what does not then is the finding's fault.
     """
-    done = complete(found)
+    try:
+        done = complete(found)
+    except TrueupError as error:
+        if found.verdict not in ADOPTED:
+            raise
+        found = _undecided(found, f"a deck that solves: completed as found, {error}")
+        return found, complete(found)
     if found.verdict in ADOPTED and no_nearer(before.correlation, done.after.compared.correlation):
         found = withdrawn(found)
         done = complete(found)
     return found, done
 
 
-def written_factor(verdict: str, moved: MovedParameter) -> float:
-    """Return the factor by which the completed model has a known property."""
-    far = abs(moved.factor - 1.0) > SCREENING.moved
-    return moved.factor if verdict in ADOPTED and far else 1.0
+def written(found: Discovery, adopt: str) -> Discovery:
+    """Return what was found with the factors that its completed model takes.
+
+    `adopt` says which known parameters move: the "significant", "all" or "none". A verdict that
+    changes no model moves none.
+    """
+    if found.verdict not in ADOPTED:
+        adopt = "none"
+    return replace(found, parameters=tuple(_written(m, adopt) for m in found.parameters))
+
+
+def _written(m: MovedParameter, adopt: str) -> MovedParameter:
+    if adopt == "all":
+        m = replace(m, factor=m.together)
+    taken = adopt == "all" or (adopt == "significant" and m.significant)
+    far = abs(m.factor - 1.0) > SCREENING.moved
+    return replace(m, written=m.factor if taken and far else 1.0)
 
 
 def borne_out(found: Discovery, agrees: bool) -> Discovery:
@@ -88,6 +108,10 @@ def withdrawn(found: Discovery) -> Discovery:
         "a finer mesh, or one with consistent mass (PARAM,COUPMASS,1): completed as found, the "
         "deck came no nearer to the test than it was"
     )
+    return _undecided(found, why)
+
+
+def _undecided(found: Discovery, why: str) -> Discovery:
     return replace(found, verdict="undecided", would_decide=(why, *found.would_decide))
 
 

@@ -16,12 +16,14 @@ from ...data.parametric_model import Model
 from ...eigen.normal_modes import solve
 from ...numerics.factorisation import factorise
 from ..effects.candidates import Candidates, Suspect
+from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import fit, on_whole_test
 from ..likelihood.mode_likelihood import targets
 from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
 from ..reduction.search_basis import Basis, basis_on, beside, with_answers
+from .model_selection import noise_scale
 from .search_numbers import SEARCH
 
 
@@ -61,8 +63,8 @@ def polished(
     )
 
 
-def _in_deck(own: Problem, found: Fit) -> Floats:
-    """Return ln p of the known parameters for a deck, the effects as found, (n_parameter,).
+def _in_deck(own: Problem, found: Fit) -> InDeck:
+    """Return the known parameters for a deck, the effects as found.
 
     A deck has neither the trend for the error of the mesh nor masses better than its elements':
     moduli, thicknesses and inertias have to absorb both.
@@ -75,7 +77,13 @@ def _in_deck(own: Problem, found: Fit) -> Floats:
     n = len(found.log_p)
     start = np.append(found.log_p, 0.0)
     near = fit(softened(own), start, found.suspects, tuple(range(n)), SEARCH.steps_polished)
-    return fit(own, near.nuisance, found.suspects, tuple(range(n)), SEARCH.steps_polished).log_p
+    all_of_them = fit(own, near.nuisance, found.suspects, tuple(range(n)), SEARCH.steps_polished)
+    scale = noise_scale(own, on_whole_test(own, all_of_them))
+    known = in_deck(all_of_them.log_p, all_of_them.information, scale)
+    clear = tuple(np.flatnonzero(known.clear).tolist())
+    start = np.append(known.alone, 0.0)
+    alone = fit(own, start, found.suspects, clear, SEARCH.steps_polished)
+    return replace(known, alone=alone.log_p)
 
 
 def _own_basis(

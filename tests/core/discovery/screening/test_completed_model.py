@@ -3,7 +3,11 @@
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
-from trueup.core.discovery.screening.completed_model import borne_out
+import pytest
+
+from trueup.core.discovery.findings import MovedParameter
+from trueup.core.discovery.screening.completed_model import borne_out, upheld, written
+from trueup.core.errors import CheckError
 
 
 @dataclass(frozen=True)
@@ -11,6 +15,7 @@ class Said:
     verdict: str
     findings: tuple = ()
     would_decide: tuple = field(default=("a sensor",))
+    parameters: tuple = ()
 
 
 def finding(side, kind):
@@ -21,7 +26,7 @@ MASS = Said("effect", (finding("model", "point_mass"),))
 
 
 def test_nothing_is_missing_where_every_mode_agrees_with_the_deck():
-    assert borne_out(MASS, agrees=True) == Said("no_gap", (), ())
+    assert borne_out(MASS, agrees=True) == Said("no_gap", (), (), ())
     assert borne_out(MASS, agrees=False) is MASS
 
 
@@ -29,3 +34,40 @@ def test_what_modes_do_not_show_stays():
     for side, kind in (("test", "sensor_gain"), ("model", "local_damper")):
         said = Said("effect", (finding(side, kind),))
         assert borne_out(said, agrees=True) is said
+
+
+def test_a_completed_deck_that_does_not_solve_is_the_findings_fault():
+    def complete(found):
+        if found.verdict == "effect":
+            raise CheckError("the model is a mechanism")
+        return "the deck as it is"
+
+    found, done = upheld(MASS, None, complete)
+    assert done == "the deck as it is"
+    assert found.verdict == "undecided"
+    assert found.findings == MASS.findings
+    assert "completed as found, the model is a mechanism" in found.would_decide[0]
+
+
+def test_a_deck_that_never_solved_is_not():
+    def complete(_):
+        raise CheckError("the model is a mechanism")
+
+    with pytest.raises(CheckError, match="mechanism"):
+        upheld(Said("no_gap"), None, complete)
+
+
+CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)
+VAGUE = MovedParameter(1, 1.3, 0.4, False, 1.3)
+TINY = MovedParameter(2, 1.001, 0.0001, True, 1.001)
+
+
+@pytest.mark.parametrize(
+    ("adopt", "factors"),
+    [("significant", [1.5, 1.0, 1.0]), ("all", [1.4, 1.3, 1.0]), ("none", [1.0, 1.0, 1.0])],
+)
+def test_what_is_written_of_the_known_parameters(adopt, factors):
+    said = Said("parameters_only", parameters=(CLEAR, VAGUE, TINY))
+    assert [m.written for m in written(said, adopt).parameters] == factors
+    undecided = Said("undecided", parameters=(CLEAR, VAGUE, TINY))
+    assert [m.written for m in written(undecided, adopt).parameters] == [1.0] * 3
