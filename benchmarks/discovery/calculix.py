@@ -18,10 +18,11 @@ from pathlib import Path
 import numpy as np
 
 from .mesh import Floats, Ints, Mesh, Structure
-from .truth import Truth
+from .truth import Preload, Truth
 
 DISC = 1.0
 """Length of the disc that stands for a rotational spring [mm]."""
+WANTED = "*NODE FILE, OUTPUT=2D, NSET=NALL\nU\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,22 +42,40 @@ def _rows(ids: Ints) -> str:
     return "".join(", ".join(text[k : k + 12]) + ",\n" for k in range(0, len(text), 12))
 
 
-def _element_keys(s: Structure, m: Mesh, t: Truth) -> dict[tuple[bool, int, float, float], Ints]:
-    """Elements by (is shell, group, modulus factor, added mass per area)."""
+Key = tuple[bool, int, float, float, float, float, float]
+
+
+def _element_keys(s: Structure, m: Mesh, t: Truth) -> dict[Key, Ints]:
+    """Elements by (shell?, group, modulus, thickness, density factor, mass per area, offset)."""
     nq, nb = m.quads.shape[0], m.bars.shape[0]
-    young = np.full(nq + nb, t.modulus)
-    young[nq:] *= np.array([t.factors.get(int(g), 1.0) for g in m.bar_group])
-    extra = np.zeros(nq + nb)
+    group = np.concatenate([m.quad_group, m.bar_group])
+    young, thick, dense = np.full(nq + nb, t.modulus), np.ones(nq + nb), np.ones(nq + nb)
+    own = np.array([t.factors.get(int(g), 1.0) for g in group])
+    young[nq:] *= own[nq:]
+    extra, aside = np.zeros(nq + nb), np.zeros(nq + nb)
     for p in t.patches:
         touched = np.concatenate([p.quads, nq + p.bars])
         young[touched] *= p.modulus
         extra[p.quads] += p.mass_per_area
-    group = np.concatenate([m.quad_group, m.bar_group])
-    keys: dict[tuple[bool, int, float, float], list[int]] = {}
+    for f in t.fields:
+        young *= _stepped(f.modulus)
+        thick *= _stepped(f.thickness)
+        dense *= _stepped(f.density)
+    thick[:nq] *= own[:nq]
+    thick[nq:] = 1.0
+    aside[nq:] = [t.eccentric.get(int(k), 0.0) for k in m.bar_line]
+    keys: dict[Key, list[int]] = {}
+    table = np.round(np.stack([young, thick, dense]), 9)
     for e in range(nq + nb):
-        key = (e < nq, int(group[e]), round(float(young[e]), 9), float(extra[e]))
+        factors = (float(table[0, e]), float(table[1, e]), float(table[2, e]))
+        key = (e < nq, int(group[e]), *factors, float(extra[e]), float(aside[e]))
         keys.setdefault(key, []).append(e)
     return {k: np.array(v) for k, v in keys.items()}
+
+
+def _stepped(factor: Floats | float) -> Floats:
+    """Return factors in steps of a four-hundredth, so that many elements share a section."""
+    return np.asarray(np.round(400.0 * np.asarray(factor)) / 400.0)
 
 
 def _discs(s: Structure, m: Mesh, t: Truth) -> tuple[Floats, Ints, list[tuple[int, int, int, int]]]:
@@ -100,14 +119,18 @@ def _input(s: Structure, m: Mesh, t: Truth, modes: int) -> str:
         out += [f"{nq + e + 1}, {b[0] + 1}, {b[2] + 1}, {b[1] + 1}\n" for e, b in enumerate(bars)]
     mat = s.material
     pieces = 0
-    for k, ((shell, group, young, extra), elements) in enumerate(_element_keys(s, m, t).items()):
-        h = s.shells[group] * t.factors.get(group, 1.0) if shell else 0.0
-        rho = mat.density + (extra / h if shell else 0.0)
+    swelling = dict(t.preload.strains) if t.preload else {}
+    for k, (key, elements) in enumerate(_element_keys(s, m, t).items()):
+        shell, group, young, thick, dense, extra, aside = key
+        h = s.shells[group] * thick if shell else 0.0
+        rho = mat.density * dense + (extra / h if shell else 0.0)
         out.append(
             f"*MATERIAL, NAME=M{k}\n*ELASTIC\n"
             f"{mat.young * young:.9g}, {mat.poisson if shell else 0.0}\n"
         )
         out.append(f"*DENSITY\n{rho:.9g}\n")
+        if swelling:
+            out.append(f"*EXPANSION\n{swelling.get(group, 0.0):.9g}\n")
         if shell:
             out.append(f"*ELSET, ELSET=E{k}\n{_rows(elements + 1)}")
             out.append(f"*SHELL SECTION, ELSET=E{k}, MATERIAL=M{k}\n{h:.9g}\n")
@@ -117,17 +140,47 @@ def _input(s: Structure, m: Mesh, t: Truth, modes: int) -> str:
             name = f"E{k}P{pieces}"
             pieces += 1
             out.append(f"*ELSET, ELSET={name}\n{_rows(same + 1)}")
-            out.append(_section(s, group, name, f"M{k}", plane))
+            out.append(_section(s, group, name, f"M{k}", plane, aside))
     out += _attachments(s, m, t, xyz, discs, nq + nb)
-    out.append(f"*STEP\n*FREQUENCY\n{modes}\n*NODE FILE, OUTPUT=2D, NSET=NALL\nU\n*END STEP\n")
+    out.append(_preloaded(m, t.preload, nq + nb) if t.preload else "*STEP\n")
+    out.append(f"*FREQUENCY\n{modes}\n{WANTED}*END STEP\n")
     return "".join(out)
 
 
-def _section(s: Structure, group: int, elset: str, material: str, plane: Floats) -> str:
+def _preloaded(m: Mesh, load: Preload, elements: int) -> str:
+    """Return the static step and the head of the next; a free structure is held at three nodes."""
+    out = "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n*STEP\n*STATIC\n"
+    if not m.clamped.size:
+        c = m.corners
+        a = int(c[np.argmin(m.xyz[c].sum(axis=1))])
+        b = int(c[np.argmax(np.linalg.norm(m.xyz[c] - m.xyz[a], axis=1))])
+        line = m.xyz[b] - m.xyz[a]
+        away = np.linalg.norm(np.cross(m.xyz[c] - m.xyz[a], line), axis=1)
+        d = int(c[np.argmax(away)])
+        along = int(np.argmax(np.abs(line)))
+        normal = int(np.argmax(np.abs(np.cross(line, m.xyz[d] - m.xyz[a]))))
+        out += f"*BOUNDARY\n{a + 1}, 1, 3\n"
+        out += "".join(f"{b + 1}, {k + 1}, {k + 1}\n" for k in range(3) if k != along)
+        out += f"{d + 1}, {normal + 1}, {normal + 1}\n"
+    if load.strains:
+        out += "*TEMPERATURE\nNALL, 1.\n"
+    size = float(np.linalg.norm(load.acceleration))
+    if size:
+        unit = ", ".join(f"{v / size:.9g}" for v in load.acceleration)
+        out = out.replace("*INITIAL", f"*ELSET, ELSET=EALL, GENERATE\n1, {elements}\n*INITIAL", 1)
+        out += f"*DLOAD\nEALL, GRAV, {size:.9g}, {unit}\n"
+    released = "" if m.clamped.size else "*BOUNDARY, OP=NEW\n"
+    return out + f"{WANTED}*END STEP\n*STEP, PERTURBATION\n{released}"
+
+
+def _section(
+    s: Structure, group: int, elset: str, material: str, plane: Floats, aside: float = 0.0
+) -> str:
     bar = s.bars[group]
     direction = ", ".join(f"{c:.9g}" for c in plane)
+    offset = f", OFFSET1={aside:.6g}" if aside else ""
     return (
-        f"*BEAM SECTION, ELSET={elset}, MATERIAL={material}, SECTION=RECT\n"
+        f"*BEAM SECTION, ELSET={elset}, MATERIAL={material}, SECTION=RECT{offset}\n"
         f"{bar.height:.9g}, {bar.width:.9g}\n{direction}\n"
     )
 
@@ -185,6 +238,7 @@ def _attachments(
         )
         held += [f"{n}, {c}, {c}\n" for c in (1, 2, 3) if c != a.component]
         e += 2
+    out += _links_and_stands(s, t, xyz, e, n)
     freed = set(t.freed)
     for i in m.clamped:
         if int(i) in grounded:
@@ -194,6 +248,33 @@ def _attachments(
         out.append("*EQUATION\n" + "".join(equations))
     if held:
         out.append("*BOUNDARY\n" + "".join(held))
+    return out
+
+
+def _links_and_stands(s: Structure, t: Truth, xyz: Floats, e: int, n: int) -> list[str]:
+    """Return springs between nodes and equipment on stands; elements from e + 1, nodes from n + 1.
+
+    A stand is of bars without mass that are stiff beside everything else.
+    """
+    out: list[str] = []
+    for k, (a, b, stiffness) in enumerate(t.links):
+        e += 1
+        out.append(f"*ELEMENT, TYPE=SPRINGA, ELSET=LINK{k}\n{e}, {a + 1}, {b + 1}\n")
+        out.append(f"*SPRING, ELSET=LINK{k}\n\n{stiffness:.9e}\n")
+    for k, stand in enumerate(t.stands):
+        middle = xyz[stand.node] + np.array(stand.offset)
+        ends = [middle, middle + np.array(stand.arm), middle - np.array(stand.arm)]
+        out.append("*NODE, NSET=STANDS\n")
+        out += [f"{n + i}, {p[0]:.8f}, {p[1]:.8f}, {p[2]:.8f}\n" for i, p in enumerate(ends, 1)]
+        out.append(f"*ELEMENT, TYPE=B31, ELSET=STAND{k}\n")
+        pairs = ((stand.node + 1, n + 1), (n + 1, n + 2), (n + 1, n + 3))
+        out += [f"{e + i}, {p}, {q}\n" for i, (p, q) in enumerate(pairs, 1)]
+        out.append(f"*MATERIAL, NAME=STAND{k}\n*ELASTIC\n{50.0 * s.material.young:.9g}, 0.\n")
+        out.append(f"*DENSITY\n1.e-15\n*BEAM SECTION, ELSET=STAND{k}, MATERIAL=STAND{k}, ")
+        out.append("SECTION=RECT\n12., 12.\n0.361, 0.527, 0.769\n")
+        out.append(f"*ELEMENT, TYPE=MASS, ELSET=STANDM{k}\n{e + 4}, {n + 2}\n{e + 5}, {n + 3}\n")
+        out.append(f"*MASS, ELSET=STANDM{k}\n{stand.mass / 2.0:.9g}\n")
+        n, e = n + 3, e + 5
     return out
 
 
@@ -226,9 +307,9 @@ def solve(s: Structure, m: Mesh, t: Truth, cache: Path, modes: int) -> Modes:
         if "Job finished" not in done.stdout or not frd.exists():
             raise CalculixError(done.stdout[-1500:])
         hz, shapes = read_frd(frd, m.xyz.shape[0])
-    elastic = hz > 0.02 * hz[6]
+    elastic = np.arange(hz.size) > 5 if t.suspended else hz > 0.02 * hz[6]
     hz, shapes = hz[elastic][:modes], shapes[:, :, elastic][:, :, :modes]
-    if hz.size < modes or not np.all(np.isfinite(shapes)):
+    if hz.size < modes or not np.all(np.isfinite(shapes[m.used])):
         raise CalculixError(f"{hz.size} whole elastic modes of {modes}")
     np.savez_compressed(store, hz=hz, shapes=shapes)
     return Modes(hz, shapes)
@@ -240,11 +321,11 @@ def read_frd(path: Path, n_node: int) -> tuple[Floats, Floats]:
     shapes: list[Floats] = []
     lines = iter(path.read_text().splitlines())
     current: Floats | None = None
-    hz = 0.0
+    hz, modal = 0.0, False
     for line in lines:
         if line.startswith("  100CL"):
-            hz = float(line[12:24])
-        elif line.startswith(" -4  DISP"):
+            modal, hz = "MODAL" in line, float(line[12:24])
+        elif line.startswith(" -4  DISP") and modal:
             values.append(hz)
             current = np.full((n_node, 3), np.nan)
         elif line.startswith(" -3") and current is not None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .calculix import Modes
 from .mesh import Floats, Ints, Mesh, Structure
-from .truth import Absorber, Patchwork, Soft, Truth
+from .truth import Absorber, Patchwork, Soft, Stand, Truth
 
 Entry = dict[str, Any]
 
@@ -73,10 +73,58 @@ def _component(scene: Scene, node: int) -> int:
 
 
 def point_mass(scene: Scene) -> tuple[Truth, Entry]:
-    """Hide 2 to 7 % of the structure's mass at one node."""
-    node = _node(scene)
-    mass = scene.mass * float(scene.rng.uniform(0.02, 0.07))
-    return Truth(masses=((node, mass),)), {"kind": "point_mass", **_xyz(scene, node), "mass": mass}
+    """Hide 2 to 7 % of the structure's mass at one node; a quarter of them stand off and turn."""
+    node, rng = _node(scene), scene.rng
+    mass = scene.mass * float(rng.uniform(0.02, 0.07))
+    entry = {"kind": "point_mass", **_xyz(scene, node), "mass": mass}
+    if rng.random() > 0.25:
+        return Truth(masses=((node, mass),)), entry
+    out = scene.directions()[node]
+    side = np.cross(out, rng.standard_normal(3))
+    offset = out * scene.structure.size * float(rng.uniform(0.02, 0.09))
+    arm = side / np.linalg.norm(side) * scene.structure.size * float(rng.uniform(0.01, 0.05))
+    entry |= {"offset": offset.tolist(), "arm": arm.tolist()}
+    return Truth(stands=(Stand(node, tuple(offset), tuple(arm), mass),)), entry
+
+
+def twins(scene: Scene) -> list[tuple[Truth, Entry]]:
+    """Hide two like masses at places that mirror each other across the longer or shorter axis."""
+    m, rng = scene.mesh, scene.rng
+    low, high = m.xyz.min(axis=0), m.xyz.max(axis=0)
+    axis = int(rng.choice(np.argsort(-(high - low))[:2]))
+    mass = scene.mass * float(rng.uniform(0.015, 0.06))
+    for _ in range(200):
+        node = _node(scene)
+        place = m.xyz[node].copy()
+        place[axis] = low[axis] + high[axis] - place[axis]
+        twin = int(np.argmin(np.linalg.norm(m.xyz - place, axis=1)))
+        if np.linalg.norm(m.xyz[twin] - m.xyz[node]) > 0.25 * scene.structure.size and not np.isin(
+            twin, m.clamped
+        ):
+            break
+    return [
+        (Truth(masses=((n, mass),)), {"kind": "point_mass", **_xyz(scene, n), "mass": mass})
+        for n in (node, twin)
+    ]
+
+
+def link_spring(scene: Scene) -> tuple[Truth, Entry]:
+    """Join two places by a spring along the line between them."""
+    m, s, rng = scene.mesh, scene.structure, scene.rng
+    nodes = np.intersect1d(m.corners, scene.lively())
+    for _ in range(500):
+        a, b = (int(n) for n in rng.choice(nodes, 2, replace=False))
+        if 0.15 * s.size < np.linalg.norm(m.xyz[a] - m.xyz[b]) < 0.6 * s.size:
+            break
+    k = scene.mass * (2.0 * np.pi * scene.modes.hz[2]) ** 2 * float(rng.uniform(0.1, 1.0))
+    ends = [m.xyz[a].tolist(), m.xyz[b].tolist()]
+    entry = {
+        "kind": "link_spring",
+        "truth_node_xyz": (0.5 * (m.xyz[a] + m.xyz[b])).tolist(),
+        "ends_xyz": ends,
+        "stiffness": k,
+    }
+    return Truth(links=((a, b, k),)), entry
 
 
 def _patch(scene: Scene) -> tuple[Ints, Entry]:
@@ -252,11 +300,12 @@ KINDS: dict[str, Callable[[Scene], tuple[Truth, Entry]]] = {
         joint_flexibility,
         tuned_absorber,
         local_damper,
+        link_spring,
     )
 }
 
 
-SELDOM, RARE = ("tuned_absorber", "local_damper"), 0.4
+SELDOM, RARE = ("tuned_absorber", "local_damper", "link_spring"), 0.4
 """Kinds that are hidden less often than the others, and how often beside them."""
 
 
@@ -265,6 +314,7 @@ def possible(s: Structure) -> list[str]:
     never = set()
     if s.clamped is None:
         never.add("support_flexibility")
+    never |= {"link_spring"} if s.name in ("panel", "plate", "wheel") else set()
     never |= {"distributed_mass"} if s.lines and not s.patches else {"joint_flexibility"}
     return [k for k in KINDS if k not in never]
 
@@ -283,13 +333,15 @@ def scatter(scene: Scene) -> dict[int, float]:
 
 def joined(truths: list[Truth], factors: dict[int, float]) -> Truth:
     """Return all changes together."""
+
+    def every(name: str) -> Any:
+        return tuple(p for t in truths for p in getattr(t, name))
+
+    lists = ("patches", "masses", "springs", "absorbers", "soft", "dampers", "freed")
     return Truth(
         factors=factors,
-        patches=tuple(p for t in truths for p in t.patches),
-        masses=tuple(p for t in truths for p in t.masses),
-        springs=tuple(p for t in truths for p in t.springs),
-        absorbers=tuple(p for t in truths for p in t.absorbers),
-        soft=tuple(p for t in truths for p in t.soft),
-        dampers=tuple(p for t in truths for p in t.dampers),
-        freed=tuple(p for t in truths for p in t.freed),
+        eccentric={k: v for t in truths for k, v in t.eccentric.items()},
+        preload=next((t.preload for t in truths if t.preload), None),
+        suspended=any(t.suspended for t in truths),
+        **{name: every(name) for name in (*lists, "fields", "stands", "links")},
     )

@@ -128,6 +128,11 @@ class Mesh:
         ends = self.bars[:, :2] if self.bars.size else self.bars
         return np.asarray(np.unique(np.concatenate([self.quads[:, :4].ravel(), ends.ravel()])))
 
+    @property
+    def used(self) -> Ints:
+        """Nodes of any element, ascending."""
+        return np.asarray(np.unique(np.concatenate([self.quads.ravel(), self.bars.ravel()])))
+
     def normals(self) -> Floats:
         """Mean unit normal at every node (zero where no shell is)."""
         p = self.xyz[self.quads[:, :4]]

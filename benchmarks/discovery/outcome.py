@@ -1,13 +1,13 @@
-"""What became of one case, and where it is kept: ``result.json`` and ``run.json`` beside it."""
+"""What became of one case, and where it is kept: beside it, and as a line of a record."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from .score import Score, score
+from .score import Named, Score, score
 
 Json = dict[str, Any]
 
@@ -16,7 +16,8 @@ Json = dict[str, Any]
 class Outcome:
     """A case and what became of it; `score` is missing where something failed (`note`).
 
-    `seconds` are of one core, `gap` the mean deviations [%] before and after.
+    `seconds` are of one core, `gap` the mean deviations [%] before and after; `cause` is what is
+    hidden from outside the list, `shift` the largest change of a frequency by all hidden [%].
     """
 
     name: str
@@ -27,6 +28,22 @@ class Outcome:
     note: str
     gap: tuple[float | None, float | None] = (None, None)
     dofs: int = 0
+    cause: str = ""
+    shift: float = 0.0
+
+    def to_line(self) -> str:
+        """Return the outcome as a line of JSON."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_line(cls, line: str) -> Outcome:
+        """Return the outcome that a line of JSON tells."""
+        told = json.loads(line)
+        if told["score"] is not None:
+            named = tuple(Named(**n) for n in told["score"].pop("named"))
+            false = tuple((str(k), float(p)) for k, p in told["score"].pop("false_alarms"))
+            told["score"] = Score(named=named, false_alarms=false, **told["score"])
+        return cls(**{**told, "gap": tuple(told["gap"])})
 
 
 def keep(place: Path, seconds: float, note: str, result: Json | None) -> None:
@@ -41,13 +58,15 @@ def read(place: Path) -> Outcome:
         json.loads((place / f"{name}.json").read_text()) for name in ("truth", "run", "result")
     )
     told = truth["case"], truth["structure"], truth["scenario"], run["seconds"]
+    cause = next((str(c["kind"]) for c in truth.get("outside", ())), "")
+    shift = float((truth.get("visibility") or {}).get("largest_shift_percent", 0.0))
     if result is None:
-        return Outcome(*told, None, run["note"])
+        return Outcome(*told, None, run["note"], cause=cause, shift=shift)
     gap = result.get("gap") or {}
     before, after = (
         (gap.get(k) or {}).get("mean_abs_deviation_percent") for k in ("before", "after")
     )
-    return Outcome(*told, score(truth, result), "", (before, after), _dofs(place))
+    return Outcome(*told, score(truth, result), "", (before, after), _dofs(place), cause, shift)
 
 
 def _dofs(place: Path) -> int:

@@ -1,4 +1,8 @@
-"""``python -m benchmarks.discovery``: generate cases, run `trueup discover` on them, tabulate."""
+"""``python -m benchmarks.discovery``: generate cases, run `trueup discover` on them, tabulate.
+
+The run that is published, on cases that nobody has looked at, begun again where it was left:
+``python -m benchmarks.discovery --first 7000 --cases 300 --cache FOLDER --record frozen.jsonl``.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +28,8 @@ def attempt(seed: int, folder: Path, cache: Path, timeout: float, noise: Noise) 
     p = plan(seed)
     try:
         place = make(p, folder, cache, noise)
-    except (CalculixError, subprocess.TimeoutExpired) as problem:
-        note = f"CalculiX: {problem}"[-300:]
+    except (CalculixError, subprocess.TimeoutExpired, ValueError) as problem:
+        note = f"no case: {problem}"[-300:]
         return Outcome(p.name, p.structure, p.scenario, 0.0, None, note)
     if not (place / "run.json").exists():
         search(place, timeout)
@@ -79,9 +83,15 @@ def main() -> int:
     a.add_argument("--timeout", type=float, default=300.0)
     a.add_argument("--noise", type=float, default=1.0, help="times the usual scatter of the test")
     a.add_argument("--cache", type=Path, help="where cases and answers stay (default: temporary)")
+    a.add_argument(
+        "--record", type=Path, help="lines of JSON, one a case; those are kept"
+    )
     o = a.parse_args()
-    seeds = o.seeds or range(o.first, o.first + (20 if o.quick else o.cases))
-    outcomes: list[Outcome] = []
+    record = o.record.read_text().splitlines() if o.record and o.record.exists() else []
+    outcomes = [Outcome.from_line(told) for told in record]
+    known = {outcome.name for outcome in outcomes}
+    wanted = o.seeds or range(o.first, o.first + (20 if o.quick else o.cases))
+    seeds = [s for s in wanted if plan(s).name not in known]
     noise = Noise().times(o.noise)
     with tempfile.TemporaryDirectory() as temporary:
         root = o.cache or Path(temporary)
@@ -93,5 +103,8 @@ def main() -> int:
             for job in as_completed(jobs):
                 outcomes.append(job.result())
                 say(line(outcomes[-1]))
+                if o.record:
+                    with o.record.open("a") as file:
+                        file.write(outcomes[-1].to_line() + "\n")
     report(outcomes)
     return 0

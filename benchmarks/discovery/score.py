@@ -29,7 +29,10 @@ class Named:
 
 @dataclass(frozen=True)
 class Score:
-    """What one case came to; `false_alarms` are kinds named that are not there."""
+    """What one case came to; `false_alarms` are kinds named that are not there.
+
+    Where the cause is outside the list, what an undecided answer considers is none.
+    """
 
     expected: str
     verdict: str
@@ -38,9 +41,19 @@ class Score:
     named: tuple[Named, ...]
     false_alarms: tuple[tuple[str, float], ...]
 
+    @property
+    def claims(self) -> bool:
+        """Return whether something is claimed that is not there: false, and not said in doubt."""
+        return bool(self.false_alarms) and self.verdict in ("effect", "test_fault")
+
 
 def expected_verdicts(truth: Json) -> tuple[str, ...]:
-    """Return the verdicts that are right; a coarse mesh alone may ask for parameters."""
+    """Return the verdicts that are right; a coarse mesh alone may ask for parameters.
+
+    Where the cause is outside the list of effects, the truth says what is honest.
+    """
+    if "expected" in truth:
+        return tuple(truth["expected"])
     if truth["effects"]:
         return ("effect",)
     if truth["faults"]:
@@ -84,8 +97,6 @@ def _credible(effect: Json, finding: Json, size: float) -> bool:
 
 
 def _effect(effect: Json, finding: Json, size: float) -> Named:
-    from trueup.core.discovery.effects import KINDS
-
     kind = effect["kind"]
     gap = _gap(effect, finding)
     placed = gap is not None and gap <= PLACE * size
@@ -100,7 +111,7 @@ def _effect(effect: Json, finding: Json, size: float) -> Named:
     inside = None
     if right and key and isinstance(interval, (list, tuple)) and len(interval) == 2:
         inside = bool(interval[0] <= effect[key] <= interval[1])
-    tolerance = 1.3 if KINDS[kind].magnitudes[0].is_mass else 2.0
+    tolerance = 1.3 if key == "mass" else 2.0
     sized = ratio is not None and 1.0 / tolerance <= ratio <= tolerance
     return Named(
         kind,
@@ -113,6 +124,12 @@ def _effect(effect: Json, finding: Json, size: float) -> Named:
         finding.get("confidence"),
         right and placed and sized,
     )
+
+
+def _shared(may: Json, finding: Json, size: float) -> bool:
+    """Return whether a finding is what the cause and an effect of the list have in common."""
+    gap = _gap(may, finding)
+    return bool(finding.get("kind") == may["kind"] and gap is not None and gap <= PLACE * size)
 
 
 def _fault(fault: Json, findings: list[Json]) -> tuple[Named, Json | None]:
@@ -169,8 +186,12 @@ def score(truth: Json, result: Json) -> Score:
         named.append(hit)
         if finding is not None:
             test.remove(finding)
-    false = [(str(f.get("kind")), float(f.get("confidence") or 0.0)) for f in (*model, *test)]
     verdict = str(result.get("verdict"))
+    if "expected" in truth:
+        shared = [f for f in model if any(_shared(m, f, size) for m in truth.get("may", ()))]
+        expected += ("effect",) * bool(shared)
+        model = [] if verdict == "undecided" else [f for f in model if f not in shared]
+    false = [(str(f.get("kind")), float(f.get("confidence") or 0.0)) for f in (*model, *test)]
     solved = verdict in expected and all(n.solved for n in named) and not false
     safe = solved or (verdict == "undecided" and held)
     return Score("/".join(expected), verdict, solved, safe, tuple(named), tuple(false))

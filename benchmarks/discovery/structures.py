@@ -274,6 +274,83 @@ def plate(rng: np.random.Generator) -> Structure:
     )
 
 
+def wing(rng: np.random.Generator) -> Structure:
+    """Tapered and swept wing: skins with a stringer each, spars, ribs; clamped at the root."""
+    span, height = 800.0, float(rng.choice([50.0, 60.0]))
+    n, m = 16, 6
+
+    def corner(y: Floats, c: Floats, up: Floats) -> Floats:
+        chord = 260.0 - 120.0 * y
+        z = (up - 0.5) * height * (1.0 - 0.5 * y)
+        return np.stack([160.0 * y + chord * c, span * y, z], axis=-1)
+
+    def skin(up: float) -> Callable[[Floats, Floats], Floats]:
+        return lambda u, v: corner(u, v, np.full_like(u, up))
+
+    def spar(c: float) -> Callable[[Floats, Floats], Floats]:
+        return lambda u, v: corner(u, np.full_like(u, c), v)
+
+    def rib(y: float) -> Callable[[Floats, Floats], Floats]:
+        return lambda u, v: corner(np.full_like(u, y), u, v)
+
+    def stringer(up: float) -> Callable[[Floats], Floats]:
+        return lambda t: corner(t, np.full_like(t, 0.5), np.full_like(t, up))
+
+    return Structure(
+        "wing",
+        "SWEPT WING",
+        span,
+        ALUMINIUM,
+        {1: 1.5, 2: 1.5, 3: 2.5, 4: 1.5},
+        {11: Bar(8.0, 8.0)},
+        (
+            *(Patch(k + 1, skin(up), n, m) for k, up in enumerate((0.0, 1.0))),
+            *(Patch(3, spar(c), n, 1) for c in (0.0, 1.0)),
+            *(Patch(4, rib(y), m, 1) for y in (0.25, 0.5, 0.75, 1.0)),
+        ),
+        tuple(Line(11, stringer(up), n, (0, 0, 1)) for up in (0.0, 1.0)),
+        12,
+        clamped=lambda p: p[:, 1] < 1e-6,
+        axes="xz",
+        sensors=(28, 44),
+        turned=True,
+        wording={1: "lower", 2: "upper", 3: "spar", 4: "rib", 11: "stringer"},
+    )
+
+
+def cowl(rng: np.random.Generator) -> Structure:
+    """Free part of a cylinder with two edge frames and a stringer."""
+    r, length, arc = 400.0, 500.0, float(rng.choice([1.6, 2.2]))
+    nt, nz = 18, 12
+
+    def point(u: Floats, v: Floats) -> Floats:
+        a = arc * (u - 0.5)
+        return np.stack([r * np.cos(a), r * np.sin(a), length * v], axis=-1)
+
+    def along(v: float) -> Callable[[Floats], Floats]:
+        return lambda t: point(t, np.full_like(t, v))
+
+    return Structure(
+        "cowl",
+        "ENGINE COWL",
+        2.0 * r * float(np.sin(0.5 * arc)),
+        ALUMINIUM,
+        {1: 2.0, 2: 2.5},
+        {11: Bar(10.0, 8.0), 12: Bar(10.0, 10.0)},
+        (
+            Patch(1, lambda u, v: point(u, 0.5 * v), nt, nz // 2),
+            Patch(2, lambda u, v: point(u, 0.5 + 0.5 * v), nt, nz // 2),
+        ),
+        (
+            *(Line(11, along(v), nt, (0, 0, 1)) for v in (0.0, 1.0)),
+            Line(12, lambda t: point(np.full_like(t, 1.0 / 3.0), t), nz, (1, 0, 0)),
+        ),
+        14,
+        sensors=(34, 48),
+        wording={1: "t1", 2: "t2", 11: "edge", 12: "stringer"},
+    )
+
+
 STRUCTURES: dict[str, Callable[[np.random.Generator], Structure]] = {
     "panel": panel,
     "wheel": wheel,
@@ -283,4 +360,6 @@ STRUCTURES: dict[str, Callable[[np.random.Generator], Structure]] = {
     "box": box,
     "bracket": bracket,
     "plate": plate,
+    "wing": wing,
+    "cowl": cowl,
 }

@@ -112,6 +112,30 @@ def _absorber(m):
     return Truth(absorbers=(Absorber(at(m, TOP), 1, 0.0006, k),))
 
 
+def _equipment(m):
+    from benchmarks.discovery.truth import Stand, Truth
+
+    return Truth(stands=(Stand(at(m, TOP), (0.0, 30.0, 50.0), (25.0, 0.0, 15.0), 0.001),))
+
+
+def _inertia(m):
+    """Half of 0.001 t at either end of the arm (25, 0, 15): m (a² I − a aᵀ), about its middle."""
+    return f"CONM2,9001,{_grid(m, TOP)},,0.001,0.,30.,50.,,+\n+,0.225,0.,0.85,-0.375,0.,0.625\n"
+
+
+def _link(m):
+    from benchmarks.discovery.truth import Truth
+
+    return Truth(links=((at(m, TOP), at(m, (0.0, 0.0, 400.0)), 150.0),))
+
+
+def _rod(m):
+    """A rod without mass of E = 1 N/mm² between the two places: k = E A / L."""
+    area = 150.0 * float(np.linalg.norm(np.array(TOP) - (0.0, 0.0, 400.0)))
+    ends = _grid(m, TOP), _grid(m, (0.0, 0.0, 400.0))
+    return f"CROD,9001,9001,{ends[0]},{ends[1]}\nPROD,9001,9001,{area:.2f}\nMAT1,9001,1.,,0.3,0.\n"
+
+
 def _moved(m):
     """Line 4 starts at (0, 0, 400): its first bar gets a grid of its own there."""
     bar = int(np.flatnonzero(m.bar_line == 4)[0])
@@ -150,6 +174,8 @@ def _grid(m, xyz) -> int:
 
 FRAME = {
     "point_mass": (_mass, lambda m: f"CONM2,9001,{_grid(m, TOP)},,0.001\n", None),
+    "equipment": (_equipment, _inertia, None),
+    "link_spring": (_link, _rod, None),
     "ground_spring": (_spring, lambda m: f"CELAS2,9001,60.,{_grid(m, TOP)},1\n", None),
     "tuned_absorber": (
         _absorber,
