@@ -83,9 +83,7 @@ def main() -> int:
     a.add_argument("--timeout", type=float, default=300.0)
     a.add_argument("--noise", type=float, default=1.0, help="times the usual scatter of the test")
     a.add_argument("--cache", type=Path, help="where cases and answers stay (default: temporary)")
-    a.add_argument(
-        "--record", type=Path, help="lines of JSON, one a case; those are kept"
-    )
+    a.add_argument("--record", type=Path, help="lines of JSON, one a case; those are kept")
     o = a.parse_args()
     record = o.record.read_text().splitlines() if o.record and o.record.exists() else []
     outcomes = [Outcome.from_line(told) for told in record]
