@@ -23,6 +23,37 @@ InPlaceOption = Annotated[
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
 
+FminOption = Annotated[
+    float | None, typer.Option("--fmin", help="Identify modes in lines from here [Hz].")
+]
+FmaxOption = Annotated[
+    float | None, typer.Option("--fmax", help="Identify modes in lines up to here [Hz].")
+]
+BandsOption = Annotated[
+    list[str] | None,
+    typer.Option("--band", metavar="A:B", help="Identify in this band only [Hz] (repeatable)."),
+]
+MaxOrderOption = Annotated[
+    int | None, typer.Option("--max-order", help="Highest model order in a band.")
+]
+TakeOption = Annotated[
+    list[float] | None,
+    typer.Option("--take", metavar="HZ", help="A rejected root that is a mode (repeatable)."),
+]
+RefuseOption = Annotated[
+    list[float] | None,
+    typer.Option("--refuse", metavar="HZ", help="A mode that is none (repeatable)."),
+]
+
+ExponentialWindowOption = Annotated[
+    str | None,
+    typer.Option(
+        "--exponential-window",
+        metavar="TAU|END",
+        help="Take its damping out: its time constant [s], or its value at the record's end (1%).",
+    ),
+]
+
 
 @dataclass(frozen=True)
 class Output:
@@ -55,6 +86,14 @@ _STUDY: dict[str, Any] = {
         list[str], "For example 'PBAR 11 I1' or 'front = PBAR 11 I1, PBAR 11 I2 [0.2, 5]'.",
         "-p", "--parameter", metavar="PARAMETER",
     ),
+    "fmin": FminOption,
+    "fmax": FmaxOption,
+    "bands": BandsOption,
+    "max_order": MaxOrderOption,
+    "take": TakeOption,
+    "refuse": RefuseOption,
+    "exponential_window": ExponentialWindowOption,
+    "identify_modes": _option(int, "How many modes to identify: the best founded.", metavar="N"),
     "out": _option(Path, "The run folder to write.", metavar="DIR"),
 }  # fmt: skip
 

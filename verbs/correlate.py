@@ -49,7 +49,7 @@ def correlate(
     asked = study_of("correlate", study, options, CorrelateOptions.__annotations__)
     deck, test = both_given(deck, test, asked)
     modes = asked.modes if modes is None else modes
-    side = measured(test)
+    side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance), modes)
     found = correlated(analysis, side, asked)
     tables = compared(found)

@@ -95,7 +95,7 @@ def discover(
     for kind in KINDS:
         writer_of(kind)
     progress("reading and placing")
-    side = measured(test)
+    side = measured(test, asked)
     top = side.highest(asked.frequency_tolerance)
     deck = read_deck(deck)
     every = doubted(deck, [parse_parameter(p) for p in asked.parameters])

@@ -20,7 +20,7 @@ from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_row
 from .folder import Folder
 from .options import Say, checked_call, unheard
 from .sources import Source, existing, files_of
-from .study import converted
+from .study import Hertz, converted
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function
@@ -104,9 +104,11 @@ def identify(
     fmax: float | None = None,
     max_order: int | None = None,
     *,
-    take: Sequence[float] = (),
-    refuse: Sequence[float] = (),
     exponential_window: float | str | None = None,
+    take: float | Sequence[float] = (),
+    refuse: float | Sequence[float] = (),
+    bands: str | Sequence[str | tuple[float, float]] = (),
+    modes: int | None = None,
     progress: Say = unheard,
 ) -> Identified:
     """Find modes in measured frequency responses, close pairs included.
@@ -124,6 +126,11 @@ def identify(
     exponential_window : float or str, optional
         Of the records: its time constant [s], or its value at their end ("1%"). The damping that
         it added is taken out.
+    bands : sequence of (low, high) or str, optional
+        Parts of the range to use, Hz, such as ``["15:60", (80.0, 180.0)]``; what lies outside
+        takes no part.
+    modes : int, optional
+        As many modes as there are: the best founded, rejected roots among them where need be.
     progress : callable
         Told what is done, a few words at a time.
 
@@ -134,7 +141,8 @@ def identify(
     Raises
     ------
     InputError
-        A file that is missing or holds no frequency response; an empty range of frequencies.
+        A file that is missing or holds no frequency response; an empty range of frequencies; no
+        root where one is taken or refused, fewer roots than modes asked for.
     """
     from ..adapters.report.stabilisation_page import stabilisation_page
     from ..core.identification import identify as find
@@ -155,7 +163,11 @@ def identify(
         geometry=read.geometry,
         take=converted("take", take, tuple[float, ...], who),
         refuse=converted("refuse", refuse, tuple[float, ...], who),
-        exponential_window=exponential_window,
+        exponential_window=converted(
+            "exponential_window", exponential_window, float | str | None, who
+        ),
+        bands=converted("bands", bands, tuple[Hertz, ...], who),
+        modes=converted("modes", modes, int | None, who),
     )
     warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz

@@ -24,7 +24,9 @@ class CompareOptions(TypedDict, total=False):
     ``deck_length_unit`` ("m", "mm", "in", "ft"); ``mac_min`` of a pair; ``frequency_tolerance``,
     the largest |analysis − test|/test of a pair; ``cluster_width``, the relative bandwidth within
     which modes are close; ``rotate`` ("analysis", "test", "none"), the side that is rotated;
-    ``seed`` of every random number.
+    ``seed`` of every random number. Where modes are identified in frequency responses on the way,
+    what `identify` can be told: ``fmin``, ``fmax``, ``bands``, ``max_order``, ``take``, ``refuse``,
+    ``exponential_window``, and its ``modes`` as ``identify_modes``.
     """
 
     deck_length_unit: str | None
@@ -33,6 +35,14 @@ class CompareOptions(TypedDict, total=False):
     cluster_width: float | None
     rotate: str | None
     seed: int | None
+    fmin: float | None
+    fmax: float | None
+    bands: str | Sequence[str | tuple[float, float]] | None
+    max_order: int | None
+    take: float | Sequence[float] | None
+    refuse: float | Sequence[float] | None
+    identify_modes: int | None
+    exponential_window: float | str | None
 
 
 class CorrelateOptions(CompareOptions, total=False):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
     from ..core.data.geometry import Geometry
     from ..core.data.parametric_model import Model
+    from .study import Study
 
 Source = object
 """A path, or an object that stands for its content."""
@@ -179,13 +180,15 @@ class Measured:
         return float(self.modes.frequencies_hz.max() * (1.0 + tolerance))
 
 
-def measured(source: Source) -> Measured:
+def measured(source: Source, study: Study) -> Measured:
     """Return the test of a verb; modes are identified where it holds responses only."""
     from ..adapters.universal import ModalTest
     from ..core.identification.measured_modes import with_modes
 
     test = read_test(source)
-    return Measured(with_modes(test), test.files if isinstance(test, ModalTest) else ())
+    files = test.files if isinstance(test, ModalTest) else ()
+    with naming(files[0] if files else None):
+        return Measured(with_modes(test, **study.identification), files)
 
 
 def geometry_of(model: Model, deck: Deck | None) -> Geometry:

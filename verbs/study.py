@@ -18,8 +18,11 @@ from ..core.errors import InputError, Place
 
 if TYPE_CHECKING:
     from ..core.correlation.mode_pairing import Criteria
+    from ..core.identification.measured_modes import IdentifyOptions
     from ..core.updating.residuals import Weights
 
+Hertz = tuple[float, float]
+"""A band of frequencies; written as "15:60", too."""
 UNITS = ("m", "mm", "in", "ft")
 ADOPT = ("significant", "all", "none")
 
@@ -58,6 +61,14 @@ class Study:
     adopt: str = "significant"
     regularisation: float = 1e-2
     stages: tuple[StageRequest, ...] = ()
+    fmin: float | None = None
+    fmax: float | None = None
+    bands: tuple[Hertz, ...] = ()
+    max_order: int | None = None
+    identify_modes: int | None = None
+    take: tuple[float, ...] = ()
+    refuse: tuple[float, ...] = ()
+    exponential_window: float | str | None = None
     out: Path | None = None
     seed: int = 0
     sigmas: Mapping[str, float] = field(default_factory=dict, metadata={"file_key": False})
@@ -93,9 +104,15 @@ class Study:
 
     def _require_accepted(self) -> None:
         """Refuse what the core accepts in no run, before any file is read."""
+        from ..core.identification.survey.wanted_ranges import wanted_ranges
         from ..core.updating.residuals import residuals_named
 
         _ = self.criteria, self.weights
+        wanted_ranges(self.fmin, self.fmax, self.bands)
+        for key, least in (("identify_modes", 1), ("max_order", 2)):
+            value = getattr(self, key)
+            if value is not None and value < least:
+                raise InputError(f"{key} is {value}; it must be {least} or more")
         for words in (self.residuals, *(s.residuals for s in self.stages)):
             residuals_named(words)
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
@@ -107,6 +124,14 @@ class Study:
         from ..core.correlation.mode_pairing import Criteria
 
         return Criteria(self.mac_min, self.frequency_tolerance, self.cluster_width, self.rotate)
+
+    @property
+    def identification(self) -> IdentifyOptions:
+        """What is told to the identification of modes in frequency responses, if anything."""
+        own = ("fmin", "fmax", "max_order", "take", "refuse", "bands", "exponential_window")
+        given = {key: getattr(self, key) for key in own} | {"modes": self.identify_modes}
+        known = {key: value for key, value in given.items() if value not in (None, ())}
+        return cast("IdentifyOptions", known)
 
     @property
     def weights(self) -> Weights:
@@ -257,12 +282,20 @@ def converted(name: str, value: object, kind: Any, who: Place) -> Any:
         if not isinstance(value, list | tuple):
             raise wrong
         return tuple(_stage(v, who, wrong) for v in value)
+    if kind == Hertz:
+        ends = value.split(":") if isinstance(value, str) else value
+        try:
+            low, high = map(float, cast(Iterable[float | str], ends))
+        except (TypeError, ValueError):
+            raise who.error(f"'{name}' holds {value!r}, which is no band as 15:60 is") from None
+        return tuple(converted(name, end, float, who) for end in (low, high))
     if get_origin(kind) is tuple:
         items = value if isinstance(value, list | tuple) else [value]
         return tuple(converted(name, v, of[0], who) for v in items)
-    make = of[0] if of else kind
-    if isinstance(value, bool) or not isinstance(value, _MADE_FROM[make]):
+    makes = [k for k in of or (kind,) if isinstance(value, _MADE_FROM.get(k, ()))]
+    if isinstance(value, bool) or not makes:
         raise wrong
+    make = makes[0]
     if make is float and not abs(cast(float, value)) <= sys.float_info.max:
         raise who.error(f"'{name}' must be a finite number")
     return make(value)

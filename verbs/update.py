@@ -85,7 +85,7 @@ def update(
     if isinstance(deck, Model):
         raise InputError("update changes a deck, and a model has none; give the deck")
     progress("reading and correlating")
-    side = measured(test)
+    side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
     placed = correlated(analysis, side, asked).placed
     progress("updating")

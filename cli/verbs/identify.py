@@ -10,7 +10,20 @@ import typer
 from ...core.errors import InputError, Place
 from ..answer import free_folder
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import ForceOption, JsonOption, Output, QuietOption, VerboseOption
+from ..options import (
+    BandsOption,
+    ExponentialWindowOption,
+    FmaxOption,
+    FminOption,
+    ForceOption,
+    JsonOption,
+    MaxOrderOption,
+    Output,
+    QuietOption,
+    RefuseOption,
+    TakeOption,
+    VerboseOption,
+)
 
 if TYPE_CHECKING:
     from ...verbs.identify import Identified
@@ -20,28 +33,16 @@ _FILES = (".unv", ".uff", ".h5")
 
 def identify(
     frf: Annotated[list[Path], typer.Argument(metavar="FRF...")],
-    fmin: Annotated[float | None, typer.Option("--fmin", help="Use lines from here [Hz].")] = None,
-    fmax: Annotated[float | None, typer.Option("--fmax", help="Use lines up to here [Hz].")] = None,
-    max_order: Annotated[
-        int | None, typer.Option("--max-order", help="Highest model order in a band.")
+    fmin: FminOption = None,
+    fmax: FmaxOption = None,
+    bands: BandsOption = None,
+    max_order: MaxOrderOption = None,
+    modes: Annotated[
+        int | None, typer.Option("--modes", metavar="N", help="How many modes: the best founded.")
     ] = None,
-    take: Annotated[
-        list[float] | None,
-        typer.Option("--take", metavar="HZ", help="A rejected root that is a mode (repeatable)."),
-    ] = None,
-    refuse: Annotated[
-        list[float] | None,
-        typer.Option("--refuse", metavar="HZ", help="A mode that is none (repeatable)."),
-    ] = None,
-    exponential_window: Annotated[
-        str | None,
-        typer.Option(
-            "--exponential-window",
-            metavar="TAU|END",
-            help="Take its damping out: its time constant [s], or its value at the record's end "
-            "(1%).",
-        ),
-    ] = None,
+    exponential_window: ExponentialWindowOption = None,
+    take: TakeOption = None,
+    refuse: RefuseOption = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -75,6 +76,8 @@ def identify(
             take=take or (),
             refuse=refuse or (),
             exponential_window=exponential_window,
+            bands=bands or (),
+            modes=modes,
             progress=say,
         )
     if alone:
@@ -91,8 +94,8 @@ def identify(
             console.print(identify_table(found.modes))
         console.print(f"{'modes' if alone else 'run folder'}: {target}", markup=False)
     if verbose:
-        bands = (f"{b.low_hz:.5g} to {b.high_hz:.5g} Hz" for b in found.bands)
-        tell(output, "band", bands)
+        parts = (f"{b.low_hz:.5g} to {b.high_hz:.5g} Hz" for b in found.bands)
+        tell(output, "band", parts)
         out_of = ((f"{r.frequency_hz:.2f} Hz", 100 * r.damping_ratio, r) for r in found.rejected)
         tell(output, "rejected", (f"{hz}, {z:.2f} %: {r.reason}" for hz, z, r in out_of))
         tell(output, "skipped", (f"{s.what} at line {s.line}: {s.why}" for s in found.skipped))

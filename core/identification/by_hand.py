@@ -13,8 +13,10 @@ from .identification_numbers import IDENTIFICATION
 from .poles.band_sweeps import BandFit
 from .poles.pole_candidates import Proposal
 from .poles.pole_numbers import POLES
+from .poles.pole_stabilisation import Candidate
 from .poles.start_values import start_from
 from .poles.variable_projection import refine
+from .survey.wanted_ranges import named_ranges
 
 
 def by_hand(
@@ -22,6 +24,7 @@ def by_hand(
     proposals: tuple[Proposal, ...],
     take: Sequence[float],
     refuse: Sequence[float],
+    ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),),
 ) -> tuple[BandFit, ...]:
     """Move the roots nearest to the given frequencies [Hz] among the modes, or out of them.
 
@@ -31,8 +34,13 @@ def by_hand(
     Raises
     ------
     InputError
-        No such root at a frequency.
+        No such root at a frequency, or a frequency outside of the `ranges` [Hz] that take part.
     """
+    for hz, what in (*((f, "taken") for f in take), *((f, "refused") for f in refuse)):
+        if not any(low <= hz <= high for low, high in ranges):
+            raise InputError(
+                f"no root can be {what} at {hz:g} Hz: only {named_ranges(ranges)} take part"
+            )
     bands = list(fits)
     for hz in refuse:
         n, k = _nearest(hz, [_hz(b, b.core) for b in bands], "mode to refuse")
@@ -41,7 +49,7 @@ def by_hand(
         bands[n] = replace(b, core=b.core & ~root, background=b.background | root)
     for hz in take:
         aside = [_hz(b, b.background) for b in bands]
-        stable = [_unused(b, p) for b, p in zip(bands, proposals, strict=True)]
+        stable = [unused(b, p) for b, p in zip(bands, proposals, strict=True)]
         roots = [np.append(a, s) for a, s in zip(aside, stable, strict=True)]
         n, k = _nearest(hz, roots, "rejected root to take")
         b = bands[n]
@@ -49,19 +57,36 @@ def by_hand(
             root = np.arange(len(b.core)) == np.flatnonzero(b.background)[k]
             bands[n] = replace(b, core=b.core | root, background=b.background & ~root)
             continue
-        new = start_from(b.data, (proposals[n].firm[k - len(aside[n])],))
-        poles = np.append(b.fit.poles, new.poles)
-        part = np.column_stack([b.fit.participation, new.participation])
-        core, background = np.append(b.core, True), np.append(b.background, False)
-        bands[n] = replace(b, fit=refine(b.data, poles, part), core=core, background=background)
+        candidate = proposals[n].firm[k - len(aside[n])]
+        bands[n] = with_pole(b, candidate)
+        ends = _hz(bands[n], bands[n].core)[-1]
+        if not near(ends, hz):
+            raise InputError(
+                f"the pole at {abs(candidate.pole) / (2.0 * np.pi):.2f} Hz cannot be taken: beside "
+                f"the other roots of its band the functions draw it to {ends:.2f} Hz"
+            )
     return tuple(bands)
+
+
+def with_pole(b: BandFit, candidate: Candidate) -> BandFit:
+    """Return a band refined with one more mode, its last."""
+    new = start_from(b.data, (candidate,))
+    poles = np.append(b.fit.poles, new.poles)
+    part = np.column_stack([b.fit.participation, new.participation])
+    core, background = np.append(b.core, True), np.append(b.background, False)
+    return replace(b, fit=refine(b.data, poles, part), core=core, background=background)
 
 
 def _hz(b: BandFit, chosen: Bools) -> Floats:
     return np.asarray(np.abs(b.fit.poles[chosen]) / (2.0 * np.pi))
 
 
-def _unused(b: BandFit, proposed: Proposal) -> Floats:
+def near(a: float, b: float) -> bool:
+    """Tell whether two frequencies are one, as read off a chart."""
+    return abs(a - b) <= IDENTIFICATION.by_hand * min(a, b)
+
+
+def unused(b: BandFit, proposed: Proposal) -> Floats:
     """Frequencies of the stable poles of a band, infinite where the fit holds the root."""
     poles = np.array([c.pole for c in proposed.firm], complex)
     gap = np.abs(poles[:, None] - b.fit.poles)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def assemble(
     fits: tuple[BandFit, ...],
     proposals: tuple[Proposal, ...],
     geometry: Geometry | None = None,
-    refused: Sequence[float] = (),
+    unwanted: Mapping[float, str] = MappingProxyType({}),
     window: float = 0.0,
 ) -> Identification:
     """Bring the modes of all bands into physical units, judge them, find their scale.
@@ -44,8 +45,8 @@ def assemble(
         Of each band.
     geometry : Geometry, optional
         For driving points under two numbers.
-    refused : sequence of float
-        Frequencies [Hz] of modes that the user does not want.
+    unwanted : mapping of float to str
+        Why the user does not want modes, by their frequency [Hz].
     window : float
         What an exponential window added to all decay rates [1/s].
     """
@@ -90,7 +91,7 @@ def assemble(
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
         remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
-        rejected=rejected(fits, proposals, refused),
+        rejected=rejected(fits, proposals, unwanted),
         chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
         cmif=_cmif(survey),
         quantity=survey.quantity,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..errors import InputError
 from .by_hand import by_hand
 from .collect_bands import assemble
 from .identification_numbers import IDENTIFICATION
+from .number_of_modes import fewer, more
 from .poles.band_sweeps import fit_range
 from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
@@ -20,6 +22,7 @@ from .result import Identification
 from .survey.exponential_window import decay_rate
 from .survey.mode_indicator import Band, cmif, peaks, split
 from .survey.survey_data import Survey, prepare
+from .survey.wanted_ranges import wanted_ranges
 from .survey.wrong_signs import signs_mended
 
 
@@ -33,6 +36,8 @@ def identify(
     take: Sequence[float] = (),
     refuse: Sequence[float] = (),
     exponential_window: float | str | None = None,
+    bands: Sequence[tuple[float, float]] = (),
+    modes: int | None = None,
 ) -> Identification:
     """Identify modes from frequency responses, close pairs included, without anybody's help.
 
@@ -56,6 +61,10 @@ def identify(
         Frequencies [Hz] of rejected roots that are modes, and of modes that are none.
     exponential_window : float or str, optional
         Whose damping is taken out of the modes, see `decay_rate`.
+    bands : sequence of (low, high), optional
+        Parts of the range to use [Hz]; what lies outside takes no part.
+    modes : int, optional
+        As many modes as there are: the best founded, rejected roots among them where need be.
 
     Returns
     -------
@@ -67,8 +76,9 @@ def identify(
     ------
     InputError
         Functions that are no frequency responses, a frequency axis that does not rise, too few
-        lines, functions of the opposite sign convention, no root where one is taken or refused, an
-        exponential window that no record has.
+        lines, functions of the opposite sign convention, no root where one is taken or refused,
+        fewer roots than modes asked for, bands that are none, an exponential window that no record
+        has.
 
     References
     ----------
@@ -76,18 +86,41 @@ def identify(
     """
     if max_order is not None and max_order < 2:
         raise InputError(f"the model order {max_order} is too low; it must be 2 or more")
-    survey = signs_mended(prepare(frfs, fmin, fmax))
-    window = decay_rate(exponential_window, survey.frequencies_hz)
-    indicator = cmif(survey.values)
-    floor = float(np.sqrt(survey.values.shape[0]) + np.sqrt(survey.values.shape[1]))
-    bands = split(survey.frequencies_hz, indicator, floor)
-    lines = survey.frequencies_hz[peaks(indicator, floor)]
-    proposals = tuple(propose(survey, b.first, b.last, _count(lines, b), max_order) for b in bands)
-    fits = fit_range(survey, bands, proposals)
+    if modes is not None and modes < 1:
+        raise InputError(f"{modes} modes are asked for; ask for one or more")
+    survey = signs_mended(prepare(frfs, wanted_ranges(fmin, fmax, bands)))
+    window = decay_rate(exponential_window, frfs.frequencies_hz)
+    parts, lines = _parts(survey)
+    proposals = tuple(propose(survey, b.first, b.last, _count(lines, b), max_order) for b in parts)
+    fits = fit_range(survey, parts, proposals)
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
-    fits = by_hand(fits, proposals, take, refuse)
-    return assemble(survey, fits, proposals, geometry, refuse, window)
+    fits = by_hand(fits, proposals, take, refuse, survey.ranges)
+    unwanted = dict.fromkeys(refuse, "refused by hand")
+    found = assemble(survey, fits, proposals, geometry, unwanted, window)
+    if modes is None or len(found.modes) == modes:
+        return found
+    if len(found.modes) > modes:
+        fits, others = fewer(fits, found, modes, take)
+        return assemble(survey, fits, proposals, geometry, unwanted | others, window)
+    fits, added = more(fits, proposals, modes, refuse)
+    of = ", ".join(f"{hz:.2f}" for hz in added)
+    said = f"{modes} modes are asked for: rejected roots ({of} Hz) are taken among them"
+    forced = assemble(survey, fits, proposals, geometry, unwanted, window)
+    return replace(forced, warnings=(*forced.warnings, said))
+
+
+def _parts(survey: Survey) -> tuple[tuple[Band, ...], Floats]:
+    """Split each range that is used into bands; return the frequencies of the peaks, too."""
+    indicator = cmif(survey.values)
+    floor = float(np.sqrt(survey.values.shape[0]) + np.sqrt(survey.values.shape[1]))
+    bands: list[Band] = []
+    lines = []
+    for own in (survey.lines(*ends) for ends in survey.ranges):
+        f = survey.frequencies_hz[own]
+        bands += split(f, indicator[own], floor)
+        lines.append(f[peaks(indicator[own], floor)])
+    return tuple(bands), np.concatenate(lines)
 
 
 def _count(lines: Floats, band: Band) -> int:

@@ -3,21 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypedDict, Unpack
 
 import numpy as np
 
 from ..data.measurement import Measurement
+from ..errors import InputError
 from .identify import identify
 
 
-def with_modes(measurement: Measurement) -> Measurement:
+class IdentifyOptions(TypedDict, total=False):
+    """What an identification can be told, see `identify`."""
+
+    fmin: float
+    fmax: float
+    max_order: int
+    take: tuple[float, ...]
+    refuse: tuple[float, ...]
+    bands: tuple[tuple[float, float], ...]
+    modes: int
+    exponential_window: float | str
+
+
+def with_modes(measurement: Measurement, **options: Unpack[IdentifyOptions]) -> Measurement:
     """Return a test with modes: its own, or else those that its frequency responses show.
 
     Identified modes are the normalised real ones; their standard errors come along.
+
+    Raises
+    ------
+    InputError
+        Options of an identification where the test has modes; see `identify`.
     """
     if measurement.modes is not None or measurement.frfs is None:
+        if options:
+            raise InputError(
+                f"the test holds modes, so none are identified: {', '.join(options)} would say how"
+            )
         return measurement
-    found = identify(measurement.frfs, geometry=measurement.geometry)
+    found = identify(measurement.frfs, geometry=measurement.geometry, **options)
     poor = [
         f"identified mode {k + 1} ({f:.2f} Hz): {remark}"
         for k, (f, remark) in enumerate(zip(found.modes.frequencies_hz, found.remarks, strict=True))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Bools, Numbers
-from .identification_numbers import IDENTIFICATION
+from .by_hand import near
 from .poles.band_sweeps import BandFit
 from .poles.pole_candidates import Proposal
 from .poles.pole_numbers import POLES
@@ -34,17 +34,17 @@ class Rejected:
 
 
 def rejected(
-    fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...], refused: Sequence[float] = ()
+    fits: tuple[BandFit, ...], proposals: tuple[Proposal, ...], unwanted: Mapping[float, str]
 ) -> tuple[Rejected, ...]:
     """Roots beside or beneath the modes of the fits, and stable poles that no fit kept.
 
-    By rising frequency.
+    By rising frequency. `unwanted` says of modes by their frequency [Hz] why the user has none.
     """
     modes = np.concatenate([b.fit.poles[b.core] for b in fits])
     found: list[Rejected] = []
     for b, proposed in zip(fits, proposals, strict=True):
         aside = np.flatnonzero(b.background & _inside(b, b.fit.poles))
-        reasons = _of_background(b, refused)
+        reasons = _of_background(b, unwanted)
         found += [_named(b.fit.poles[k], reasons[k]) for k in aside]
         kept = np.concatenate([modes, b.fit.poles[aside]])
         for pole in (c.pole for c in proposed.firm):
@@ -67,15 +67,15 @@ def _named(pole: complex, reason: str) -> Rejected:
     return Rejected(float(abs(pole) / (2.0 * np.pi)), float(-pole.real / abs(pole)), reason)
 
 
-def _of_background(b: BandFit, refused: Sequence[float]) -> list[str]:
+def _of_background(b: BandFit, unwanted: Mapping[float, str]) -> list[str]:
     hz = np.abs(b.fit.poles) / (2.0 * np.pi)
-    unwanted = [any(abs(f - r) < IDENTIFICATION.by_hand * r for r in refused) for f in hz]
+    by_user = [next((why for f, why in unwanted.items() if near(f, x)), "") for x in hz]
     wide = ~plausible(b.frequencies_hz, b.fit)
     left = left_over(b.data, b.frequencies_hz, b.fit)
     mpc = phase_collinearity(b.fit.shapes)
     return [
-        "refused by hand"
-        if unwanted[k]
+        by_user[k]
+        if by_user[k]
         else "too wide for a mode of its band: serves the fit as background"
         if wide[k]
         else f"no more than the errors of the survey make: {100 * left[k]:.0f} % of its energy is "

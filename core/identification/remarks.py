@@ -77,7 +77,7 @@ def of_modes(
 ) -> tuple[str, ...]:
     """Say what makes each mode a poor one; empty for a mode without reproach."""
     texts = []
-    f, labels = survey.frequencies_hz, survey.outputs.labels
+    labels = survey.outputs.labels
     real = p.real / p.real_size
     for k, hz in enumerate(t.hz):
         found = []
@@ -95,7 +95,7 @@ def of_modes(
         if spread > IDENTIFICATION.weak:
             found.append(f"uncertain shape ({100 * spread:.0f} %)")
         width = abs(t.poles[k].real) / np.pi
-        if hz - f[0] < width or f[-1] - hz < width:
+        if any(abs(hz - edge) < width for ends in survey.ranges for edge in ends):
             found.append("at the edge of the measured range")
         texts.append("; ".join(found))
     return tuple(texts)

@@ -24,6 +24,21 @@ HZ, DAMPING = np.array([20.0, 50.0, 80.0]), np.array([0.01, 0.005, 0.02])
 NODES = np.array([1, 2, 3, 4])
 SHAPES = np.array([[1.0, 1.0, 1.0], [0.5, -0.5, -1.0], [-0.4, -0.9, 0.6], [0.8, 0.3, -0.2]])
 
+PLATE = """SOL 103
+CEND
+METHOD = 1
+BEGIN BULK
+EIGRL,1,,,3
+GRID,1,,0.,0.,0.
+GRID,2,,1.,0.,0.
+GRID,3,,1.,2.,0.
+GRID,4,,0.,2.,0.
+CQUAD4,1,1,1,2,3,4
+PSHELL,1,1,.01,1,,1
+MAT1,1,7.e10,,.3,2700.
+ENDDATA
+"""
+
 Call = Callable[..., Any]
 
 
@@ -193,6 +208,25 @@ def test_one_reference_warns_of_pairs(frf: Path, call: Call) -> None:
         (["--max-order", 1], "order"),
         (["--refuse", 33], "no mode to refuse"),
         (["--take", 33], "no rejected root to take"),
+        (
+            ["--take", 70, "--fmax", 60],
+            "no root can be taken at 70 Hz: only 5 to 59.93 Hz take part",
+        ),
+        (
+            ["--refuse", 50, "--band", "5:30", "--band", "70:100"],
+            "only 5 to 29.97 and 70.04 to 99.88 Hz take part",
+        ),
+        (["--modes", 0], "0 modes are asked for"),
+        (["--modes", 99], "99 modes are asked for; the functions hold"),
+        (["--band", "60:15"], "the band 60:15 Hz is reversed"),
+        (["--band", "15:15"], "the band 15:15 Hz is empty"),
+        (["--band", "-5:15"], "the band -5:15 Hz begins below 0 Hz"),
+        (["--band", "15-60"], "'bands' holds '15-60', which is no band as 15:60 is"),
+        (["--band", "15:60:80"], "which is no band as 15:60 is"),
+        (["--band", "15:x"], "which is no band as 15:60 is"),
+        (["--band", "5:nan"], "'bands' must be a finite number"),
+        (["--band", "40:60", "--fmax", 30], "the band 40:60 Hz lies above fmax 30 Hz"),
+        (["--band", "40:40.1"], "frequency line(s) between 40 and 40.1 Hz"),
         (["--out", "nowhere/modes.unv"], "does not exist"),
         (["--out", "survey.unv"], "input itself"),
     ],
@@ -202,6 +236,78 @@ def test_options_that_cannot_be(frf: Path, call: Call, options: list[Any], said:
     assert answer.status == 1
     assert said in answer.sentence
     assert not Path("survey_identify").exists()
+
+
+def test_what_lies_outside_of_the_bands_takes_no_part(frf: Path, call: Call) -> None:
+    """20 and 80 Hz are found; 50 Hz, in the gap, is not, and nothing is said of it."""
+    options = ("--band", "70:95", "--band", "8:20", "--band", "19:35", "--json", "-", "--quiet")
+    result = json.loads(call("identify", frf, *options).out)
+    assert [m["frequency_hz"] for m in result["modes"]] == pytest.approx(HZ[[0, 2]], rel=1e-3)
+    assert [m["damping_ratio"] for m in result["modes"]] == pytest.approx(DAMPING[[0, 2]], rel=0.05)
+    assert all(not 35 < r["frequency_hz"] < 70 for r in result["rejected"])
+    step = 95.0 / 799
+    assert result["lines"] == pytest.approx((27.0 + 25.0) / step, abs=2)
+    assert result["range_hz"] == pytest.approx([8.0, 95.0], abs=step)
+    ends = [(b["low_hz"], b["high_hz"]) for b in result["bands"]]
+    assert all(high < 36 or low > 69 for low, high in ends)
+    assert len(call("identify", frf, *options).out) > 0
+
+
+def test_as_many_modes_as_there_are(frf: Path, call: Call) -> None:
+    """The shape that is known least goes first, and its mode says so."""
+    scaled = survey()
+    s = 2j * np.pi * scaled.frequencies_hz  # of two modes; the third, at 80 Hz, hardly moves
+    w = 2.0 * np.pi * HZ
+    gain = s**2 / (s**2 + 2.0 * (DAMPING * w)[:, None] * s + (w**2)[:, None])
+    part = np.einsum("o,i,l->oil", SHAPES[:, 2], SHAPES[:2, 2], gain[2])
+    values = scaled.values - 0.97 * part
+    write_universal(frf, geometry=geometry(), frfs=replace(scaled, values=values))
+    two = json.loads(call("identify", frf, "--modes", 2, "--json", "-", "--quiet").out)
+    assert [m["frequency_hz"] for m in two["modes"]] == pytest.approx(HZ[:2], rel=1e-3)
+    (third,) = [r for r in two["rejected"] if abs(r["frequency_hz"] - 80.0) < 0.5]
+    assert third["reason"].startswith("not among the 2 best founded modes")
+    three = json.loads(call("identify", frf, "--modes", 3, "--json", "-", "--quiet").out)
+    whole = json.loads(call("identify", frf, "--json", "-", "--quiet").out)
+    assert three == whole
+
+
+def test_a_study_tells_how_modes_are_identified_on_the_way(
+    frf: Path, call: Call, tmp_path: Path
+) -> None:
+    write_universal(tmp_path / "plate.unv", geometry=geometry(), frfs=survey())
+    deck = tmp_path / "plate.bdf"
+    deck.write_text(PLATE)
+    study = tmp_path / "study.toml"
+    study.write_text(
+        'deck = "plate.bdf"\ntest = ["plate.unv"]\nmac_min = 0.01\nfrequency_tolerance = 1e3\n'
+        'bands = ["8:30", [40.0, 95.0]]\nrefuse = 80\nidentify_modes = 2\n'
+    )
+    answer = call("correlate", "--study", study, "--json", "-", "--quiet", "--out", "run")
+    assert answer.status == 0, answer.err
+    assert json.loads(answer.out)["test_hz"] == pytest.approx(HZ[:2], rel=1e-3)
+    again = call("correlate", "--study", "run/study.toml", "--json", "-", "--quiet")
+    assert json.loads(again.out) == json.loads(answer.out)
+    one = ("--refuse", 50, "--refuse", 80, "--band", "8:95", "--identify-modes", 1)
+    fewer = call("correlate", "--study", study, *one, "--json", "-", "--quiet")
+    assert json.loads(fewer.out)["test_hz"] == pytest.approx(HZ[:1], rel=1e-3)
+    for line, said in (
+        ("takes = [97.5]", "unknown key 'takes'; did you mean 'take'?"),
+        ("identify_modes = 0", "identify_modes is 0; it must be 1 or more"),
+        ("bands = ['60:15']", "the band 60:15 Hz is reversed"),
+        ("bands = [15, 60]", "'bands' holds 15, which is no band as 15:60 is"),
+        ("take = ['97.5']", "'take' has a value of the wrong type"),
+        ("exponential_window = '0%'", "the exponential window is '0%'; give its time constant"),
+        ("fmin = 50\nfmax = 40", "50 to 40 Hz, is empty"),
+    ):
+        study.write_text(f'deck = "plate.bdf"\ntest = ["plate.unv"]\n{line}\n')
+        assert said in call("correlate", "--study", study).sentence
+    modes = call("correlate", deck, "run.unv", "--take", 50)
+    assert "does not exist" in modes.sentence
+    assert call("identify", "plate.unv", "--out", "modes.unv", "--quiet").status == 0
+    assert (
+        "the test holds modes, so none are identified: take would say how"
+        in call("correlate", deck, "modes.unv", "--take", 50).sentence
+    )
 
 
 def test_files_without_frequency_responses(frf: Path, call: Call) -> None:

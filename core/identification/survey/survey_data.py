@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats, Numbers
+from ...arrays import Bools, Floats, Numbers
 from ...data.dofs import Dofs
 from ...data.frfs import Frfs
 from ...errors import InputError
@@ -36,6 +37,8 @@ class Survey:
     quantity : str
     source : str
     warnings : tuple of str
+    ranges : tuple of (low, high)
+        First and last line [Hz] of each part of the axis that is used, rising.
     """
 
     frequencies_hz: Floats
@@ -49,6 +52,7 @@ class Survey:
     quantity: str
     source: str
     warnings: tuple[str, ...]
+    ranges: tuple[tuple[float, float], ...]
 
     @property
     def order(self) -> int:
@@ -61,8 +65,8 @@ class Survey:
         return slice(int(first), int(last))
 
 
-def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) -> Survey:
-    """Check, clean, weight and orient frequency responses.
+def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)) -> Survey:
+    """Check, clean, weight and orient frequency responses, their lines in some ranges [Hz].
 
     Functions that are no frequency responses (constant, real, with gaps) are left out and named
     in the warnings.
@@ -75,7 +79,7 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     name = frfs.source or "the frequency responses"
     warnings: list[str] = []
     derivative_order(frfs.quantity)
-    f, keep = _axis(frfs, fmin, fmax, name)
+    f, keep, ranges = _axis(frfs, ranges, name)
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
     measured = _measured(values, responses, references, name, warnings)
@@ -115,7 +119,7 @@ def prepare(frfs: Frfs, fmin: float | None = None, fmax: float | None = None) ->
     values *= input_weight[None, :, None]
     return Survey(
         f, values, measured, output_weight, input_weight, responses, references, roving,
-        frfs.quantity, frfs.source, tuple(warnings),
+        frfs.quantity, frfs.source, tuple(warnings), ranges,
     )  # fmt: skip
 
 
@@ -150,23 +154,26 @@ def noise_levels(values: Numbers) -> Floats:
     return levels
 
 
-def _axis(frfs: Frfs, fmin: float | None, fmax: float | None, name: str) -> tuple[Floats, Numbers]:
+def _axis(
+    frfs: Frfs, ranges: Sequence[tuple[float, float]], name: str
+) -> tuple[Floats, Bools, tuple[tuple[float, float], ...]]:
+    """Return the lines to use, which of all they are, and the first and last of each range."""
     f = frfs.frequencies_hz
     if len(f) > 1 and np.any(np.diff(f) <= 0.0):
         line = int(np.flatnonzero(np.diff(f) <= 0.0)[0]) + 1
         raise InputError(f"the frequency axis of {name} does not rise at line {line + 1}")
-    low = 0.0 if fmin is None else fmin
-    high = np.inf if fmax is None else fmax
-    if low >= high:
-        raise InputError(f"the band asked for, {low:g} to {high:g} Hz, is empty")
-    keep = (f >= low) & (f <= high) & (f > 0.0)
-    if np.count_nonzero(keep) < SURVEY.lines_least:
-        where = f" between {low:g} and {high:g} Hz" if fmin is not None or fmax is not None else ""
-        raise InputError(
-            f"{name} has {np.count_nonzero(keep)} frequency line(s){where}; "
-            f"identification needs {SURVEY.lines_least}"
-        )
-    return np.asarray(f[keep]), keep
+    keep, ends = np.zeros(len(f), bool), []
+    for low, high in ranges:
+        own = (f >= low) & (f <= high) & (f > 0.0)
+        if np.count_nonzero(own) < SURVEY.lines_least:
+            where = f" between {low:g} and {high:g} Hz" if low > 0.0 or high < np.inf else ""
+            raise InputError(
+                f"{name} has {np.count_nonzero(own)} frequency line(s){where}; "
+                f"identification needs {SURVEY.lines_least}"
+            )
+        ends.append((float(f[own][0]), float(f[own][-1])))
+        keep |= own
+    return np.asarray(f[keep]), keep, tuple(ends)
 
 
 def _measured(

@@ -316,6 +316,23 @@ def test_chart_and_indicator_fit_together(survey):
     )
 
 
+def test_rejected_roots_fill_up_the_number_of_modes_asked_for(survey):
+    """Of two runs joined whose frequencies differ no root is a mode unless the user says so."""
+    hz = np.array([31.0, 47.0, 72.0])
+    one, other = (
+        survey(11, frequencies=hz * s, n_response=20, n_line=1000)[0] for s in (1.0, 1.01)
+    )
+    frfs = replace(one, values=np.concatenate([one.values[:10], other.values[10:]]))
+    assert not len(identify(frfs).modes)
+    forced = identify(frfs, modes=3)
+    assert forced.modes.frequencies_hz == pytest.approx(hz, rel=0.01)
+    (said,) = [w for w in forced.warnings if "are asked for" in w]
+    taken = [f"{f:.2f}" for f in forced.modes.frequencies_hz]
+    assert f"3 modes are asked for: rejected roots ({', '.join(taken)} Hz) are taken" in said
+    with pytest.raises(InputError, match="9 modes are asked for; the functions hold"):
+        identify(frfs, modes=9)
+
+
 def test_a_mode_is_refused_and_a_rejected_root_taken_by_hand(survey):
     frfs, truth = survey(11, n_mode=6, n_response=20, n_line=1000)
     hz = np.sort(truth.frequencies_hz)
@@ -328,6 +345,8 @@ def test_a_mode_is_refused_and_a_rejected_root_taken_by_hand(survey):
     both = identify(frfs, refuse=[hz[2]], take=[hz[2]])
     assert both.modes.frequencies_hz == pytest.approx(hz, rel=1e-3)
     with pytest.raises(InputError, match="no mode to refuse within"):
+        identify(frfs, refuse=[hz[2] + 1.0])
+    with pytest.raises(InputError, match="refused at 15 Hz: only 20 to 100 Hz take part"):
         identify(frfs, refuse=[15.0])
     with pytest.raises(InputError, match="no rejected root to take"):
         identify(frfs, take=[hz[2]])
