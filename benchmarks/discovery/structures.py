@@ -309,7 +309,7 @@ def wing(rng: np.random.Generator) -> Structure:
             *(Patch(4, rib(y), m, 1) for y in (0.25, 0.5, 0.75, 1.0)),
         ),
         tuple(Line(11, stringer(up), n, (0, 0, 1)) for up in (0.0, 1.0)),
-        12,
+        8,
         clamped=lambda p: p[:, 1] < 1e-6,
         axes="xz",
         sensors=(28, 44),
@@ -321,7 +321,7 @@ def wing(rng: np.random.Generator) -> Structure:
 def cowl(rng: np.random.Generator) -> Structure:
     """Free part of a cylinder with two edge frames and a stringer."""
     r, length, arc = 400.0, 500.0, float(rng.choice([1.6, 2.2]))
-    nt, nz = 18, 12
+    nt, nz = 21, 14
 
     def point(u: Floats, v: Floats) -> Floats:
         a = arc * (u - 0.5)
@@ -345,7 +345,7 @@ def cowl(rng: np.random.Generator) -> Structure:
             *(Line(11, along(v), nt, (0, 0, 1)) for v in (0.0, 1.0)),
             Line(12, lambda t: point(np.full_like(t, 1.0 / 3.0), t), nz, (1, 0, 0)),
         ),
-        14,
+        10,
         sensors=(34, 48),
         wording={1: "t1", 2: "t2", 11: "edge", 12: "stringer"},
     )

@@ -219,18 +219,18 @@ def test_effects_on_a_frame(effect, cache, tmp_path):
     assert np.abs(completed - bare).max() < 0.15 * np.abs(lacking - bare).max() + 0.3
 
 
-SHELLS = ["panel", "wheel", "box", "bracket", "plate"]
+SHELLS = ["panel", "wheel", "box", "bracket", "plate", "wing", "cowl"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHELLS)
 def test_bare_shells_differ_by_their_coarse_mesh_only(name, cache, tmp_path):
-    """Panels of the box between rigid edges: 2 % remain on any mesh (knots of CalculiX)."""
+    """Panels of the boxes between rigid edges: 2 % remain on any mesh (knots of CalculiX)."""
     from benchmarks.discovery.truth import Truth
 
     bare, _, _ = deviations(name, lambda m: Truth(), lambda m: "", cache, tmp_path)
     assert np.abs(bare).max() < 6.0
-    assert np.abs(bare[:3]).max() < (4.5 if name == "box" else 2.5)
+    assert np.abs(bare[:3]).max() < (4.5 if name in ("box", "wing") else 2.5)
 
 
 @pytest.mark.slow
