@@ -12,6 +12,8 @@ two of them a close pair (0.5 to 1 %), lines of 0.125 Hz, and noise of 0.5 %. Be
 - nonlinear: frequencies fall by up to 1 % and damping rises with the force at a point
 - flipped: one function has the wrong sign
 - coherent_noise: noise that all points of a reference share, 2 % of the level
+- machine: lines of 50 Hz and its harmonics and of a machine at 29.3 Hz, 5 % of the level, one shape
+  each and another phase before each reference
 - all: scatter, roving mass, windows and coherent noise together
 
 A mode counts as found within 0.5 %; as doubled where another found one stands there already; as
@@ -39,7 +41,7 @@ _BAND = (20.0, 180.0)
 _WITHIN = 0.005
 KINDS = (
     "scatter", "roving_mass", "merged_runs", "windows", "nonlinear", "flipped", "coherent_noise",
-    "all",
+    "machine", "all",
 )  # fmt: skip
 
 
@@ -76,6 +78,12 @@ def survey(seed: int, kind: str) -> tuple[Frfs, np.ndarray]:
         kernel = np.hanning(9) / np.linalg.norm(np.hanning(9))
         shared = np.apply_along_axis(np.convolve, 2, shared, kernel, "same")
         values = values + 0.02 * rms * rng.standard_normal((_POINTS, 1, 1)) * shared
+    if kind == "machine":
+        for line in (50.0, 100.0, 150.0, 29.3, 58.6, 117.2):
+            shape = rng.standard_normal((_POINTS, 1, 1)) * np.exp(
+                2j * np.pi * rng.uniform(size=(1, _REFERENCES, 1))
+            )
+            values = values + 0.05 * rms * shape * np.exp(-(((f - line) / 0.125) ** 2))
     if kind == "flipped":
         values[rng.integers(_POINTS), rng.integers(_REFERENCES)] *= -1.0
     dofs = Dofs(np.arange(1, _POINTS + 1), np.full(_POINTS, 3))

@@ -12,7 +12,8 @@ from .by_hand import near
 from .poles.band_sweeps import BandFit
 from .poles.pole_candidates import Proposal
 from .poles.pole_numbers import POLES
-from .poles.pole_splitting import plausible
+from .poles.pole_splitting import plausible, tones
+from .poles.shared_noise import is_shared_noise
 from .poles.soundness import left_over
 from .quality import phase_collinearity
 
@@ -70,12 +71,18 @@ def _named(pole: complex, reason: str) -> Rejected:
 def _of_background(b: BandFit, unwanted: Mapping[float, str]) -> list[str]:
     hz = np.abs(b.fit.poles) / (2.0 * np.pi)
     by_user = [next((why for f, why in unwanted.items() if near(f, x)), "") for x in hz]
+    tone = tones(b.frequencies_hz, b.fit)
     wide = ~plausible(b.frequencies_hz, b.fit)
     left = left_over(b.data, b.frequencies_hz, b.fit)
     mpc = phase_collinearity(b.fit.shapes)
+    shared = is_shared_noise(b.data, b.frequencies_hz, b.fit)
     return [
         by_user[k]
         if by_user[k]
+        else "noise that all points share, one shape all over the band; serves as background"
+        if shared[k]
+        else "a tone, in one line only, which is no resonance"
+        if tone[k]
         else "too wide for a mode of its band: serves the fit as background"
         if wide[k]
         else f"no more than the errors of the survey make: {100 * left[k]:.0f} % of its energy is "

@@ -63,8 +63,8 @@ def of_window(poles: Numbers, damping: Floats, std: Floats, decay: float) -> lis
         hz, share = np.abs(poles[k]) / (2.0 * np.pi), decay / np.abs(poles[k])
         raise InputError(
             f"an exponential window of {1.0 / decay:.4g} s makes {100.0 * share:.3g} % of damping "
-            f"at {hz:.2f} Hz, where all in all {100.0 * (damping[k] + share):.3g} % was measured: it "
-            "was not the window of these functions"
+            f"at {hz:.2f} Hz, where all in all {100.0 * (damping[k] + share):.3g} % was measured: "
+            "it was not the window of these functions"
         )
     return [
         f"the damping that an exponential window of {1.0 / decay:.4g} s adds is taken out of the "

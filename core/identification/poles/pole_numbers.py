@@ -48,12 +48,15 @@ class PoleNumbers:
 
     one_shape: float = number(0.95, "MAC", "above which two close roots have one shape", SURVEYS)
     one_participation: float = number(0.9, "MAC", "below which their participations contradict that", SURVEYS)
+    shared_spread: float = number(0.25, "of the lines", "over which noise that all points share stands, at least", SURVEYS)
+    shared_shape: float = number(0.9, "MAC", "with that noise, above which a root is such noise", SURVEYS)
     satellite: float = number(0.2, "of the strength of a root", "that a satellite has at most", SURVEYS)
     telling: int = number(5, "outputs", "below which shapes tell nothing", SURVEYS)
     faint: float = number(0.01, "of the strength of a root", "that a satellite has at most where shapes are not told", SURVEYS)
     split_widths: float = number(6.0, WIDTHS, "within which the roots of a split mode lie", SURVEYS)
     split_lines: float = number(8.0, "lines", "likewise", SURVEYS)
     touching: float = number(3.0, "lines", "within which two modes of one shape are one", SURVEYS)
+    one_line: float = number(0.97, "of the energy", "of a root, in one line, above which it is a tone and no resonance", SURVEYS)
     widest: float = number(0.3, "of the band", "the half-power bandwidth of a mode", SURVEYS)
 
     risk: float = number(0.01, "-", "that noise alone makes one root somewhere in a band", SURVEYS)

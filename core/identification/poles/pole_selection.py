@@ -12,6 +12,7 @@ from .moments import BandData, basis, excerpt, onto, parts_of
 from .pole_numbers import POLES
 from .pole_splitting import plausible, split_roots, strength
 from .pole_stabilisation import Candidate
+from .shared_noise import without_shared_noise
 from .significance import allowance, best_of_noise, residual_lines, significance
 from .soundness import sound
 from .start_values import complete_participation
@@ -176,6 +177,7 @@ def _look(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Traces]:
     n_line = len(f)
     functions = left[..., :n_line] + 1j * left[..., n_line:]
     power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
+    functions = without_shared_noise(functions)
     return left, traces(f, functions, data.weight > 0.0, POLES.direction * data.error * power)
 
 

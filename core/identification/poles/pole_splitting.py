@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import Floats, Numbers
+from ...arrays import Bools, Floats, Numbers
 from .moments import BandData
 from .pole_numbers import POLES
+from .shared_noise import is_shared_noise
 from .significance import residual_is_white
 from .soundness import satellites, sound
 from .variable_projection import Fit
@@ -63,11 +64,11 @@ def strength(fit: Fit) -> Floats:
 
 def modes_of(data: BandData, f: Floats, fit: Fit) -> Numbers:
     """Whether each root is a mode of the structure in this band, (n_mode,) bool."""
-    return np.asarray(plausible(f, fit) & sound(data, f, fit))
+    return np.asarray(plausible(f, fit) & sound(data, f, fit) & ~is_shared_noise(data, f, fit))
 
 
 def plausible(f: Floats, fit: Fit) -> Numbers:
-    """Whether each root is a mode of the band: inside, damped a little, not its background.
+    """Whether each root is a mode of the band: inside, damped a little, no tone nor background.
 
     Roots beyond the band or as wide as a good part of it stand for what the residual terms do
     not describe; they serve the fit and are not reported.
@@ -76,4 +77,14 @@ def plausible(f: Floats, fit: Fit) -> Numbers:
     hz, damping = magnitude / (2.0 * np.pi), -fit.poles.real / magnitude
     inside = (hz >= f[0]) & (hz <= f[-1])
     narrow = 2.0 * damping * hz < POLES.widest * (f[-1] - f[0])
-    return np.asarray(inside & (damping < POLES.damping_most) & narrow)
+    damped = (damping < POLES.damping_most) & ~tones(f, fit)
+    return np.asarray(inside & damped & narrow)
+
+
+def tones(f: Floats, fit: Fit) -> Bools:
+    """Tell which roots stand in one line only, which shows no resonance, (n_mode,) bool.
+
+    Mains and machines that do not stop make such lines, alike in all functions.
+    """
+    energy = 1.0 / np.abs(2j * np.pi * f[:, None] - fit.poles) ** 2
+    return np.asarray(energy.max(axis=0) > POLES.one_line * energy.sum(axis=0))
