@@ -17,6 +17,7 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates
 from .effects.effect_kind import Scale
+from .effects.twins import factors_of
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
@@ -43,6 +44,7 @@ from .search.model_selection import (
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import polished
+from .search.robust_search import robust
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
 
@@ -79,7 +81,8 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             searcher, found, verdict = _searched(trial, progress)
             tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
     out = modes_out, sensors_out
-    said = build_discovery(request, searcher, found, verdict, trial.zero, tested, out)
+    zero = evaluate(searcher.problem, trial.zero.nuisance, ())
+    said = build_discovery(request, searcher, found, verdict, zero, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
     said = with_damper(request, weighed(trial.request, searcher.problem, best), said)
@@ -118,6 +121,9 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress)
+    if judge(searcher, found).scale > DISCOVERY.estimated:
+        progress("estimating how far off the model is everywhere")
+        searcher, found = robust(searcher, progress)
     searcher, found = _reshaped(searcher, found)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(trial, searcher, found)
@@ -129,7 +135,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
             both = (_polished(trial, searcher, f) for f in (one, as_many))
             one = min(both, key=lambda f: f.objective)
             levels = (*found.levels[: verdict.accepted], one)
-            scale = max(verdict.scale, noise_scale(trial.problem, one))
+            scale = max(verdict.scale, noise_scale(searcher.problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
     return searcher, found, verdict
 
@@ -281,7 +287,7 @@ def _searcher(trial: _Trial) -> Searcher:
     vectors = small.basis.vectors
     inverse = compliance.on(vectors)
     missing = tuple(_missing(c, compliance, vectors, inverse) for c in made)
-    factors = tuple(c.factors(small.basis) for c in made)
+    factors = factors_of(made, small.basis)
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)

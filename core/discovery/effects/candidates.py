@@ -46,6 +46,10 @@ class Candidates:
         `root` is ``turns @ loads``, where few loads make the rows of many places.
     ends : tuple of Ends
         Of each place, where they are stretches of edges.
+    single : Candidates, optional
+        Of sets of equivalent places (`twins`): the same kind at one place, and
+    copies : tuple of tuple of int
+        its rows, of each set; the magnitudes are those of each place.
     """
 
     kind: EffectKind
@@ -63,6 +67,8 @@ class Candidates:
     loads: sp.csr_matrix | None = None
     turns: sp.csr_matrix | None = None
     ends: tuple[Ends, ...] = ()
+    single: Candidates | None = None
+    copies: tuple[tuple[int, ...], ...] = ()
 
     def __len__(self) -> int:
         return len(self.xyz)
@@ -94,6 +100,10 @@ class Candidates:
         """Return the rows of `root` on the basis, (n, q, r)."""
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
+
+    def many(self, row: int) -> int:
+        """Return the number of places that one of the candidates takes."""
+        return len(self.copies[row]) if self.copies else 1
 
     def full(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""

@@ -12,6 +12,7 @@ from .effect_laws import MassLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
 from .structure_points import points_of, translations
+from .twins import with_twins
 
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
@@ -35,7 +36,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     )
     feet, prior = patches_of(structure, scale.size, EFFECTS.feet), (typical, spread)
     on_feet = on_patches(KIND, structure, feet, MassLaw(), scale.masses(), prior, _grids)
-    return (at_points, *on_feet)
+    return (*with_twins(at_points, scale.size), *on_feet)
 
 
 def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, Any], ...]:

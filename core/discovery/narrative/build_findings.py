@@ -9,8 +9,10 @@ import numpy as np
 from ...arrays import Bools, Floats
 from ...registration.alignment import Alignment
 from ..effects.candidates import Candidates, Suspect
+from ..effects.twins import places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
+from ..likelihood.estimated_noise import widened
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.credible_places import Place, between, credible_places
@@ -51,7 +53,11 @@ def build_discovery(
     ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
     own = np.split(spread, ends[:-1])[1:]
     alternatives = _alternatives(outcome)
-    findings = [_finding(outcome, k, off, alternatives) for k, off in enumerate(own)]
+    findings = [
+        _finding(outcome, k, place, off, alternatives)
+        for k, off in enumerate(own)
+        for place in range(len(outcome.places(best.suspects[k])))
+    ]
     nodes = request.placed.observation.sensors.node
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
@@ -66,10 +72,10 @@ def build_discovery(
     elif findings:
         word = "undecided"
         decide = (*decide, *_would_decide(outcome, held_out[0]))
-    elif verdict.scale > NARRATIVE.unexplained:
+    elif (left := verdict.scale * widened(searcher.problem)) > NARRATIVE.unexplained:
         word = "undecided"
         decide = (
-            f"the best explanation leaves {verdict.scale:.0f} times the misfit of a right model; "
+            f"the best explanation leaves {left:.0f} times the misfit of a right model; "
             "further sensors or modes, or an effect that the catalogue does not have",
         )
     elif accused:
@@ -131,42 +137,48 @@ class _Outcome:
         """Return the candidates that a suspect is one of."""
         return self.searcher.problem.catalogue[s.kind]
 
-    def region(self, s: Suspect) -> str:
-        """Say where a suspect is."""
-        return region(self.request.structure.model.geometry, self.of(s).xyz[s.row])
+    def places(self, s: Suspect) -> list[tuple[Candidates, int]]:
+        """Return candidates and row of every place of a suspect, several of twins."""
+        return places_of(self.of(s), s.row)
+
+    def region(self, s: Suspect, place: int = 0) -> str:
+        """Say where a suspect is, or one of its places."""
+        c, row = self.places(s)[place]
+        return region(self.request.structure.model.geometry, c.xyz[row])
 
 
 def _finding(
-    o: _Outcome, number: int, deviation: Floats, alternatives: tuple[Alternative, ...]
+    o: _Outcome, number: int, place: int, deviation: Floats, alternatives: tuple[Alternative, ...]
 ) -> Finding:
     best, scale, masses = o.best, o.verdict.scale, o.request.masses
     s = best.suspects[number]
-    c, spot, sizes = o.of(s), o.region(s), np.exp(s.theta)
+    (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
     places = credible_places(o.searcher, best, number, scale)
     error = [m.place_error for m in c.kind.magnitudes]
     spread = np.hypot(np.hypot(deviation, error), between(places))
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
-    magnitude = magnitude_of(c, s.row, sizes, intervals, masses)
+    magnitude = magnitude_of(c, row, sizes, intervals, masses)
     first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
     modes = [int(o.request.numbers[j]) for j in explained(o.searcher, best, number, scale)]
     next_best = alternatives[0] if alternatives else None
-    where = Where.of(c.where[s.row], c.xyz[s.row], region=spot)
-    text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, next_best)
-    credible, sure = _credible(o, number, places), _confidence(o.verdict)
+    where = Where.of(c.where[row], c.xyz[row], region=spot)
+    many = len(o.places(s))
+    text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, next_best, many)
+    credible, sure = _credible(o, number, place, places), _confidence(o.verdict)
     return Finding("model", c.kind.name, where, magnitude, interval, credible, sure, text)
 
 
-def _credible(o: _Outcome, number: int, places: Sequence[Place]) -> tuple[Where, ...]:
+def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> tuple[Where, ...]:
     """Places, and effects of other kinds, that explain the data about as well as one finding."""
     others = instead(o.searcher, o.found, o.verdict, number)
     every = [*((p.suspect, p.weight) for p in places), *others]
     total = sum(w for _, w in every)
     return tuple(
-        Where.of(c.where[s.row], c.xyz[s.row], weight=w / total, kind=c.kind.name)
+        Where.of(c.where[row], c.xyz[row], weight=w / total, kind=c.kind.name)
         for s, w in every
-        for c in [o.of(s)]
+        for c, row in [o.places(s)[min(place, len(o.places(s)) - 1)]]
     )
 
 
@@ -198,11 +210,12 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
     One of the kinds that were found counts where it says something else: another place.
     """
 
-    def named(f: Fit) -> list[Suspect]:
-        return sorted(f.suspects, key=lambda s: o.of(s).kind.name)
+    def named(f: Fit) -> list[tuple[Candidates, int]]:
+        every = (place for s in f.suspects for place in o.places(s))
+        return sorted(every, key=lambda place: place[0].kind.name)
 
     def kinds_of(f: Fit) -> tuple[str, ...]:
-        return tuple(o.of(s).kind.name for s in named(f))
+        return tuple(c.kind.name for c, _ in named(f))
 
     seen: dict[tuple[str, ...], Fit] = {}
     for f in sorted((f for level in o.found.rivals for f in level), key=o.behind):
@@ -210,8 +223,8 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
             seen.setdefault(kinds_of(f), f)
     out = []
     for kinds, f in seen.items():
-        xyz = [o.of(s).xyz[s.row] for s in named(f)]
-        regions = tuple(map(o.region, named(f)))
+        xyz = [c.xyz[row] for c, row in named(f)]
+        regions = tuple(region(o.request.structure.model.geometry, x) for x in xyz)
         said = " and ".join(
             f"{k.replace('_', ' ')} {r}" for k, r in zip(kinds, regions, strict=True)
         )

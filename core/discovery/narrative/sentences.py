@@ -54,6 +54,7 @@ def sentence_of(
     modes: Sequence[int],
     masses: MassUnit,
     next_best: Alternative | None,
+    many: int = 1,
 ) -> str:
     """Say what is missing, where, which test modes it explains, how sure, and what comes next."""
     values = {**magnitude, "region": region}
@@ -69,6 +70,8 @@ def sentence_of(
         turning = "".join(str(k) for k in values["free_components"])
         values["components"] += f" and freely in direction {turning}"
     text = kind.sentence.format(**values)
+    if many > 1:
+        text += f" (one of {many} alike, by the symmetry of the structure)"
     what = mode_ranges(modes) if modes else "the test a little better"
     text += f" explains {what} (95 %: {low} to {high}"
     text += ", the test hardly tells)" if interval[1] > NARRATIVE.hardly * interval[0] else ")"

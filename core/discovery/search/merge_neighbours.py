@@ -51,4 +51,4 @@ def _one(searcher: Searcher, s: Suspect, t: Suspect) -> bool:
     a, b = _of(searcher, s), _of(searcher, t)
     near = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row])) < SEARCH.one_effect * searcher.size
     along = a.where[s.row].get("components") == b.where[t.row].get("components")
-    return near and along and a.kind.joins(b.kind)
+    return near and along and a.many(s.row) == b.many(t.row) and a.kind.joins(b.kind)

@@ -165,7 +165,8 @@ def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[S
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
-        return a.kind == b.kind and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
+        alike = a.kind == b.kind and a.many(s.row) == b.many(t.row)
+        return alike and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)
 

@@ -56,6 +56,11 @@ class SearchNumbers:
     resonance: float = number(1e-9, "of the eigenvalue", "least gap to a mode in the secular equation", ROUNDING)
     secular_least: float = number(1e-3, "of the eigenvalue", "least eigenvalue that the secular equation foretells")
 
+    estimates: int = number(4, "times", "the errors of the model are estimated, at most")
+    shrinks: float = number(0.9, "of the error before", "that an estimate has to be less to be searched by")
+    every_across: float = number(40.0, "places", "across the structure, each way, that a search by estimated errors looks at, where there are many")
+    every_most: int = number(3000, "grids", "that it looks at one by one, at most", "time")
+
     clearly: float = number(1.3, "of a simple effect's gain", "what a tuned one must gain")
     tuned_tried: int = number(3, "places", "of an absorber that are tried beside what was found")
     second_opinion: float = number(2.5, "of the assumed variance", "what a best hypothesis leaves that asks for a search by a wider noise")

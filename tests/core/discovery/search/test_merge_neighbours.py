@@ -15,7 +15,12 @@ XYZ = np.array([[0.0, 0, 0], [50.0, 0, 0], [500.0, 0, 0]])
 
 def searcher():
     catalogue = [
-        SimpleNamespace(kind=KINDS[kind], xyz=XYZ, where=tuple({"components": [3]} for _ in XYZ))
+        SimpleNamespace(
+            kind=KINDS[kind],
+            xyz=XYZ,
+            where=tuple({"components": [3]} for _ in XYZ),
+            many=lambda row: 1,
+        )
         for kind in ("point_mass", "distributed_mass", "local_stiffness", "ground_spring")
     ]
     return SimpleNamespace(problem=SimpleNamespace(catalogue=catalogue), size=1000.0)

@@ -1,0 +1,77 @@
+"""The same effect at places that are each other's images: two engines, a ring of feet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import Floats, Ints
+from ..reduction.search_basis import Basis
+from .candidates import Candidates
+from .effect_laws import Rows
+from .effect_numbers import EFFECTS
+from .symmetry import images_of, symmetries
+
+
+def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
+    """Return candidates at points, and beside them the same at every set of equivalent grids.
+
+    A set has one magnitude, that of each place. `size` is that of the structure.
+    """
+    at_grids = np.flatnonzero([len(w["grids"]) == 1 for w in single.where])
+    grids = np.array([single.where[i]["grids"][0] for i in at_grids], dtype=np.int64)
+    _, once = np.unique(grids, return_index=True)
+    xyz = single.xyz[at_grids[once]]
+    if not len(xyz):
+        return (single,)
+    sets = [
+        at_grids[once][rows]
+        for s in symmetries(xyz, size)
+        for rows in [images_of(s, xyz, EFFECTS.image_off * size, EFFECTS.twins_apart * size)]
+        if len(rows)
+    ]
+    return (single, *(_together(single, rows) for rows in sets))
+
+
+def _together(single: Candidates, rows: Ints) -> Candidates:
+    q = single.rows_each
+    loads = (rows[:, :, None] * q + np.arange(q)).ravel()
+    return replace(
+        single,
+        xyz=single.xyz[rows[:, 0]],
+        root=single.root[loads],
+        rows_each=q * rows.shape[1],
+        where=tuple(single.where[i] for i in rows[:, 0]),
+        single=single,
+        copies=tuple(map(tuple, rows.tolist())),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class RowsTogether:
+    """Rows of sets of places on a basis, those of a place (n, q, r) one after the other."""
+
+    each: Rows
+    copies: Ints
+
+    def __getitem__(self, rows: Ints) -> Floats:
+        """Return the rows of some sets, (n, m · q, r)."""
+        sets = self.copies[rows]
+        U = self.each[sets.ravel()]
+        return U.reshape(len(sets), sets.shape[1] * U.shape[1], U.shape[2])
+
+
+def factors_of(catalogue: Sequence[Candidates], basis: Basis) -> tuple[Rows, ...]:
+    """Return the rows of all candidates on a basis."""
+    own: dict[int, Rows] = {id(c): c.factors(basis) for c in catalogue if c.single is None}
+    return tuple(
+        own[id(c)] if c.single is None else RowsTogether(own[id(c.single)], np.array(c.copies))
+        for c in catalogue
+    )
+
+
+def places_of(c: Candidates, row: int) -> list[tuple[Candidates, int]]:
+    """Return candidates and row of each place of one of them: more than one of a set of twins."""
+    if c.single is None:
+        return [(c, row)]
+    return [(c.single, i) for i in c.copies[row]]

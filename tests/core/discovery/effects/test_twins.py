@@ -1,0 +1,25 @@
+"""The same effect at places that are each other's images."""
+
+import numpy as np
+from tests.core.discovery.strings import N, hidden, searcher
+
+from trueup.core.discovery.effects.twins import factors_of, places_of, with_twins
+
+
+def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():
+    problem = searcher(hidden()).problem
+    single, pairs = with_twins(problem.catalogue[0], 1.0)
+    assert {tuple(sorted(c)) for c in pairs.copies} == {
+        (i, N - 1 - i) for i in range(N // 2) if N - 1 - 2 * i > 0.05 * (N + 1)
+    }
+    assert pairs.many(0) == 2
+    assert [c is single for c, _ in places_of(pairs, 0)] == [True, True]
+    assert {row for _, row in places_of(pairs, 0)} == set(pairs.copies[0])
+    own, both = factors_of((single, pairs), problem.basis)
+    rows = np.array([3, 1])
+    assert np.allclose(both[rows], pairs.factors(problem.basis)[rows])
+    i, j = pairs.copies[3]
+    expected = np.zeros((N, N))
+    expected[i, i] = expected[j, j] = 1.0
+    assert np.allclose(pairs.full(3).toarray(), expected)
+    assert own[rows].shape == (2, 1, N)
