@@ -44,7 +44,8 @@ class Score:
     @property
     def claims(self) -> bool:
         """Return whether something is claimed that is not there: false, and not said in doubt."""
-        return bool(self.false_alarms) and self.verdict in ("effect", "test_fault")
+        wrong = bool(self.false_alarms) or not self.named
+        return self.verdict in ("effect", "test_fault") and wrong and not self.solved
 
 
 def expected_verdicts(truth: Json) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 
 import numpy as np
@@ -44,6 +45,7 @@ def told(verdict, *kinds, x=0.0):
         (told("effect", "link_spring"), True, False),
         (told("effect", "link_spring", x=101.0), False, True),
         (told("effect", "link_spring", "point_mass"), False, True),
+        (told("effect"), False, True),
     ],
 )
 def test_what_is_said_of_a_cause_outside_the_list(result, solved, claims):
@@ -151,3 +153,18 @@ def test_a_cause_leaves_the_nodes_where_the_test_expects_them(name, frame):
     modes = solve(cause.mesh, cause.truth)
     assert np.isfinite(modes.shapes[cause.mesh.used]).all()
     assert np.abs(modes.hz / bare.hz - 1.0).max() > 1e-4
+
+
+def test_a_run_begins_again_where_it_was_left(monkeypatch, capsys, tmp_path):
+    """What the record holds is neither made nor searched again, and stands in the tables."""
+    from benchmarks.discovery import run
+
+    record = tmp_path / "record.jsonl"
+    record.write_text(outcome(plan(11).name, "outside", told("no_gap")).to_line() + "\n")
+    line = ["", "--seeds", "11", "--record", str(record), "--cache", str(tmp_path)]
+    monkeypatch.setattr("sys.argv", line)
+    assert run.main() == 0
+    assert not (tmp_path / "cases").exists()
+    said = capsys.readouterr().out
+    assert f"| false claims where no listed effect is | {share(0, 1)} |" in said
+    assert json.loads(said.splitlines()[-1])["cases"] == 1
