@@ -9,7 +9,7 @@ from ..errors import InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from .eigen_numbers import EIGEN
 from .mechanisms import diagnose
-from .pencil import Pencil, Spectrum
+from .pencil import Pencil, Spectrum, refuse_indefinite_mass
 
 
 def dense_modes(model: Model | None, pencil: Pencil, rigid: Floats) -> Spectrum:
@@ -25,58 +25,75 @@ def dense_modes(model: Model | None, pencil: Pencil, rigid: Floats) -> Spectrum:
         The mass or the stiffness is not positive semi-definite, or a motion has neither.
     """
     K, M = pencil.K.toarray(), pencil.M.toarray()
-    small = pencil.least_shift
-    diagnose(model, pencil, -small)
-    high, high_vectors, high_residual = _condensed(K, M, rigid)
-    if not len(high):
-        return Spectrum(high, high_vectors, high, -small, complete=True, missed=0)
-    lowest = high[high > EIGEN.lowest * high[-1]].min(initial=high[-1])
-    sigma = -max(0.5 * lowest, small)
-    low, low_vectors, low_residual = _inverse(K, M, rigid, sigma, len(high))
+    refuse_indefinite_mass(pencil)
+    diagnose(model, pencil, -pencil.least_shift)
+    B = _massed_basis(K, M)
+    count = max(B.shape[1] - rigid.shape[1], 0)
+    if not count:
+        none = np.zeros(0)
+        return Spectrum(none, rigid[:, :0], none, -pencil.least_shift, complete=True, missed=0)
+    sigma, factor, low, low_vectors = _inverse(pencil, K, M, rigid, count)
     # errors are eps (lambda - sigma)^2 / (lambda_1 - sigma) below, eps lambda_max above
-    balance = np.sqrt(max(high[-1], -sigma) * (low[0] - sigma))
+    highest = sl.eigh(B.T @ K @ B, eigvals_only=True, subset_by_index=[B.shape[1] - 1] * 2)[0]
+    balance = np.sqrt(max(highest, -sigma) * (low[0] - sigma))
     split = int(np.count_nonzero(low < balance))
-    X = np.hstack([low_vectors[:, :split], high_vectors[:, split:]])
-    X -= rigid @ (rigid.T @ M @ X)
+    low_vectors = low_vectors[:, :split]
+    low_vectors = _orthonormal(M, low_vectors - rigid @ (rigid.T @ M @ low_vectors))
+    B = B @ _complement(B.T @ M @ np.hstack([rigid, low_vectors]))
+    high, y = np.linalg.eigh(B.T @ K @ B)
+    values, X = np.concatenate([low[:split], high]), np.hstack([low_vectors, B @ y])
+    error = X - sl.cho_solve((factor, True), M @ X) * (values - sigma)
+    residual = np.sqrt(np.maximum(np.einsum("ij,ij->j", error, M @ error), 0.0))
+    condensed = np.linalg.norm(B.T @ (K @ (B @ y)) - y * high, axis=0) / np.abs(high)
+    residual[split:] = np.minimum(residual[split:], condensed)  # either bounds the error
     return Spectrum(
-        np.concatenate([low[:split], high[split:]]),
-        sl.solve_triangular(sl.cholesky(X.T @ M @ X, lower=True), X.T, lower=True).T,
-        np.concatenate([low_residual[:split], high_residual[split:]]),
+        values,
+        X,
+        residual,
         sigma,
         complete=True,
         missed=0,
     )
 
 
-def _condensed(K: Floats, M: Floats, rigid: Floats) -> tuple[Floats, Floats, Floats]:
-    """Modes by static condensation of the motions without mass: values, vectors, residuals."""
+def _massed_basis(K: Floats, M: Floats) -> Floats:
+    """M-orthonormal basis of the motions with mass; those without follow statically."""
     B, N = _mass_range(K, M)
-    if N.shape[1]:
-        B = B - N @ np.linalg.solve(N.T @ K @ N, N.T @ K @ B)
-    B = B @ _complement(B.T @ M @ rigid)
-    condensed = B.T @ K @ B
-    condensed = (condensed + condensed.T) / 2.0
-    values, y = np.linalg.eigh(condensed)
-    error = np.linalg.norm(condensed @ y - y * values, axis=0)
-    return values, B @ y, error / np.maximum(np.abs(values), np.finfo(float).tiny)
+    return B - N @ np.linalg.solve(N.T @ K @ N, N.T @ K @ B) if N.shape[1] else B
+
+
+def _orthonormal(M: Floats, X: Floats) -> Floats:
+    """Vectors of the same span in the same order, M-orthonormal (twice is enough)."""
+    for _ in range(2):
+        X = sl.solve_triangular(sl.cholesky(X.T @ M @ X, lower=True), X.T, lower=True).T
+    return X
 
 
 def _inverse(
-    K: Floats, M: Floats, rigid: Floats, sigma: float, count: int
-) -> tuple[Floats, Floats, Floats]:
-    """Modes of (K - sigma M)^-1 M: values, vectors, residuals, the lowest `count`."""
-    A = K - sigma * M
-    L = sl.cholesky(A, lower=True)
-    half = sl.solve_triangular(L, M, lower=True)
-    operator = sl.solve_triangular(L, half.T, lower=True)
-    keep = _complement(L.T @ rigid)
-    operator = keep.T @ operator @ keep
-    theta, w = np.linalg.eigh((operator + operator.T) / 2.0)
+    pencil: Pencil, K: Floats, M: Floats, rigid: Floats, count: int
+) -> tuple[float, Floats, Floats, Floats]:
+    """Modes of (K - sigma M)^-1 M: shift, Cholesky factor, values, vectors, the lowest `count`.
+
+    The shift follows the lowest mode down: beside a larger one its eigenvalue would be rounding.
+    """
+    least = pencil.least_shift
+    sigma = -max(EIGEN.shift_most * float(np.median(pencil.stiffness_over_mass)), least)
+    for _ in range(EIGEN.shifts):
+        L = sl.cholesky(K - sigma * M, lower=True)
+        half = sl.solve_triangular(L, M, lower=True)
+        operator = sl.solve_triangular(L, half.T, lower=True)
+        keep = _complement(L.T @ rigid)
+        operator = keep.T @ operator @ keep
+        operator = (operator + operator.T) / 2.0
+        last = len(operator) - 1
+        lowest = sigma + 1.0 / sl.eigh(operator, eigvals_only=True, subset_by_index=[last] * 2)[0]
+        if -sigma <= max(EIGEN.far_shift * lowest, least):
+            break
+        sigma = -max(EIGEN.nearer[0] * lowest, -(EIGEN.nearer[1] ** 2) * sigma, least)
+    theta, w = np.linalg.eigh(operator)
     theta = np.maximum(theta[::-1][:count], np.finfo(float).tiny)
     X = sl.solve_triangular(L.T, keep @ w[:, ::-1][:, :count]) / np.sqrt(theta)
-    error = X - sl.cho_solve((L, True), M @ X) / theta
-    norm = np.sqrt(np.maximum(np.einsum("ij,ij->j", error, M @ error), 0.0))
-    return sigma + 1.0 / theta, X, norm
+    return sigma, L, sigma + 1.0 / theta, X
 
 
 def _mass_range(K: Floats, M: Floats) -> tuple[Floats, Floats]:

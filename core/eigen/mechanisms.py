@@ -15,7 +15,7 @@ from ..numerics.factorisation import Backend, Factorisation, factorise
 from .eigen_numbers import EIGEN
 from .pencil import Pencil
 
-_NEGATIVE = (
+NEGATIVE = (
     "the stiffness is not positive semi-definite: "
     "look for negative springs, moduli or section values near {}"
 )
@@ -27,22 +27,6 @@ class Massless(InputError):
     def __init__(self, message: str, motions: Floats) -> None:
         super().__init__(message)
         self.motions = motions
-
-
-def strain_free(pencil: Pencil, X: Floats, energy: Floats) -> Numbers:
-    """Which vectors X (n, n_mode) have an `energy` x^T K x that is rounding of the stiffness.
-
-    Raises
-    ------
-    InputError
-        A strain energy is negative.
-    """
-    size = np.einsum("ij,ij,i->j", X, X, np.abs(pencil.k_diagonal))
-    rounding = max(EIGEN.strain, EIGEN.digits * pencil.precision) * size
-    below = energy < -rounding
-    if below.any():
-        raise InputError(_NEGATIVE.format(where(None, pencil, X[:, below])))
-    return np.asarray(energy <= EIGEN.strain * size)
 
 
 def refuse_unresisted(model: Model | None, pencil: Pencil, sigma: float, f: Factorisation) -> None:
@@ -69,23 +53,36 @@ def diagnose(
     a strong shift s, where only motions without stiffness and mass stay near zero, then at sigma
     for a negative stiffness.
     """
-    strong = min(sigma, -EIGEN.strong * float(pencil.stiffness_over_mass[-1]))
+    strong = min(sigma, -float(np.median(pencil.stiffness_over_mass)))
     for shift in (strong, sigma):
         A = (pencil.K - shift * pencil.M).tocsr()
         D = A.diagonal()
         if not (D > 0.0).all():
             names = [pencil.name(int(r)) for r in np.flatnonzero(~(D > 0.0))]
-            raise InputError(_NEGATIVE.format(", ".join(names[: EIGEN.named])))
+            raise InputError(NEGATIVE.format(", ".join(names[: EIGEN.named])))
         scale = sp.diags(1.0 / np.sqrt(D))
         scaled = (scale @ A @ scale).tocsr()
         dense = pencil.n <= EIGEN.dense
         mu, Y = np.linalg.eigh(scaled.toarray()) if dense else _smallest(scaled, backend)
         X = scale @ Y
         if mu[0] < -max(EIGEN.singular, EIGEN.digits * pencil.precision):
-            raise InputError(_NEGATIVE.format(where(model, pencil, X[:, :1])))
-        free = np.abs(mu) <= EIGEN.singular
-        if shift == strong and free.any():
-            raise mechanism(model, pencil, X[:, free], massless=True)
+            raise InputError(NEGATIVE.format(where(model, pencil, X[:, :1])))
+        X = _of_neither(pencil, X[:, np.abs(mu) <= EIGEN.singular])
+        if shift == strong and X.shape[1]:
+            raise mechanism(model, pencil, X, massless=True)
+
+
+def _of_neither(pencil: Pencil, X: Floats) -> Floats:
+    """Return combinations of X (n, k) whose energies are both rounding, beside their diagonals."""
+    if not X.shape[1]:
+        return X
+    stiff, massive = ((X.T * np.abs(d)) @ X for d in (pencil.k_diagonal, pencil.m_diagonal))
+    usual = np.trace(stiff) / float(np.median(pencil.stiffness_over_mass))
+    k, m = np.trace(stiff), max(np.trace(massive), EIGEN.some_mass * usual)
+    energy = X.T @ (pencil.K @ X) / k + X.T @ (pencil.M @ X) / m
+    size = stiff / k + massive / m
+    mu, turn = sl.eigh(energy, size)
+    return np.asarray(X @ turn[:, mu <= EIGEN.singular])
 
 
 def _smallest(scaled: sp.csr_matrix, backend: Backend | None) -> tuple[Floats, Floats]:

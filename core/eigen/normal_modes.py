@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, frozen
+from ..arrays import Floats, Numbers, frozen
 from ..data.modes import Modes
 from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
@@ -14,10 +14,11 @@ from ..noun import Noun
 from ..numerics.factorisation import Backend, Factorisation, best_backend, factorise
 from .dense_solver import dense_modes
 from .eigen_numbers import EIGEN
-from .mechanisms import Massless, hold, mechanism, refuse_linkage, strain_free
+from .mechanisms import Massless, hold, mechanism, refuse_linkage
 from .pencil import Pencil, Spectrum
 from .rigid_body_modes import RigidBody, rigid_body
 from .shift_invert_solver import Request, sparse_modes
+from .soft_modes import refined
 
 
 @dataclass(frozen=True)
@@ -28,11 +29,17 @@ class Checks:
     A = K - sigma M, which bounds the relative error of lambda - sigma; `orthonormality` the
     largest entry of X^T M X - 1; `missed` the eigenvalues that the inertia of K - s M (Sturm
     count) shows below s but the solution does not have; None where they were not counted.
+    The others are of the matrices as they were given, whatever was done to solve them:
+    `backward_error` is the largest ||K x - lambda M x|| beside ||D x||, with the forces scaled by
+    D^-1/2 and the motions by D^1/2, D the diagonal of K + lambda M; `rayleigh` the largest
+    |x^T K x / x^T M x / lambda - 1| of the modes whose strain energy is more than rounding.
     """
 
     residual: float
     orthonormality: float
     missed: int | None
+    backward_error: float
+    rayleigh: float
 
     def __post_init__(self) -> None:
         if not self.residual <= EIGEN.residual:
@@ -44,6 +51,12 @@ class Checks:
             raise CheckError(
                 f"the modes are orthonormal to {self.orthonormality:.1e} only "
                 f"(limit {EIGEN.orthonormal:g})"
+            )
+        if not max(self.backward_error / EIGEN.backward, self.rayleigh / EIGEN.rayleigh) <= 1.0:
+            raise CheckError(
+                f"the modes satisfy the matrices to {self.backward_error:.1e} only (limit "
+                f"{EIGEN.backward:g}), Rayleigh's quotients to {self.rayleigh:.1e} (limit "
+                f"{EIGEN.rayleigh:g}): masses or stiffnesses differ by too many decades"
             )
         if self.missed:
             raise CheckError(
@@ -162,9 +175,9 @@ def solve(
         raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
     pencil = Pencil.of(model, p)
     owner = model if isinstance(model, Model) else None
-    none = np.zeros((pencil.n, 0))
-    body = rigid_body(owner, pencil) if owner else RigidBody(none, none, ())
-    rigid = body.modes
+    given = pencil
+    body = rigid_body(owner, pencil) if owner else None
+    rigid = body.modes if body else np.zeros((pencil.n, 0))
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
     wanted = n_modes if n_modes is not None or fmax is not None else EIGEN.modes
     chosen = backend or best_backend()
@@ -183,7 +196,8 @@ def solve(
                 raise
             pencil, rigid, note = hold(owner, pencil, found.motions, rigid)
             held.append(note)
-    zero = _without_strain(pencil, spectrum)
+    spectrum, soft, doubt = refined(pencil, body, spectrum)
+    zero = _without_strain(spectrum, soft)
     notes = _refuse_mechanism(owner, pencil, body, spectrum.vectors[:, :zero])
     notes += held
     if owner:
@@ -195,12 +209,9 @@ def solve(
         keep = min(keep, int(np.count_nonzero(values <= limit)))
     notes += _notes(pencil, body, n_zero, wanted if limit is None else None, len(values))
     X = vectors[:, :keep]
-    gram = X.T @ (pencil.M @ X)
-    checks = Checks(
-        float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0)),
-        float(np.abs(gram - np.eye(keep)).max(initial=0.0)),
-        spectrum.missed,
-    )
+    notes += _in_doubt(doubt[zero : max(keep - rigid.shape[1], zero)], n_zero)
+    residual = float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0))
+    checks = _checked(given, values[:keep], X, residual, spectrum.missed)
     factor = None
     if keep_factor:
         factor = spectrum.factor or factorise(pencil.shifted(spectrum.sigma), True, chosen)
@@ -224,15 +235,37 @@ def modes_of(model: Model, solution: Eigensolution) -> Modes:
     return Modes(hz, np.asarray(shapes), model.dofs, generalized_mass=mass, source="analysis")
 
 
-def _without_strain(pencil: Pencil, spectrum: Spectrum) -> int:
+def _checked(
+    given: Pencil, values: Floats, X: Floats, residual: float, missed: int | None
+) -> Checks:
+    """Check modes by the matrices as they were given."""
+    off = backward = rayleigh = 0.0
+    k, m = np.abs(given.k_diagonal), given.m_diagonal
+    for first in range(0, len(values), EIGEN.width):
+        few = slice(first, first + EIGEN.width)
+        lambda_, x = values[few], X[:, few]
+        KX, MX = given.K @ x, given.given_mass @ x
+        gram = X.T @ MX - np.eye(len(values))[:, few]
+        off = max(off, float(np.abs(gram).max()))
+        energy = np.einsum("ij,ij->j", x, KX)
+        firm = lambda_ > EIGEN.soft * np.einsum("ij,ij,i->j", x, x, k)
+        mass = 1.0 + gram[few].diagonal()
+        quotient = energy[firm] / mass[firm] / lambda_[firm]
+        rayleigh = max(rayleigh, float(np.abs(quotient - 1.0).max(initial=0.0)))
+        KX -= MX * lambda_
+        D = k[:, None] + m[:, None] * np.maximum(np.abs(lambda_), given.least_shift)
+        D[D == 0.0] = 1.0
+        size = np.einsum("ij,ij,ij->j", x, x, D)
+        backward = max(backward, float(np.sqrt(((KX * KX / D).sum(axis=0) / size).max())))
+    return Checks(residual, off, missed, backward, rayleigh)
+
+
+def _without_strain(spectrum: Spectrum, soft: Numbers) -> int:
     """Count the leading modes, rigid-body ones apart, whose strain energy is rounding."""
-    values = spectrum.values
-    count = min(len(values), EIGEN.looked_at)
-    if not count:
-        return 0
-    zero = strain_free(pencil, spectrum.vectors[:, :count], values[:count])
-    elastic = values[:count][~zero]
-    first = int(np.argmin(zero)) if len(elastic) else count
+    values = spectrum.values[: EIGEN.looked_at]
+    soft = soft[: EIGEN.looked_at]
+    elastic = values[~soft]
+    first = int(np.argmin(soft)) if len(elastic) else len(values)
     if first and len(elastic) and abs(values[first - 1]) > EIGEN.without_strain * elastic[0]:
         return 0
     return first
@@ -248,9 +281,11 @@ def _joined(pencil: Pencil, rigid: Floats, spectrum: Spectrum) -> tuple[Floats, 
     return values, vectors
 
 
-def _refuse_mechanism(model: Model | None, pencil: Pencil, body: RigidBody, Z: Floats) -> list[str]:
+def _refuse_mechanism(
+    model: Model | None, pencil: Pencil, body: RigidBody | None, Z: Floats
+) -> list[str]:
     """Raise for motions Z, (n, k), without strain energy that no rigid body makes."""
-    if model is None or not Z.shape[1]:
+    if body is None or not Z.shape[1]:
         return []
     nearly, mechanisms, replaced = body.split(pencil, Z)
     if mechanisms.shape[1]:
@@ -263,12 +298,27 @@ def _refuse_mechanism(model: Model | None, pencil: Pencil, body: RigidBody, Z: F
     ]
 
 
+def _in_doubt(doubt: Floats, below: int) -> list[str]:
+    """Say which of the modes after the first `below` are uncertain by the rounding of K."""
+    rows = np.flatnonzero(doubt > EIGEN.doubt)
+    if not len(rows):
+        return []
+    worst = doubt[rows].max() / 2  # of the frequency
+    return [
+        f"the stiffness that mode{'s' if len(rows) > 1 else ''} "
+        f"{', '.join(str(below + 1 + k) for k in rows[: EIGEN.named])} "
+        f"feel{'s' if len(rows) == 1 else ''} is next to the rounding of the stiffest springs "
+        f"beside: uncertain by {f'about {100 * worst:.1g} %' if worst < 1 else 'any amount'}; "
+        "use softer ones for what is to be rigid, or rigid elements"
+    ]
+
+
 def _notes(
-    pencil: Pencil, body: RigidBody, n_zero: int, wanted: int | None, found: int
+    pencil: Pencil, body: RigidBody | None, n_zero: int, wanted: int | None, found: int
 ) -> list[str]:
     notes = []
-    pieces = len(body.pieces)
-    if pieces and body.held:
+    pieces = len(body.pieces) if body else 0
+    if body and pieces and body.held:
         rows = body.pieces[0]
         grids = dict.fromkeys(pencil.name(int(r)).split(":")[0] for r in rows)
         shown = ", ".join(list(grids)[: EIGEN.named]) + (

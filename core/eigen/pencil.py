@@ -40,6 +40,7 @@ class Pencil:
         self.n = int(self.K.shape[0])
         self.labels = labels
         self._check_shapes()
+        self.given_mass = self.M
         self.M = _without_rounding(self.K, self.M)
         self._check()
         upper_k, upper_m = sp.triu(self.K, format="csr"), sp.triu(self.M, format="csr")
@@ -164,15 +165,22 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
     """Take out rows and columns of M that are the rounding of zero, positive or negative.
 
     Massless directions, as the torsion of a bar, that a displacement coordinate system mixes
-    with others keep some 1e-16 of their masses. A semi-definite matrix has no entries beside a
-    zero on its diagonal.
+    with others keep some 1e-16 of the masses that they are mixed with. So a row is rounding where
+    each of its entries is, beside the mass of the other degree of freedom; how a mass compares
+    with those elsewhere says nothing. Scaled by the stiffness, which rids it of units.
     """
-    k, m = np.abs(K.diagonal()), M.diagonal()
-    both = (k > 0.0) & (m > 0.0)
-    if not both.any():
-        return M
-    usual = float(np.quantile(m[both] / k[both], EIGEN.usual))
-    noise = (np.diff(M.indptr) > 0) & (np.abs(m) < EIGEN.mass_rounding * usual * k)
+    k = np.abs(K.diagonal())
+    d = 1.0 / np.sqrt(np.where(k > 0.0, k, 1.0))
+    scaled = sp.csr_matrix(abs(sp.diags(d) @ M @ sp.diags(d)))
+    m = scaled.diagonal()
+    row = np.repeat(np.arange(len(m)), np.diff(scaled.indptr))
+    beside = row != scaled.indices
+    row, other, entry = row[beside], scaled.indices[beside], scaled.data[beside]
+    mixed, largest = np.zeros(len(m), bool), np.zeros(len(m))
+    mixed[row] = True
+    mixed[row[entry > EIGEN.mass_rounding * m[other]]] = False
+    np.maximum.at(largest, row, m[other])
+    noise = mixed & (m < EIGEN.mass_rounding * largest)
     if not noise.any():
         return M
     kept = sp.diags((~noise).astype(float))

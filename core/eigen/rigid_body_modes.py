@@ -31,12 +31,33 @@ class RigidBody:
         Rows of each separate piece that has rigid-body modes, the smallest first.
     held : int
         Number of separate pieces that have none.
+    unit, force : (n_free, 7) float
+        The motions of a rigid body as far as the pieces can follow, and what the stiffness has
+        against them: exactly nothing where that is rounding.
+    label : (n_free,) int
+        Which piece a degree of freedom belongs to.
     """
 
     modes: Floats
     motions: Floats
     pieces: tuple[Ints, ...]
-    held: int = 0
+    held: int
+    unit: Floats
+    force: Floats
+    label: Ints
+
+    def part(self, stiffness: Floats, Z: Floats) -> tuple[Floats, Floats]:
+        """Return the part of Z (n_free, k) that pieces make as rigid bodies, and its forces.
+
+        What is left over has the least sum of squares weighted by `stiffness` (n_free,).
+        """
+        rigid, force = np.zeros_like(Z), np.zeros_like(Z)
+        root = np.sqrt(stiffness)[:, None]
+        for rows in _rows_of(self.label):
+            unit = self.unit[rows]
+            c, *_ = np.linalg.lstsq(root[rows] * unit, root[rows] * Z[rows], rcond=None)
+            rigid[rows], force[rows] = unit @ c, self.force[rows] @ c
+        return rigid, force
 
     def split(self, pencil: Pencil, Z: Floats) -> tuple[Floats, Floats, Floats]:
         """Tell motions that are nearly those of a rigid body from mechanisms.
@@ -73,8 +94,7 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     motions: list[tuple[Ints, Floats]] = []
     pieces: list[Ints] = []
     held = 0
-    order = np.argsort(label, kind="stable")
-    for rows in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
+    for rows in _rows_of(label):
         used = slice(6, 7) if scalar[rows].all() else slice(0, 6)
         u, mu, ku = U[rows, used], mass[rows, used], force[rows, used]
         free = _strain_free(u, mu, ku, noise[rows])
@@ -86,7 +106,14 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
         if (np.abs(ku[:, :3]) <= noise[rows, None]).all():
             motions.append((rows, _orthonormal(u, mu)))
     found, moved = (_assembled(parts, pencil.n) for parts in (modes, motions))
-    return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held)
+    force[np.abs(force) <= noise[:, None]] = 0.0
+    return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held, U, force, label)
+
+
+def _rows_of(label: Ints) -> list[Ints]:
+    """Rows of each piece."""
+    order = np.argsort(label, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
 def _assembled(parts: Sequence[tuple[Ints, Floats]], n: int) -> Floats:

@@ -63,7 +63,7 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
             found = replace(found, factor=None)
         if not request.count:
             return found
-        gap = _gap(found, elastic)
+        gap = _gap(pencil, found, elastic)
         if gap is not None:
             have = int(np.count_nonzero(_estimates(found) < gap[0]))
             missed = _inertia(pencil, gap, request.backend) - n_rigid - have
@@ -87,12 +87,19 @@ def _started(
     typical = float(np.median(pencil.stiffness_over_mass))
     usual, limit = (2.0 * np.pi * EIGEN.first_shift) ** 2, request.limit
     first = usual if limit is None else EIGEN.below_limit * limit
-    sigma = -float(np.clip(first, pencil.least_shift, EIGEN.shift_most * typical))
-    factor = _definite(model, pencil, sigma, request.backend)
-    refuse_unresisted(model, pencil, sigma, factor)
+    least = pencil.least_shift
+    sigma = -float(np.clip(first, least, EIGEN.shift_most * typical))
     rng = np.random.default_rng(request.seed)
     width = EIGEN.width if request.backend == "pardiso" else EIGEN.narrow
+    factor = None
     for attempt in range(EIGEN.shifts):
+        factor = _definite(model, pencil, sigma, request.backend, factor)
+        if factor is None:  # by rounding: no mode is that near to zero for certain
+            least = -EIGEN.larger_shift * sigma
+            sigma = -least
+            continue
+        if attempt == 0:
+            refuse_unresisted(model, pencil, sigma, factor)
         start = rng.standard_normal((pencil.n, min(width, pencil.n)))
         lanczos = BlockLanczos(factor.solve, pencil.M, start, rigid, _room(elastic))
         lanczos.step()
@@ -101,12 +108,17 @@ def _started(
                 break
             lanczos.advance()
             lanczos.step()
-        better = _better_shift(sigma, lanczos.ritz()[0], elastic)
-        if better is None or -better < pencil.least_shift or attempt == EIGEN.shifts - 1:
-            break
+        theta = lanczos.ritz()[0]
+        if theta[-1] < -EIGEN.negative * theta[0] and factor.negative:
+            diagnose(model, pencil, sigma, request.backend)
+            least = -EIGEN.larger_shift * sigma
+            sigma, factor = -least, None
+            continue
+        better = _better_shift(sigma, theta, elastic)
+        if better is None or -better < least or attempt == EIGEN.shifts - 1:
+            return sigma, factor, lanczos
         sigma = better
-        factor = _definite(model, pencil, sigma, request.backend, factor)
-    return sigma, factor, lanczos
+    raise CheckError("the stiffness is too badly conditioned to factorise")
 
 
 def _definite(
@@ -115,15 +127,21 @@ def _definite(
     sigma: float,
     backend: Backend,
     old: Factorisation | None = None,
-) -> Factorisation:
-    """Factor of K - sigma M, on the pattern of an old one; `InputError` where it has none."""
+) -> Factorisation | None:
+    """Factor of K - sigma M, on the pattern of an old one; None where rounding leaves none.
+
+    Raises
+    ------
+    InputError
+        It is not rounding that leaves none; the message names where.
+    """
     try:
         if old is None:
             return factorise(pencil.shifted(sigma), True, backend, pencil.groups)
         old.refactorise(pencil.shifted(sigma))
     except NotDefinite:
         diagnose(model, pencil, sigma, backend)
-        raise CheckError("the stiffness is too badly conditioned to factorise") from None
+        return None
     return old
 
 
@@ -199,9 +217,13 @@ def _polished(
     return Spectrum(sigma + alpha, Y @ C, residual, sigma, False, None, factor)
 
 
-def _widest_gap(values: Floats, first: int) -> int | None:
-    """Position k >= first of a clear gap between values[k - 1] and values[k], else None."""
-    ahead = np.diff(values[first - 1 :]) / np.abs(values[first:])
+def _widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:
+    """Position k >= first of a clear gap between values[k - 1] and values[k], else None.
+
+    Where values differ by their `rounding` only there is none.
+    """
+    step = np.diff(values[first - 1 :])
+    ahead = np.where(step > rounding, step / np.abs(values[first:]), 0.0)
     clear = np.flatnonzero(ahead > EIGEN.clear)
     if len(clear):
         return first + int(clear[0])
@@ -213,13 +235,14 @@ def _estimates(found: Spectrum) -> Floats:
     return np.concatenate([found.values, found.ahead])
 
 
-def _gap(found: Spectrum, elastic: int) -> tuple[float, float] | None:
+def _gap(pencil: Pencil, found: Spectrum, elastic: int) -> tuple[float, float] | None:
     """Bounds of an interval without modes above the first `elastic`, if there is one in sight."""
     values = _estimates(found)
     if found.complete:
         top = abs(values[-1]) - found.sigma
         return EIGEN.above[0] * top, EIGEN.above[1] * top
-    k = _widest_gap(values, elastic)
+    size = np.abs(pencil.k_diagonal) @ found.vectors**2
+    k = _widest_gap(values, elastic, EIGEN.signs * float(size.max()))
     if k is None:
         return None
     wide = values[k] - values[k - 1]
@@ -241,7 +264,9 @@ def _with_missed(
     pencil: Pencil, rigid: Floats, found: Spectrum, missed: int, request: Request, attempt: int
 ) -> Spectrum:
     """Search again, M-orthogonally to all that was found: another start, as wide as needed."""
-    factor = found.factor or _definite(None, pencil, found.sigma, request.backend)
+    factor = found.factor or factorise(
+        pencil.shifted(found.sigma), True, request.backend, pencil.groups
+    )
     locked = np.hstack([rigid, found.vectors])
     rng = np.random.default_rng(request.seed + 1000 * attempt)
     width = min(missed + EIGEN.guard, EIGEN.widest) if missed > EIGEN.guard else EIGEN.width

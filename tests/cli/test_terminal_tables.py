@@ -148,7 +148,7 @@ def test_solve() -> None:
     modes = Table([ModeRow(1e-5, 1.0), ModeRow(71.26832, 1.0)])
     answer = SolveTables(
         deck_file="duct.bdf", modes=modes, rigid_body_modes=1, mass=0.0123,
-        centre_of_gravity=np.array([1.0, 2.0, 3.0]), checks=Checks(1e-9, 1e-12, 0),
+        centre_of_gravity=np.array([1.0, 2.0, 3.0]), checks=Checks(1e-9, 1e-12, 0, 1e-12, 1e-9),
         degrees_of_freedom=12, backend="dense", seconds=0.1, warnings=(),
     )  # fmt: skip
     text = shown(terminal_tables.solve_table(answer))

@@ -224,15 +224,18 @@ def test_a_mode_that_stays_missing_is_an_error(membrane, monkeypatch):
         solve((K, M), 12)
 
 
-def test_checks_that_are_not_met_raise():
-    for bad in (
-        {"residual": 1e-3, "orthonormality": 0.0, "missed": 0},
-        {"residual": 0.0, "orthonormality": 1e-3, "missed": 0},
-        {"residual": 0.0, "orthonormality": 0.0, "missed": 1},
-        {"residual": np.nan, "orthonormality": 0.0, "missed": 0},
-    ):
-        with pytest.raises(CheckError):
-            normal_modes.Checks(**bad)
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"residual": 1e-3}, {"residual": np.nan}, {"orthonormality": 1e-3}, {"missed": 1},
+        {"backward_error": 1e-3}, {"backward_error": np.nan}, {"rayleigh": 1e-3},
+    ],
+)  # fmt: skip
+def test_checks_that_are_not_met_raise(bad):
+    good = dict.fromkeys(["residual", "orthonormality", "backward_error", "rayleigh"], 0.0)
+    assert normal_modes.Checks(**good, missed=0).missed == 0
+    with pytest.raises(CheckError):
+        normal_modes.Checks(**{**good, "missed": 0, **bad})
 
 
 @pytest.mark.parametrize("hertz", [1e-9, 1e-3, 1.0, 1e4, 1e9])

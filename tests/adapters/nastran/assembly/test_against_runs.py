@@ -1,0 +1,29 @@
+"""Whole decks with extreme masses against the frequencies that NX printed for them."""
+
+import numpy as np
+import pytest
+
+from trueup.adapters.nastran import build_model, read_deck
+from trueup.core.eigen.normal_modes import solve
+
+
+def test_structure_on_a_seismic_mass(data):
+    """A base of 1e9 under some hundredths: no small mass is the rounding of a large one."""
+    found = solve(build_model(read_deck(data / "nastran/seismic_mass/good_sine.dat")), 12)
+    nx = [10.41889, 20.83568, 63.25364, 126.40667, 176.32675]
+    assert found.rigid_body_modes == 6
+    np.testing.assert_allclose(found.frequencies_hz[6:11], nx, rtol=1e-6)
+
+
+@pytest.mark.parametrize("number", [6, 14])
+def test_rotor_condensed_to_grids_with_hardly_any_mass(data, number):
+    """NX at rest, lambda = -a +- i omega with dashpots: |lambda| is nearly the undamped one.
+
+    Behind the sixth mode come those of condensed masses of 1e-12 to 1e-25, at a million hertz.
+    """
+    found = solve(build_model(read_deck(data / "nastran/rotor/rot063akd2s_107.bdf")), number)
+    real = np.array([0.99949, 0.99951, 8.91852, 8.91875, 143.13274, 12821.45])
+    hz = np.array([50.148106, 50.148694, 149.79423, 149.79644, 601.69805, 5320.906])
+    nx = np.hypot(real / (2.0 * np.pi), hz)
+    np.testing.assert_allclose(found.frequencies_hz[:6], nx, rtol=5e-4)
+    assert found.checks.rayleigh < 1e-6
