@@ -1,19 +1,22 @@
-"""``trueup demo [NAME]``."""
+"""``trueup demo [NAME]``: steps run two at a time, the last first, since it takes longest."""
 
 from __future__ import annotations
 
 import shutil
 import tempfile
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.resources import files
+from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from ...core.errors import InputError, Place
+from ...verbs.open_run import open_run
 from ...verbs.study import read_study
 from ..console import stdout, working
 from ..options import ForceOption, Output, QuietOption
@@ -68,21 +71,27 @@ def demo(
     _copy(name, folder, force)
     console = stdout()
     rows = []
-    for step in _DEMOS[name]:
-        study = replace(read_study(folder / step.study), rotate=step.rotate)
-        with working(step.says, Output(quiet=quiet)):
-            found = _verb(step.verb)(study=study)
-        run = found.save(folder / "runs" / step.folder)
-        rows.append((step, found))
-        if not quiet:
-            _show(console, step, found, run)
+    steps = _DEMOS[name]
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        begun = {step: pool.submit(_ran, folder, step) for step in reversed(steps)}
+        for step in steps:
+            with working(step.says, Output(quiet=quiet)):
+                run = begun[step].result()
+            found = cast("Run", open_run(run))
+            rows.append((step, found))
+            if not quiet:
+                _show(console, step, found, run)
     console.print(_summary(rows))
     console.print(f"files, run folders and reports: {folder}", markup=False)
 
 
-def _verb(name: str) -> Callable[..., Run]:
-    found: Callable[..., Run] = getattr(import_module(f"...verbs.{name}", __package__), name)
-    return found
+def _ran(folder: Path, step: Step) -> Path:
+    """Run a step and return its run folder."""
+    study = replace(read_study(folder / step.study), rotate=step.rotate)
+    verb: Callable[..., Run] = getattr(
+        import_module(f"...verbs.{step.verb}", __package__), step.verb
+    )
+    return verb(study=study).save(folder / "runs" / step.folder)
 
 
 def _copy(name: str, folder: Path, force: bool) -> None:

@@ -30,11 +30,21 @@ class Compliance:
         ends = list(zip(loads.indptr[:-1], loads.indptr[1:], strict=True))
         keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
         new = {k: i for i, k in enumerate(keys) if k not in self._known}
-        rows = np.array(list(new.values()), dtype=np.int64)
-        for some in np.array_split(rows, -(-len(rows) // REDUCTION.at_once)) if len(rows) else ():
-            exact = self._factor.compliances(loads[some].T.toarray())
-            self._known |= {keys[i]: float(x) for i, x in zip(some, exact, strict=True)}
+        if new:
+            exact = self._each(loads[list(new.values())])
+            self._known |= dict(zip(new, exact.tolist(), strict=True))
         return np.array([self._known[k] for k in keys])
+
+    def _each(self, loads: sp.csr_matrix) -> Floats:
+        """Return the compliance of loads (n,), by that of what they pull at where this is less."""
+        n, dofs = loads.shape[0], np.unique(loads.indices)
+        if len(dofs) < min(n, REDUCTION.shared_at_once):
+            unit = sp.identity(loads.shape[1], format="csr")[dofs]
+            pulled = loads[:, dofs].toarray()
+            return np.asarray(np.sum((pulled @ self.among(unit)) * pulled, axis=1))
+        parts = np.array_split(np.arange(n), -(-n // REDUCTION.at_once))
+        each = [self._factor.compliances(loads[some].T.toarray()) for some in parts]
+        return np.concatenate(each)
 
     def among(self, loads: sp.csr_matrix) -> Floats:
         """Return L (K − σM)⁻¹ Lᵀ of the rows of `loads` L (n, n_free), (n, n)."""

@@ -52,12 +52,16 @@ def test_the_slopes_are_those_of_the_sum():
         np.testing.assert_allclose(slope, expected, atol=1e-6)
 
 
-def test_what_a_basis_lacks_is_the_rest_of_the_flexibility():
+SPREAD = sp.random(8, 30, 0.2, random_state=6, format="csr")
+TOGETHER = (sp.random(8, 5, 0.6, random_state=6) @ sp.identity(30, format="csr")[7:12]).tocsr()
+
+
+@pytest.mark.parametrize("loads", [SPREAD, TOGETHER], ids=["spread", "at the same few grids"])
+def test_what_a_basis_lacks_is_the_rest_of_the_flexibility(loads):
     half = RNG.normal(size=(30, 30))
     K, M = sp.csr_matrix(half @ half.T), sp.identity(30, format="csr")
     model = SimpleNamespace(K=lambda: K, M=lambda: M)
     known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
-    loads = sp.random(8, 30, 0.2, random_state=6, format="csr")
     lacking = Flexibility(known, V, known.on(V), loads, 2)
     A = K.toarray() + 2.0 * np.eye(30)
     lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
