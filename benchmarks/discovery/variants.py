@@ -60,7 +60,7 @@ class Variant:
             xyz = xyz @ self.turn
         word = next((w for w in _BACK if w in magnitude), None)
         scale = _BACK[word] if word and self.unit == "m" else 1.0
-        if word == "stiffness" and min(magnitude.get("components") or [1]) > 3:
+        if scale != 1.0 and word == "stiffness" and min(magnitude.get("components") or [1]) > 3:
             scale *= 1e6
         size = magnitude.get(word) if word else None
         interval = finding.get("interval")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.discovery.variants import WAYS, alike
+from benchmarks.discovery.variants import WAYS, Variant, alike
 
 import trueup
 
@@ -53,6 +53,24 @@ def finding(**other):
 )
 def test_what_counts_as_the_same_finding(other, same):
     assert (alike([finding()], [finding(**other)], 1000.0) == []) is same
+
+
+@pytest.mark.parametrize(("components", "size"), [([3], 5e-3), ([4, 5, 6], 5e3)])
+def test_sizes_come_back_to_millimetres(components, size):
+    """5 N/m and 5 N m; what was in millimetres stays."""
+    told = {
+        "side": "model",
+        "kind": "ground_spring",
+        "where": {"xyz": [0.1, 0.0, 0.0]},
+        "magnitude": {"stiffness": 5.0, "components": components},
+        "interval": [4.0, 6.0],
+    }
+    test = trueup.read_test(next(CASE.glob("*_test.unv")))
+    metres, same = (Variant(CASE, test, unit).back(told) for unit in ("m", "mm"))
+    assert metres["size"] == pytest.approx(size)
+    assert metres["interval"] == pytest.approx([0.8 * size, 1.2 * size])
+    assert metres["xyz"] == [[100.0, 0.0, 0.0]]
+    assert (same["size"], same["xyz"]) == (5.0, [[0.1, 0.0, 0.0]])
 
 
 def test_one_finding_more_is_not_the_same():
