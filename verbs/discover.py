@@ -140,7 +140,7 @@ def discover(
         parameters=_parameters(known.specs, structure.model, found),
         would_decide=found.would_decide,
         noise_scale=found.noise_scale,
-        judgement=JudgementTable(found.evidence_for, found.posterior, found.foretold),
+        judgement=JudgementTable.of(found),
         before=replace(compared(before), warnings=()),
         after=final,
         damping=damping_table(found, before.test.damping, elastic, own, done.after),

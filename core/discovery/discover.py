@@ -24,6 +24,7 @@ from .likelihood.hypothesis import Fit, Prior, Problem
 from .likelihood.map_fit import evaluate, fit
 from .likelihood.mode_likelihood import Evidence, noise_of
 from .likelihood.request import Request as Request
+from .model_error.diffuse_fit import Judged
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.discretisation_error import lumping, with_consistent_bars
@@ -31,6 +32,7 @@ from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexi
 from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
+from .search.completeness import Completeness, completeness
 from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
@@ -43,7 +45,7 @@ from .search.model_selection import (
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import polished
+from .search.refit_own_basis import by_model_error, polished
 from .search.robust_search import robust
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
@@ -80,9 +82,10 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             trial = _Trial(request, ground, aside, tested.noise, modes_out, sensors_out)
             searcher, found, verdict = _searched(trial, progress)
             tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
+    progress("weighing what was found against the error of the model")
+    found, verdict, whole = _completed(trial, searcher, found, verdict)
     out = modes_out, sensors_out
-    zero = evaluate(searcher.problem, trial.zero.nuisance, ())
-    said = build_discovery(request, searcher, found, verdict, zero, tested, out)
+    said = build_discovery(request, searcher, found, verdict, whole, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
     said = with_damper(request, weighed(trial.request, searcher.problem, best), said)
@@ -182,7 +185,8 @@ def _prepared(
     hz = placed.test.frequencies_hz
     shapes = np.asarray(placed.weighted(realised(placed.test.shapes)))
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    whole = Evidence(hz, unit, noise_of(placed.errors, noise))
+    scatter = 0.0 if placed.errors is None else placed.errors.frequency
+    whole = Evidence(hz, unit, noise_of(placed.errors, noise), scatter)
     e = whole.take(modes, sensors)
     basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
@@ -269,12 +273,35 @@ def _contested(
     return found, judge(searcher, found)
 
 
+def _completed(
+    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
+) -> tuple[Found, Judgement, Completeness]:
+    """Keep the effects that are likelier than an error of the model without any place."""
+    structure, observation = trial.request.structure, _observation(trial)
+
+    def judged(f: Fit, moving: bool = True) -> Judged:
+        return by_model_error(structure, observation, trial.sensors, searcher.problem, f, moving)
+
+    deck = judged(trial.zero, False)
+    kept, whole = completeness(searcher, found, verdict.accepted, deck, judged)
+    if kept < verdict.accepted:
+        found = Found(found.levels[: kept + 1], found.rivals[: kept + 1])
+        verdict = judge(searcher, found)
+        verdict = replace(verdict, accepted=kept)
+    return found, verdict, whole
+
+
 def _polished(trial: _Trial, searcher: Searcher, state: Fit) -> Fit:
     """Fit a hypothesis on a basis of its own."""
+    observation = _observation(trial)
+    return polished(trial.request.structure, observation, trial.sensors, searcher.problem, state)
+
+
+def _observation(trial: _Trial) -> sp.csr_matrix:
+    """Return what the sensors see of the free degrees of freedom, weighted."""
     structure, placed = trial.request.structure, trial.request.placed
     motion = placed.observation.matrix @ structure.model.expansion
-    observation = sp.csr_matrix(placed.weighted(motion))
-    return polished(structure, observation, trial.sensors, searcher.problem, state)
+    return sp.csr_matrix(placed.weighted(motion))
 
 
 def _searcher(trial: _Trial) -> Searcher:

@@ -149,5 +149,10 @@ class Discovery:
     corrected_sensors: tuple[Fault, ...]
     would_decide: tuple[str, ...]
     warnings: tuple[str, ...]
+    error: float = 0.0
+    error_alone: float = 0.0
+    gain: float = 0.0
+    adequacy: float = 1.0
+    unexplained: tuple[int, ...] = ()
     damping: ModalDamping | None = None
     responses: ResponseGap | None = None

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import Floats
-from ..data.parametric_model import Term
+from ..data.parametric_model import Factor, Term
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +62,11 @@ class ReducedSum:
         """Return the sum on the basis turned by T (r, s)."""
         return replace(self, turn=T if self.turn is None else self.turn @ T)
 
-    def plus(self, change: Floats) -> ReducedSum:
-        """Return the sum with a constant matrix (r, r) on the basis more."""
+    def plus(self, change: Floats, parameter: int | None = None) -> ReducedSum:
+        """Return the sum with a matrix (r, r) on the basis more, times p - 1 of a `parameter`."""
         none = sp.csr_matrix(self.terms[0].matrix.shape)
-        return ReducedSum((*self.terms, Term(none)), np.stack([*self.matrices, change]))
+        factors = () if parameter is None else (Factor(parameter, (0.0, 1.0), 0.0, 2.0),)
+        return ReducedSum((*self.terms, Term(none, factors)), np.stack([*self.matrices, change]))
 
 
 def reduced_sum(terms: tuple[Term, ...], V: Floats) -> ReducedSum:

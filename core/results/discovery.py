@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Self
 
 from ..correlation.comparison import Comparison
 from ..discovery.findings import Alternative, Discovery, Finding
@@ -35,11 +36,36 @@ class GapTable(Noun):
 
 @dataclass(frozen=True)
 class JudgementTable:
-    """Twice the log of how much likelier the verdict is, its probability, what it foretold."""
+    """Twice the log of how much likelier the verdict is, its probability, what it foretold.
+
+    `error` is the diffuse error of the model, relative, completed by what was found,
+    `error_alone` with the known parameters alone; `gain` is ln of how much likelier the test is by
+    what was found, choices paid for; `adequacy` is the probability that a right model would leave
+    an error as large; `unexplained` are test modes that no mode of the model explains.
+    """
 
     evidence: float
     posterior: float
     foretold: float
+    error: float = 0.0
+    error_alone: float = 0.0
+    gain: float = 0.0
+    adequacy: float = 1.0
+    unexplained: tuple[int, ...] = ()
+
+    @classmethod
+    def of(cls, found: Discovery) -> Self:
+        """Return the judgement of a discovery."""
+        return cls(
+            found.evidence_for,
+            found.posterior,
+            found.foretold,
+            found.error,
+            found.error_alone,
+            found.gain,
+            found.adequacy,
+            found.unexplained,
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -240,7 +240,8 @@ class ReleaseLaw(Law):
 
     def factor(self, rows: Ints) -> Floats:
         """Return f, (n, q)."""
-        return np.asarray(np.exp(self.elasticity[rows] @ self.log_p))
+        known = self.elasticity[rows]
+        return np.asarray(np.exp(known @ self.log_p[: known.shape[-1]]))
 
     def _stiffness(self, theta: Floats) -> Floats:
         """Return e^θ of each coordinate, nil of the free ones, (n, q)."""
@@ -255,8 +256,10 @@ class ReleaseLaw(Law):
         k = self._stiffness(theta)
         return np.asarray(self.factor(rows) * k / (k + self.own[rows]) ** 2)[:, None, :]
 
-    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats:
+    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats | None:
         """Return the derivative by ln p of a known parameter."""
+        if parameter >= self.elasticity.shape[-1]:
+            return None
         return np.asarray(self.elasticity[rows, :, parameter] * self.value(theta, rows))
 
 

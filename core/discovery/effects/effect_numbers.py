@@ -87,7 +87,7 @@ class EffectNumbers:
     damper_sizes: int = number(14, "sizes", "of a dashpot that are tried")
 
     alike: float = number(1.1, "-", "likelihoods whose ratio is nearer to 1 say nothing", "what a reader takes in")
-    odds_most: float = number(1e6, "-", "ratio of likelihoods that is told as a figure, at most", "what a reader takes in")
+    odds_most: float = number(100.0, "-", "ratio of likelihoods that is told as a figure, at most", "what fresh cases support")
     mode_runs: int = number(4, "stretches", "of modes that are listed, at most", "what a reader takes in")
 
 

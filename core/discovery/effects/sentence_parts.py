@@ -44,8 +44,8 @@ def odds(ratio: float, other: str = "") -> str:
 
 def _count(ratio: float) -> str:
     if ratio >= EFFECTS.odds_most:
-        return "more than a million"
-    return f"{ratio:.2g}" if ratio < 100.0 else f"{float(f'{ratio:.2g}'):,.0f}"
+        return "more than a hundred"
+    return f"{ratio:.2g}"
 
 
 def mode_ranges(modes: Sequence[int]) -> str:

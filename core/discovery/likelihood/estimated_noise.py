@@ -48,11 +48,3 @@ def estimated(problem: Problem, state: Fit) -> Noise:
         f, s = max(f, LIKELIHOOD.frequency), max(s, LIKELIHOOD.shape)
     f, s = min(f, LIKELIHOOD.wide[0]), min(s, LIKELIHOOD.wide[1])
     return replace(noise, frequency=f, shape=s)
-
-
-def widened(problem: Problem) -> float:
-    """Return by how much larger the variance of ln f was estimated than that of a right model."""
-    noise = problem.whole.noise
-    if noise.independent > 1.0:
-        return 1.0
-    return float(np.max(noise.frequency) / LIKELIHOOD.frequency) ** 2

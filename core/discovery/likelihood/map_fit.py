@@ -92,7 +92,8 @@ def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
     return mode_costs(problem.evidence, values[:n], cross, gram)
 
 
-def _prior(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> float:
+def surprise(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> float:
+    """Return −2 ln of the prior density of a hypothesis' unknowns, up to a constant."""
     total = float(np.sum((nuisance / problem.prior.spread) ** 2))
     return total + sum(
         float(problem.catalogue[s.kind].surprise(np.array([s.theta]))[0]) for s in suspects
@@ -103,7 +104,7 @@ def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, nuisance, suspects)
     bad, match = misfit(problem, values, vectors)
-    total, none = bad + _prior(problem, nuisance, suspects), np.zeros((0, 0))
+    total, none = bad + surprise(problem, nuisance, suspects), np.zeros((0, 0))
     return Fit(total, bad, nuisance, tuple(suspects), match, values, vectors, none, ())
 
 
@@ -153,7 +154,7 @@ def fit(
             step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
-            trial = _stepped(problem, now, active, np.clip(step, -reach, reach))
+            trial = stepped(problem, now, active, np.clip(step, -reach, reach))
             if trial.objective < now.objective:
                 better, damping = trial, LIKELIHOOD.damping_down * damping
                 break
@@ -183,7 +184,8 @@ def _step(H: Floats, g: Floats, damping: float) -> Floats:
     return np.asarray(-unit * np.linalg.solve(scaled, unit * g))
 
 
-def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
+def stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
+    """Return a fit with its unknowns moved by a step, within their bounds."""
     nuisance = np.array(now.nuisance)
     nuisance[list(active)] += step[: len(active)]
     nuisance = np.clip(nuisance, problem.prior.lower, problem.prior.upper)
@@ -198,7 +200,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     lk = lam[k]
     here = np.arange(len(k))
     shapes = problem.sensors @ V[: problem.basis.size]
-    a, b = _products(problem, now, active)
+    a, b = products(problem, now, active)
     gap = lk[None, :] - lam[:, None]
     close = np.abs(gap) < LIKELIHOOD.degenerate * np.abs(lk)[None, :]
     F = a - b * lk
@@ -236,8 +238,8 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     return H, g + (x - mean) / spread**2
 
 
-def _products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
-    """Vᵀ ∂K V and Vᵀ ∂M V by each unknown, on the right only the modes that match."""
+def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
+    """Return Vᵀ ∂K V and Vᵀ ∂M V by each unknown, on the right only the modes that match."""
     V, k = now.vectors, now.match
     S, own, p = V[: problem.basis.size], problem.basis.size, np.exp(now.log_p)
     first = len(active)

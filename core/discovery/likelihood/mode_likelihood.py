@@ -68,17 +68,21 @@ class Evidence:
     shapes : (n_sensor, n_test) float
         Real, each of unit length over the sensors that count.
     noise : Noise
+    scatter : (n_test,) float or float
+        Standard errors of ln f that the test itself knows of.
     """
 
     frequencies_hz: Floats
     shapes: Floats
     noise: Noise
+    scatter: float | Floats = 0.0
 
     def take(self, modes: Ints | Bools, sensors: Ints | Bools) -> Evidence:
         """Return part of the evidence, shapes of unit length again."""
         part = self.shapes[sensors][:, modes]
         length = np.maximum(np.linalg.norm(part, axis=0), np.finfo(float).tiny)
-        return Evidence(self.frequencies_hz[modes], part / length, self.noise.of(modes))
+        scatter = np.broadcast_to(self.scatter, self.frequencies_hz.shape)[modes]
+        return Evidence(self.frequencies_hz[modes], part / length, self.noise.of(modes), scatter)
 
 
 def targets(e: Evidence) -> Floats:

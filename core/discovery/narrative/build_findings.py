@@ -12,12 +12,12 @@ from ..effects.candidates import Candidates, Suspect
 from ..effects.twins import places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
-from ..likelihood.estimated_noise import widened
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.credible_places import Place, between, credible_places
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
+from ..search.completeness import Completeness
 from ..search.model_selection import (
     Judgement,
     contenders,
@@ -29,6 +29,7 @@ from ..search.model_selection import (
 )
 from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
+from .model_error_words import left_over
 from .narrative_numbers import NARRATIVE
 from .sensor_findings import accusations, remarks
 from .sentences import alternative, magnitude_of, region, sentence_of
@@ -39,13 +40,14 @@ def build_discovery(
     searcher: Searcher,
     found: Found,
     verdict: Judgement,
-    zero: Fit,
+    whole: Completeness,
     tested: Verdicts,
     held_out: tuple[Bools, Bools],
 ) -> Discovery:
     """Say what the search amounts to: verdict, findings, alternatives, what would decide.
 
-    `held_out` are the test modes and the sensors that were kept out of the search.
+    `whole` is how well it explains the test beside the error of a model; `held_out` are the test
+    modes and the sensors that were kept out of the search.
     """
     outcome = _Outcome(request, searcher, found, verdict)
     best = outcome.best
@@ -61,27 +63,24 @@ def build_discovery(
     nodes = request.placed.observation.sensors.node
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
-    null = found.levels[0]
-    gained = (zero.objective - null.objective) / verdict.scale
-    matters = gained > 2.0 * np.log(len(null.nuisance)) + NARRATIVE.matters
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
     sure = verdict.posterior >= NARRATIVE.sure and verdict.foretold > NARRATIVE.contradicted
-    if findings and sure and not decide:
+    sure = sure and whole.gain > NARRATIVE.claimed and not whole.unexplained
+    adequate = whole.adequacy > NARRATIVE.adequate
+    if findings and sure and adequate and not decide:
         word = "effect"
     elif findings:
         word = "undecided"
         decide = (*decide, *_would_decide(outcome, held_out[0]))
-    elif (left := verdict.scale * widened(searcher.problem)) > NARRATIVE.unexplained:
+    elif not adequate:
         word = "undecided"
-        decide = (
-            f"the best explanation leaves {left:.0f} times the misfit of a right model; "
-            "further sensors or modes, or an effect that the catalogue does not have",
-        )
     elif accused:
         word = "test_fault"
-    elif matters:
+    elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
+    if word == "undecided":
+        decide = (*left_over(whole, request.numbers), *decide)
     return Discovery(
         word,
         (*findings, *accused),
@@ -96,6 +95,11 @@ def build_discovery(
         tested.faults,
         decide,
         remarks(request.placed.observation, tested),
+        error=whole.best.diffuse.error,
+        error_alone=whole.alone.diffuse.error,
+        gain=whole.gain,
+        adequacy=whole.adequacy,
+        unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
     )
 
 

@@ -44,18 +44,20 @@ def noise_scale(problem: Problem, best: Fit) -> float:
 
 
 def price(searcher: Searcher, suspect: Suspect) -> float:
-    """Return what a suspect must lower the objective by: twice ln(choices) and a margin.
+    """Return what a suspect must lower the objective by: twice ln(choices) and a margin."""
+    return 2.0 * float(np.log(choices(searcher, suspect))) + SEARCH.margin
 
-    The choices are the places and, where a kind is tuned, what it may be tuned to.
-    """
+
+def choices(searcher: Searcher, suspect: Suspect) -> int:
+    """Return the number of places of a kind times, where it is tuned, what it may be tuned to."""
     catalogue = searcher.problem.catalogue
     kind = catalogue[suspect.kind].kind
-    choices = sum(
+    number = sum(
         len(rows) * c.tunings
         for c, rows in zip(catalogue, searcher.coarse, strict=True)
         if c.kind == kind
     )
-    return 2.0 * float(np.log(max(choices, 2))) + SEARCH.margin
+    return max(number, 2)
 
 
 def burden(searcher: Searcher, f: Fit) -> float:

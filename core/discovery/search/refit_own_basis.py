@@ -18,8 +18,10 @@ from ...numerics.factorisation import factorise
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
-from ..likelihood.map_fit import fit, on_whole_test
+from ..likelihood.map_fit import evaluate, fit, on_whole_test
 from ..likelihood.mode_likelihood import targets
+from ..model_error.diffuse_fit import Judged, everything, judged, with_drift
+from ..model_error.smooth_fields import smooth_fields
 from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
 from ..reduction.search_basis import Basis, basis_on, beside, with_answers
@@ -35,6 +37,50 @@ def polished(
     `observation` (n_sensor, n_free) is of all sensors, `seen` (n_sensor,) are those of the
     evidence; the laws of the problem's catalogue are not yet fitted to any basis.
     """
+    own, basis, start = _own_problem(structure, observation, seen, problem, state)
+    active = tuple(range(len(state.nuisance)))
+    new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
+    return replace(
+        on_whole_test(own, new),
+        suspects=_back(state, new),
+        in_deck=_in_deck(replace(own, basis=basis), new),
+    )
+
+
+def by_model_error(
+    structure: Structure,
+    observation: sp.csr_matrix,
+    seen: Bools,
+    problem: Problem,
+    state: Fit,
+    moving: bool = True,
+) -> Judged:
+    """Return a fit as the whole test and the diffuse error judge it, on a basis of its own.
+
+    Parameters and smooth fields of stiffness and mass move along; where nothing is `moving`, the
+    error of the mesh alone. The other arguments are those of `polished`.
+    """
+    own, _, start = _own_problem(structure, observation, seen, problem, state)
+    whole = own.entire()
+    vectors = own.basis.vectors
+    here = evaluate(whole, state.nuisance, start)
+    if moving:
+        found = with_drift(whole, here, lambda: smooth_fields(structure, vectors))
+    else:
+        found = judged(whole, here, everything(whole)[-1:])
+    return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
+
+
+def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
+    """Return suspects at their places with the magnitudes that were fitted."""
+    both = zip(state.suspects, own.suspects, strict=True)
+    return tuple(replace(s, theta=t.theta) for s, t in both)
+
+
+def _own_problem(
+    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
+) -> tuple[Problem, Basis, tuple[Suspect, ...]]:
+    """Return the problem on a basis of its own, that basis as the deck has it, and a start."""
     top = float(targets(problem.whole).max())
     basis, chosen, modes = _own_basis(structure.model, problem.catalogue, state, top)
     everywhere = np.asarray(observation @ basis.vectors)
@@ -51,16 +97,7 @@ def polished(
         turn=None,
         rest=None,
     )
-    suspects = [Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects)]
-    active = tuple(range(len(state.nuisance)))
-    new = fit(own, state.nuisance, suspects, active, SEARCH.steps_polished)
-    return replace(
-        on_whole_test(own, new),
-        suspects=tuple(
-            replace(s, theta=t.theta) for s, t in zip(state.suspects, new.suspects, strict=True)
-        ),
-        in_deck=_in_deck(replace(own, basis=basis), new),
-    )
+    return own, basis, tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
 
 
 def _in_deck(own: Problem, found: Fit) -> InDeck:

@@ -66,6 +66,7 @@ class SearchNumbers:
     second_opinion: float = number(2.5, "of the assumed variance", "what a best hypothesis leaves that asks for a search by a wider noise")
     unexplained: float = number(4.0, "of the assumed variance", "what nothing explains, that asks for a search with all kinds")
     margin: float = number(10.0, LN, "what a suspect must gain besides the log of the number of its choices")
+    suspect: float = number(3.0, "ln L", "what each suspect must gain besides the log of its choices, by the diffuse error")
     beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
     same_effect: float = number(40.0, LN, "what the second of them must gain more")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")

@@ -1,0 +1,15 @@
+"""How usual the error is that a model leaves."""
+
+import numpy as np
+from scipy.special import ndtr
+
+from .model_error_numbers import MODEL_ERROR
+
+
+def adequacy(error: float) -> float:
+    """Return the probability that a model which lacks nothing leaves a diffuse error as large.
+
+    Errors that right models left are normal in their logs.
+    """
+    off = np.log(error / MODEL_ERROR.usual) / MODEL_ERROR.usual_spread
+    return float(ndtr(-off))

@@ -1,0 +1,213 @@
+"""A hypothesis fitted by the diffuse error, and how likely the test is by it.
+
+Parameters, smooth fields and magnitudes are moved by Gauss-Newton to where test and prior are
+likeliest, with the error and the noise that are best there; the evidence is Laplace's: what the
+best values gain less what it costs to have had a choice of values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import Floats
+from ...reduction.reduced_sum import ReducedSum
+from ..effects.candidates import magnitudes
+from ..likelihood.hypothesis import Fit, Prior, Problem
+from ..likelihood.map_fit import products, stepped, surprise
+from ..likelihood.mode_likelihood import targets
+from .diffuse_error import Diffuse, Seen, covariances, diffuse
+from .model_error_numbers import MODEL_ERROR
+from .smooth_fields import Fields
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A smooth field: its name, its amplitude (rms over the structure), a standard deviation."""
+
+    name: str
+    amplitude: float
+    deviation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A hypothesis fitted by the diffuse error.
+
+    Parameters
+    ----------
+    fit : Fit
+    diffuse : Diffuse
+    evidence : float
+        ln of the probability of the test by the hypothesis, unknowns integrated out.
+    information : (n, n) float
+        Second derivative of −ln posterior by parameters, fields, mesh and magnitudes.
+    plain : float
+        The evidence without any smooth field.
+    drifts : tuple of Drift
+        Smooth fields that are likelier than none, the largest first.
+    """
+
+    fit: Fit
+    diffuse: Diffuse
+    evidence: float
+    information: Floats
+    plain: float
+    drifts: tuple[Drift, ...] = ()
+
+
+def everything(problem: Problem) -> tuple[int, ...]:
+    """Return the numbers of all entries of the nuisance parameters of a problem."""
+    return tuple(range(len(problem.prior.spread)))
+
+
+def with_drift(problem: Problem, state: Fit, fields: Callable[[], Fields]) -> Judged:
+    """Return a hypothesis as it is likeliest: without smooth fields, or with fields of some size.
+
+    `fields` on the basis are made when they are asked for. All of them have one size, which is
+    tried from small to large.
+    """
+    plain = best = judged(problem, state, everything(problem))
+    known = fields()
+    n, k = len(problem.prior.spread) - 1, len(known.names)
+    start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
+    for size in MODEL_ERROR.drifts:
+        moved = with_fields(problem, known, size)
+        tried = judged(moved, start, everything(moved))
+        if tried.evidence < best.evidence:
+            break
+        best, start = tried, tried.fit
+    if best is plain:
+        return plain
+    own = slice(n, n + k)
+    spread = np.sqrt(np.diag(np.linalg.inv(best.information)))[own]
+    every = (
+        Drift(*d)
+        for d in zip(
+            known.names, map(float, best.fit.nuisance[own]), map(float, spread), strict=True
+        )
+    )
+    drifts = tuple(sorted(every, key=lambda d: -abs(d.amplitude)))
+    fit = replace(best.fit, nuisance=np.delete(best.fit.nuisance, np.arange(n, n + k)))
+    return replace(best, fit=fit, plain=plain.evidence, drifts=drifts)
+
+
+def with_fields(problem: Problem, fields: Fields, size: float) -> Problem:
+    """Return a problem whose known parameters are followed by the amplitudes of fields."""
+    n = len(problem.prior.spread) - 1
+    k = len(fields.names)
+    prior = Prior(
+        *(
+            np.insert(old, n, np.full(k, new))
+            for old, new in (
+                (problem.prior.spread, size),
+                (problem.prior.lower, -MODEL_ERROR.most),
+                (problem.prior.upper, MODEL_ERROR.most),
+            )
+        )
+    )
+    b = problem.basis
+    stiffness, mass = (
+        _moved(s, A, n) for s, A in ((b.stiffness, fields.stiffness), (b.mass, fields.mass))
+    )
+    return replace(problem, basis=replace(b, stiffness=stiffness, mass=mass), prior=prior)
+
+
+def _moved(matrices: ReducedSum, changes: Floats, first: int) -> ReducedSum:
+    """Return a sum with `changes` times p − 1 of parameters from `first` on."""
+    for k, A in enumerate(changes):
+        if A.any():
+            matrices = matrices.plus(A, first + k)
+    return matrices
+
+
+def seen(problem: Problem, state: Fit) -> Seen:
+    """Return a fit beside the test."""
+    p = problem
+    shapes = np.asarray(p.sensors @ state.vectors[: p.basis.size])
+    e = p.evidence
+    scatter = np.hypot(np.broadcast_to(e.scatter, e.frequencies_hz.shape), MODEL_ERROR.frequency)
+    columns = min(p.columns, len(state.eigenvalues))
+    return Seen(e.frequencies_hz, e.shapes, scatter, state.eigenvalues, shapes, columns)
+
+
+def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
+    """Return a hypothesis fitted by the diffuse error; the problem's evidence is all that counts.
+
+    The entries of ``state.nuisance``, of which the `active` move, are ln p of the parameters, then
+    of the fields, then the mesh.
+    """
+    now, best = state, diffuse(seen(problem, state))
+    height = best.log - 0.5 * surprise(problem, now.nuisance, now.suspects)
+    damping = 0.0
+    for _ in range(MODEL_ERROR.steps):
+        H, g = _normal_equations(problem, now, best, active)
+        better = None
+        for _ in range(MODEL_ERROR.dampings):
+            trial = stepped(problem, now, active, _step(H, g, damping))
+            d = diffuse(seen(problem, trial), best)
+            new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
+            if new > height:
+                better = trial, d, new
+                damping *= 0.3
+                break
+            damping = max(5.0 * damping, 0.05)
+        if better is None:
+            break
+        gained = better[2] - height
+        now, best, height = better
+        if gained < MODEL_ERROR.tolerance:
+            break
+    H, _ = _normal_equations(problem, now, best, active)
+    spread = _spread(problem, now, active)
+    occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
+    return Judged(now, best, height - occam, H, height - occam)
+
+
+def _step(H: Floats, g: Floats, damping: float) -> Floats:
+    unit = 1.0 / np.sqrt(np.diag(H))
+    scaled = H * unit * unit[:, None] + damping * np.eye(len(H))
+    return np.asarray(np.clip(-unit * np.linalg.solve(scaled, unit * g), -0.5, 0.5))
+
+
+def _spread(problem: Problem, now: Fit, active: Sequence[int]) -> Floats:
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    return np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
+
+
+def _normal_equations(
+    problem: Problem, now: Fit, d: Diffuse, active: Sequence[int]
+) -> tuple[Floats, Floats]:
+    """Second derivative and gradient of −ln posterior, error and noise held."""
+    here = seen(problem, now)
+    k = d.match
+    count = np.arange(len(k))
+    lam, lk = np.maximum(now.eigenvalues, np.finfo(float).tiny), now.eigenvalues[k]
+    a, b = products(problem, replace(now, match=k), active)
+    F = a - b * lk
+    gap = lk[None, :] - lam[:, None]
+    z = d.error**2 * lk[None, :] * lam[:, None]
+    C = F * gap / np.maximum(gap**2 + z, np.finfo(float).tiny)
+    C[:, k, count] = -0.5 * b[:, k, count]
+    t, own = here.shapes, here.modes[:, k]
+    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), np.finfo(float).tiny)
+    J = np.matmul(here.modes, C) * c
+    rest = t - own * c
+    sure = 1.0 - d.stray
+    variance = 0.5 * d.error**2 + here.scatter**2
+    off = 0.5 * np.log(np.maximum(lk, np.finfo(float).tiny) / targets(problem.evidence))
+    dlam = 0.5 * F[:, k, count] / np.maximum(lk, np.finfo(float).tiny)
+    H = (dlam * (sure / variance)) @ dlam.T
+    g = dlam @ (off * sure / variance)
+    white = covariances(here, d)
+    for j in range(len(k)):
+        X = white(j, np.column_stack([J[:, :, j].T, -rest[:, j]]))
+        H += sure[j] * X[:, :-1].T @ X[:, :-1]
+        g += sure[j] * X[:, :-1].T @ X[:, -1]
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    spread = _spread(problem, now, active)
+    mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
+    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
+    return H + np.diag(1.0 / spread**2), g + (x - mean) / spread**2

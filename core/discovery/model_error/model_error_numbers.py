@@ -1,0 +1,30 @@
+"""The tuned numbers of the error of a model."""
+
+from dataclasses import dataclass
+
+from ...number_table import number
+
+NOISE = "of the rms of a shape"
+
+
+@dataclass(frozen=True)
+class ModelErrorNumbers:
+    errors: tuple[float, float, int] = number((3e-4, 0.3, 16), "of K", "least and largest diffuse error that is tried, and how many")
+    noises: tuple[float, float, int] = number((0.005, 0.5, 15), NOISE, "least and largest noise of a reading that is tried, and how many")
+    frequency: float = number(0.001, "of f", "standard deviation of a measured frequency, at least")
+    reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
+    stray: float = number(0.03, "-", "chance that a test mode is none of the model's")
+    independent: float = number(24.0, "readings", "of a shape that count as independent, at most")
+    cells: int = number(8, "boxes", "along the longest side, in each of which a smooth field is one value")
+    degree: int = number(2, "-", "of the polynomials that smooth fields are made of, at most")
+    flat: float = number(0.05, "-", "what a polynomial must have of its own beside the others", "thin structures have no fields across")
+    most: float = number(0.4, "rms", "of a smooth field, at most")
+    drifts: tuple[float, ...] = number((0.003, 0.01, 0.03, 0.1), "rms", "of smooth fields, sizes that are tried")
+    usual: float = number(0.003, "of K", "median of the errors that right models left", "python -m benchmarks.discovery.calibrate FOLDER")
+    usual_spread: float = number(1.2, "of ln ε", "standard deviation of them", "python -m benchmarks.discovery.calibrate FOLDER")
+    steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
+    tolerance: float = number(0.1, "ln L", "gain of such a step that counts")
+    dampings: int = number(4, "trials", "of Levenberg's damping a step")
+
+
+MODEL_ERROR = ModelErrorNumbers()

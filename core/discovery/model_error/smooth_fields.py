@@ -1,0 +1,117 @@
+"""Stiffness and mass that drift smoothly over the structure.
+
+Thickness, modulus and density of a real structure are not the same everywhere, and no list of
+effects has that. A field multiplies the matrices of all elements by 1 + a q(x), q a polynomial of
+the position: one amplitude a each for stiffness and mass, of the rms 1 over the structure's mass,
+orthogonal to a change everywhere alike, which is a parameter's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations_with_replacement
+
+import numpy as np
+
+from ...arrays import Floats, Ints
+from ..reduction.elements_and_supports import Members, Structure
+from .model_error_numbers import MODEL_ERROR
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """Smooth fields on a basis.
+
+    Parameters
+    ----------
+    names : tuple of str
+        As ``stiffness along x``.
+    stiffness, mass : (n, r, r) float
+        What an amplitude of 1 adds to each.
+    """
+
+    names: tuple[str, ...]
+    stiffness: Floats
+    mass: Floats
+
+
+def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
+    """Return the smooth fields of a structure on a basis (n_free, r), the deck's values moved."""
+    at, masses, K, M = _by_cells(structure, vectors)
+    q, words = _polynomials(at, masses)
+    none = np.zeros((q.shape[1], *K.shape[1:]))
+    k, m = (np.tensordot(q.T, A, 1) for A in (K, M))
+    return Fields(
+        tuple(f"{what} {w}" for what in ("stiffness", "mass") for w in words),
+        np.concatenate([k, none]),
+        np.concatenate([none, m]),
+    )
+
+
+def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return centres (n, 3), masses (n,), K and M (n, r, r) of parts of the structure."""
+    motion = np.asarray(structure.displacement @ vectors)
+    centres = [structure.centroids(m) for m in structure.members]
+    cell, count = _cells(np.concatenate(centres))
+    r = vectors.shape[1]
+    K, M = np.zeros((count, r, r)), np.zeros((count, r, r))
+    at, weights = np.zeros((count, 3)), np.zeros(count)
+    start = 0
+    for m, xyz in zip(structure.members, centres, strict=True):
+        own = cell[start : start + len(xyz)]
+        start += len(xyz)
+        for c in np.unique(own):
+            rows = np.flatnonzero(own == c)
+            k, mass = _reduced(structure, m, rows, motion)
+            K[c] += k
+            M[c] += mass
+            w = max(float(np.trace(mass)), np.finfo(float).tiny)
+            at[c] += w * xyz[rows].mean(axis=0)
+            weights[c] += w
+    return at / weights[:, None], weights, K, M
+
+
+def _reduced(structure: Structure, m: Members, rows: Ints, motion: Floats) -> tuple[Floats, Floats]:
+    p = np.ones(len(structure.model.parameters))
+    u = motion[m.coordinates(rows)]
+    out = []
+    for A in m.matrices(rows, p):
+        if A is None:
+            out.append(np.zeros((u.shape[2],) * 2))
+            continue
+        flat = u.reshape(-1, u.shape[2])
+        out.append(flat.T @ np.matmul(A, u).reshape(-1, u.shape[2]))
+    return out[0], out[1]
+
+
+def _cells(xyz: Floats) -> tuple[Ints, int]:
+    """Divide points among boxes of a grid over them; number of each point's box, and of boxes."""
+    low, size = xyz.min(axis=0), np.ptp(xyz, axis=0).max()
+    box = np.floor((xyz - low) / size * (MODEL_ERROR.cells - 1e-9)).astype(np.int64)
+    _, number = np.unique(box, axis=0, return_inverse=True)
+    return number.ravel(), int(number.max()) + 1
+
+
+def _polynomials(xyz: Floats, weights: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """Return polynomials at points, orthogonal by weight and of rms 1, (n, k), and their names."""
+    x = xyz - np.average(xyz, axis=0, weights=weights)
+    x = x / np.abs(x).max()
+    columns, names = [np.ones(len(x))], [""]
+    for degree in range(1, MODEL_ERROR.degree + 1):
+        for which in combinations_with_replacement(range(3), degree):
+            columns.append(np.prod(x[:, which], axis=1))
+            names.append("along " + "".join("xyz"[i] for i in which))
+    w = np.sqrt(weights / weights.sum())
+    kept: list[Floats] = []
+    words = []
+    for column, name in zip(columns, names, strict=True):
+        v = w * column
+        before = float(np.linalg.norm(v))
+        for _ in range(2):
+            for k in kept:
+                v = v - k * (k @ v)
+        length = np.linalg.norm(v)
+        if length > MODEL_ERROR.flat * max(before, MODEL_ERROR.flat):
+            kept.append(v / length)
+            words.append(name)
+    return np.array(kept[1:]).T.reshape(len(x), -1) / w[:, None], tuple(words[1:])

@@ -1,0 +1,23 @@
+"""Polynomials that stiffness and mass drift by."""
+
+import numpy as np
+
+from trueup.core.discovery.model_error.smooth_fields import _polynomials
+
+
+def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
+    rng = np.random.default_rng(1)
+    xyz, mass = rng.uniform(size=(200, 3)), rng.uniform(0.5, 2.0, 200)
+    q, names = _polynomials(xyz, mass)
+    gram = (q.T * mass / mass.sum()) @ q
+    assert np.allclose(gram, np.eye(9), atol=1e-12)
+    assert np.allclose(mass @ q, 0.0, atol=1e-10)
+    assert names[:3] == ("along x", "along y", "along z")
+
+
+def test_a_flat_structure_has_no_field_across():
+    rng = np.random.default_rng(1)
+    xyz = rng.uniform(size=(200, 3)) * np.array([1.0, 1.0, 0.0])
+    q, names = _polynomials(xyz, np.ones(200))
+    assert q.shape == (200, 5)
+    assert not any("z" in n for n in names)
