@@ -16,7 +16,16 @@ from ..core.data.frfs import Frfs
 from ..core.data.measurement import Measurement
 from ..core.errors import InputError, Place, path_of
 from ..core.noun import BESIDE
-from ..core.results.modes import IdentifyTables, band_rows, mode_rows, place_rows, rejected_rows
+from ..core.results.modes import (
+    IdentifyTables,
+    band_rows,
+    driving_rows,
+    fault_rows,
+    mode_rows,
+    place_rows,
+    reciprocity_rows,
+    rejected_rows,
+)
 from .folder import Folder
 from .options import Say, checked_call, unheard
 from .sources import Source, existing, files_of
@@ -181,6 +190,9 @@ def identify(
         quantity=found.quantity,
         lines=len(hz),
         range_hz=(float(hz[0]), float(hz[-1])),
+        faults=fault_rows(found),
+        driving_points=driving_rows(found),
+        reciprocity=reciprocity_rows(found),
         warnings=warnings,
         content=StoreContent(
             geometry=read.geometry,

@@ -48,6 +48,7 @@ def stabilisation_page(
         stabilisation_chart(found),
         html_table(modes_table(found)) if n else "",
         html_table(rejected_table(found)) if found.rejected else "",
+        html_table(driving_table(found)) if n and found.driving_points else "",
         tag("footer", "trueup · trueup/identify/1"),
     )
     return html_page(title or "identification", body)
@@ -125,6 +126,26 @@ def rejected_table(found: Identification) -> Table:
         (hz(r.frequency_hz), fixed(100.0 * r.damping_ratio, 3), r.reason) for r in found.rejected
     )
     return Table.of("Considered and rejected", ("Hz", "damping %", *left("reason")), rows)
+
+
+def driving_table(found: Identification) -> Table:
+    """Return how far driving points and reciprocity hold."""
+    rows = [
+        (d.function, percent(d.positive_share, 1), fixed(d.phase_deg, 1), "")
+        for d in found.driving_points
+    ]
+    rows += [
+        (f"{r.function}, {r.reciprocal}", "", "", percent(r.correlation, 1))
+        for r in found.reciprocity
+    ]
+    note = (
+        "Driving points take power (less what they give back, over both: 100 %), their residues "
+        "have the phase of a normal mode (0°); functions between two are alike (100 %)."
+    )
+    named = ("power %", "phase °", "reciprocity %")
+    return Table.of(
+        "Driving points and reciprocity", (*left("response/reference"), *named), rows, note
+    )
 
 
 def _frequencies(plot: Plot) -> str:

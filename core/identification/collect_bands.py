@@ -22,6 +22,7 @@ from .result import Background, Identification, Indicator, background_response, 
 from .survey.driving_points import driving_points, scale
 from .survey.modal_synthesis import modal_response
 from .survey.mode_indicator import cmif
+from .survey.references import checked_references
 from .survey.survey_data import Survey
 from .survey.suspension import rigid_share
 from .uncertainty.standard_errors import frequency_and_damping_errors
@@ -53,9 +54,10 @@ def assemble(
     t = collect(fits)
     p = physical(survey, t)
     points = driving_points(survey.outputs, survey.inputs, geometry)
-    scaling = scale(t.poles, p.shapes, p.participation, points, survey.inputs)
     poles = t.poles + window
     f_std, z_std = frequency_and_damping_errors(poles, t.pole_covariance)
+    scaling = scale(t.poles, p.shapes, p.participation, points)
+    driving, reciprocity = checked_references(survey, points, t.poles, p.shapes, p.participation)
     backgrounds, quality = _backgrounds(survey, fits, t)
     sure = np.where(p.known, p.shapes, 0.0)
     mpc = phase_collinearity(sure)
@@ -96,6 +98,9 @@ def assemble(
         cmif=_cmif(survey),
         quantity=survey.quantity,
         window_decay=window,
+        faults=survey.faults,
+        driving_points=driving,
+        reciprocity=reciprocity,
         warnings=tuple(warnings),
     )
 

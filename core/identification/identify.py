@@ -19,11 +19,11 @@ from .poles.band_sweeps import fit_range
 from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
 from .result import Identification
+from .survey.check_survey import checked
 from .survey.exponential_window import decay_rate
 from .survey.mode_indicator import Band, cmif, peaks, split
 from .survey.survey_data import Survey, prepare
 from .survey.wanted_ranges import wanted_ranges
-from .survey.wrong_signs import signs_mended
 
 
 def identify(
@@ -88,7 +88,7 @@ def identify(
         raise InputError(f"the model order {max_order} is too low; it must be 2 or more")
     if modes is not None and modes < 1:
         raise InputError(f"{modes} modes are asked for; ask for one or more")
-    survey = signs_mended(prepare(frfs, wanted_ranges(fmin, fmax, bands)))
+    survey = checked(prepare(frfs, wanted_ranges(fmin, fmax, bands)), geometry)
     window = decay_rate(exponential_window, frfs.frequencies_hz)
     parts, lines = _parts(survey)
     proposals = tuple(propose(survey, b.first, b.last, _count(lines, b), max_order) for b in parts)

@@ -13,8 +13,10 @@ from ..data.modes import Modes
 from ..noun import Noun
 from .poles.pole_stabilisation import Chart
 from .rejected import Rejected
+from .survey.faults import Fault
 from .survey.modal_synthesis import modal_response
 from .survey.mode_indicator import Band
+from .survey.references import DrivingPoint, Reciprocity
 from .survey.survey_numbers import SURVEY
 
 
@@ -106,6 +108,11 @@ class Identification(Noun):
     window_decay : float
         What an exponential window added to the decay rates of the functions, taken out of the
         modes [1/s].
+    faults : tuple of Fault
+        What is wrong with functions of the survey, and what was done about it.
+    driving_points : tuple of DrivingPoint
+    reciprocity : tuple of Reciprocity
+        How far they hold.
     warnings : tuple of str
     """
 
@@ -130,6 +137,9 @@ class Identification(Noun):
     cmif: Indicator
     quantity: str
     window_decay: float
+    faults: tuple[Fault, ...]
+    driving_points: tuple[DrivingPoint, ...]
+    reciprocity: tuple[Reciprocity, ...]
     warnings: tuple[str, ...]
 
     @property

@@ -54,6 +54,35 @@ class RejectedRow:
 
 
 @dataclass(frozen=True)
+class FaultRow:
+    """What is wrong with functions of the survey, see `Fault`; `functions` response/reference."""
+
+    kind: str
+    functions: tuple[str, ...]
+    sentence: str
+    done: str
+
+
+@dataclass(frozen=True)
+class DrivingPointRow:
+    """What a driving point says, see `DrivingPoint`."""
+
+    function: str
+    positive_share: float
+    phase_deg: float | None = field(metadata={"unit": "deg"})
+
+
+@dataclass(frozen=True)
+class ReciprocityRow:
+    """A function between driving points and its reciprocal, see `Reciprocity`."""
+
+    function: str
+    reciprocal: str
+    correlation: float
+    difference: float | None
+
+
+@dataclass(frozen=True)
 class BandRow:
     """A band that was fitted by itself."""
 
@@ -75,6 +104,11 @@ class IdentifyTables(Tables):
     quantity: str
     lines: int
     range_hz: tuple[float, float]
+    faults: Table[FaultRow] = field(default_factory=lambda: Table((), FaultRow))
+    driving_points: Table[DrivingPointRow] = field(
+        default_factory=lambda: Table((), DrivingPointRow)
+    )
+    reciprocity: Table[ReciprocityRow] = field(default_factory=lambda: Table((), ReciprocityRow))
     warnings: tuple[str, ...]
 
 
@@ -112,6 +146,29 @@ def place_rows(dofs: Dofs) -> Table[PlaceRow]:
 def rejected_rows(found: Identification) -> Table[RejectedRow]:
     """Return one row a root that is no mode."""
     return Table((RejectedRow(**vars(r)) for r in found.rejected), RejectedRow)
+
+
+def fault_rows(found: Identification) -> Table[FaultRow]:
+    """Return one row a fault of the survey."""
+    return Table((FaultRow(**vars(f)) for f in found.faults), FaultRow)
+
+
+def driving_rows(found: Identification) -> Table[DrivingPointRow]:
+    """Return one row a driving point."""
+    rows = (
+        DrivingPointRow(d.function, d.positive_share, finite(d.phase_deg))
+        for d in found.driving_points
+    )
+    return Table(rows, DrivingPointRow)
+
+
+def reciprocity_rows(found: Identification) -> Table[ReciprocityRow]:
+    """Return one row a pair of driving points."""
+    rows = (
+        ReciprocityRow(r.function, r.reciprocal, r.correlation, finite(r.difference))
+        for r in found.reciprocity
+    )
+    return Table(rows, ReciprocityRow)
 
 
 def band_rows(found: Identification) -> Table[BandRow]:

@@ -1,9 +1,8 @@
-"""Driving points: modal mass, reciprocity, references that stand under each other's name."""
+"""Driving points: where they are, the power that they take, modal mass."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import permutations
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -73,9 +72,23 @@ def _points(dofs: Dofs, geometry: Geometry | None) -> Ints:
     return number
 
 
-def scale(
-    poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats, inputs: Dofs
-) -> Scaling:
+def positive_share(function: Numbers, order: int) -> float:
+    """Return the share of power that a driving point takes, less what it gives back, -1..1.
+
+    A structure at rest takes power from a force at every line: the mobility of a driving point has
+    a positive real part. Lines count by the square of the function.
+
+    Parameters
+    ----------
+    function : (n_line,) complex
+    order : int
+        0, 1, 2 for displacement, velocity, acceleration.
+    """
+    taken = (function * 1j ** (1 - order)).real * np.abs(function)
+    return float(np.sum(taken) / max(float(np.sum(np.abs(taken))), 1e-300))
+
+
+def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats) -> Scaling:
     """Find modal masses from the driving points, after checking them by reciprocity.
 
     A normal mode has l = φ/(2 j ω_d m) at the point it is driven at; the modal mass m is the
@@ -90,8 +103,6 @@ def scale(
         Physical units (shape times participation is displacement per force).
     points : (n_input, n_output) float
         From `driving_points`.
-    inputs : Dofs
-        For messages.
 
     References
     ----------
@@ -105,17 +116,11 @@ def scale(
                               "driving point): modal masses are unknown",))  # fmt: skip
     at = points[driven] @ shapes
     part = participation[driven]
-    level = np.abs(poles) ** 2 / np.abs(poles.real)
-    exchanged, now, then = _exchange(at, part, level)
-    if exchanged:
-        names = ", ".join(inputs.take(driven[exchanged]).labels)
-        return Scaling(none, (
-            f"references {names} seem to stand under each other's name: reciprocity fails "
-            f"as they are ({100 * now:.0f} % difference) and holds when they are exchanged "
-            f"({100 * then:.0f} %); modal masses are withheld",))  # fmt: skip
-    if now > SURVEY.unreciprocal:
-        return Scaling(none, (f"the functions between the driving points differ by {100 * now:.0f} "
-                              "% from their reciprocal: modal masses are withheld",))  # fmt: skip
+    apart = _unreciprocal(at, part, np.abs(poles) ** 2 / np.abs(poles.real))
+    if apart > SURVEY.unreciprocal:
+        return Scaling(none, (f"the functions between the driving points differ by "
+                              f"{100 * apart:.0f} % from their reciprocal: modal masses are "
+                              "withheld",))  # fmt: skip
     q = np.sum(at.conj() * part, axis=0) / np.maximum(np.sum(np.abs(at) ** 2, axis=0), 1e-300)
     inverse_mass = 2j * poles.imag * q
     in_phase = np.cos(np.radians(SURVEY.in_phase_deg)) * np.abs(inverse_mass)
@@ -131,25 +136,7 @@ def scale(
     return Scaling(np.asarray(inverse_mass.real / mass), tuple(warnings))
 
 
-def _exchange(at: Numbers, part: Numbers, level: Floats) -> tuple[list[int], float, float]:
-    """Which driven references are exchanged, and the reciprocity error before and after."""
-    n = len(at)
-    identity = tuple(range(n))
-    now = _reciprocity_error(at, part, level)
-    if n < 2 or n > SURVEY.permuted_most:
-        return [], now, now
-    best, then = identity, now
-    for order in permutations(range(n)):
-        error = _reciprocity_error(at, part[list(order)], level)
-        if error < then:
-            best, then = order, error
-    moved = [k for k in range(n) if best[k] != k]
-    if now > SURVEY.unreciprocal and then < SURVEY.exchanged * now:
-        return moved, now, then
-    return [], now, now
-
-
-def _reciprocity_error(at: Numbers, part: Numbers, level: Floats) -> float:
+def _unreciprocal(at: Numbers, part: Numbers, level: Floats) -> float:
     """Relative difference of the residues between pairs of driving points and their reciprocal."""
     a = at[:, None, :] * part[None, :, :] * level
     upper = np.triu_indices(len(at), 1)

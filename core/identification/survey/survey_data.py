@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from ...arrays import Bools, Floats, Numbers
 from ...data.dofs import Dofs
 from ...data.frfs import Frfs
 from ...errors import InputError
+from .faults import Fault, listed
+from .function_faults import cut_off, dead
 from .modal_synthesis import derivative_order
 from .survey_numbers import SURVEY
 
@@ -36,7 +38,10 @@ class Survey:
         Whether outputs and inputs are exchanged.
     quantity : str
     source : str
+    faults : tuple of Fault
+        What is wrong with which functions.
     warnings : tuple of str
+        What is to be told, the sentences of `faults` among it.
     ranges : tuple of (low, high)
         First and last line [Hz] of each part of the axis that is used, rising.
     """
@@ -51,8 +56,21 @@ class Survey:
     roving_hammer: bool
     quantity: str
     source: str
+    faults: tuple[Fault, ...]
     warnings: tuple[str, ...]
     ranges: tuple[tuple[float, float], ...]
+
+    def function(self, output: int, input_: int) -> str:
+        """Name a function by response and reference as the file has them."""
+        pair = self.outputs.labels[output], self.inputs.labels[input_]
+        return "/".join(pair[::-1] if self.roving_hammer else pair)
+
+    @property
+    def physical(self) -> Numbers:
+        """Values without the weights, (n_output, n_input, n_line) complex."""
+        return np.asarray(
+            self.values / self.output_weight[:, None, None] / self.input_weight[None, :, None]
+        )
 
     @property
     def order(self) -> int:
@@ -63,6 +81,28 @@ class Survey:
         """Lines from `low` to `high` [Hz], both included."""
         first, last = np.searchsorted(self.frequencies_hz, [low, np.nextafter(high, np.inf)])
         return slice(int(first), int(last))
+
+
+def told(survey: Survey, *faults: Fault) -> Survey:
+    """Add faults, and their sentences."""
+    sentences = tuple(f.sentence for f in faults)
+    return replace(survey, faults=survey.faults + faults, warnings=survey.warnings + sentences)
+
+
+def left_out(survey: Survey, functions: Bools) -> Survey:
+    """Take functions (n_output, n_input) out, and outputs or inputs that have no other."""
+    measured = survey.measured & ~functions
+    rows, columns = measured.any(axis=1), measured.any(axis=0)
+    values = np.where(measured[:, :, None], survey.values, 0.0)
+    return replace(
+        survey,
+        values=values[rows][:, columns],
+        measured=measured[rows][:, columns],
+        output_weight=survey.output_weight[rows],
+        input_weight=survey.input_weight[columns],
+        outputs=survey.outputs.take(np.flatnonzero(rows)),
+        inputs=survey.inputs.take(np.flatnonzero(columns)),
+    )
 
 
 def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)) -> Survey:
@@ -77,29 +117,33 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
         A frequency axis that does not rise, too few lines, or nothing that can be fitted.
     """
     name = frfs.source or "the frequency responses"
-    warnings: list[str] = []
+    said = Said(name, frfs.responses, frfs.references)
     derivative_order(frfs.quantity)
     f, keep, ranges = _axis(frfs, ranges, name)
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
-    measured = _measured(values, responses, references, name, warnings)
+    measured = _measured(values, said)
     noise, rms = _noise_and_size(values, measured)
     quiet = measured & (noise > SURVEY.noise_only * rms)
-    what = "holds", "nothing but noise"
-    _name_functions(quiet, what, responses, references, name, warnings)
+    said.name("dead_channel", quiet, ("holds", "nothing but noise"), "left out")
     measured &= ~quiet
+    silent = dead(values, measured)
+    said.name("dead_channel", silent, ("holds", "nothing that decays (a dead channel)"), "left out")
+    measured &= ~silent
     if not measured.any():
-        reason = f": {warnings[-1]}" if warnings else ""
+        reason = f": {said.warnings[-1]}" if said.warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
+    cut = "is", "cut off at one value (an overload)"
+    said.name("overload", measured & cut_off(frfs), cut)
     smooth = float(np.median(noise[measured] / np.maximum(rms[measured], 1e-300)))
     if smooth < SURVEY.too_smooth:
-        warnings.append(
+        said.warnings.append(
             f"{name}: the functions are smooth to {smooth:.0e} of their size, as measured ones "
             "are not: they seem computed from an earlier identification, whose own errors the "
             "standard errors here cannot know"
         )
     rows, columns = measured.any(axis=1), measured.any(axis=0)
-    rows, columns = _one_component(measured, rows, columns, responses, references, warnings)
+    rows, columns = _one_component(measured, rows, columns, responses, references, said.warnings)
     values, measured = values[rows][:, columns], measured[rows][:, columns]
     noise, rms = noise[rows][:, columns], rms[rows][:, columns]
     responses = responses.take(np.flatnonzero(rows))
@@ -109,7 +153,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
         values, measured = np.ascontiguousarray(values.transpose(1, 0, 2)), measured.T
         noise, rms = noise.T, rms.T
         responses, references = references, responses
-        warnings.append(
+        said.warnings.append(
             f"{name} has more references than responses ({len(responses)} and {len(references)}):"
             " taken as a roving-hammer survey, shapes are given at the references by reciprocity"
         )
@@ -119,7 +163,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     values *= input_weight[None, :, None]
     return Survey(
         f, values, measured, output_weight, input_weight, responses, references, roving,
-        frfs.quantity, frfs.source, tuple(warnings), ranges,
+        frfs.quantity, frfs.source, tuple(said.faults), tuple(said.warnings), ranges,
     )  # fmt: skip
 
 
@@ -176,9 +220,7 @@ def _axis(
     return np.asarray(f[keep]), keep, tuple(ends)
 
 
-def _measured(
-    values: Numbers, responses: Dofs, references: Dofs, name: str, warnings: list[str]
-) -> Numbers:
+def _measured(values: Numbers, said: Said) -> Bools:
     """Which combinations are frequency responses, (n_response, n_reference); names the others."""
     nan = np.isnan(values)
     missing = nan.all(axis=2)
@@ -195,29 +237,33 @@ def _measured(
         (unit, "is", "real and between 0 and 1 (a coherence, not a frequency response)"),
         (real & ~unit, "is", "real (a spectrum or a time record, not a frequency response)"),
     ):
-        _name_functions(bad, (verb, rest), responses, references, name, warnings)
+        kind = "dead_channel" if bad is constant else "no_response"
+        said.name(kind, bad, (verb, rest), "left out")
     return np.asarray(measured & ~gaps & ~constant & ~real)
 
 
-def _name_functions(
-    bad: Numbers,
-    what: tuple[str, str],
-    responses: Dofs,
-    references: Dofs,
-    name: str,
-    warnings: list[str],
-) -> None:
-    rows, columns = np.nonzero(bad)
-    if not len(rows):
-        return
-    o, i = responses.labels, references.labels
-    some = list(zip(rows, columns, strict=True))[: SURVEY.named]
-    shown = ", ".join(f"{o[a]}/{i[b]}" for a, b in some)
-    left = len(rows) - SURVEY.named
-    more = f" and {left} more" if left > 0 else ""
-    verb, rest = what
-    verb = _OF_MANY[verb] if len(rows) > 1 else verb
-    warnings.append(f"{name}: {shown}{more} {verb} {rest}: left out")
+@dataclass(frozen=True, eq=False)
+class Said:
+    """What is said of the functions of a file, as it is found."""
+
+    source: str
+    responses: Dofs
+    references: Dofs
+    faults: list[Fault] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def name(self, kind: str, bad: Bools, what: tuple[str, str], done: str = "") -> None:
+        """Name the functions (n_response, n_reference) that are bad; `what` begins with a verb."""
+        rows, columns = np.nonzero(bad)
+        if not len(rows):
+            return
+        o, i = self.responses.labels, self.references.labels
+        names = tuple(f"{o[a]}/{i[b]}" for a, b in zip(rows, columns, strict=True))
+        verb, rest = what
+        verb = _OF_MANY[verb] if len(names) > 1 else verb
+        sentence = f"{self.source}: {listed(names)} {verb} {rest}" + (f": {done}" if done else "")
+        self.faults.append(Fault(kind, names, sentence, done))
+        self.warnings.append(sentence)
 
 
 def _one_component(
