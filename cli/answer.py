@@ -61,11 +61,14 @@ def answer(found: Run, folder: Path, output: Output) -> None:
     """Give the result: JSON where asked, else the sentence and the tables; then the warnings."""
     emit_json(found.to_dict(), output)
     if speaks(output):
-        from ..adapters.report.tables.headline import headline
+        from ..adapters.report.tables.headline import story
         from .terminal_tables import result_tables
 
         console = stdout()
-        console.print(headline(found), markup=False)
+        first, *rest = story(found)
+        console.print(first, markup=False)
+        if rest:
+            console.print(" ".join(rest), markup=False)
         for table in result_tables(found, console.width):
             console.print(table)
         console.print(f"run folder: {folder}", markup=False)

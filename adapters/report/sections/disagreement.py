@@ -52,7 +52,8 @@ def _said(told: MisfitTable) -> str:
     ]
     first = f"Of the misfit, {'; '.join(best)}. " if best else ""
     return first + (
-        "To first order and one place at a time: the maps show where to look, the search decides."
+        "To first order and one place at a time: the maps show where to look. The search lets "
+        "the known parameters move along and decides, so what it found may stand elsewhere."
     )
 
 

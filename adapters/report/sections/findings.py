@@ -18,6 +18,11 @@ from .section import ReportedRun, Section
 
 _SHOWN = 12
 """So many of the cards that carry an effect are shown."""
+_APART = (
+    "The colours are what the sensors miss of the deck as it came; the numbers are where the "
+    "search, with the known parameters moving along, places the cause. A cause often shows where "
+    "the structure moves most, not where it sits, so the two need not agree."
+)
 _ROLES = (
     ("effect", "missing in the model"),
     ("credible", "places that explain the data about as well"),
@@ -96,6 +101,7 @@ def _picture(run: ReportedRun[DiscoverTables]) -> str:
         scene(geometry, "Where", marks=marks, values=values)
         + scale
         + tag("p", *keys, class_="note")
+        + (tag("p", _APART, class_="note") if values is not None and told.findings else "")
     )
 
 

@@ -1,7 +1,11 @@
 """The one sentence that a person reads first."""
 
 import math
+from collections.abc import Sequence
 
+from ....core.discovery.effects.sentence_parts import mode_ranges
+from ....core.discovery.findings import Finding
+from ....core.discovery.narrative.sentences import effects_said
 from ....core.results.correlation import Compared, Gap, RunTables
 from ....core.results.discovery import DiscoverTables
 from ....core.results.update import UpdateTables
@@ -73,21 +77,48 @@ def _update(answer: UpdateTables) -> list[str]:
 
 def _discover(answer: DiscoverTables) -> list[str]:
     verdict, found = answer.verdict, answer.findings
-    told = [
-        _sentence(found[0].sentence) if found else _VERDICT_SENTENCES.get(verdict, f"{verdict}.")
-    ]
-    if found and verdict == "undecided":
-        told = [_VERDICT_SENTENCES[verdict], f"The best explanation so far: {told[0]}"]
+    best = _found(found)
+    told = [_VERDICT_SENTENCES.get(verdict, f"{verdict}.")]
+    if best and verdict == "undecided":
+        told.append(_sentence(f"the best explanation so far: {best}"))
+    elif best:
+        told = [_sentence(best)]
     elif verdict == "parameters_only":
         told += _moved(answer)
-    if len(found) > 1:
-        told.append(f"{counted(len(found) - 1, 'further finding')} below.")
+    if len(found) == 1:
+        told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after
     if verdict in ("no_gap", "undecided") or old == new:
         told.append(_sentence(_of(new) + " with the model"))
     else:
         told.append(_sentence("with that adopted, " + _change(old, new, "completed model")))
+        told += _lost(answer)
+    rivals = [a for a in answer.alternatives if a.kinds]
+    if best and rivals:
+        told.append(f"Next best: {rivals[0].where}; {rivals[0].odds}.")
     return told
+
+
+def _found(findings: Sequence[Finding]) -> str:
+    """Say what was found, in a few words: effects by kind and place, sensors by number."""
+    model = [f for f in findings if f.side == "model"]
+    at_fault = [f.where.region or "" for f in findings if f.side == "test"]
+    said = []
+    if model:
+        regions = [f.where.region or "" for f in model]
+        said.append(f"the model lacks {effects_said([f.kind for f in model], regions)}")
+    if at_fault:
+        said.append(f"the test is at fault: {listed(at_fault)}")
+    return ", and ".join(said)
+
+
+def _lost(answer: DiscoverTables) -> list[str]:
+    """Name the test modes that paired with the deck as it came and no longer do."""
+    lost = sorted({p.test for p in answer.before.pairs} - {p.test for p in answer.after.pairs})
+    if not lost:
+        return []
+    said, does = mode_ranges(lost), "does" if len(lost) == 1 else "do"
+    return [_sentence(f"{said} paired before and no longer {does}")]
 
 
 def _moved(answer: DiscoverTables) -> list[str]:

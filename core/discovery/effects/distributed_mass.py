@@ -25,6 +25,7 @@ def _per_area(c: Candidates, row: int, magnitude: Words) -> Words:
 KIND = EffectKind(
     name="distributed_mass",
     label="distributed mass",
+    plural="distributed masses",
     sentence="About {mass} of mass, spread out, is missing {region}: distributed mass",
     magnitudes=(MASS,),
     places=_places,

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .candidates import Candidates
 
 Words = dict[str, Any]
+_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,8 @@ class EffectKind:
         Further words of the magnitude of one place.
     in_modes : bool
         Whether undamped modes show it.
+    plural : str
+        The label of several; "" where it ends with another s.
     """
 
     name: str
@@ -96,11 +99,14 @@ class EffectKind:
     limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
     in_modes: bool = True
+    plural: str = ""
 
-    @property
-    def words(self) -> str:
-        """Return the name as words."""
-        return self.name.replace("_", " ")
+    def said(self, number: int) -> str:
+        """Return so many of it in words: ``an attached mass``, ``two attached masses``."""
+        if number == 1:
+            return f"{'an' if self.label[0] in 'aeiou' else 'a'} {self.label}"
+        count = _NUMBERS[number] if number < len(_NUMBERS) else str(number)
+        return f"{count} {self.plural or f'{self.label}s'}"
 
     @property
     def at_points(self) -> bool:

@@ -30,6 +30,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
 KIND = EffectKind(
     name="ground_spring",
     label="spring to ground",
+    plural="springs to ground",
     sentence="A spring to ground of about {stiffness:.3g} (deck units) in direction {components} "
     "is missing {region}: it",
     magnitudes=(STIFFNESS,),

@@ -25,7 +25,8 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
 
 KIND = EffectKind(
     name="local_stiffness",
-    label="local stiffness",
+    label="local change of stiffness",
+    plural="local changes of stiffness",
     sentence="The stiffness is {factor:.2g} times the deck's {region}: a local change of stiffness",
     magnitudes=(FACTOR,),
     places=_places,

@@ -48,6 +48,7 @@ def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, Any],
 KIND = EffectKind(
     name="point_mass",
     label="attached mass",
+    plural="attached masses",
     sentence="About {mass} of mass is missing {region}: an attached mass",
     magnitudes=(MASS,),
     places=_places,

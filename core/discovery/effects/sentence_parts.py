@@ -64,5 +64,9 @@ def mode_ranges(modes: Sequence[int]) -> str:
     words = []
     for run in runs:
         words += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else [str(m) for m in run]
-    said = words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-    return f"test mode{'s' if len(modes) > 1 else ''} {said}"
+    return f"test mode{'s' if len(modes) > 1 else ''} {listed(words)}"
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Return ``a``, ``a and b``, ``a, b and c``."""
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

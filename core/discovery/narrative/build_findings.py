@@ -32,7 +32,7 @@ from ..sensor_faults.diagnosis import Verdicts
 from .model_error_words import left_over
 from .narrative_numbers import NARRATIVE
 from .sensor_findings import accusations, remarks
-from .sentences import alternative, magnitude_of, region, sentence_of
+from .sentences import alternative, effects_said, magnitude_of, region, sentence_of
 
 
 def build_discovery(
@@ -54,9 +54,8 @@ def build_discovery(
     spread = deviations(best, verdict.scale)
     ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
     own = np.split(spread, ends[:-1])[1:]
-    alternatives = _alternatives(outcome)
     findings = [
-        _finding(outcome, k, place, off, alternatives)
+        _finding(outcome, k, place, off)
         for k, off in enumerate(own)
         for place in range(len(outcome.places(best.suspects[k])))
     ]
@@ -84,7 +83,7 @@ def build_discovery(
     return Discovery(
         word,
         (*findings, *accused),
-        alternatives,
+        _alternatives(outcome),
         moved,
         verdict.scale,
         verdict.evidence,
@@ -151,9 +150,7 @@ class _Outcome:
         return region(self.request.structure.model.geometry, c.xyz[row])
 
 
-def _finding(
-    o: _Outcome, number: int, place: int, deviation: Floats, alternatives: tuple[Alternative, ...]
-) -> Finding:
+def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding:
     best, scale, masses = o.best, o.verdict.scale, o.request.masses
     s = best.suspects[number]
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
@@ -166,10 +163,9 @@ def _finding(
     first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
     modes = [int(o.request.numbers[j]) for j in explained(o.searcher, best, number, scale)]
-    next_best = alternatives[0] if alternatives else None
     where = Where.of(c.where[row], c.xyz[row], region=spot)
     many = len(o.places(s))
-    text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, next_best, many)
+    text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, many)
     credible, sure = _credible(o, number, place, places), _confidence(o.verdict)
     return Finding("model", c.kind.name, where, magnitude, interval, credible, sure, text)
 
@@ -229,9 +225,7 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
     for kinds, f in seen.items():
         xyz = [c.xyz[row] for c, row in named(f)]
         regions = tuple(region(o.request.structure.model.geometry, x) for x in xyz)
-        said = " and ".join(
-            f"{k.replace('_', ' ')} {r}" for k, r in zip(kinds, regions, strict=True)
-        )
+        said = effects_said(kinds, regions)
         out.append(alternative(kinds, xyz, times(o.behind(f)), said, regions))
     if o.verdict.accepted:
         ratio = times(o.behind(o.found.levels[0]))
@@ -256,4 +250,5 @@ def _in_words(o: _Outcome, f: Fit) -> str:
     if not f.suspects:
         return "the known parameters alone"
     last = f.suspects[-1]
-    return f"{'' if len(f.suspects) < 2 else 'one with '}{o.of(last).kind.words} {o.region(last)}"
+    said = effects_said([o.of(last).kind.name], [o.region(last)])
+    return said if len(f.suspects) < 2 else f"an explanation with {said}"

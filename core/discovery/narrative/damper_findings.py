@@ -59,7 +59,7 @@ def _beside(request: Request, damper: Finding, model: list[Finding]) -> str:
     for f in model:
         apart = np.linalg.norm(np.subtract(f.where.xyz, damper.where.xyz))
         if KINDS[f.kind].at_points and apart < NARRATIVE.damper_beside * size:
-            return KINDS[f.kind].words
+            return KINDS[f.kind].label
     return ""
 
 

@@ -7,9 +7,10 @@ import numpy as np
 
 from ...arrays import Floats
 from ...data.geometry import Geometry
+from ..effects import KINDS
 from ..effects.candidates import Candidates
 from ..effects.effect_kind import EffectKind
-from ..effects.sentence_parts import MassUnit, mode_ranges, odds
+from ..effects.sentence_parts import MassUnit, listed, mode_ranges, odds
 from ..findings import Alternative
 from .narrative_numbers import NARRATIVE
 
@@ -25,6 +26,28 @@ def alternative(
     """Return what is `ratio` times less likely than what was found, or than some `other`."""
     xyz, said = tuple(tuple(x.tolist()) for x in places), odds(ratio, other)
     return Alternative(kinds, xyz, ratio, f"{where}: {said}", where, said, regions)
+
+
+def effects_said(kinds: Sequence[str], regions: Sequence[str]) -> str:
+    """Say what is where: ``a spring to ground near grid 7 (x = 1)``.
+
+    Effects of one kind together, and several places without their coordinates: ``two attached
+    masses, near grid 8 and near grid 9``.
+    """
+    if len(regions) > 1:
+        regions = [r.split(" (")[0] for r in regions]
+    at = {kind: [r for k, r in zip(kinds, regions, strict=True) if k == kind] for kind in kinds}
+    comma = "," if len(kinds) > len(at) else ""
+    said = [
+        f"{_kind(kind, len(own))}{',' if len(own) > 1 else ''} {listed(own)}".rstrip()
+        for kind, own in at.items()
+    ]
+    return f"{comma} and ".join(said)
+
+
+def _kind(name: str, number: int) -> str:
+    known = KINDS.get(name)
+    return known.said(number) if known else f"{number} {name.replace('_', ' ')}"
 
 
 def magnitude_of(
@@ -53,10 +76,9 @@ def sentence_of(
     interval: tuple[float, float],
     modes: Sequence[int],
     masses: MassUnit,
-    next_best: Alternative | None,
     many: int = 1,
 ) -> str:
-    """Say what is missing, where, which test modes it explains, how sure, and what comes next."""
+    """Say what is missing, where, which test modes it explains, how sure."""
     values = {**magnitude, "region": region}
     low, high = (f"{v:.3g}" for v in interval)
     if "components" in values:
@@ -75,12 +97,6 @@ def sentence_of(
     what = mode_ranges(modes) if modes else "the test a little better"
     text += f" explains {what} (95 %: {low} to {high}"
     text += ", the test hardly tells)" if interval[1] > NARRATIVE.hardly * interval[0] else ")"
-    if next_best is not None:
-        what = " and ".join(k.replace("_", " ") for k in next_best.kinds) or "the known parameters"
-        if next_best.kinds == (kind.name,):
-            what = next_best.where
-            what = f"{kind.words} there alone" if next_best.regions == (region,) else what
-        text += f"; next best, {what}, is {odds(next_best.times_less_likely)}"
     return text + "."
 
 

@@ -28,17 +28,28 @@ def test_update_tells_now_and_before(update: dict[str, Any]) -> None:
     )
 
 
-def test_discovery_leads_with_its_own_sentence(discovery: dict[str, Any]) -> None:
+def test_discovery_leads_with_one_short_sentence(discovery: dict[str, Any]) -> None:
     first, *rest = story(answer_of(discovery))
-    assert first == "About 0.62 kg is missing near grid 8."
-    assert rest[0] == "1 further finding below."
-    assert rest[1].startswith("With that adopted, 3 test modes pair with the completed model (2")
+    assert first == (
+        "The model lacks an attached mass the far corner, and the test is at fault: sensor 108."
+    )
+    assert rest[0].startswith("With that adopted, 3 test modes pair with the completed model (2")
+    assert rest[-1] == "Next best: local stiffness at the near edge; 41 times less likely."
 
 
 def test_an_undecided_run_says_so_before_its_best_explanation(discovery: dict[str, Any]) -> None:
     first, second, *_ = story(answer_of(discovery | {"verdict": "undecided"}))
     assert first == "The data do not decide what is missing."
-    assert second == "The best explanation so far: About 0.62 kg is missing near grid 8."
+    assert second.startswith(
+        "The best explanation so far: the model lacks an attached mass the far"
+    )
+
+
+def test_modes_that_lost_their_partner_are_named(discovery: dict[str, Any]) -> None:
+    after = discovery["after"] | {"pairs": discovery["after"]["pairs"][1:]}
+    told = story(answer_of(discovery | {"after": after}))
+    lost = discovery["after"]["pairs"][0]["test"]
+    assert f"Test mode {lost} paired before and no longer does." in told
 
 
 def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(

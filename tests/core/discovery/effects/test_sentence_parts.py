@@ -8,7 +8,7 @@ from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.effects.sentence_parts import MassUnit, mode_ranges, odds
 from trueup.core.discovery.likelihood.map_fit import fit
-from trueup.core.discovery.narrative.sentences import alternative, sentence_of
+from trueup.core.discovery.narrative.sentences import effects_said
 from trueup.core.discovery.search.model_selection import explained
 
 MASS = KINDS["point_mass"]
@@ -83,24 +83,20 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
 
 
 @pytest.mark.parametrize(
-    ("kinds", "said"),
+    ("kinds", "regions", "said"),
     [
-        (("point_mass",), "next best, point mass near grid 7, is 3 times less likely"),
-        (("ground_spring",), "next best, ground spring, is 3 times less likely"),
-        ((), "next best, the known parameters, is 3 times less likely"),
+        (("point_mass",), ("near grid 7 (x = 1)",), "an attached mass near grid 7 (x = 1)"),
+        (
+            ("distributed_mass", "point_mass", "point_mass"),
+            ("near grid 7 (x = 1)", "near grid 8 (x = 2)", "near grid 9 (x = 3)"),
+            "a distributed mass near grid 7, and two attached masses, near grid 8 and near grid 9",
+        ),
+        (("ground_spring",) * 3, ("a", "b", "c"), "three springs to ground, a, b and c"),
+        (("flux_leak",), ("near grid 7",), "1 flux leak near grid 7"),
     ],
 )
-def test_the_next_best_is_named_by_its_place_where_it_is_of_the_same_kind(kinds, said):
-    other = alternative(kinds, (), 3.0, "point mass near grid 7")
-    text = sentence_of(MASS, {"mass": 1.0}, "here", (0.9, 1.1), [1], MassUnit(), other)
-    assert said in text
-
-
-def test_the_same_effect_at_the_same_place_without_the_others_is_called_alone():
-    place = "near grid 7"
-    other = alternative(("point_mass",), (), 3.0, f"point mass {place}", (place,))
-    text = sentence_of(MASS, {"mass": 1.0}, place, (0.9, 1.1), [1], MassUnit(), other)
-    assert "next best, point mass there alone, is 3 times less likely" in text
+def test_effects_are_told_as_a_person_would(kinds, regions, said):
+    assert effects_said(kinds, regions) == said
 
 
 def test_a_mass_explains_the_modes_that_move_where_it_sits():
