@@ -21,6 +21,7 @@ from ..core.results.modes import (
     band_rows,
     driving_rows,
     fault_rows,
+    function_rows,
     mode_rows,
     place_rows,
     reciprocity_rows,
@@ -194,13 +195,14 @@ def identify(
         driving_points=driving_rows(found),
         reciprocity=reciprocity_rows(found),
         warnings=warnings,
+        functions=function_rows(found),
         content=StoreContent(
             geometry=read.geometry,
             modes={"test": found.real_modes, "test_complex": found.modes},
             matrices={"shape_std": found.shape_std},
         ),
         units=read.units,
-        page=stabilisation_page(found, name, warnings),
+        page=stabilisation_page(found, name, warnings, read.geometry),
         skipped=read.skipped,
     )
 

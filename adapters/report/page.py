@@ -76,10 +76,13 @@ def make_report(
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
         tag("footer", esc(f"trueup · {answer.schema}")),
     )
+    return html_page(name or kind, body + scripts(*["viewer.js"] * (shapes is not None)))
+
+
+def scripts(*further: str) -> str:
+    """Return what shows values under the pointer, and further scripts of this folder."""
     tip = '<div id="tip" role="status" hidden></div>'
-    moving = "" if shapes is None else _asset("viewer.js")
-    script = f"<script>{_asset('page.js')}{moving}</script>"
-    return html_page(name or kind, body + tip + script)
+    return f"{tip}<script>{''.join(map(_asset, ('page.js', *further)))}</script>"
 
 
 def html_page(title: str, body: str) -> str:

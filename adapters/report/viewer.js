@@ -53,7 +53,7 @@
       }
       ctx.stroke();
     }
-    if (!detail) return;
+    if (!detail && order.length) return;     // sensors alone where there are no lines
     const q = new Float32Array(9), from = probes * pair;
     for (let i = 0; i < probes; i++) {
       const x = 2 * sensors[3 * i] / 32767, y = 2 * sensors[3 * i + 1] / 32767, z = 2 * sensors[3 * i + 2] / 32767;

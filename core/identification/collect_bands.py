@@ -8,6 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Floats, Numbers
+from ..data.frfs import Frfs
 from ..data.geometry import Geometry
 from ..data.modes import Modes
 from .identification_numbers import IDENTIFICATION
@@ -94,6 +95,7 @@ def assemble(
         remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
         rejected=rejected(fits, proposals, unwanted),
+        measured=_measured(survey),
         chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
         cmif=_cmif(survey),
         quantity=survey.quantity,
@@ -108,6 +110,13 @@ def assemble(
 def _cmif(survey: Survey) -> Indicator:
     values = survey.values / survey.output_weight[:, None, None]
     return Indicator(survey.frequencies_hz, cmif(values / survey.input_weight[None, :, None]))
+
+
+def _measured(survey: Survey) -> Frfs:
+    values = np.where(survey.measured[:, :, None], survey.values, np.nan)
+    values /= survey.output_weight[:, None, None] * survey.input_weight[None, :, None]
+    places = survey.frequencies_hz, survey.outputs, survey.inputs
+    return Frfs(*places, values, survey.quantity, survey.source)
 
 
 def _indicator_at(survey: Survey, hz: Floats) -> Floats:
@@ -158,11 +167,11 @@ def _backgrounds(
 
 
 def _joined_chart(fits: tuple[BandFit, ...], charts: tuple[Chart, ...]) -> Chart:
-    order, hz, damping, stable = [], [], [], []
+    order, hz, damping, level = [], [], [], []
     for fit, c in zip(fits, charts, strict=True):
         here = (c.frequency_hz >= fit.band.low) & (c.frequency_hz <= fit.band.high)
         order.append(c.order[here])
         hz.append(c.frequency_hz[here])
         damping.append(c.damping[here])
-        stable.append(c.stable[here])
-    return Chart(*(np.concatenate(x) for x in (order, hz, damping, stable)))
+        level.append(c.level[here])
+    return Chart(*(np.concatenate(x) for x in (order, hz, damping, level)))

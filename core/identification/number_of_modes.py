@@ -30,11 +30,12 @@ def fewer(
     by_hand = np.array([any(near(f, t) for t in take) for f in hz], bool)
     poor = np.array([bool(r) for r in found.remarks], bool)
     worst = np.lexsort((error, poor, ~by_hand))[number:]
-    kept = []
-    for b in fits:
-        apart = np.abs(b.fit.poles.imag[:, None] - found.poles.imag[worst])  # whatever the window
-        out = b.core & (apart < 1e-9 * b.fit.poles.imag[:, None]).any(axis=1)
-        kept.append(replace(b, core=b.core & ~out, background=b.background | out))
+    kept = list(fits)
+    for omega in found.poles.imag[worst]:  # which no window has moved
+        gaps = [np.where(b.core, np.abs(b.fit.poles.imag - omega), np.inf) for b in kept]
+        n = int(np.argmin([g.min(initial=np.inf) for g in gaps]))
+        b, root = kept[n], np.arange(len(gaps[n])) == np.argmin(gaps[n])
+        kept[n] = replace(b, core=b.core & ~root, background=b.background | root)
     reason = f"not among the {number} best founded modes, as many as are asked for"
     return tuple(kept), dict.fromkeys(hz[worst].tolist(), reason)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ..data.frfs import Frfs
 from ..data.modes import Modes
 from ..noun import Noun
 from .poles.pole_stabilisation import Chart
+from .quality import correlation
 from .rejected import Rejected
 from .survey.faults import Fault
 from .survey.modal_synthesis import modal_response
@@ -103,6 +105,8 @@ class Identification(Noun):
     chart : Chart
         Stabilisation diagram.
     cmif : Indicator
+    measured : Frfs
+        The functions fitted, responses where the shapes are given, wrong signs mended.
     quantity : str
         Of the functions fitted.
     window_decay : float
@@ -135,6 +139,7 @@ class Identification(Noun):
     bands: tuple[Background, ...]
     chart: Chart
     cmif: Indicator
+    measured: Frfs
     quantity: str
     window_decay: float
     faults: tuple[Fault, ...]
@@ -170,6 +175,28 @@ class Identification(Noun):
         )  # fmt: skip
         source = f"synthesised, {self.modes.source}"
         return Frfs(f, self.modes.dofs, self.references, values, self.quantity, source)
+
+    @cached_property
+    def frac(self) -> Floats:
+        """Frequency response assurance of each function, (n_dof, n_reference); NaN unmeasured.
+
+        |Σ H* Ĥ|² / (Σ|H|² Σ|Ĥ|²) of measured and synthesised values over the lines fitted.
+
+        References
+        ----------
+        Heylen, Lammens (1996), FRAC: a consistent way of comparing frequency response functions,
+        Proceedings of the Conference on Identification in Engineering Systems, Swansea.
+        """
+        pairs = zip(self.measured.values, self.synthesised().values, strict=True)
+        return np.array(
+            [
+                [
+                    np.nan if np.isnan(h[0]) else correlation(h, own)
+                    for h, own in zip(*row, strict=True)
+                ]
+                for row in pairs
+            ]
+        ).reshape(self.measured.values.shape[:2])
 
 
 def synthesise(

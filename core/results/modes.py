@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..eigen.normal_modes import Checks
@@ -90,6 +92,17 @@ class BandRow:
     high_hz: float = field(metadata=_HZ)
 
 
+@dataclass(frozen=True)
+class FunctionRow:
+    """A function that was fitted; `frac` is the assurance of what the modes make of it, 0..1."""
+
+    node: int
+    direction: str
+    reference_node: int
+    reference_direction: str
+    frac: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class IdentifyTables(Tables):
     """What ``identify`` answers; `lines` were used, from `range_hz`[0] to `range_hz`[1]."""
@@ -110,6 +123,7 @@ class IdentifyTables(Tables):
     )
     reciprocity: Table[ReciprocityRow] = field(default_factory=lambda: Table((), ReciprocityRow))
     warnings: tuple[str, ...]
+    functions: Table[FunctionRow] = field(default_factory=lambda: Table((), FunctionRow))
 
 
 def mode_rows(found: Identification) -> Table[IdentifiedRow]:
@@ -169,6 +183,18 @@ def reciprocity_rows(found: Identification) -> Table[ReciprocityRow]:
         for r in found.reciprocity
     )
     return Table(rows, ReciprocityRow)
+
+
+def function_rows(found: Identification) -> Table[FunctionRow]:
+    """Return one row a function, response by response."""
+    of, by = (list(zip(d.node.tolist(), d.directions, strict=True))
+              for d in (found.measured.responses, found.measured.references))  # fmt: skip
+    rows = (
+        FunctionRow(*of[o], *by[i], float(frac))
+        for (o, i), frac in np.ndenumerate(found.frac)
+        if np.isfinite(frac)
+    )
+    return Table(rows, FunctionRow)
 
 
 def band_rows(found: Identification) -> Table[BandRow]:

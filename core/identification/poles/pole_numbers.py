@@ -26,6 +26,8 @@ class PoleNumbers:
     lines_least: int = number(12, "lines", "of a band in which poles are looked for", SURVEYS)
     candidate_same: float = number(1.5, WIDTHS, "within which candidates of two runs are the same root", SURVEYS)
     damping_most: float = number(0.25, "of critical", "above it a pole describes the background", SURVEYS)
+    damping_stays: float = number(0.05, "of the damping", "change from order to order of a pole that is marked as stable in damping", "the field's custom")
+    participation_stays: float = number(0.98, "-", "MAC with the order before of a participation that is marked as stable", "the field's custom")
     track_reach: float = number(1.0, "-", "largest distance between the poles of one track, see `_distance`", SURVEYS)
     track_patience: int = number(2, "orders", "that a track may miss", SURVEYS)
     track_members: int = number(9, "members", "the last of a track, that speak for it", SURVEYS)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...arrays import Floats, Ints, Numbers
+from ...arrays import Bools, Floats, Ints, Numbers
 from .plscf import PoleSet
 from .pole_numbers import POLES
 
@@ -41,14 +41,20 @@ class Chart:
     order : (n_point,) int
     frequency_hz : (n_point,) float
     damping : (n_point,) float
-    stable : (n_point,) bool
-        Whether the pole continues one of the next lower orders.
+    level : (n_point,) int
+        0 for a pole that continues none of the next lower orders, 1 for one that does, 2 where
+        its damping stays too, 3 where damping and participation stay.
     """
 
     order: Ints
     frequency_hz: Floats
     damping: Floats
-    stable: Numbers
+    level: Ints
+
+    @property
+    def stable(self) -> Bools:
+        """Whether the pole continues one of the next lower orders, (n_point,)."""
+        return np.asarray(self.level > 0)
 
 
 def stabilise(
@@ -70,20 +76,20 @@ def stabilise(
     chart : Chart
     """
     tracks: list[_Track] = []
-    rows: list[tuple[int, float, float, bool]] = []
+    rows: list[tuple[int, float, float, int]] = []
     for s in sets:
         s = _plausible(s, low, high)
-        joined = _extend(tracks, s)
+        level = _extend(tracks, s)
         magnitude = np.abs(s.values)
         for k in range(len(magnitude)):
             hz, zeta = magnitude[k] / (2.0 * np.pi), -s.values[k].real / magnitude[k]
-            rows.append((s.order, float(hz), float(zeta), bool(joined[k])))
+            rows.append((s.order, float(hz), float(zeta), int(level[k])))
     enough = max(POLES.track_least, len(sets) // POLES.track_least)
     found = [t.candidate() for t in tracks if len(t.poles) >= enough]
     found.sort(key=lambda c: abs(c.pole))
     table = np.array(rows, dtype=float).reshape(-1, 4)
-    order, stable = table[:, 0].astype(np.int64), table[:, 3].astype(bool)
-    return tuple(found), Chart(order, table[:, 1], table[:, 2], stable)
+    order, level = table[:, 0].astype(np.int64), table[:, 3].astype(np.int64)
+    return tuple(found), Chart(order, table[:, 1], table[:, 2], level)
 
 
 class _Track:
@@ -115,9 +121,9 @@ def _plausible(s: PoleSet, low: float, high: float) -> PoleSet:
     return PoleSet(s.order, s.values[keep], s.participation[keep])
 
 
-def _extend(tracks: list[_Track], s: PoleSet) -> Numbers:
-    """Join the poles of one order to the tracks; return which of them continued one."""
-    joined = np.zeros(len(s.values), dtype=bool)
+def _extend(tracks: list[_Track], s: PoleSet) -> Ints:
+    """Join the poles of one order to the tracks; return how well each did, see `Chart`."""
+    level = np.zeros(len(s.values), dtype=np.int64)
     alive = [t for t in tracks if s.order - t.order <= POLES.track_patience]
     if alive and len(s.values):
         distance = _distance(
@@ -129,11 +135,20 @@ def _extend(tracks: list[_Track], s: PoleSet) -> Numbers:
         pairs = linear_sum_assignment(np.minimum(distance, POLES.track_reach))
         for a, b in zip(*pairs, strict=True):
             if distance[a, b] < POLES.track_reach:
+                level[b] = _level(alive[a], complex(s.values[b]), s.participation[b])
                 alive[a].add(s.order, complex(s.values[b]), s.participation[b])
-                joined[b] = True
-    for k in np.flatnonzero(~joined):
+    for k in np.flatnonzero(level == 0):
         tracks.append(_Track(s.order, complex(s.values[k]), s.participation[k]))
-    return joined
+    return level
+
+
+def _level(track: _Track, pole: complex, participation: Numbers) -> int:
+    last = track.poles[-1]
+    before, now = -last.real / abs(last), -pole.real / abs(pole)
+    if abs(now - before) > POLES.damping_stays * before:
+        return 1
+    mac = abs(np.vdot(track.participations[-1], participation)) ** 2
+    return 3 if mac >= POLES.participation_stays else 2
 
 
 def _distance(a: Numbers, wa: Numbers, b: Numbers, wb: Numbers) -> Floats:
