@@ -126,7 +126,8 @@ def identify(
     Parameters
     ----------
     frf : path, sequence of paths, Measurement or Frfs
-        Responses of motion to force at any number of references.
+        Responses of motion to force at any number of references; coherence functions among the
+        files tell which of them, and which resonances, were measured poorly.
     fmin, fmax : float, optional
         Use lines from here, up to here, Hz.
     max_order : int, optional
@@ -155,6 +156,7 @@ def identify(
         root where one is taken or refused, fewer roots than modes asked for.
     """
     from ..adapters.report.stabilisation_page import stabilisation_page
+    from ..adapters.universal.joining.join_coherence import coherence_of
     from ..core.identification import identify as find
 
     who = Place(shown="identify")
@@ -164,6 +166,7 @@ def identify(
     files = () if isinstance(frf, Frfs | Measurement) else tuple(files_of(frf))
     read = read_responses(files) if files else _content(frf)
     assert read.frfs is not None
+    coherence, of_coherence = coherence_of(read)
     progress("identifying")
     found = find(
         read.frfs,
@@ -171,6 +174,7 @@ def identify(
         fmax=fmax,
         max_order=max_order,
         geometry=read.geometry,
+        coherence=coherence,
         take=converted("take", take, tuple[float, ...], who),
         refuse=converted("refuse", refuse, tuple[float, ...], who),
         exponential_window=converted(
@@ -179,7 +183,7 @@ def identify(
         bands=converted("bands", bands, tuple[Hertz, ...], who),
         modes=converted("modes", modes, int | None, who),
     )
-    warnings = (*read.warnings, *_lost(read.skipped), *found.warnings)
+    warnings = (*read.warnings, *_lost(read.skipped), *of_coherence, *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
     return Identified(
         frf=tuple(map(str, files)),

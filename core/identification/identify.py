@@ -20,6 +20,7 @@ from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
 from .result import Identification
 from .survey.check_survey import checked
+from .survey.coherence import Coherence
 from .survey.exponential_window import decay_rate
 from .survey.mode_indicator import Band, cmif, peaks, split
 from .survey.survey_data import Survey, prepare
@@ -33,6 +34,7 @@ def identify(
     fmax: float | None = None,
     max_order: int | None = None,
     geometry: Geometry | None = None,
+    coherence: Coherence | None = None,
     take: Sequence[float] = (),
     refuse: Sequence[float] = (),
     exponential_window: float | str | None = None,
@@ -56,7 +58,10 @@ def identify(
     max_order : int, optional
         Highest order of the denominator polynomial; default: from the peaks in each band.
     geometry : Geometry, optional
-        Tells driving points whose response and reference go by two node numbers.
+        Tells driving points whose response and reference go by two node numbers, and points that
+        contradict their neighbours.
+    coherence : Coherence, optional
+        Of these functions: where it is low is told.
     take, refuse : sequence of float
         Frequencies [Hz] of rejected roots that are modes, and of modes that are none.
     exponential_window : float or str, optional
@@ -88,7 +93,7 @@ def identify(
         raise InputError(f"the model order {max_order} is too low; it must be 2 or more")
     if modes is not None and modes < 1:
         raise InputError(f"{modes} modes are asked for; ask for one or more")
-    survey = checked(prepare(frfs, wanted_ranges(fmin, fmax, bands)), geometry)
+    survey = checked(prepare(frfs, wanted_ranges(fmin, fmax, bands)), geometry, coherence)
     window = decay_rate(exponential_window, frfs.frequencies_hz)
     parts, lines = _parts(survey)
     proposals = tuple(propose(survey, b.first, b.last, _count(lines, b), max_order) for b in parts)

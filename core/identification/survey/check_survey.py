@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...data.geometry import Geometry
+from .coherence import Coherence, coherence_checked
 from .contradictions import contradictions_mended
 from .double_hits import second_hits
 from .driving_points import driving_points
@@ -16,7 +17,9 @@ from .survey_data import Survey, noise_levels, told
 from .survey_numbers import SURVEY
 
 
-def checked(survey: Survey, geometry: Geometry | None = None) -> Survey:
+def checked(
+    survey: Survey, geometry: Geometry | None = None, coherence: Coherence | None = None
+) -> Survey:
     """Name what is wrong with the functions, and mend what can be known.
 
     Parameters
@@ -24,13 +27,15 @@ def checked(survey: Survey, geometry: Geometry | None = None) -> Survey:
     survey : Survey
     geometry : Geometry, optional
         For neighbours, and driving points under two numbers.
+    coherence : Coherence, optional
+        Of the functions that the survey was made of.
     """
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = contradictions_mended(survey, points, neighbours_of(survey, geometry))
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = points_mended(survey, neighbours_of(survey, geometry))
     survey = references_mended(survey, points, neighbours_of(survey, geometry))
-    return _second_hits_named(_noise_named(survey))
+    return coherence_checked(_second_hits_named(_noise_named(survey)), coherence)
 
 
 def _noise_named(survey: Survey) -> Survey:

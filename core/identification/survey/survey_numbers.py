@@ -50,6 +50,7 @@ class SurveyNumbers:
     exchanged: float = number(0.25, "of that failure", "that an exchange leaves, for it to be believed", SURVEYS)
     coincident: float = number(1e-6, "of the size of the geometry", "nodes this close are one point", ROUNDING)
 
+    coherent: float = number(0.8, "-", "coherence where a function is large, below which it is named", "standard error of H over 15 % in five averages, Bendat and Piersol 9.2")
     signs_outputs: int = number(4, "responses", "that tell how the functions of a point belong together, at least", SURVEYS)
     signs_clear: float = number(3.0, "-", "first singular value over the second, where one mode rules", SURVEYS)
     signs_prominence_db: float = number(3.0, "dB", "of a peak at which signs are compared", SURVEYS)
