@@ -99,11 +99,11 @@ def _note(of: int, shown: int, left_out: int) -> str:
 
 
 def _chosen(f: Floats, found: Identification, most: int) -> Ints:
-    """Lines to draw, closer the nearer a mode stands in its own half-power widths."""
+    """Lines to draw, closer the nearer a root of the fit stands in its own half-power widths."""
     if len(f) <= most:
         return np.arange(len(f))
-    hz = found.modes.frequencies_hz
-    half = np.maximum(found.modes.damping * hz, np.median(np.diff(f)))
+    roots = np.concatenate([found.poles, *(b.poles for b in found.bands)]) / (2.0 * np.pi)
+    hz, half = np.abs(roots), np.maximum(-roots.real, np.median(np.diff(f)))
     near = (half / (np.abs(f[:, None] - hz) + half)).max(axis=1, initial=0.0)
     weight = np.cumsum(near + 0.06)
     even = np.searchsorted(weight, np.linspace(weight[0], weight[-1], most))
