@@ -12,6 +12,7 @@ class EigenNumbers:
     dense: int = number(600, "degrees of freedom", "models up to it are solved by LAPACK", "time")
     dense_many: int = number(4, "part of all modes", "more than which are found by LAPACK too, up to so many times `dense`", "time")
     modes: int = number(10, "modes", "where nobody says how many", "convention")
+    most: int = number(200, "modes", "up to a frequency; a slip of units makes thousands", "time")
     tolerance: float = number(1e-8, "of a Ritz value", "its residual", CHECK)
     residual: float = number(1e-5, "of λ − σ", "residual of a mode that is refused", CHECK)
     orthonormal: float = number(1e-8, "-", "error of XᵀMX that is refused", CHECK)

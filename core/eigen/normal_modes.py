@@ -134,7 +134,8 @@ def solve(
     n_modes : int, optional
         How many, rigid-body modes included. Default 10, or all up to `fmax`.
     fmax : float, optional
-        Highest frequency, Hz.
+        Highest frequency, Hz. Without `n_modes` at most 200 modes below it are given, with a
+        warning that says how many there are (of a small model all).
     p : (n_parameter,) float, optional
         Parameter values; default the deck's.
     backend : {"pardiso", "superlu"}, optional
@@ -208,6 +209,12 @@ def solve(
     if limit is not None:
         keep = min(keep, int(np.count_nonzero(values <= limit)))
     notes += _notes(pencil, body, n_zero, wanted if limit is None else None, len(values))
+    keep -= max(keep - EIGEN.most, 0) if spectrum.left_out else 0
+    if spectrum.left_out:
+        notes.append(
+            f"{EIGEN.most + spectrum.left_out} modes lie below {fmax:g} Hz: the lowest {keep} are "
+            "given; check the units and that frequency, or say how many are wanted"
+        )
     X = vectors[:, :keep]
     notes += _in_doubt(doubt[zero : max(keep - rigid.shape[1], zero)], n_zero)
     residual = float(spectrum.residual[: max(keep - rigid.shape[1], 0)].max(initial=0.0))

@@ -238,6 +238,8 @@ class Spectrum(Noun):
         Of K - sigma M.
     ahead : (n,) float
         Rough values of the next eigenvalues, to find a gap.
+    left_out : int
+        Modes up to the highest frequency asked for that were not looked for, being too many.
     """
 
     values: Floats
@@ -248,3 +250,4 @@ class Spectrum(Noun):
     missed: int | None
     factor: Factorisation | None = None
     ahead: Floats = field(default_factory=lambda: np.zeros(0))
+    left_out: int = 0

@@ -45,6 +45,7 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     """
     n_rigid = rigid.shape[1]
     below = None
+    left_out = 0
     if request.limit is not None:
         below = _inertia(
             pencil, (request.limit, request.limit * EIGEN.beside_limit), request.backend
@@ -52,12 +53,22 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
         if below <= n_rigid:
             none = np.zeros(0)
             return Spectrum(none, rigid[:, :0], none, -request.limit, complete=False, missed=0)
+        left_out = max(below - EIGEN.most, 0) if request.wanted is None else 0
+        if left_out:
+            request = replace(request, wanted=EIGEN.most, limit=None)
     asked = min(x for x in (request.wanted, below) if x is not None)
     elastic = max(asked - n_rigid, 1)
     sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
     found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
     del factor, lanczos  # two factors at a time only where the caller keeps one
-    have = missed = 0
+    return replace(_counted(pencil, rigid, found, elastic, request), left_out=left_out)
+
+
+def _counted(
+    pencil: Pencil, rigid: Floats, found: Spectrum, elastic: int, request: Request
+) -> Spectrum:
+    """Count the modes below a gap above the first `elastic` and search for those missed."""
+    n_rigid, have, missed = rigid.shape[1], 0, 0
     for attempt in range(1, EIGEN.attempts + 1):
         if not request.keep_factor:
             found = replace(found, factor=None)

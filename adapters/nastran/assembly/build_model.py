@@ -21,6 +21,7 @@ from ..properties.analysis_set import read_analysis_set
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices
 from ..properties.grids import Points, point_dofs
+from ..properties.unit_slips import unit_slips
 from .deck_elements import Structure, read_structure
 from .parameter_bounds import admissible
 from .variation import Variation, read_variation
@@ -86,15 +87,23 @@ def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
     terms, reduced, warnings, idle = _remove_singular(deck, points, whole, reduced)
     terms, expansion, kept, more = _condense(deck, points, terms, reduced)
+    geometry = _geometry(deck, structure)
     model = Model(
-        geometry=_geometry(deck, structure),
+        geometry=geometry,
         dofs=point_dofs(points.ids, points.scalar_ids),
         expansion=(to_basic(points) @ expansion).tocsr(),
         stiffness=terms[0],
         mass=terms[1],
         parameters=variation.parameters,
         free_labels=tuple(points.label(d) for d in kept),
-        warnings=(*structure.notes, *constraints.notes, *narrowed, *warnings, *more),
+        warnings=(
+            *unit_slips(deck, geometry.size),
+            *structure.notes,
+            *constraints.notes,
+            *narrowed,
+            *warnings,
+            *more,
+        ),
         idle=idle,
     )
     return Assembly(model, structure, whole[0], constraints.fixed)

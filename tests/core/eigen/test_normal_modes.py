@@ -286,3 +286,13 @@ def test_the_factor_is_kept_on_request(ring, backend):
     b = np.ones(model.n_free)
     np.testing.assert_allclose(A @ found.factor.solve(b), b, atol=1e-5)
     assert solve(model, 8, backend=backend).factor is None
+
+
+def test_too_many_modes_below_a_frequency_are_bounded_and_counted(membrane, backend):
+    """A frequency typed in kHz as Hz must not ask for thousands."""
+    K, M, exact = membrane(50)
+    found = solve((K, M), fmax=np.sqrt(exact[700]) * 1.0001 / (2.0 * np.pi), backend=backend)
+    inside = np.count_nonzero(exact <= exact[700] * 1.0002)
+    assert len(found.eigenvalues) == EIGEN.most < inside
+    np.testing.assert_allclose(found.eigenvalues, exact[: EIGEN.most], rtol=1e-9)
+    assert any(f"{inside} modes lie below" in w for w in found.warnings)

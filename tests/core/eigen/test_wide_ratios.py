@@ -11,7 +11,7 @@ from tests.core.chains import chain, scalar_model
 from trueup.core.data.parametric_model import Term
 from trueup.core.eigen import pencil
 from trueup.core.eigen.normal_modes import solve
-from trueup.core.errors import CheckError
+from trueup.core.errors import CheckError, InputError
 from trueup.core.numerics.factorisation import best_backend
 
 RATIOS = [1e-12, 1e-8, 1e-4, 1.0, 1e4, 1e8, 1e12]
@@ -119,3 +119,27 @@ def _suspended(frame, section, n, stiff, soft, backend):
     joint = sp.kron([[1.0, -1.0], [-1.0, 1.0]], at_each)
     model = replace(model, stiffness=(*model.stiffness, Term(joint.tocsr())))
     return solve(model, 10, backend=backend), model
+
+
+@pytest.mark.parametrize("soft", [1e-2, 1.0, 1e6])
+@pytest.mark.parametrize("stiff", [0.0, 1e9, 1e12])
+def test_a_flap_on_a_soft_suspension_is_a_mechanism_and_the_suspension_is_none(frame, stiff, soft):
+    xyz = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0], [2, 1, 0]], float)
+    bars = [(0, 1), (0, 2), (1, 2), (1, 3), (2, 4), (3, 4)]
+    pins = [(3, 4), (3, 5), (3, 6), (4, 4), (4, 5), (4, 6)]
+    springs = [(g, c, soft) for g in range(3) for c in (1, 2, 3)]
+
+    def solved(**more):
+        model = frame(xyz, bars, springs=springs, **more)
+        between = sp.csr_matrix([[stiff, -stiff], [-stiff, stiff]])
+        take = sp.csr_matrix((np.ones(2), ([0, 1], [0, 6])), (2, model.n_free))  # 1:1 and 2:1
+        joint = Term((take.T @ between @ take).tocsr())
+        return solve(replace(model, stiffness=(*model.stiffness, joint)), 8)
+
+    assert solved().rigid_body_modes == 0
+    with pytest.raises(InputError, match="mechanism") as caught:
+        solved(pins=pins)
+    named = str(caught.value).split(" at ")[1].split(";")[0]
+    assert "4:3" in named
+    assert "5:3" in named
+    assert not any(label in named for label in ("1:3", "2:3", "3:3"))

@@ -1,0 +1,152 @@
+"""Units that do not go together: what the materials are, and how large the structure is."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import log10
+from typing import NamedTuple
+
+from ....core.data.length_units import METRES
+from ..deck.read_deck import Deck
+
+
+class _System(NamedTuple):
+    """A consistent system: pascals, kg/m³ and metres in its units; how usual it is, in decades."""
+
+    name: str
+    stress: float
+    density: float
+    length: float
+    usual: float
+
+
+_SYSTEMS = (
+    _System("mm, t, N", 1e6, 1e12, 1e-3, 0.0),
+    _System("m, kg, N", 1.0, 1.0, 1.0, 0.0),
+    _System("in, lbf s²/in, lbf", 6894.757, 1.0686896e7, 0.0254, 0.0),
+    _System("ft, slug, lbf", 47.880259, 515.37882, 0.3048, 1.0),
+    _System("mm, kg, mN", 1e3, 1e9, 1e-3, 1.0),
+    _System("mm, kg, kN, ms", 1e9, 1e9, 1e-3, 2.0),
+    _System("mm, g, N, ms", 1e6, 1e6, 1e-3, 2.0),
+    _System("mm, kgf s²/mm, kgf", 9.80665e6, 9.80665e9, 1e-3, 2.0),
+    _System("m, t, kN", 1e3, 1e3, 1.0, 2.0),
+    _System("cm, g, dyn", 0.1, 1e3, 1e-2, 2.0),
+)
+_STRESS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757, "ksi": 6.894757e6}
+_DENSITY = {
+    "kg/m³": 1.0, "g/cm³": 1e3, "kg/mm³": 1e9, "t/mm³": 1e12, "lb/in³": 27679.905,
+    "lbf s²/in⁴": 1.0686896e7, "slug/ft³": 515.37882, "lb/ft³": 16.018463,
+    "N/mm³ (a weight)": 1.0197162e8, "N/m³ (a weight)": 0.10197162,
+}  # fmt: skip
+_METALS = {"steel": (2.05e11, 7850.0), "aluminium": (7e10, 2700.0), "titanium": (1.12e11, 4430.0)}
+"""E [Pa] and density [kg/m³] of what is recognised in any units."""
+_OTHERS = (
+    (4.5e10, 1770.0), (1.1e11, 8500.0), (2.1e11, 8900.0), (1.2e11, 7200.0), (3e10, 2400.0),
+    (1.1e10, 500.0), (1.3e11, 1580.0), (6e10, 1550.0), (3e10, 1900.0), (2.5e9, 1150.0),
+    (7e10, 2500.0), (1.6e10, 11300.0), (3.5e11, 3900.0), (4e11, 19000.0), (5e9, 170.0),
+)  # fmt: skip
+"""Magnesium, brass, nickel, cast iron, concrete, wood, composites, plastics, glass, lead, ..."""
+_METAL = (1.15, 1.08)
+"""Factors by which E and density of a recognised metal may differ."""
+_LIKE = (1.6, 1.35)
+"""The same of any material that makes sense in a system."""
+_SIZE = (3e-3, 500.0)
+"""Sizes [m] that no one asks about."""
+_USUAL = (0.03, 100.0)
+"""Sizes [m] that coordinates in another unit have to make to be told."""
+_GRAVITY = {386.0886: "0.00259", 9806.65: "1.02E-4", 9.80665: "0.102", 32.174: "0.0311"}
+"""Weight over mass by system, and PARAM WTMASS that makes up for it."""
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """What is to be multiplied by `factor` so that all is in `system`; `cost` in decades."""
+
+    what: str
+    factor: float
+    system: _System
+    read: str
+    cost: float
+
+
+def unit_slips(deck: Deck, size: float) -> tuple[str, ...]:
+    """Return at most one sentence: the likeliest slip in the units of a deck, and its factor.
+
+    Steel, aluminium and titanium are recognised by E and density together, in any units; where
+    no consistent system has both, one of them was typed in another. Then the length unit that
+    goes with the materials is held against the one declared and the size of the structure,
+    `size` in deck units.
+    """
+    wtmass = deck.param("WTMASS", 1.0)
+    systems: list[_System] = []
+    for mid, card in deck.bulk.table("MAT1").items():
+        E, rho = card.e or 0.0, (card.rho or 0.0) * wtmass
+        if not (E > 0.0 and rho > 0.0):
+            continue
+        fitting = [s for s in _SYSTEMS if _makes_sense(E * s.stress, rho * s.density)]
+        if not fitting:
+            slip = min(_slips(E, rho, size), key=lambda s: s.cost, default=None)
+            if slip:
+                return (_said(f"MAT1 {mid}", E, rho / wtmass, wtmass, slip),)
+        systems += fitting
+    return _length_slip(deck.length_unit, size, systems)
+
+
+def _near(a: float, b: float, factor: float) -> bool:
+    return 1.0 / factor < a / b < factor
+
+
+def _makes_sense(E: float, rho: float) -> bool:
+    known = (*_METALS.values(), *_OTHERS)
+    return any(_near(E, e, _LIKE[0]) and _near(rho, r, _LIKE[1]) for e, r in known)
+
+
+def _slips(E: float, rho: float, size: float) -> Iterator[_Slip]:
+    for metal, (modulus, density) in _METALS.items():
+        for stress, pascals in _STRESS.items():
+            if not _near(E * pascals, modulus, _METAL[0]):
+                continue
+            for unit, kilograms in _DENSITY.items():
+                if not _near(rho * kilograms, density, _METAL[1]):
+                    continue
+                read = f"{metal} in {stress} and {unit}"
+                for s in _SYSTEMS:
+                    cost = s.usual + abs(log10(size * s.length)) if size > 0.0 else s.usual
+                    if _near(pascals, s.stress, 1.001):
+                        yield _Slip("density", kilograms / s.density, s, read, cost)
+                    if _near(kilograms, s.density, 1.001):
+                        yield _Slip("E", pascals / s.stress, s, read, cost)
+
+
+def _said(card: str, E: float, rho: float, wtmass: float, slip: _Slip) -> str:
+    off = (slip.factor if slip.what == "E" else 1.0 / slip.factor) ** 0.5
+    weight = next((w for g, w in _GRAVITY.items() if _near(slip.factor * g, 1.0, 1.01)), None)
+    remedy = f"in {slip.system.name} its {slip.what} is to be multiplied by {slip.factor:.3g}"
+    if slip.what == "density" and weight and wtmass == 1.0:
+        remedy = f"PARAM,WTMASS,{weight} seems to be forgotten (a factor {slip.factor:.3g} on mass)"
+    return (
+        f"the units of {card} do not go together: E {E:g} with density {rho:g} is {slip.read}; "
+        f"{remedy}; all frequencies come out "
+        f"{off if off > 1.0 else 1.0 / off:.3g} times too {'low' if off > 1.0 else 'high'}"
+    )
+
+
+def _length_slip(declared: str | None, size: float, systems: list[_System]) -> tuple[str, ...]:
+    """Hold the length unit that the materials imply against the declared one and the size."""
+    if not systems or size <= 0.0:
+        return ()
+    usual = min(systems, key=lambda s: s.usual)
+    lengths = {s.length for s in systems}
+    if declared and METRES[declared] not in lengths:
+        return (
+            f"the deck declares the length unit {declared}, but its materials are in {usual.name}: "
+            f"if it is right, multiply the coordinates by {METRES[declared] / usual.length:.3g}",
+        )
+    if any(_SIZE[0] < size * length < _SIZE[1] for length in lengths):
+        return ()
+    likely = min(METRES, key=lambda unit: abs(log10(size * METRES[unit])))
+    if not _USUAL[0] < size * METRES[likely] < _USUAL[1]:
+        return ()
+    return (
+        f"the structure is {size * usual.length:.3g} m long by its materials ({usual.name}): its "
+        f"coordinates seem to be in {likely}; multiply them by {METRES[likely] / usual.length:.3g}",
+    )

@@ -1,0 +1,78 @@
+"""Slips of units: each is named with its factor, and nothing is said of what makes sense."""
+
+import pytest
+
+
+@pytest.fixture
+def said(model):
+    """What is said of the units of a rod of one material."""
+
+    def of(E, rho, size, more=""):
+        bulk = (
+            f"GRID,1,,0.,0.,0.,,123456\nGRID,2,,{size!r},0.,0.,,23456\nCROD,1,1,1,2\n"
+            f"PROD,1,1,1.\nMAT1,1,{E!r},,.3,{rho!r}\n{more}"
+        )
+        words = ("units of", "its coordinates", "length unit")
+        return [w for w in model(bulk).warnings if any(word in w for word in words)]
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "size", "more"),
+    [
+        (2.1e5, 7.85e-9, 800.0, ""), (7e4, 2.7e-9, 300.0, ""), (1.1e5, 4.43e-9, 2500.0, ""),
+        (2.1e11, 7850.0, 40.0, ""), (7e10, 2700.0, 0.05, ""), (3e10, 2400.0, 300.0, ""),
+        (1.07e7, 2.59e-4, 60.0, ""), (2.9e7, 0.283, 60.0, "PARAM,WTMASS,.00259\n"),
+        (1.44e9, 5.37, 9.0, ""), (2.1e8, 7.85e-6, 800.0, ""), (210.0, 7.85e-6, 800.0, ""),
+        (2e9, 8.02e-9, 300.0, ""), (1.0, 1.0, 1.0, ""), (5.0, 1.2e-9, 80.0, ""),
+        (2.1e8, 7.85, 20.0, ""), (1.5e5, 1.6e-9, 4e4, ""),
+    ],
+)  # fmt: skip
+def test_consistent_and_unknown_materials_are_left_alone(said, E, rho, size, more):
+    assert said(E, rho, size, more) == []
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "size", "words"),
+    [
+        (2.1e5, 7850.0, 800.0, ["steel in MPa and kg/m³", "its density", "by 1e-12", "1e+06"]),
+        (
+            2.1e5,
+            7850.0,
+            0.8,
+            ["steel in MPa and kg/m³", "its E", "by 1e+06", "1e+03 times"],
+        ),
+        (2.1e5, 7.85e-6, 800.0, ["kg/mm³", "its density", "by 0.001", "31.6 times too low"]),
+        (7e4, 2.7, 800.0, ["aluminium in MPa and g/cm³", "by 1e-09"]),
+        (210.0, 7.85e-9, 800.0, ["steel in GPa and t/mm³", "its E", "by 1e+03", "31.6"]),
+        (110.0, 4430.0, 2.0, ["titanium in GPa and kg/m³", "its E", "by 1e+09"]),
+        (2.1e11, 7.85e-9, 800.0, ["steel in Pa and t/mm³", "its E", "by 1e-06", "too high"]),
+        (2.9e7, 0.283, 30.0, ["WTMASS,0.00259", "19.6 times too low"]),
+        (2.1e5, 7.7e-5, 800.0, ["a weight", "WTMASS,1.02E-4"]),
+        (3e4, 7.34e-4, 30.0, ["steel in ksi", "by 1e+03"]),
+        (2.9e7, 7.85e-9, 30.0, ["steel in psi and t/mm³"]),
+    ],
+)
+def test_slips_are_named_with_their_factor(said, E, rho, size, words):
+    (sentence,) = said(E, rho, size)
+    for word in words:
+        assert word in sentence
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "size", "more", "words"),
+    [
+        (2.1e5, 7.85e-9, 0.8, "", ["0.0008 m long", "mm, t, N", "in m;", "by 1e+03"]),
+        (2.1e11, 7850.0, 800.0, "", ["800 m long", "m, kg, N", "in mm;", "by 0.001"]),
+        (2.1e5, 7.85e-9, 8.0, "PARAM,UNITSYS,LBF-IN", ["length unit in", "mm, t, N", "by 25.4"]),
+    ],
+)
+def test_lengths_that_the_materials_contradict(said, E, rho, size, more, words):
+    (sentence,) = said(E, rho, size, more)
+    for word in words:
+        assert word in sentence
+
+
+def test_declared_units_that_agree_are_not_mentioned(said):
+    assert said(2.1e5, 7.85e-9, 800.0, "PARAM,UNITSYS,N-MM") == []
