@@ -10,8 +10,8 @@ noise of the readings are what makes the test likeliest.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -80,14 +80,24 @@ def diffuse(seen: Seen, near: Diffuse | None = None) -> Diffuse:
     Those `near` a known one are tried where there is one, else all.
     """
     low, high, n = MODEL_ERROR.errors
-    step = np.log(high / low) / (n - 1)
+    step = float(np.log(high / low)) / (n - 1)
     tried = {k: _at(seen, low * np.exp(k * step)) for k in _first(near, low, step, n)}
     while True:
         best = max(tried, key=lambda k: tried[k].log)
         beside = [k for k in (best - 1, best + 1) if 0 <= k < n and k not in tried]
         if not beside:
-            return tried[best]
+            top = float(np.exp((best + _top(tried, best)) * step))
+            return replace(tried[best], error=low * top)
         tried |= {k: _at(seen, low * np.exp(k * step)) for k in beside}
+
+
+def _top(tried: Mapping[int, Diffuse], k: int) -> float:
+    """Return how far from one error the largest likelihood is, in steps: a parabola's top."""
+    if k - 1 not in tried or k + 1 not in tried:
+        return 0.0
+    a, b, c = (tried[i].log for i in (k - 1, k, k + 1))
+    bend = 2.0 * b - a - c
+    return 0.5 * (c - a) / bend if bend > 0.0 else 0.0
 
 
 def _first(near: Diffuse | None, low: float, step: float, n: int) -> Sequence[int]:

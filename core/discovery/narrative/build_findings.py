@@ -65,7 +65,7 @@ def build_discovery(
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
     sure = verdict.posterior >= NARRATIVE.sure and verdict.foretold > NARRATIVE.contradicted
-    sure = sure and whole.gain > NARRATIVE.claimed and not whole.unexplained
+    sure = sure and whole.clear and not any(map(_says_nothing, findings))
     adequate = whole.adequacy > NARRATIVE.adequate
     if findings and sure and adequate and not decide:
         word = "effect"
@@ -78,6 +78,8 @@ def build_discovery(
         word = "test_fault"
     elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
+    elif whole.adequacy < NARRATIVE.nothing:
+        word = "undecided"
     if word == "undecided":
         decide = (*left_over(whole, request.numbers), *decide)
     return Discovery(
@@ -99,6 +101,13 @@ def build_discovery(
         gain=whole.gain,
         adequacy=whole.adequacy,
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
+    )
+
+
+def _says_nothing(f: Finding) -> bool:
+    """Whether a finding is a factor that may as well be 1."""
+    return (
+        "factor" in f.magnitude and f.interval is not None and f.interval[0] < 1.0 < f.interval[1]
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import Floats
 from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
@@ -31,20 +32,37 @@ class Completeness:
         The deck as it is; the known parameters alone; the hypothesis that is accepted.
     gain : float
         ln of how much likelier the test is by the best, its choices paid for.
-    last : float
-        The same of its last suspect beside the others.
+    hz : (n_test,) float
+        Of the test modes.
     """
 
     deck: Judged
     alone: Judged
     best: Judged
     gain: float
-    last: float
+    hz: Floats
 
     @property
     def moved(self) -> float:
         """Return ln of how much likelier the test is with the known parameters moved."""
         return self.alone.plain - self.deck.evidence
+
+    @property
+    def clear(self) -> bool:
+        """Whether what was found explains more than an error of the model would seem to.
+
+        The larger the error that is left, the more of it the likeliest place of the likeliest kind
+        takes up; what moves modes at an end of the band alone may be an error of those.
+        """
+        error = self.best.diffuse.error
+        gained = self.best.diffuse.each - self.alone.diffuse.each
+        order = np.argsort(self.hz)
+        inner = float(np.sum(gained[order[SEARCH.ends : -SEARCH.ends]]))
+        return bool(
+            self.gain > SEARCH.claimed * (1.0 + error / SEARCH.imitated)
+            and inner > SEARCH.inner * float(np.sum(gained))
+            and len(self.unexplained) <= SEARCH.strays * len(gained)
+        )
 
     @property
     def adequacy(self) -> float:
@@ -71,5 +89,5 @@ def completeness(
     ]
     best = max(range(len(scores)), key=lambda k: scores[k] - SEARCH.suspect * k)
     gain = scores[best] - scores[0]
-    last = scores[best] - max(scores[:best], default=scores[best])
-    return best, Completeness(deck, judged[0], judged[best], gain, last)
+    hz = searcher.problem.whole.frequencies_hz
+    return best, Completeness(deck, judged[0], judged[best], gain, hz)

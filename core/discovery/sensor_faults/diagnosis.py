@@ -75,7 +75,10 @@ def judge_sensors(survey: Survey, span: Span) -> Verdicts:
 
 
 def faults_of(weighed: Weighed) -> tuple[Fault, ...]:
-    """Return the faults that are likely enough."""
+    """Return the faults that are likely enough.
+
+    Many sensors that read as if turned are a structure that leans or is out of round there.
+    """
     out: list[Fault] = []
     used: set[int] = set()
     for s in weighed.swaps:
@@ -85,7 +88,8 @@ def faults_of(weighed: Weighed) -> tuple[Fault, ...]:
     for i in weighed.alone:
         if i not in used:
             out += _likeliest(weighed, i)
-    return tuple(out)
+    turned = sum(f.kind == AXIS.name for f in out)
+    return tuple(f for f in out if f.kind != AXIS.name or turned <= SENSORS.turned_most)
 
 
 def _swapped(weighed: Weighed, s: Swap) -> Fault:
