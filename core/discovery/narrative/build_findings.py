@@ -49,7 +49,7 @@ def build_discovery(
     `whole` is how well it explains the test beside the error of a model; `held_out` are the test
     modes and the sensors that were kept out of the search.
     """
-    outcome = _Outcome(request, searcher, found, verdict)
+    outcome = _Outcome(request, searcher, found, verdict, whole)
     best = outcome.best
     spread = deviations(best, verdict.scale)
     ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
@@ -129,6 +129,7 @@ class _Outcome:
     searcher: Searcher
     found: Found
     verdict: Judgement
+    whole: Completeness
 
     @property
     def best(self) -> Fit:
@@ -160,12 +161,18 @@ class _Outcome:
 
 
 def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding:
+    """Tell one suspect at one of its places.
+
+    A factor is as many deviations off 1 as the likelihood without it says (its signed root).
+    """
     best, scale, masses = o.best, o.verdict.scale, o.request.masses
     s = best.suspects[number]
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
     places = credible_places(o.searcher, best, number, scale)
     error = [m.place_error for m in c.kind.magnitudes]
     spread = np.hypot(np.hypot(deviation, error), between(places))
+    if "factor" in (m.word for m in c.kind.magnitudes) and len(best.suspects) == 1:
+        spread = np.minimum(spread, np.abs(s.theta) / np.sqrt(2.0 * max(o.whole.gain, 1.0)))
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
     magnitude = magnitude_of(c, row, sizes, intervals, masses)

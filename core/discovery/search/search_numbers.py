@@ -67,7 +67,7 @@ class SearchNumbers:
     unexplained: float = number(4.0, "of the assumed variance", "what nothing explains, that asks for a search with all kinds")
     margin: float = number(10.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(3.0, "ln L", "what each suspect must gain besides the log of its choices, by the diffuse error")
-    claimed: float = number(7.0, "ln L", "gain over the known parameters and smooth fields from which on an effect is clear in a model that is right")
+    claimed: float = number(5.0, "ln L", "gain over the known parameters and smooth fields from which on an effect is clear in a model that is right")
     imitated: float = number(0.003, "of K", "diffuse error that doubles it", "fresh cases with causes that no list has")
     ends: int = number(2, "modes", "at either end of the band that may be off by themselves")
     inner: float = number(0.2, "of its gain", "that an effect must have from the others")
