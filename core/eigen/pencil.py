@@ -171,16 +171,17 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
     """
     k = np.abs(K.diagonal())
     d = 1.0 / np.sqrt(np.where(k > 0.0, k, 1.0))
-    scaled = sp.csr_matrix(abs(sp.diags(d) @ M @ sp.diags(d)))
-    m = scaled.diagonal()
-    row = np.repeat(np.arange(len(m)), np.diff(scaled.indptr))
-    beside = row != scaled.indices
-    row, other, entry = row[beside], scaled.indices[beside], scaled.data[beside]
-    mixed, largest = np.zeros(len(m), bool), np.zeros(len(m))
+    m = np.abs(M.diagonal()) * d**2
+    small = np.flatnonzero(m < EIGEN.mass_rounding * m.max(initial=0.0))
+    entries = (sp.diags(d[small]) @ M[small] @ sp.diags(d)).tocoo()
+    beside = small[entries.row] != entries.col
+    row, other = entries.row[beside], entries.col[beside]
+    mixed, largest = np.zeros(len(small), bool), np.zeros(len(small))
     mixed[row] = True
-    mixed[row[entry > EIGEN.mass_rounding * m[other]]] = False
+    mixed[row[np.abs(entries.data[beside]) > EIGEN.mass_rounding * m[other]]] = False
     np.maximum.at(largest, row, m[other])
-    noise = mixed & (m < EIGEN.mass_rounding * largest)
+    noise = np.zeros(len(m), bool)
+    noise[small] = mixed & (m[small] < EIGEN.mass_rounding * largest)
     if not noise.any():
         return M
     kept = sp.diags((~noise).astype(float))
