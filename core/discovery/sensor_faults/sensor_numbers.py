@@ -13,7 +13,7 @@ class SensorNumbers:
     fewest: int = number(8, "nodes", "below which nodes cannot judge each other")
     fewest_modes: int = number(3, "modes", "likewise")
     noise: float = number(0.03, RMS, "noise of a sound sensor where they cannot")
-    named: float = number(0.6, "-", "chance from which on a fault is told")
+    named: float = number(0.8, "-", "chance from which on a fault is told")
     turned_most: int = number(2, "sensors", "that a test has turned by mistake; more are a structure of another shape", "what a crew gets wrong")
     doubtful: float = number(0.05, "-", "chance of a fault above which a node is no evidence about the model")
     known: float = number(0.97, "-", "chance that what is wrong with a faulty sensor is in the list")
