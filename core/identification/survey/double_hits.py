@@ -44,4 +44,6 @@ def second_hits(survey: Survey) -> Floats:
         top = ripple[np.arange(len(rows)), best]
         sure = (top > SURVEY.echo_least) & (0.5 * top**2 > SURVEY.echo_share * spread)
         found[rows[sure], i] = cycles[best[sure]] / (fine * step)
-    return found
+    alone = np.count_nonzero(found, axis=1, keepdims=True) < SURVEY.echo_together
+    slow = found < SURVEY.echo_alone / (n_line * step)
+    return np.where(alone & slow, 0.0, found)

@@ -94,7 +94,8 @@ def points_mended(survey: Survey, neighbours: Neighbours | None) -> Survey:
     odd = np.flatnonzero(np.isfinite(neighbours.unlike_now)
                          & (neighbours.unlike_now > SURVEY.neighbour_odd))  # fmt: skip
     odd = odd[np.argsort(-neighbours.unlike_now[odd])][: SURVEY.neighbour_most]
-    values, labels = survey.values.copy(), survey.outputs.labels
+    values, weight = survey.values.copy(), survey.output_weight.copy()
+    labels = survey.outputs.labels
     reversed_points = []
     for o in odd:
         if neighbours.unlike(survey, o, -survey.values[o]) < SURVEY.neighbour_left:
@@ -119,14 +120,14 @@ def points_mended(survey: Survey, neighbours: Neighbours | None) -> Survey:
         swapped = _exchanged(survey, a, b)
         then = [neighbours.unlike(swapped, o, swapped.values[o]) for o in (a, b)]
         if max(then) < SURVEY.neighbour_left:
-            values[[a, b]] = swapped.values[[a, b]]
+            values[[a, b]], weight[[a, b]] = values[[b, a]], weight[[b, a]]
             names = tuple(survey.function(o, i) for o in (a, b) for i in range(values.shape[1]))
             sentence = (
                 f"{labels[a]} and {labels[b]} stand under each other's name, as their neighbours "
                 "say; exchanged"
             )
             faults.append(Fault("swapped_points", names, sentence, "exchanged"))
-    return told(replace(survey, values=values), *faults)
+    return told(replace(survey, values=values, output_weight=weight), *faults)
 
 
 def _under(survey: Survey, a: int, b: int) -> Numbers:
@@ -135,6 +136,7 @@ def _under(survey: Survey, a: int, b: int) -> Numbers:
 
 
 def _exchanged(survey: Survey, a: int, b: int) -> Survey:
-    values = survey.values.copy()
-    values[a], values[b] = _under(survey, a, b), _under(survey, b, a)
-    return replace(survey, values=values)
+    """Give each of two outputs the functions of the other, their weights with them."""
+    values, weight = survey.values.copy(), survey.output_weight.copy()
+    values[[a, b]], weight[[a, b]] = values[[b, a]], weight[[b, a]]
+    return replace(survey, values=values, output_weight=weight)

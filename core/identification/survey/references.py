@@ -69,20 +69,20 @@ def references_mended(survey: Survey, points: Floats, neighbours: Neighbours | N
         From `driving_points`.
     neighbours : Neighbours, optional
     """
-    values, n = survey.values, survey.values.shape[1]
-    now = _disagreement(survey, values, points)
-    errors = {(a, b): _disagreement(survey, _exchanged(survey, a, b), points)
+    n = survey.values.shape[1]
+    now = _disagreement(survey, points)
+    errors = {(a, b): _disagreement(_exchanged(survey, a, b), points)
               for a, b in combinations(range(n), 2)} if now > SURVEY.disagree else {}  # fmt: skip
     if errors and min(errors.values()) < SURVEY.exchanged * now:
         a, b = min(errors, key=lambda pair: errors[pair])
-        names = tuple(survey.function(o, i) for i in (a, b) for o in range(len(values)))
+        names = tuple(survey.function(o, i) for i in (a, b) for o in range(len(survey.values)))
         sentence = (
             f"{survey.inputs.labels[a]} and {survey.inputs.labels[b]} stand under each other's "
             "name, as driving points and reciprocity say; exchanged"
         )
-        survey = replace(survey, values=_exchanged(survey, a, b))
+        survey = _exchanged(survey, a, b)
         survey = told(survey, Fault("swapped_references", names, sentence, "exchanged"))
-    functions = _between(survey, survey.values, points)
+    functions = _between(survey, points)
     share = {i: positive_share(f, survey.order) for (i, j), f in functions.items() if i == j}
     for i in (i for i, s in share.items() if s <= SURVEY.gives):
         if share[i] > SURVEY.takes:
@@ -133,7 +133,7 @@ def driving_name(survey: Survey, i: int, points: Floats) -> str:
     return " + ".join(survey.function(o, i) for o in np.flatnonzero(points[i]))
 
 
-def _between(survey: Survey, values: Numbers, points: Floats) -> dict[tuple[int, int], Numbers]:
+def _between(survey: Survey, points: Floats) -> dict[tuple[int, int], Numbers]:
     """Functions measured at the driving point of one input for another, without weights."""
     found = {}
     for i in np.flatnonzero(np.isfinite(points).all(axis=1)):
@@ -141,7 +141,7 @@ def _between(survey: Survey, values: Numbers, points: Floats) -> dict[tuple[int,
         factors = points[i, rows] / survey.output_weight[rows]
         for j in np.flatnonzero(survey.measured[rows].all(axis=0)):
             if j == i or np.isfinite(points[j]).all():
-                found[int(i), int(j)] = factors @ values[rows, j] / survey.input_weight[j]
+                found[int(i), int(j)] = factors @ survey.values[rows, j] / survey.input_weight[j]
     return found
 
 
@@ -150,20 +150,22 @@ def _correlation(there: Numbers, back: Numbers) -> float:
     return float(np.vdot(there, back).real / size) if size > 0.0 else 1.0
 
 
-def _disagreement(survey: Survey, values: Numbers, points: Floats) -> float:
+def _disagreement(survey: Survey, points: Floats) -> float:
     """Mean failure of driving points and reciprocity, 0 (they hold) to 1 (they are reversed)."""
-    functions = _between(survey, values, points)
+    functions = _between(survey, points)
     share = [positive_share(f, survey.order) for (i, j), f in functions.items() if i == j]
     pairs = [(i, j) for i, j in functions if i < j and (j, i) in functions]
     share += [_correlation(functions[i, j], functions[j, i]) for i, j in pairs]
     return float(np.mean((1.0 - np.array(share)) / 2.0)) if share else 0.0
 
 
-def _exchanged(survey: Survey, a: int, b: int) -> Numbers:
-    values, w = survey.values.copy(), survey.input_weight
-    values[:, a] = survey.values[:, b] * (w[a] / w[b])
-    values[:, b] = survey.values[:, a] * (w[b] / w[a])
-    return values
+def _exchanged(survey: Survey, a: int, b: int) -> Survey:
+    """Give each of two inputs the functions of the other, their weights with them."""
+    values, weight = survey.values.copy(), survey.input_weight.copy()
+    measured = survey.measured.copy()
+    values[:, [a, b]], weight[[a, b]] = values[:, [b, a]], weight[[b, a]]
+    measured[:, [a, b]] = measured[:, [b, a]]
+    return replace(survey, values=values, input_weight=weight, measured=measured)
 
 
 def checked_references(
@@ -181,7 +183,7 @@ def checked_references(
     participation : (n_input, n_mode) complex
         In physical units.
     """
-    functions = _between(survey, survey.values, points)
+    functions = _between(survey, points)
     peak = np.abs(poles) ** 2 / np.abs(poles.real)
 
     def residues(i: int, j: int) -> Numbers:

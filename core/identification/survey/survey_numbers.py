@@ -29,6 +29,8 @@ class SurveyNumbers:
     echo_share: float = number(0.35, "of the phase's square", "that one ripple explains, at least; in surveys in order 0.25 at most", SURVEYS)
     echo_phase: float = number(0.35, "rad", "typical phase against the others, above which modes are no normal ones; aeroplane 0.18, GARTEUR 0.28", SURVEYS)
     echo_cycles: float = number(2.0, "cycles", "of a ripple in the range, at least", SURVEYS)
+    echo_alone: float = number(3.0, "cycles", "likewise, of a ripple that other functions of the point do not have", SURVEYS)
+    echo_together: int = number(2, "functions", "of a point that have it, at least, for the former", SURVEYS)
     echo_line: float = number(0.35, "cycles per line", "of a ripple, at most", SURVEYS)
     echo_functions: int = number(8, "functions", "that have one phase to measure against, at least", SURVEYS)
 

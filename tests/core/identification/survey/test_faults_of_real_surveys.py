@@ -57,6 +57,12 @@ def test_a_part_of_the_survey_has_no_fault(aeroplane, references):
     assert changed(aeroplane, lambda v: None, references).faults == ()
 
 
+@needs_data
+@pytest.mark.parametrize("ranges", [[(80.0, 140.0)], [(15.0, 60.0)], [(10.0, 45.0), (80.0, 180.0)]])
+def test_a_part_of_the_range_has_no_fault(aeroplane, ranges):
+    assert checked(prepare(aeroplane.frfs, ranges), aeroplane.geometry).faults == ()
+
+
 @pytest.mark.parametrize("kind", [k for k in KINDS if k != "flipped"])
 def test_imperfect_surveys_have_no_fault(kind):
     assert checked(prepare(survey(7, kind)[0])).faults == ()
@@ -103,7 +109,7 @@ def test_two_accelerometers_under_each_others_name(aeroplane, pair):
     mended = changed(aeroplane, exchange)
     (fault,) = mended.faults
     assert (fault.kind, fault.done) == ("swapped_references", "exchanged")
-    assert mended.physical == pytest.approx(in_band(aeroplane).physical)
+    assert mended.values == pytest.approx(in_band(aeroplane).values)
 
 
 @needs_data
@@ -127,7 +133,7 @@ def test_two_hammer_points_under_each_others_name(aeroplane, pair):
     mended = changed(aeroplane, exchange)
     (fault,) = mended.faults
     assert (fault.kind, fault.done) == ("swapped_points", "exchanged")
-    assert mended.physical == pytest.approx(in_band(aeroplane).physical)
+    assert mended.values == pytest.approx(in_band(aeroplane).values)
 
 
 def _noise(rng, shape):

@@ -87,12 +87,22 @@ def test_a_response_in_time_that_stops_at_one_value_is_an_overload(survey):
     assert ("overload", ("8:Z/1:Z",)) in [(f.kind, f.functions) for f in found]
 
 
-@pytest.mark.parametrize("delay", [0.03, 0.06])
+@pytest.mark.parametrize("delay", [0.04, 0.06])
 def test_a_double_hit_is_named_with_its_delay(frfs, delay):
     ripple = 1.0 + 0.5 * np.exp(-2j * np.pi * frfs.frequencies_hz * delay)
     (fault,) = faults(frfs, lambda h, rng: h * ripple)
     assert (fault.kind, fault.functions) == ("double_hit", ("8:Z/1:Z",))
     assert float(fault.sentence.split(" ms")[0].split()[-1]) == pytest.approx(1e3 * delay, rel=0.1)
+
+
+def test_a_ripple_of_few_cycles_is_named_where_the_functions_of_a_point_have_it_together(frfs):
+    ripple = 1.0 + 0.5 * np.exp(-2j * np.pi * frfs.frequencies_hz * 0.03)
+    values = np.array(frfs.values)
+    values[7, 0] *= ripple
+    assert checked(prepare(replace(frfs, values=values))).faults == ()
+    values[7, 1] *= ripple
+    (fault,) = checked(prepare(replace(frfs, values=values))).faults
+    assert (fault.kind, fault.functions) == ("double_hit", ("8:Z/1:Z", "8:Z/40:Z"))
 
 
 @pytest.mark.parametrize("settings", [
