@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -104,16 +105,33 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
 
 
 def _is_missed(data: BandData, f: Floats, fit: Fit, k: int) -> bool:
-    """Tell whether the lines around a root are explained worse when its neighbours replace it."""
+    """Tell whether the lines around a root are explained worse when its neighbours replace it.
+
+    Poles are refined on every other output, with and without the root, and judged on those that
+    they have not seen (twofold cross-validation); few outputs are judged by themselves.
+    """
     poles, part = fit.poles, fit.participation
     local, near, lines = _around(data, f, fit, residual_of(data, fit), complex(poles[k]))
     near[k] = True
-    with_it = refine(local, poles[near], part[:, near], max_iterations=POLES.trial_steps)
     place = int(np.count_nonzero(near[:k]))
-    allowed = allowance(local, f[lines], with_it)[place]
-    near[k] = False
-    without = refine(local, poles[near], part[:, near], max_iterations=POLES.trial_steps)
-    return bool(without.misfit - with_it.misfit >= allowed)
+    others = near & (np.arange(len(near)) != k)
+    gained = allowed = 0.0
+    for seen, unseen in _halves(local):
+        with_it = refine(seen, poles[near], part[:, near], max_iterations=POLES.trial_steps)
+        without = refine(seen, poles[others], part[:, others], max_iterations=POLES.trial_steps)
+        judged = fit_shapes(unseen, with_it.poles, with_it.participation)
+        gained -= judged.misfit
+        gained += fit_shapes(unseen, without.poles, without.participation).misfit
+        allowed += float(allowance(unseen, f[lines], judged)[place])
+    return bool(gained >= allowed)
+
+
+def _halves(data: BandData) -> list[tuple[BandData, BandData]]:
+    """Every other output and the rest, in both orders; all of few outputs."""
+    if len(data.weight) < 2 * POLES.responses_enough:
+        return [(data, data)]
+    even, odd = (replace(data, y=data.y[rows::2], weight=data.weight[rows::2]) for rows in (0, 1))
+    return [(even, odd), (odd, even)]
 
 
 def residual_of(data: BandData, fit: Fit) -> Floats:
