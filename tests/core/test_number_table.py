@@ -33,12 +33,16 @@ FORMULAS: dict[str, set[float]] = {
     "quality.py": {4.0},
     "result.py": {4},
     "mode_indicator.py": {4, 20.0},
+    "check_survey.py": {1000.0},
+    "coherence.py": {10.0},
+    "contradictions.py": {20.0},
+    "double_hits.py": {4},
 }
 """What may stand outside the tables: counts of directions and degrees of freedom, halves, squares,
 the variance of a uniform law (1/12), per cent; and in some modules the stencil of second
 differences and the volume of all rotations (8π²), the mass matrix of linear shells (1/36), the
 corners of one, the components that turn (4 to 6), degrees, axes of an array, fourth powers and
-differences (of variance 70), quarters, decibels; seeds, the six rigid motions and the one of scalar
+differences (of variance 70), quarters, decibels, milliseconds; seeds, the six rigid motions and the one of scalar
 points, bits of a key, the powers of the additive recurrence that fills a square evenly (Roberts
 2018) and of its root in thirty rounds. What is divided by is 1e-300 at least."""
 ROOMS = (
