@@ -26,7 +26,19 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
         note = "No modes were held out from the search: the test has fewer than ten that count."
     if not found.adopted:
         note += f" {_LEFT}"
-    return [Table.of("The gap", columns, rows, note)]
+    return [Table.of("The gap", columns, rows, f"{note} {_off(found)}".strip())]
+
+
+def _off(found: DiscoverTables) -> str:
+    """Say by how much the model is off everywhere, and how usual that is."""
+    j = found.judgement
+    if not j.error:
+        return ""
+    said = f"The completed model is off by {100.0 * j.error:.2g} % of its stiffness everywhere"
+    if j.gain:
+        said += f" ({100.0 * j.error_alone:.2g} % with the known parameters alone)"
+    share = f"{100.0 * j.adequacy:.2g}" if j.adequacy < 0.995 else "99"
+    return f"{said}; of models that lack nothing {share} % are off by as much."
 
 
 def _cells(gap: Gap) -> list[Cell | str]:

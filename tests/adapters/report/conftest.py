@@ -207,7 +207,15 @@ def discovery() -> dict[str, Any]:
             "parameters": [],
             "would_decide": [],
             "noise_scale": 1.0,
-            "judgement": {"evidence": 30.0, "posterior": 0.99, "foretold": 12.0},
+            "judgement": {
+                "evidence": 30.0,
+                "posterior": 0.99,
+                "foretold": 12.0,
+                "error": 0.003,
+                "error_alone": 0.019,
+                "gain": 40.0,
+                "adequacy": 0.5,
+            },
             "verdict": "effect",
             "findings": [FINDING, fault],
             "alternatives": [
