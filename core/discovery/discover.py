@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from ..arrays import Bools, Floats
 from ..correlation.mac import realised
+from ..data.length_units import METRES
 from ..errors import TrueupError
 from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
@@ -33,6 +34,7 @@ from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
+from .search.equipment_growth import equipped
 from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
@@ -127,7 +129,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if judge(searcher, found).scale > DISCOVERY.estimated:
         progress("estimating how far off the model is everywhere")
         searcher, found = robust(searcher, progress)
-    searcher, found = _reshaped(searcher, found)
+    searcher, found = _reshaped(trial.request, searcher, found)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(trial, searcher, found)
     best = found.levels[verdict.accepted]
@@ -217,13 +219,24 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
-def _reshaped(searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
-    """Give the patches of the hypotheses that earned their place better shapes."""
+def _reshaped(request: Request, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
+    """Give patches and masses of the hypotheses that earned their place better shapes."""
     verdict = judge(searcher, found)
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
         searcher, levels[k] = reshaped(searcher, levels[k], verdict.scale)
+        searcher, levels[k] = equipped(
+            request.structure, searcher, levels[k], verdict.scale, _block(request)
+        )
     return searcher, Found(tuple(levels), found.rivals)
+
+
+def _block(request: Request) -> float | None:
+    """Return the side of a cube of steel of unit mass; None where units are not known."""
+    kilograms, unit = request.masses.kilograms, request.placed.test_geometry.length_unit
+    if kilograms is None or unit is None:
+        return None
+    return float((kilograms / DISCOVERY.steel) ** (1.0 / 3.0) / METRES[unit])
 
 
 def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:

@@ -15,6 +15,7 @@ FORMULAS: dict[str, set[float]] = {
     "discretisation_error.py": {4, 9, 36.0},
     "element_patches.py": {4},
     "joint_flexibility.py": {4, 5},
+    "structure_points.py": {4, 5},
     "support_flexibility.py": {4, 5, 7},
     "sentences.py": {360.0},
     "mechanisms.py": {4},

@@ -50,6 +50,8 @@ class Candidates:
         Of sets of equivalent places (`twins`): the same kind at one place, and
     copies : tuple of tuple of int
         its rows, of each set; the magnitudes are those of each place.
+    maps : (m, 3, 3) float, optional
+        What takes the first place of a set to each.
     """
 
     kind: EffectKind
@@ -69,6 +71,7 @@ class Candidates:
     ends: tuple[Ends, ...] = ()
     single: Candidates | None = None
     copies: tuple[tuple[int, ...], ...] = ()
+    maps: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.xyz)

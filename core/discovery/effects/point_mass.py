@@ -11,6 +11,7 @@ from .effect_kind import MASS, EffectKind, Scale
 from .effect_laws import MassLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
+from .equipment import further
 from .structure_points import points_of, translations
 from .twins import with_twins
 
@@ -54,4 +55,5 @@ KIND = EffectKind(
     places=_places,
     across=EFFECTS.masses_across,
     nature="mass",
+    further=further,
 )

@@ -49,10 +49,21 @@ def _means(corners: Ints, n_grid: int) -> sp.csr_matrix:
 
 def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
     """Rows (3 n_point, n_free): the translations of points given by grid weights."""
+    return _motion(structure, points, (1, 2, 3))
+
+
+def rotations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
+    """Rows (3 n_point, n_free): the rotations of points given by grid weights."""
+    return _motion(structure, points, (4, 5, 6))
+
+
+def _motion(
+    structure: Structure, points: sp.csr_matrix, components: tuple[int, int, int]
+) -> sp.csr_matrix:
     model = structure.model
     rows = model.geometry.index_of(model.dofs.node)
     shape, pick = (len(model.geometry.ids), len(model.dofs)), []
-    for component in (1, 2, 3):
+    for component in components:
         which = np.flatnonzero((model.dofs.component == component) & (rows >= 0))
         pick.append(sp.csr_matrix((np.ones(len(which)), (rows[which], which)), shape))
     stacked = sp.vstack([points @ S for S in pick]).tocsr()

@@ -25,15 +25,19 @@ def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
     if not len(xyz):
         return (single,)
     sets = [
-        at_grids[once][rows]
+        together(single, at_grids[once][rows], np.concatenate([np.eye(3)[None], s.maps]))
         for s in symmetries(xyz, size)
         for rows in [images_of(s, xyz, EFFECTS.image_off * size, EFFECTS.twins_apart * size)]
         if len(rows)
     ]
-    return (single, *(_together(single, rows) for rows in sets))
+    return (single, *sets)
 
 
-def _together(single: Candidates, rows: Ints) -> Candidates:
+def together(single: Candidates, rows: Ints, maps: Floats | None = None) -> Candidates:
+    """Return candidates at several places each, `rows` (n, m) of those at one.
+
+    `maps` (m, 3, 3) take the first of the places to each.
+    """
     q = single.rows_each
     loads = (rows[:, :, None] * q + np.arange(q)).ravel()
     return replace(
@@ -44,6 +48,7 @@ def _together(single: Candidates, rows: Ints) -> Candidates:
         where=tuple(single.where[i] for i in rows[:, 0]),
         single=single,
         copies=tuple(map(tuple, rows.tolist())),
+        maps=maps,
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats
 from ..effects.candidates import Suspect
+from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
@@ -68,6 +69,7 @@ def burden(searcher: Searcher, f: Fit) -> float:
     """
     catalogue = searcher.problem.catalogue
     total = sum(price(searcher, s) for s in f.suspects)
+    total += SEARCH.equipment_gain * sum(stands_off(catalogue[s.kind], s.row) for s in f.suspects)
     for i, s in enumerate(f.suspects):
         for t in f.suspects[:i]:
             a, b = catalogue[s.kind], catalogue[t.kind]

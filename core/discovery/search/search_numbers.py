@@ -93,6 +93,13 @@ class SearchNumbers:
     patch_beside: float = number(0.05, SIZE, "how far from a point patches are tried in its stead")
     property_share: float = number(0.2, "of a patch", "that elements of one property are at least for the patch to end with them")
 
+    equipment_steps: tuple[float, ...] = number((0.04, 0.02, 0.01), SIZE, "by which the centre of a mass and its radius of gyration are moved")
+    equipment_rounds: int = number(4, "moves", "by each of these, at most")
+    equipment_places: int = number(5, "grids", "next to a mass on which equipment is tried")
+    equipment_tried: int = number(2, "bodies", "of those that are fitted each time")
+    equipment_sizes: tuple[float, ...] = number((-0.35, -0.15, 0.0, 0.15), "θ", "tried with every body: what resists being turned is less heavy")
+    equipment_gain: float = number(15.0, LN, "what offset and radius have to gain", "four unknowns more")
+
     own_above: float = number(1.6, "of the test's highest eigenvalue", "up to which a hypothesis gets modes of its own")
     own_more: int = number(8, "modes", "more than these")
     own_reached: float = number(1.2, "of the test's highest eigenvalue", "up to which modes get static responses to parameters")

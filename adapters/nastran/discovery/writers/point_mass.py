@@ -1,16 +1,38 @@
-"""CONM2 for an attached mass."""
+"""CONM2 for an attached mass, with offset and inertia where the test tells."""
+
+from typing import Any
 
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
-from .site import Site
+from .site import Site, plain
 
 
 def write(text: DeckText, site: Site) -> DeckText:
-    """Put the mass on the grids named, in equal parts.
+    """Put the mass on the grids named, in equal parts; equipment at a grid that follows them.
 
-    An offset CONM2 would hang on the drilling stiffness of a shell, which is next to nothing.
+    An offset CONM2 on a grid of a shell would hang on its drilling stiffness, which is next to
+    nothing.
     """
-    number, part = free_id(text, "element"), site.each("mass")
+    number = free_id(text, "element")
+    if "inertia" in site.finding.magnitude:
+        return site.added(text, _equipment(text, site, number))
+    part = site.each("mass")
     return site.added(
         text, [("CONM2", number + i, g, None, part) for i, g in enumerate(site.grids)]
     )
+
+
+def _equipment(text: DeckText, site: Site, number: int) -> list[list[Any]]:
+    grids, host, rows = site.grids, site.grids[0], list[list[Any]]()
+    if len(grids) > 1:
+        host = free_id(text, "grid")
+        at = [float(v) for v in site.finding.where.xyz]
+        rows += [
+            ["GRID", host, 0, *map(plain, at), 0],
+            ["RBE3", number, None, host, "123456", 1.0, "123", *grids],
+        ]
+        number += 1
+    offset = [plain(v) for v in site.finding.magnitude.get("offset", (0.0, 0.0, 0.0))]
+    j = plain(site.total("inertia"))
+    mass = ["CONM2", number, host, 0, plain(site.total("mass")), *offset, None]
+    return [*rows, [*mass, j, 0.0, j, 0.0, 0.0, j]]

@@ -1,0 +1,144 @@
+"""Equipment: a mass with its centre off the structure, which resists being turned.
+
+It follows the footprint it stands on, as a rigid body: a grid of bars with its own rotations, on
+shells and solids the grid and those beside it, whose motion the body follows in the mean (RBE3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...arrays import Floats
+from ..reduction.elements_and_supports import Structure
+from .candidates import Candidates
+from .effect_kind import Words
+from .structure_points import rotations, translations
+from .twins import places_of, together
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body of unit mass.
+
+    Parameters
+    ----------
+    offset : (3,) tuple of float
+        Of its centre from the place, basic axes.
+    radius : float
+        Of gyration, about any axis.
+    """
+
+    offset: tuple[float, float, float]
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Equipment(Candidates):
+    """Masses at places, each with its body."""
+
+    bodies: tuple[Body, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Stand:
+    """A place where equipment stands.
+
+    Parameters
+    ----------
+    xyz : (3,) float
+    grids : tuple of int
+    motion : (6, n_free) sparse
+        Its translations and rotations.
+    turn : (3, 3) float
+        Takes the offset of the first of places alike to that here.
+    """
+
+    xyz: Floats
+    grids: tuple[int, ...]
+    motion: sp.csr_matrix
+    turn: Floats
+
+
+def stand(structure: Structure, grids: Sequence[int], turn: Floats) -> Stand | None:
+    """Return the place of equipment on some grids, None where nothing there holds it upright."""
+    g = structure.model.geometry
+    own = g.index_of(np.array(grids))
+    wide = np.zeros(len(g.ids), bool)
+    wide[own] = True
+    for m in structure.members:
+        if m.element.dimension > 1:
+            beside = np.isin(m.corners, own).any(axis=1)
+            wide[m.corners[beside].ravel()] = True
+    rows, xyz = np.flatnonzero(wide), g.xyz[own].mean(axis=0)
+    points = sp.csr_matrix(
+        (np.ones(len(rows)), (np.arange(len(rows)), rows)), (len(rows), len(g.ids))
+    )
+    moves = translations(structure, points)
+    if len(rows) == 1:
+        turns = rotations(structure, points)
+        if np.diff(turns.indptr).min() == 0:
+            return None
+        return Stand(xyz, (int(g.ids[rows[0]]),), sp.vstack([moves, turns]).tocsr(), turn)
+    size = float(np.linalg.norm(g.xyz[rows] - xyz, axis=1).max())
+    rigid = np.concatenate([np.hstack([np.eye(3), -_cross(x - xyz) / size]) for x in g.xyz[rows]])
+    if np.linalg.matrix_rank(rigid) < rigid.shape[1]:
+        return None
+    fitted = np.linalg.pinv(rigid) / np.repeat([1.0, size], 3)[:, None]
+    return Stand(xyz, tuple(g.ids[rows].tolist()), sp.csr_matrix(fitted) @ moves, turn)
+
+
+def equipment(template: Candidates, stands: Sequence[Stand], bodies: Sequence[Body]) -> Candidates:
+    """Return candidates of masses with each of the bodies, at all the places together."""
+    each = [(s, _turned(s, b)) for b in bodies for s in stands]
+    single = Equipment(
+        kind=template.kind,
+        xyz=np.array([s.xyz for s, _ in each]),
+        law=template.law,
+        trials=template.trials,
+        root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
+        rows_each=6,
+        where=tuple({"grids": list(s.grids)} for s, _ in each),
+        typical=template.typical,
+        spread=template.spread,
+        bodies=tuple(b for _, b in each),
+    )
+    if len(stands) == 1:
+        return single
+    return together(single, np.arange(len(each)).reshape(len(bodies), len(stands)))
+
+
+def further(c: Candidates, row: int, words: Words) -> Words:
+    """Return offset and moment of inertia of a mass that has them."""
+    if not isinstance(c, Equipment):
+        return {}
+    body = c.bodies[row]
+    said: Words = {"inertia": words["mass"] * body.radius**2}
+    return {**({"offset": list(body.offset)} if any(body.offset) else {}), **said}
+
+
+def stands_off(c: Candidates, row: int) -> bool:
+    """Whether one of some candidates has its centre off the place."""
+    own, first = places_of(c, row)[0]
+    return isinstance(own, Equipment) and any(own.bodies[first].offset)
+
+
+def _turned(s: Stand, b: Body) -> Body:
+    x, y, z = (float(v) for v in s.turn @ np.array(b.offset))
+    return replace(b, offset=(x, y, z))
+
+
+def _rows(s: Stand, b: Body) -> sp.csr_matrix:
+    """Root of the mass matrix of unit mass: motion of the centre, and turns times the radius."""
+    off = np.hstack([np.eye(3), -_cross(np.array(b.offset))])
+    turns = np.hstack([np.zeros((3, 3)), b.radius * np.eye(3)])
+    return sp.csr_matrix(np.concatenate([off, turns])) @ s.motion
+
+
+def _cross(d: Floats) -> Floats:
+    """Return the matrix of d × ."""
+    x, y, z = d
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,0 +1,162 @@
+"""A mass grows into equipment where the test tells its offset or how it resists being turned.
+
+A mass on a stand of 60 mm looks like a heavier one, or like one with an absorber beside it, and
+nothing heavy is a point: it is at least as wide as a block of steel. So each mass of a hypothesis
+that earned its place is tried as such a block, which stays where it explains the test no worse;
+then with its centre off the structure and other radii of gyration, in steps that get smaller, which
+have to gain more than four further unknowns are worth.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...arrays import Floats
+from ..effects import point_mass
+from ..effects.candidates import Candidates, Suspect
+from ..effects.equipment import Body, Stand, equipment, stand
+from ..effects.twins import places_of
+from ..likelihood.hypothesis import Fit
+from ..likelihood.map_fit import evaluate
+from ..reduction.elements_and_supports import Structure
+from .exact_scan import scan
+from .moves import Searcher
+from .search_numbers import SEARCH
+
+Better = tuple[Searcher, Fit] | None
+
+
+def equipped(
+    structure: Structure, searcher: Searcher, state: Fit, scale: float, block: float | None
+) -> tuple[Searcher, Fit]:
+    """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them.
+
+    The noise has `scale` times the assumed variance: what equipment gains has to be that much more.
+    `block` is the side of a cube of steel of unit mass, None where the units are not known.
+    """
+    for q, s in enumerate(state.suspects):
+        if searcher.problem.catalogue[s.kind].kind.joins(point_mass.KIND):
+            better = _one(structure, searcher, state, q, scale, block)
+            searcher, state = better or (searcher, state)
+    return searcher, state
+
+
+def _one(
+    structure: Structure, searcher: Searcher, state: Fit, q: int, scale: float, block: float | None
+) -> Better:
+    """Return a hypothesis with equipment in place of one mass, None where that is not worth it."""
+    s, least = state.suspects[q], SEARCH.equipment_steps[-1] * searcher.size
+    body = Body((0.0, 0.0, 0.0), least)
+    found: list[tuple[float, int, Candidates, list[Stand], Searcher, Fit]] = []
+    if block is not None:
+        radius = block * float(np.exp(s.theta[0] / 3.0)) / float(np.sqrt(6.0))
+        body = replace(body, radius=radius)
+    for c, row in _places(searcher, s):
+        stands = _stands(structure, c, row)
+        if stands:
+            _, wide, fit = _best(searcher, state, q, c, stands, [body])
+            found.append((fit.objective, len(found), c, stands, wide, fit))
+    if not found:
+        return None
+    found.sort()
+    _, _, c, stands, wide, fit = found[0]
+    known = block is not None and fit.objective < state.objective
+    best = (wide, fit) if known else None
+    for _, _, c, stands, _, _ in found[: SEARCH.equipment_tried]:
+        wide, fit = _grown(searcher, state, q, c, stands, body)
+        now = state if best is None else best[1]
+        if fit.objective < now.objective - scale * SEARCH.equipment_gain:
+            best = (wide, fit)
+    return best
+
+
+def _places(searcher: Searcher, s: Suspect) -> list[tuple[Candidates, int]]:
+    """Return where equipment may stand in place of a mass: there, and on the grids nearest to it.
+
+    Places alike stay where they are.
+    """
+    own = searcher.problem.catalogue[s.kind]
+    here = [(own, s.row)] if own.kind is point_mass.KIND and own.rows_each else []
+    if own.single is not None:
+        return here
+    c = next(c for c in searcher.problem.catalogue if c.kind is point_mass.KIND and c.rows_each)
+    away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
+    away[[len(w["grids"]) > 1 for w in c.where]] = np.inf
+    near = np.argsort(away, kind="stable")[: SEARCH.equipment_places]
+    return here + [(c, int(row)) for row in near if not (c is own and row == s.row)]
+
+
+def _stands(structure: Structure, c: Candidates, row: int) -> list[Stand]:
+    """Return the places of a suspect, none where one of them holds no equipment."""
+    places = places_of(c, row)
+    turns = np.eye(3)[None] if c.maps is None else c.maps
+    both = zip(places, turns, strict=True)
+    found = [stand(structure, own.where[i]["grids"], turn) for (own, i), turn in both]
+    kept = [s for s in found if s is not None]
+    return kept if len(kept) == len(found) else []
+
+
+def _grown(
+    searcher: Searcher, state: Fit, q: int, template: Candidates, stands: list[Stand], body: Body
+) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with the best body in place of one mass, from a body on."""
+    best: tuple[Searcher, Fit] | None = None
+    for step in SEARCH.equipment_steps:
+        for _ in range(SEARCH.equipment_rounds):
+            tried = _around(body, step * searcher.size)
+            now = state if best is None else best[1]
+            k, wide, fit = _best(searcher, now, q, template, stands, tried)
+            if best is not None and fit.objective > best[1].objective - SEARCH.better:
+                break
+            body, best = tried[k], (wide, fit)
+    assert best is not None
+    return best
+
+
+def _best(
+    searcher: Searcher,
+    state: Fit,
+    q: int,
+    template: Candidates,
+    stands: list[Stand],
+    bodies: list[Body],
+) -> tuple[int, Searcher, Fit]:
+    """Return which of some bodies fits best in place of one mass, the search and the fit with it.
+
+    Those that promise most with all else as it stands are fitted.
+    """
+    others = state.suspects[:q] + state.suspects[q + 1 :]
+    made = equipment(template, stands, bodies)
+    wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
+    small, here = wide.local(evaluate(wide.problem, state.nuisance, others))
+    trials = made.around(state.suspects[q].theta, np.array(SEARCH.equipment_sizes))
+    score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
+    fits = []
+    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
+        new = Suspect(kind, row, tuple(trials[score[row].argmin()].tolist()))
+        suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
+        fits.append((row, wide.fitted(state, suspects, SEARCH.steps_new, small)))
+    row, fit = min(fits, key=lambda f: f[1].objective)
+    return row, wide, fit
+
+
+def _around(body: Body, step: float) -> list[Body]:
+    """Return a body, and those whose centre or radius differs by a step."""
+    moves: Floats = step * np.vstack([np.eye(3), -np.eye(3)])
+    off = np.array(body.offset)
+    centres = [tuple(float(v) for v in off + m) for m in moves]
+    out = [body, *(replace(body, offset=(x, y, z)) for x, y, z in centres)]
+    radii = (body.radius + step, body.radius - step)
+    return out + [replace(body, radius=r) for r in radii if r > 0.0]
+
+
+def _with(searcher: Searcher, made: Candidates) -> Searcher:
+    """Return the search with further candidates."""
+    p = searcher.problem
+    problem = replace(
+        p,
+        catalogue=(*p.catalogue, made),
+        factors=(*p.factors, made.factors(p.basis)),
+        missing=(*p.missing, None) if p.missing else (),
+    )
+    return replace(searcher, problem=problem, coarse=(*searcher.coarse, np.zeros(0, np.int64)))
