@@ -35,6 +35,7 @@ from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
 from .search.equipment_growth import equipped
+from .search.footprints import footed
 from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
@@ -142,6 +143,22 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
             levels = (*found.levels[: verdict.accepted], one)
             scale = max(verdict.scale, noise_scale(searcher.problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
+    return _laid(trial, searcher, found, verdict)
+
+
+def _laid(
+    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
+) -> tuple[Searcher, Found, Judgement]:
+    """Lay the masses of what was accepted on footprints, if that fits better on its own basis."""
+    best = found.levels[verdict.accepted]
+    wide, laid = footed(searcher, trial.request.structure, best)
+    if laid is not best:
+        with suppress(TrueupError):
+            laid = _polished(trial, wide, laid)
+            if laid.objective < best.objective:
+                levels = list(found.levels)
+                levels[verdict.accepted] = laid
+                return wide, replace(found, levels=tuple(levels)), verdict
     return searcher, found, verdict
 
 

@@ -22,6 +22,8 @@ class Where(Noun):
     grids: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     elements: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     sensors: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    shares: tuple[float, ...] | None = field(default=None, metadata=OPTIONAL)
+    radius: float | None = field(default=None, metadata=OPTIONAL)
     components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     free_components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     xyz: tuple[float, ...]
@@ -33,7 +35,9 @@ class Where(Noun):
     @classmethod
     def of(cls, place: Mapping[str, Sequence[Any]], xyz: Floats, **more: Any) -> Self:
         """Return a place as candidates describe it: see `Candidates.where`."""
-        named: dict[str, Any] = {k: tuple(v) for k, v in place.items()}
+        named: dict[str, Any] = {
+            k: tuple(v) if isinstance(v, Sequence) else v for k, v in place.items()
+        }
         return cls(**named, xyz=tuple(xyz.tolist()), **more)
 
     @property

@@ -31,6 +31,7 @@ FORMULAS: dict[str, set[float]] = {
     "pole_stabilisation.py": {4},
     "significance.py": {4, 70.0},
     "survey_data.py": {4, 70.0},
+    "footprints.py": {5.0},
     "quality.py": {4.0},
     "result.py": {4},
     "mode_indicator.py": {4, 20.0},
@@ -44,7 +45,7 @@ the variance of a uniform law (1/12), per cent; and in some modules the stencil 
 differences and the volume of all rotations (8π²), the mass matrix of linear shells (1/36), the
 corners of one, the components that turn (4 to 6), degrees, axes of an array, fourth powers and
 differences (of variance 70), quarters, decibels, milliseconds; seeds, the six rigid motions and the one of scalar
-points, bits of a key, the powers of the additive recurrence that fills a square evenly (Roberts
+points, bits of a key, the golden angle, the powers of the additive recurrence that fills a square evenly (Roberts
 2018) and of its root in thirty rounds. What is divided by is 1e-300 at least."""
 ROOMS = (
     "correlation",

@@ -8,7 +8,9 @@ from .site import Site, plain
 
 
 def write(text: DeckText, site: Site) -> DeckText:
-    """Put the mass on the grids named, in equal parts; equipment at a grid that follows them.
+    """Put the mass on the grids named, each its share: the same, where none is said.
+
+    Equipment sits at a grid that follows them.
 
     An offset CONM2 on a grid of a shell would hang on its drilling stiffness, which is next to
     nothing.
@@ -16,10 +18,13 @@ def write(text: DeckText, site: Site) -> DeckText:
     number = free_id(text, "element")
     if "inertia" in site.finding.magnitude:
         return site.added(text, _equipment(text, site, number))
-    part = site.each("mass")
-    return site.added(
-        text, [("CONM2", number + i, g, None, part) for i, g in enumerate(site.grids)]
-    )
+    grids = site.grids
+    shares = site.finding.where.shares or (1.0 / len(grids),) * len(grids)
+    parts = (plain(site.total("mass") * share) for share in shares)
+    rows = [
+        ("CONM2", number + i, g, None, m) for i, (g, m) in enumerate(zip(grids, parts, strict=True))
+    ]
+    return site.added(text, rows)
 
 
 def _equipment(text: DeckText, site: Site, number: int) -> list[list[Any]]:
