@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -33,7 +34,7 @@ from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexi
 from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
-from .search.completeness import Completeness, completeness
+from .search.completeness import Completeness, completeness, scored
 from .search.equipment_growth import equipped
 from .search.footprints import footed
 from .search.merge_neighbours import merged
@@ -129,7 +130,8 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     found = searched(searcher, progress)
     if judge(searcher, found).scale > DISCOVERY.estimated:
         progress("estimating how far off the model is everywhere")
-        searcher, found = robust(searcher, progress)
+        ways = [(searcher, found), robust(searcher, progress)]
+        searcher, found = max(ways, key=lambda way: _score(trial, *way))
     searcher, found = _reshaped(trial.request, searcher, found)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(trial, searcher, found)
@@ -160,6 +162,12 @@ def _laid(
                 levels[verdict.accepted] = laid
                 return wide, replace(found, levels=tuple(levels)), verdict
     return searcher, found, verdict
+
+
+def _score(trial: _Trial, searcher: Searcher, found: Found) -> float:
+    """Return ln of the evidence for what a search found, by the error of the model."""
+    best = found.levels[judge(searcher, found).accepted]
+    return scored(searcher, best, partial(_by_model_error, trial, searcher)).score
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,17 +316,28 @@ def _completed(
 ) -> tuple[Found, Judgement, Completeness]:
     """Keep the effects that are likelier than an error of the model without any place."""
     structure, observation = trial.request.structure, _observation(trial)
-
-    def judged(f: Fit, moving: bool = True) -> Judged:
-        return by_model_error(structure, observation, trial.sensors, searcher.problem, f, moving)
-
-    deck = judged(trial.zero, False)
-    kept, whole = completeness(searcher, found, verdict.accepted, deck, judged)
-    if kept < verdict.accepted:
+    deck = by_model_error(
+        structure, observation, trial.sensors, searcher.problem, trial.zero, moving=False
+    )
+    old, accepted = found.levels, verdict.accepted
+    tried = partial(_by_model_error, trial, searcher)
+    found, kept, whole = completeness(searcher, found, verdict, deck, tried)
+    if kept and found.levels[kept] is not old[kept]:
+        best = _polished(trial, searcher, found.levels[kept])
+        found = replace(found, levels=(*found.levels[:kept], best, *found.levels[kept + 1 :]))
+    if kept < accepted:
         found = Found(found.levels[: kept + 1], found.rivals[: kept + 1])
         verdict = judge(searcher, found)
         verdict = replace(verdict, accepted=kept)
     return found, verdict, whole
+
+
+def _by_model_error(trial: _Trial, searcher: Searcher, f: Fit) -> Judged | None:
+    """Return a hypothesis as the error of the model judges it, None where it does not solve."""
+    structure, observation = trial.request.structure, _observation(trial)
+    with suppress(TrueupError):
+        return by_model_error(structure, observation, trial.sensors, searcher.problem, f)
+    return None
 
 
 def _polished(trial: _Trial, searcher: Searcher, state: Fit) -> Fit:

@@ -13,13 +13,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Floats
+from ...errors import CheckError
 from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from .beam_search import Found
-from .model_selection import choices
+from .model_selection import Judgement, choices, contenders, cost
 from .moves import Searcher
 from .search_numbers import SEARCH
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""
+
+    fit: Fit
+    judged: Judged | None
+    score: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +42,8 @@ class Completeness:
         The deck as it is; the known parameters alone; the hypothesis that is accepted.
     gain : float
         ln of how much likelier the test is by the best, its choices paid for.
+    ahead : float
+        ln of how much likelier it is than its nearest rival elsewhere.
     hz : (n_test,) float
         Of the test modes.
     """
@@ -40,6 +52,7 @@ class Completeness:
     alone: Judged
     best: Judged
     gain: float
+    ahead: float
     hz: Floats
 
     @property
@@ -51,15 +64,15 @@ class Completeness:
     def clear(self) -> bool:
         """Whether what was found explains more than an error of the model would seem to.
 
-        The larger the error that is left, the more of it the likeliest place of the likeliest kind
-        takes up; what moves modes at an end of the band alone may be an error of those.
+        What moves modes at an end of the band alone may be an error of those.
         """
         error = self.best.diffuse.error
         gained = self.best.diffuse.each - self.alone.diffuse.each
         order = np.argsort(self.hz)
         inner = float(np.sum(gained[order[SEARCH.ends : -SEARCH.ends]]))
         return bool(
-            self.gain > SEARCH.claimed * (1.0 + error / SEARCH.imitated)
+            self.gain > needed(error)
+            and self.ahead > SEARCH.ahead
             and inner > SEARCH.inner * float(np.sum(gained))
             and len(self.unexplained) <= SEARCH.strays * len(gained)
         )
@@ -75,19 +88,53 @@ class Completeness:
         return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.stray > 0.5))
 
 
-def completeness(
-    searcher: Searcher, found: Found, accepted: int, deck: Judged, judge: Callable[[Fit], Judged]
-) -> tuple[int, Completeness]:
-    """Return how many suspects of those `accepted` earn their places, and how well they explain.
+def scored(searcher: Searcher, f: Fit, judge: Callable[[Fit], Judged | None]) -> Scored:
+    """Return a hypothesis with its evidence, less ln of the number of choices it had."""
+    judged = judge(f)
+    paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
+    return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
 
-    `deck` is how likely the test is by the deck as it is; ``judge(fit)`` says that of hypotheses.
+
+def needed(error: float) -> float:
+    """Return the gain, ln of a likelihood, that an effect needs beside an error that is left.
+
+    The larger the error, the more of it the likeliest place of the likeliest kind takes up.
     """
-    judged = [judge(f) for f in found.levels[: accepted + 1]]
-    scores = [
-        j.evidence - sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-        for j, f in zip(judged, found.levels, strict=False)
-    ]
-    best = max(range(len(scores)), key=lambda k: scores[k] - SEARCH.suspect * k)
-    gain = scores[best] - scores[0]
-    hz = searcher.problem.whole.frequencies_hz
-    return best, Completeness(deck, judged[0], judged[best], gain, hz)
+    return SEARCH.claimed * (1.0 + error / SEARCH.imitated)
+
+
+def completeness(
+    searcher: Searcher,
+    found: Found,
+    verdict: Judgement,
+    deck: Judged,
+    judge: Callable[[Fit], Judged | None],
+) -> tuple[Found, int, Completeness]:
+    """Return the best of what was found, the number of its suspects, and how well it explains.
+
+    The levels up to the accepted one compete, then what is found with the nearest rivals. `deck`
+    is how likely the test is by the deck as it is; ``judge(fit)`` says that of hypotheses, None of
+    one whose model does not solve.
+    """
+    levels = [scored(searcher, f, judge) for f in found.levels[: verdict.accepted + 1]]
+    kept = 0
+    for k, level in enumerate(levels[1:], start=1):
+        least = needed(level.judged.diffuse.error) if kept and level.judged else SEARCH.suspect
+        if level.score - levels[kept].score > least:
+            kept = k
+    tried = sorted(
+        contenders(searcher, found, kept), key=lambda f: cost(searcher, f, verdict.scale)
+    )
+    tried = [f for f in tried if len(f.suspects) == kept][: SEARCH.rivals_judged if kept else 0]
+    others = (scored(searcher, f, judge) for f in tried)
+    field = sorted([levels[kept], *others], key=lambda s: -s.score)
+    best, alone = field[0], levels[0]
+    ahead = best.score - field[1].score if len(field) > 1 else np.inf
+    if best is not levels[kept]:
+        rest = tuple(f for f in found.rivals[kept] if f is not best.fit)
+        rivals = (*found.rivals[:kept], (levels[kept].fit, *rest), *found.rivals[kept + 1 :])
+        found = Found((*found.levels[:kept], best.fit, *found.levels[kept + 1 :]), rivals)
+    if best.judged is None or alone.judged is None:
+        raise CheckError("the deck with its known parameters fitted does not solve")
+    gain, hz = best.score - alone.score, searcher.problem.whole.frequencies_hz
+    return found, kept, Completeness(deck, alone.judged, best.judged, gain, float(ahead), hz)

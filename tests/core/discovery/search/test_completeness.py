@@ -16,9 +16,9 @@ def judged(each, error=0.001, stray=(), evidence=0.0):
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(each, gain=30.0, **more):
+def found(each, gain=30.0, ahead=np.inf, **more):
     none = judged(np.zeros(10))
-    return Completeness(none, none, judged(each, **more), gain, HZ)
+    return Completeness(none, none, judged(each, **more), gain, ahead, HZ)
 
 
 def test_what_many_modes_gain_by_is_clear():
@@ -32,6 +32,10 @@ def test_a_small_gain_is_not_clear():
 def test_the_larger_the_error_that_is_left_the_more_has_to_be_gained():
     assert not found(np.full(10, 3.0), error=0.02).clear
     assert found(np.full(10, 30.0), error=0.02, gain=300.0).clear
+
+
+def test_two_places_that_are_as_good_are_not_clear():
+    assert not found(np.full(10, 3.0), ahead=1.0).clear
 
 
 @pytest.mark.parametrize("end", [slice(0, 2), slice(-2, None)])
@@ -53,12 +57,12 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped():
     searcher = Some(
         problem=Some(catalogue=[kind], whole=Some(frequencies_hz=HZ)), coarse=[np.arange(100)]
     )
-    evidence = {0: 0.0, 1: 30.0, 2: 36.0}
+    evidence = {0: 0.0, 1: 30.0, 2: 40.0}
     none = judged(np.zeros(10))
-    kept, said = completeness(
+    _, kept, said = completeness(
         searcher,
-        Some(levels=levels),
-        2,
+        Some(levels=levels, rivals=((), (), ())),
+        Some(accepted=2, scale=1.0),
         none,
         lambda f: judged(np.zeros(10), evidence=evidence[len(f.suspects)]),
     )
