@@ -108,8 +108,8 @@ def assemble(
 
 
 def _cmif(survey: Survey) -> Indicator:
-    values = survey.values / survey.output_weight[:, None, None]
-    return Indicator(survey.frequencies_hz, cmif(values / survey.input_weight[None, :, None]))
+    weight = survey.output_weight[:, None, None] * survey.input_weight[None, :, None]
+    return Indicator(survey.frequencies_hz, cmif(survey.values / weight))
 
 
 def _measured(survey: Survey) -> Frfs:

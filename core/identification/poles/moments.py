@@ -27,6 +27,14 @@ def stacked(lines: Numbers) -> Floats:
     return np.concatenate([lines.real, lines.imag], axis=-1)
 
 
+def unstacked(y: Floats) -> Numbers:
+    """Complex lines of stacked ones, the inverse of `stacked`."""
+    n_line = y.shape[-1] // 2
+    lines = np.empty((*y.shape[:-1], n_line), complex)
+    lines.real, lines.imag = y[..., :n_line], y[..., n_line:]
+    return lines
+
+
 @dataclass(frozen=True, eq=False)
 class BandData:
     """Measured functions of a band with the residual terms projected out.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import Floats, Numbers
 from .matched_filters import Traces, traces
-from .moments import BandData, basis, excerpt, onto, parts_of
+from .moments import BandData, basis, excerpt, onto, parts_of, unstacked
 from .pole_numbers import POLES
 from .pole_splitting import plausible, split_roots, strength
 from .pole_stabilisation import Candidate
@@ -192,10 +192,8 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
 def _look(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Traces]:
     """Return the residual of a fit and the traces of roots in it."""
     left = residual_of(data, fit)
-    n_line = len(f)
-    functions = left[..., :n_line] + 1j * left[..., n_line:]
     power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
-    functions = without_shared_noise(functions)
+    functions = without_shared_noise(unstacked(left))
     return left, traces(f, functions, data.weight > 0.0, POLES.direction * data.error * power)
 
 

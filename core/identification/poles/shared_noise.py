@@ -9,17 +9,20 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Bools, Floats, Numbers
-from .moments import BandData, basis
+from .moments import BandData, basis, unstacked
 from .pole_numbers import POLES
 from .significance import residual_lines, significance
 from .variable_projection import Fit
 
 
 def without_shared_noise(residual: Numbers) -> Numbers:
-    """Take out of a residual (n_output, n_input, n_line) the noise that all points share."""
+    """Take out of a residual (n_output, n_input, n_line), in place, what all points share."""
     shape = _shared_shape(residual)
-    along = np.tensordot(shape.conj(), residual, axes=1)
-    return np.asarray(residual - shape[:, None, None] * along)
+    if shape.any():
+        along = np.tensordot(shape.conj(), residual, axes=1)
+        for function, part in zip(residual, shape, strict=True):
+            function -= part * along
+    return residual
 
 
 def is_shared_noise(data: BandData, f: Floats, fit: Fit) -> Bools:
@@ -27,19 +30,22 @@ def is_shared_noise(data: BandData, f: Floats, fit: Fit) -> Bools:
 
     Roots beyond doubt have not: noise that was found to be noise is weaker.
     """
-    n_line = len(f)
+    doubtful = significance(data, f, fit) < POLES.beyond_doubt
+    if not doubtful.any():
+        return np.asarray(doubtful)
     left = residual_lines(data, fit, basis(data, fit.poles, derivative=False))
-    shape = _shared_shape(left[..., :n_line] + 1j * left[..., n_line:])
+    shape = _shared_shape(unstacked(left))
     along = np.abs(shape.conj() @ fit.shapes) ** 2
     alike = along > POLES.shared_shape * np.sum(np.abs(fit.shapes) ** 2, axis=0)
-    return np.asarray(alike & (significance(data, f, fit) < POLES.beyond_doubt))
+    return np.asarray(alike & doubtful)
 
 
 def _shared_shape(residual: Numbers) -> Numbers:
     """Return the strongest shape of a residual if it stands all over the band, otherwise nil."""
     n_output = len(residual)
     lines = residual.reshape(n_output, -1)
-    shape = lines[:, int(np.argmax(np.sum(np.abs(lines) ** 2, axis=0)))]
+    power = sum(np.einsum("on,on->n", part, part) for part in (lines.real, lines.imag))
+    shape = lines[:, int(np.argmax(power))]
     for _ in range(POLES.start_rounds):
         shape = lines @ (shape.conj() @ lines).conj()
         shape = shape / max(float(np.linalg.norm(shape)), 1e-300)

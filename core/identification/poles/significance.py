@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ...arrays import Floats, Numbers
-from .moments import BandData, basis, onto, parts_of, shape_normals
+from .moments import BandData, basis, onto, parts_of, shape_normals, unstacked
 from .pole_numbers import POLES
 from .variable_projection import Fit, solve_shapes
 
@@ -195,8 +195,7 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
     heard = replace(data, y=data.y[some], weight=data.weight[some])
     fitted = replace(fit, shapes=fit.shapes[some])
     left = residual_lines(heard, fitted, basis(heard, fit.poles, derivative=False))
-    lines = left.reshape(-1, 2, len(f))
-    functions = lines[:, 0] + 1j * lines[:, 1]
+    functions = unstacked(left).reshape(-1, len(f))
     square = np.sum(np.abs(functions) ** 2, axis=0)
     rough = np.sum(np.abs(np.diff(functions, n=4, axis=1)) ** 2, axis=0) / 70.0
     spacing = float(np.median(np.diff(f)))

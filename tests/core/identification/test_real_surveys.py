@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -120,3 +121,34 @@ def test_what_a_survey_holds_besides_is_rejected_with_its_reason(aeroplane):
     assert len(again) >= 2
     assert all("Hz once more" in r.reason for r in again)
     assert any("errors of the survey" in r.reason for r in rejected if r.frequency_hz < 35.0)
+
+
+@pytest.mark.slow
+@needs(AEROPLANE)
+def test_halves_of_a_survey_agree_within_their_errors(aeroplane):
+    """Every other point, and the rest: modes of both halves differ by what their errors say."""
+    frfs = read_universal([AEROPLANE]).frfs
+    halves = [
+        identify(
+            replace(
+                frfs,
+                values=frfs.values[:, first::2],
+                references=frfs.references.take(np.arange(first, len(frfs.references), 2)),
+            ),
+            fmin=15.0,
+            fmax=180.0,
+        )
+        for first in (0, 1)
+    ]
+    off = []
+    for hz in aeroplane.modes.frequencies_hz:
+        a, b = (int(np.argmin(np.abs(h.modes.frequencies_hz - hz))) for h in halves)
+        one, two = halves
+        pair = one.modes.frequencies_hz[a] - two.modes.frequencies_hz[b]
+        if abs(pair) < 0.5:
+            z = one.modes.damping[a] - two.modes.damping[b]
+            f_std = np.hypot(one.frequency_std[a], two.frequency_std[b])
+            z_std = np.hypot(one.damping_std[a], two.damping_std[b])
+            off.append((pair / f_std, z / z_std))
+    assert len(off) >= 11
+    assert np.mean(np.abs(off) < 2.0) > 0.9
