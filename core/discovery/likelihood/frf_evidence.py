@@ -25,6 +25,8 @@ def place_responses(
 ) -> tuple[Responses | None, tuple[str, ...]]:
     """Lay the responses of a test onto a model; None where none lies on it, and why not.
 
+    A line at 0 Hz says nothing: what is free moves away there.
+
     `frfs` are in the test's length unit and frame, `placed` are the modes of the same test,
     `geometry` and `dofs` those of the analysis; for `motion` see `grids_of`.
     """
@@ -45,8 +47,13 @@ def place_responses(
             "the frequency responses do not count as evidence: their "
             f"{'references' if len(rows) else 'sensors'} do not lie on the model",
         )
+    lines = frfs.frequencies_hz > 0.0
     whole = replace(
-        frfs, responses=at.sensors, references=by.sensors, values=frfs.values * placed.length_factor
+        frfs,
+        frequencies_hz=frfs.frequencies_hz[lines],
+        responses=at.sensors,
+        references=by.sensors,
+        values=frfs.values[..., lines] * placed.length_factor,
     )
     return Responses(whole.at(rows, columns), at.matrix[rows], by.matrix[columns]), ()
 

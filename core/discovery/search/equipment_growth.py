@@ -123,7 +123,8 @@ def _best(
 ) -> tuple[int, Searcher, Fit]:
     """Return which of some bodies fits best in place of one mass, the search and the fit with it.
 
-    Those that promise most with all else as it stands are fitted.
+    Those that promise most with all else as it stands are fitted, from a lighter mass as well:
+    which test mode is which may hang on it.
     """
     others = state.suspects[:q] + state.suspects[q + 1 :]
     made = equipment(template, stands, bodies)
@@ -131,11 +132,12 @@ def _best(
     small, here = wide.local(evaluate(wide.problem, state.nuisance, others))
     trials = made.around(state.suspects[q].theta, np.array(SEARCH.equipment_sizes))
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
-    fits = []
+    near, fits = wide.local(state)[0], []
     for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
-        new = Suspect(kind, row, tuple(trials[score[row].argmin()].tolist()))
-        suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-        fits.append((row, wide.fitted(state, suspects, SEARCH.steps_new, small)))
+        for theta in (trials[score[row].argmin()], trials[0]):
+            new = Suspect(kind, row, tuple(theta.tolist()))
+            suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
+            fits.append((row, wide.fitted(state, suspects, SEARCH.steps_instead, near)))
     row, fit = min(fits, key=lambda f: f[1].objective)
     return row, wide, fit
 
