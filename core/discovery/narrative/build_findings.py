@@ -172,8 +172,9 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     places = credible_places(o.searcher, best, number, scale)
     error = [m.place_error for m in c.kind.magnitudes]
     spread = np.hypot(np.hypot(deviation, error), between(places))
-    if "factor" in (m.word for m in c.kind.magnitudes) and len(best.suspects) == 1:
-        spread = np.minimum(spread, np.abs(s.theta) / np.sqrt(2.0 * max(o.whole.gain, 1.0)))
+    if "factor" in (m.word for m in c.kind.magnitudes):
+        off = min(np.sqrt(2.0 * max(o.whole.last, 1.0)), NARRATIVE.off_one)
+        spread = np.minimum(spread, np.abs(s.theta) / off)
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
     magnitude = magnitude_of(c, row, sizes, intervals, masses)

@@ -42,6 +42,8 @@ class Completeness:
         The deck as it is; the known parameters alone; the hypothesis that is accepted.
     gain : float
         ln of how much likelier the test is by the best, its choices paid for.
+    last : float
+        The same beside one or more suspects fewer.
     ahead : float
         ln of how much likelier it is than its nearest rival elsewhere.
     hz : (n_test,) float
@@ -52,6 +54,7 @@ class Completeness:
     alone: Judged
     best: Judged
     gain: float
+    last: float
     ahead: float
     hz: Floats
 
@@ -136,5 +139,7 @@ def completeness(
         found = Found((*found.levels[:kept], best.fit, *found.levels[kept + 1 :]), rivals)
     if best.judged is None or alone.judged is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
-    gain, hz = best.score - alone.score, searcher.problem.whole.frequencies_hz
-    return found, kept, Completeness(deck, alone.judged, best.judged, gain, float(ahead), hz)
+    fewer = max((level.score for level in levels[:kept]), default=best.score)
+    gain, last = best.score - alone.score, best.score - fewer
+    hz = searcher.problem.whole.frequencies_hz
+    return found, kept, Completeness(deck, alone.judged, best.judged, gain, last, float(ahead), hz)

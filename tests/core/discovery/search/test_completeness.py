@@ -18,7 +18,7 @@ def judged(each, error=0.001, stray=(), evidence=0.0):
 
 def found(each, gain=30.0, ahead=np.inf, **more):
     none = judged(np.zeros(10))
-    return Completeness(none, none, judged(each, **more), gain, ahead, HZ)
+    return Completeness(none, none, judged(each, **more), gain, gain, ahead, HZ)
 
 
 def test_what_many_modes_gain_by_is_clear():
