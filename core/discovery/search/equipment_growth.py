@@ -54,7 +54,7 @@ def _one(
     for c, row in _places(searcher, s):
         stands = _stands(structure, c, row)
         if stands:
-            _, wide, fit = _best(searcher, state, q, c, stands, [body])
+            _, wide, fit = _best(searcher, state, q, c, stands, [body], state)
             found.append((fit.objective, len(found), c, stands, wide, fit))
     if not found:
         return None
@@ -62,7 +62,8 @@ def _one(
     _, _, c, stands, wide, fit = found[0]
     known = block is not None and fit.objective < state.objective
     best = (wide, fit) if known else None
-    for _, _, c, stands, _, _ in found[: SEARCH.equipment_tried]:
+    enough = state.misfit > scale * SEARCH.equipment_gain
+    for _, _, c, stands, _, _ in found[: SEARCH.equipment_tried] if enough else ():
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
         if fit.objective < now.objective - scale * SEARCH.equipment_gain:
@@ -99,16 +100,21 @@ def _stands(structure: Structure, c: Candidates, row: int) -> list[Stand]:
 def _grown(
     searcher: Searcher, state: Fit, q: int, template: Candidates, stands: list[Stand], body: Body
 ) -> tuple[Searcher, Fit]:
-    """Return a hypothesis with the best body in place of one mass, from a body on."""
+    """Return a hypothesis with the best body in place of one mass, from a body on.
+
+    Where the first step is no good it is given up.
+    """
     best: tuple[Searcher, Fit] | None = None
     for step in SEARCH.equipment_steps:
         for _ in range(SEARCH.equipment_rounds):
             tried = _around(body, step * searcher.size)
             now = state if best is None else best[1]
-            k, wide, fit = _best(searcher, now, q, template, stands, tried)
+            k, wide, fit = _best(searcher, state, q, template, stands, tried, now)
             if best is not None and fit.objective > best[1].objective - SEARCH.better:
                 break
             body, best = tried[k], (wide, fit)
+            if fit.objective > state.objective - SEARCH.hopeless * SEARCH.equipment_gain:
+                return best
     assert best is not None
     return best
 
@@ -120,24 +126,25 @@ def _best(
     template: Candidates,
     stands: list[Stand],
     bodies: list[Body],
+    now: Fit,
 ) -> tuple[int, Searcher, Fit]:
     """Return which of some bodies fits best in place of one mass, the search and the fit with it.
 
-    Those that promise most with all else as it stands are fitted, from a lighter mass as well:
-    which test mode is which may hang on it.
+    `now` is the best fit so far, with a body or without. Those that promise most with all else as
+    it stands are fitted, from a lighter mass as well: which test mode is which may hang on it.
     """
     others = state.suspects[:q] + state.suspects[q + 1 :]
     made = equipment(template, stands, bodies)
     wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
-    small, here = wide.local(evaluate(wide.problem, state.nuisance, others))
-    trials = made.around(state.suspects[q].theta, np.array(SEARCH.equipment_sizes))
+    small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
+    trials = made.around(now.suspects[q].theta, np.array(SEARCH.equipment_sizes))
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     near, fits = wide.local(state)[0], []
     for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
         for theta in (trials[score[row].argmin()], trials[0]):
             new = Suspect(kind, row, tuple(theta.tolist()))
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            fits.append((row, wide.fitted(state, suspects, SEARCH.steps_instead, near)))
+            fits.append((row, wide.fitted(now, suspects, SEARCH.steps_instead, near)))
     row, fit = min(fits, key=lambda f: f[1].objective)
     return row, wide, fit
 

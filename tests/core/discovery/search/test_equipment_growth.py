@@ -1,0 +1,59 @@
+"""A mass on a stand, told by the modes of a frame."""
+
+import numpy as np
+import pytest
+
+import trueup
+from trueup.core.discovery import discover as core
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.search.equipment_growth import equipped
+
+FRAME = (
+    "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n"
+    + "".join(f"GRID,{k + 1},,0.,{0.1 * k:.1f},0.\n" for k in range(9))
+    + "".join(f"GRID,{k + 10},,{0.1 * (k + 1):.1f},.8,0.\n" for k in range(6))
+    + "".join(f"CBAR,{k},1,{k},{k + 1},0.,0.,1.\n" for k in range(1, 15))
+    + "PBAR,1,1,4.-4,1.3-8,1.3-8,2.6-8\nMAT1,1,2.1+11,,.3,7850.\nSPC1,1,123456,1,15\n"
+)
+BODY = "CONM2,90,6,0,.5,.08,0.,0.\n,2.-3,,2.-3,,,2.-3\n"
+
+
+class Asked(Exception):
+    """What was asked is known."""
+
+
+def asked(tmp_path, monkeypatch):
+    """What discovery is asked of the frame, by the test of one that carries equipment."""
+    deck, truth = tmp_path / "deck.bdf", tmp_path / "truth.bdf"
+    deck.write_text(FRAME + "ENDDATA\n")
+    truth.write_text(FRAME + BODY + "ENDDATA\n")
+    trueup.solve(truth, 12).write(tmp_path / "test.unv")
+    requests = []
+
+    def stop(request, progress):
+        requests.append(request)
+        raise Asked
+
+    monkeypatch.setattr(core, "discover", stop)
+    with pytest.raises(Asked):
+        trueup.discover(deck, tmp_path / "test.unv", deck_length_unit="m")
+    return requests[0]
+
+
+def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch):
+    request = asked(tmp_path, monkeypatch)
+    every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
+    nothing = ~every[1]
+    trial = core._Trial(request, core._ground(request, every[0]), nothing, 0.01, ~every[0], nothing)
+    s = core._searcher(trial)
+    masses = s.problem.catalogue[0]
+    row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
+    point = s.fitted(s.null(), (Suspect(0, row, (float(np.log(0.5)),)),))
+    wide, grown = equipped(request.structure, s, point, 1.0, None)
+    (found,) = grown.suspects
+    c = wide.problem.catalogue[found.kind]
+    assert c.where[found.row]["grids"] == [6]
+    assert np.exp(found.theta[0]) == pytest.approx(0.5, rel=0.15)
+    (x, y, z) = c.bodies[found.row].offset
+    assert np.linalg.norm((x - 0.08, y, z)) < 0.03
+    assert grown.objective < point.objective - 15.0
