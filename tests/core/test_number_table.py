@@ -44,9 +44,10 @@ FORMULAS: dict[str, set[float]] = {
 the variance of a uniform law (1/12), per cent; and in some modules the stencil of second
 differences and the volume of all rotations (8π²), the mass matrix of linear shells (1/36), the
 corners of one, the components that turn (4 to 6), degrees, axes of an array, fourth powers and
-differences (of variance 70), quarters, decibels, milliseconds; seeds, the six rigid motions and the one of scalar
-points, bits of a key, the golden angle, the powers of the additive recurrence that fills a square evenly (Roberts
-2018) and of its root in thirty rounds. What is divided by is 1e-300 at least."""
+differences (of variance 70), quarters, decibels, milliseconds; seeds, the six rigid motions and the
+one of scalar points, bits of a key, the golden angle, the powers of the additive recurrence that
+fills a square evenly (Roberts 2018) and of its root in thirty rounds. What is divided by is
+1e-300 at least."""
 ROOMS = (
     "correlation",
     "discovery",

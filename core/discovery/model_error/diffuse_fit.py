@@ -16,6 +16,7 @@ from ...arrays import Floats
 from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import magnitudes
 from ..likelihood.hypothesis import Fit, Prior, Problem
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import products, stepped, surprise
 from ..likelihood.mode_likelihood import targets
 from .diffuse_error import Diffuse, Seen, covariances, diffuse
@@ -151,9 +152,9 @@ def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
             new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
             if new > height:
                 better = trial, d, new
-                damping *= 0.3
+                damping *= LIKELIHOOD.damping_down
                 break
-            damping = max(5.0 * damping, 0.05)
+            damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:
             break
         gained = better[2] - height

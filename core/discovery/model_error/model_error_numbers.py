@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from ...number_table import number
 
 NOISE = "of the rms of a shape"
+BY_HAND = "set by hand from the errors left where what was hidden is known, not yet calibrated"
 
 
 @dataclass(frozen=True)
@@ -20,8 +21,8 @@ class ModelErrorNumbers:
     flat: float = number(0.05, "-", "what a polynomial must have of its own beside the others", "thin structures have no fields across")
     most: float = number(0.4, "rms", "of a smooth field, at most")
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03, 0.1), "rms", "of smooth fields, sizes that are tried")
-    usual: float = number(0.003, "of K", "median of the errors that right models left", "python -m benchmarks.discovery.calibrate FOLDER")
-    usual_spread: float = number(1.2, "of ln ε", "standard deviation of them", "python -m benchmarks.discovery.calibrate FOLDER")
+    usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)
+    usual_spread: float = number(1.2, "of ln ε", "standard deviation of them", BY_HAND)
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
     tolerance: float = number(0.1, "ln L", "gain of such a step that counts")
     dampings: int = number(4, "trials", "of Levenberg's damping a step")

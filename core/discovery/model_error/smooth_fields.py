@@ -87,7 +87,8 @@ def _reduced(structure: Structure, m: Members, rows: Ints, motion: Floats) -> tu
 def _cells(xyz: Floats) -> tuple[Ints, int]:
     """Divide points among boxes of a grid over them; number of each point's box, and of boxes."""
     low, size = xyz.min(axis=0), np.ptp(xyz, axis=0).max()
-    box = np.floor((xyz - low) / size * (MODEL_ERROR.cells - 1e-9)).astype(np.int64)
+    box = ((xyz - low) / size * MODEL_ERROR.cells).astype(np.int64)
+    box = np.minimum(box, MODEL_ERROR.cells - 1)
     _, number = np.unique(box, axis=0, return_inverse=True)
     return number.ravel(), int(number.max()) + 1
 
