@@ -88,6 +88,19 @@ def positive_share(function: Numbers, order: int) -> float:
     return float(np.sum(taken) / max(float(np.sum(np.abs(taken))), 1e-300))
 
 
+def resonates(function: Numbers, order: int) -> bool:
+    """Say whether power flows at a driving point at all: off resonance noise alone has a share.
+
+    Parameters
+    ----------
+    function : (n_line,) complex
+    order : int
+        0, 1, 2 for displacement, velocity, acceleration.
+    """
+    flows = np.abs((function * 1j ** (1 - order)).real) @ np.abs(function)
+    return bool(flows > SURVEY.flows * np.linalg.norm(function) ** 2)
+
+
 def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats) -> Scaling:
     """Find modal masses from the driving points, after checking them by reciprocity.
 

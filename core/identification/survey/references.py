@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from ...arrays import Floats, Ints, Numbers
-from .driving_points import positive_share
+from .driving_points import positive_share, resonates
 from .faults import Fault
 from .neighbours import Neighbours
 from .survey_data import Survey, told
@@ -83,7 +83,11 @@ def references_mended(survey: Survey, points: Floats, neighbours: Neighbours | N
         survey = _exchanged(survey, a, b)
         survey = told(survey, Fault("swapped_references", names, sentence, "exchanged"))
     functions = _between(survey, points)
-    share = {i: positive_share(f, survey.order) for (i, j), f in functions.items() if i == j}
+    share = {
+        i: positive_share(f, survey.order)
+        for (i, j), f in functions.items()
+        if i == j and resonates(f, survey.order)
+    }
     for i in (i for i, s in share.items() if s <= SURVEY.gives):
         if share[i] > SURVEY.takes:
             survey = told(survey, _no_driving_point(survey, i, points))

@@ -60,6 +60,7 @@ class SurveyNumbers:
     signs_peaks: int = number(4, "peaks", "that are compared, at least; three let a node look like a fault", SURVEYS)
     signs_better: float = number(0.3, "-", "of what contradicts, that is left after a change, at most; in surveys in order 1.9 at least", SURVEYS)
     signs_rival: float = number(2.0, "times the least left", "below which another change is as likely", SURVEYS)
+    flows: float = number(0.25, "of a function's square", "that is in phase with the force's power, at least, to judge a driving point; noise alone 0.18 at most, surveys 0.37 at least", SURVEYS)
     gives: float = number(0.5, "-", "share of positive power less negative of a driving point, at least; in real surveys 0.996 at least", SURVEYS)
     takes: float = number(-0.9, "-", "likewise, of one that is reversed, at most", SURVEYS)
     reciprocal: float = number(0.5, "-", "correlation of two reciprocal functions of the same sign, at least; aeroplane 0.975", SURVEYS)

@@ -171,11 +171,12 @@ def test_roving_hammer_gives_the_same_modes(survey):
     assert np.isfinite(result.real_modes.generalized_mass).all()
 
 
-def test_references_under_each_others_name_are_named(survey):
+def test_references_under_each_others_name_are_named_and_exchanged(survey):
     frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
     result = identify(replace(frfs, references=frfs.references.take(np.array([1, 0]))))
     assert_found(result, truth)
-    assert np.isnan(result.real_modes.generalized_mass).all()
+    assert np.isfinite(result.real_modes.generalized_mass).all()
+    assert [f.kind for f in result.faults] == ["swapped_references"]
     assert any("under each other's name" in w for w in result.warnings)
 
 
