@@ -212,8 +212,11 @@ def _prepared(
     hz = placed.test.frequencies_hz
     shapes = np.asarray(placed.weighted(realised(placed.test.shapes)))
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    scatter = 0.0 if placed.errors is None else placed.errors.frequency
-    whole = Evidence(hz, unit, noise_of(placed.errors, noise), scatter)
+    scatter: float | Floats = 0.0
+    reading = 0.0
+    if placed.errors is not None:
+        scatter, reading = placed.errors.frequency, float(np.min(placed.errors.length))
+    whole = Evidence(hz, unit, noise_of(placed.errors, noise), scatter, reading)
     e = whole.take(modes, sensors)
     basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))

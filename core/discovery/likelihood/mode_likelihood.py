@@ -70,19 +70,24 @@ class Evidence:
     noise : Noise
     scatter : (n_test,) float or float
         Standard errors of ln f that the test itself knows of.
+    reading : float
+        Standard deviation of a reading over the rms of its shape, at least: what the test states.
     """
 
     frequencies_hz: Floats
     shapes: Floats
     noise: Noise
     scatter: float | Floats = 0.0
+    reading: float = 0.0
 
     def take(self, modes: Ints | Bools, sensors: Ints | Bools) -> Evidence:
         """Return part of the evidence, shapes of unit length again."""
         part = self.shapes[sensors][:, modes]
         length = np.maximum(np.linalg.norm(part, axis=0), np.finfo(float).tiny)
         scatter = np.broadcast_to(self.scatter, self.frequencies_hz.shape)[modes]
-        return Evidence(self.frequencies_hz[modes], part / length, self.noise.of(modes), scatter)
+        return Evidence(
+            self.frequencies_hz[modes], part / length, self.noise.of(modes), scatter, self.reading
+        )
 
 
 def targets(e: Evidence) -> Floats:

@@ -64,6 +64,8 @@ class Seen:
         Mass-normalised.
     columns : int
         How many of the modes may match.
+    reading : float
+        Noise of a reading over the rms of its shape, at least.
     """
 
     hz: Floats
@@ -72,6 +74,7 @@ class Seen:
     eigenvalues: Floats
     modes: Floats
     columns: int
+    reading: float = 0.0
 
 
 def diffuse(seen: Seen, near: Diffuse | None = None) -> Diffuse:
@@ -109,7 +112,7 @@ def _first(near: Diffuse | None, low: float, step: float, n: int) -> Sequence[in
 def _at(seen: Seen, error: float) -> Diffuse:
     """Return the best over the noise at one error."""
     low, high, n = MODEL_ERROR.noises
-    noises = np.geomspace(low, high, n)
+    noises = np.unique(np.maximum(np.geomspace(low, high, n), seen.reading))
     logs = _frequencies(seen, error)[None] + _shapes(seen, error, noises)
     astray = _stray(seen)
     both = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)

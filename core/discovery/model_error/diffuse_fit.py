@@ -131,7 +131,7 @@ def seen(problem: Problem, state: Fit) -> Seen:
     e = p.evidence
     scatter = np.hypot(np.broadcast_to(e.scatter, e.frequencies_hz.shape), MODEL_ERROR.frequency)
     columns = min(p.columns, len(state.eigenvalues))
-    return Seen(e.frequencies_hz, e.shapes, scatter, state.eigenvalues, shapes, columns)
+    return Seen(e.frequencies_hz, e.shapes, scatter, state.eigenvalues, shapes, columns, e.reading)
 
 
 def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:

@@ -14,7 +14,6 @@ from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
-from ..model_error.adequacy import adequacy
 from ..posterior.credible_places import Place, between, credible_places
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
@@ -79,7 +78,7 @@ def build_discovery(
         word = "test_fault"
     elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
-    elif adequacy(whole.deck.diffuse.error) < NARRATIVE.nothing:
+    elif whole.adequacy < NARRATIVE.nothing:
         word = "undecided"
     if word == "undecided":
         decide = (*left_over(whole, request.numbers), *decide)
