@@ -225,8 +225,8 @@ def _measured(values: Numbers, said: Said) -> Bools:
     nan = np.isnan(values)
     missing = nan.all(axis=2)
     measured = ~missing
-    gaps = measured & ~np.isfinite(values).all(axis=2)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
+        gaps = measured & ~np.isfinite(np.abs(values).max(axis=2) ** 2)
         constant = measured & ~gaps & (np.abs(values - values[:, :, :1]).max(axis=2) == 0.0)
         real = measured & ~gaps & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
         low, high = values.real.min(axis=2), values.real.max(axis=2)

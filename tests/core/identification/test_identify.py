@@ -180,6 +180,16 @@ def test_references_under_each_others_name_are_named_and_exchanged(survey):
     assert any("under each other's name" in w for w in result.warnings)
 
 
+@pytest.mark.parametrize("wrong", [np.inf, 1.79e308, np.nan])
+def test_a_function_with_a_value_that_is_no_number_is_left_out(survey, wrong):
+    frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
+    values = frfs.values.copy()
+    values[3, 1, 100] = wrong
+    result = identify(replace(frfs, values=values))
+    assert_found(result, truth)
+    assert any("lines without a finite value: left out" in w for w in result.warnings)
+
+
 def test_a_response_listed_twice_and_one_reversed(survey):
     """The same sensor measured again, and another mounted backwards (its axis says so)."""
     frfs, truth = survey(13, n_mode=5, n_response=15, n_line=800)
