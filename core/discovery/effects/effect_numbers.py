@@ -68,13 +68,6 @@ class EffectNumbers:
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
-    image_off: float = number(0.01, SIZE, "how far the image of a grid may lie from the grid that it is", "meshes and parts that are not quite symmetric")
-    image_share: float = number(0.9, "of the grids", "that have an image, of a structure that is its own")
-    image_round: float = number(0.02, "of the largest extent", "by which principal extents differ that are not the same")
-    image_skew: float = number(1e-6, "-", "cosine below which planes are perpendicular", ROUNDING)
-    rings: tuple[int, ...] = number((2, 3, 4, 6, 8), "places", "alike about an axis that are looked at")
-    twins_apart: float = number(0.05, SIZE, "that places alike are from each other, at least", "nearer ones are one")
-
     absorber_masses: tuple[float, ...] = number((0.008, 0.016, 0.032, 0.06), MASS, "that are tried")
     absorber_mass: float = number(0.025, MASS, "median beforehand")
     absorber_spread: float = number(1.0, "of ln m", "standard deviation of it")

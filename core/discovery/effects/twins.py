@@ -7,10 +7,10 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ..reduction.search_basis import Basis
+from ..symmetry.equivalent_places import images_of, symmetries
+from ..symmetry.symmetry_numbers import SYMMETRY
 from .candidates import Candidates
 from .effect_laws import Rows
-from .effect_numbers import EFFECTS
-from .symmetry import images_of, symmetries
 
 
 def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
@@ -27,7 +27,7 @@ def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
     sets = [
         together(single, at_grids[once][rows], np.concatenate([np.eye(3)[None], s.maps]))
         for s in symmetries(xyz, size)
-        for rows in [images_of(s, xyz, EFFECTS.image_off * size, EFFECTS.twins_apart * size)]
+        for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
         if len(rows)
     ]
     return (single, *sets)

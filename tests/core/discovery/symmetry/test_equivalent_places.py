@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.discovery.effects.symmetry import images_of, symmetries
+from trueup.core.discovery.symmetry.equivalent_places import images_of, symmetries
 
 
 def plate(x, y):

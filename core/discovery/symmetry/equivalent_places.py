@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Floats, Ints
-from .effect_numbers import EFFECTS
+from .symmetry_numbers import SYMMETRY
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,14 +50,14 @@ def symmetries(xyz: Floats, size: float) -> tuple[Symmetry, ...]:
     tree = cKDTree(xyz)
 
     def holds(s: Symmetry) -> bool:
-        away, _ = tree.query(s.images(xyz), distance_upper_bound=EFFECTS.image_off * size)
-        return bool(np.isfinite(away).mean(axis=1).min() > EFFECTS.image_share)
+        away, _ = tree.query(s.images(xyz), distance_upper_bound=SYMMETRY.image_off * size)
+        return bool(np.isfinite(away).mean(axis=1).min() > SYMMETRY.image_share)
 
     found = [s for s in _mirrors(xyz) if holds(s)]
     mirrors = [s for k, s in enumerate(found) if not any(_same(s, t, size) for t in found[:k])]
     turns: list[Symmetry] = []
     for axis, centre in _lines(xyz):
-        rings = [_ring(axis, centre, n) for n in EFFECTS.rings]
+        rings = [_ring(axis, centre, n) for n in SYMMETRY.rings]
         own = [s for s in rings if holds(s)]
         if own and len(own[-1].maps) > 1 and not any(_same(own[-1], s, size) for s in turns):
             turns += own
@@ -77,7 +77,7 @@ def images_of(s: Symmetry, xyz: Floats, near: float, apart: float) -> Ints:
     lead = np.flatnonzero(np.isfinite(away).all(axis=0))
     sets = np.column_stack([lead, there[:, lead].T])
     along = (xyz[sets] - s.centre) @ s.towards
-    first = along[:, 0] >= along.max(axis=1) - EFFECTS.image_skew * near
+    first = along[:, 0] >= along.max(axis=1) - SYMMETRY.image_skew * near
     gap = np.linalg.norm(xyz[sets][:, :, None] - xyz[sets][:, None], axis=3)
     gap[:, np.arange(sets.shape[1]), np.arange(sets.shape[1])] = np.inf
     sets = sets[first & (gap.min(axis=(1, 2)) > apart)]
@@ -94,7 +94,7 @@ def _lines(xyz: Floats) -> Iterator[tuple[Floats, Floats]]:
     middle = xyz.mean(axis=0)
     _, extent, principal = np.linalg.svd(xyz - middle, full_matrices=False)
     gap = np.abs(np.subtract.outer(extent, extent)) + np.diag(np.full(3, np.inf))
-    own = gap.min(axis=1) > EFFECTS.image_round * extent.max()
+    own = gap.min(axis=1) > SYMMETRY.image_round * extent.max()
     for frame, wanted in ((np.eye(3), np.ones(3, bool)), (principal, own)):
         along = xyz @ frame.T
         box = 0.5 * (along.min(axis=0) + along.max(axis=0)) @ frame
@@ -110,7 +110,7 @@ def _mirrors(xyz: Floats) -> Iterator[Symmetry]:
 
 def _pair(s: Symmetry, t: Symmetry) -> Symmetry | None:
     """Return two planes and the turn that both make, None where they are not perpendicular."""
-    if abs(s.towards @ t.towards) > EFFECTS.image_skew:
+    if abs(s.towards @ t.towards) > SYMMETRY.image_skew:
         return None
     maps = np.stack([s.maps[0], t.maps[0], s.maps[0] @ t.maps[0]])
     centre = s.centre + ((t.centre - s.centre) @ t.towards) * t.towards
@@ -136,4 +136,4 @@ def _same(s: Symmetry, t: Symmetry, size: float) -> bool:
         return False
     points = s.centre + size * np.vstack([np.zeros(3), np.eye(3)])
     gap = np.linalg.norm(s.images(points)[:, None] - t.images(points)[None], axis=3).max(axis=2)
-    return bool((gap.min(axis=1) < 2.0 * EFFECTS.image_off * size).all())
+    return bool((gap.min(axis=1) < 2.0 * SYMMETRY.image_off * size).all())
