@@ -9,9 +9,12 @@ from ..data.shapes import LINE
 from .bar import add_spring, from_axes, lumped_ends, release
 from .batch import congruent, symmetric, transpose
 from .element import Element
+from .quadrature import gauss_line
 
-_X, _W = np.polynomial.legendre.leggauss(8)
+_X, _W = gauss_line(8)
 _X, _W = 0.5 * (_X + 1.0), 0.5 * _W
+_X3, _W3 = gauss_line(3)
+_X3, _W3 = 0.5 * (_X3 + 1.0), 0.5 * _W3
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,17 +45,19 @@ class BeamSections:
     def __len__(self) -> int:
         return len(self.station)
 
-    def integration(self) -> tuple[Floats, Floats, dict[str, Floats]]:
+    def integration(
+        self, points: Floats = _X, weights: Floats = _W
+    ) -> tuple[Floats, Floats, dict[str, Floats]]:
         """Points x, weights w (fractions of the length) and properties there, each (n, k)."""
         a, width = self.station[:, :-1], np.diff(self.station, axis=1)
         n = len(self)
 
         def at(values: Floats) -> Floats:
-            ends = values[:, :-1, None] + np.diff(values, axis=1)[..., None] * _X
+            ends = values[:, :-1, None] + np.diff(values, axis=1)[..., None] * points
             return np.asarray(ends.reshape(n, -1))
 
-        x = (a[..., None] + width[..., None] * _X).reshape(n, -1)
-        w = (width[..., None] * _W).reshape(n, -1)
+        x = (a[..., None] + width[..., None] * points).reshape(n, -1)
+        w = (width[..., None] * weights).reshape(n, -1)
         names = ("A", "I1", "I2", "I12", "J")
         return x, w, {name: at(getattr(self, name)) for name in names}
 
@@ -71,7 +76,10 @@ def beam_stiffness(
     pins_a: Numbers,
     pins_b: Numbers,
 ) -> Floats:
-    """Stiffness of beams between their ends, from the exact flexibility of the tapered beam.
+    """Stiffness of beams between their ends, from the flexibility of the tapered beam.
+
+    It is summed over three Gauss points from station to station, as MSC does (identified from
+    twelve modes of a glider whose tail is tapered from 1 to 20 in one element).
 
     Parameters
     ----------
@@ -94,7 +102,7 @@ def beam_stiffness(
     """
     n = len(xa)
     L = np.linalg.norm(xb - xa, axis=1)
-    x, w, p = sections.integration()
+    x, w, p = sections.integration(_X3, _W3)
     w = w * L[:, None]
     K = np.zeros((n, 12, 12))
     add_spring(K, 0, _series(w, E[:, None] * p["A"]))

@@ -86,6 +86,10 @@ def line_groups(context: Context, name: str, make: Make) -> list[Group]:
     return [Group(name, ids, element, ends, matrices, sources, source_of)]
 
 
+_OLD_FLAGS = {"0": "GGG", "1": "GGG", "2": "GGG"}
+"""What stood in the place of OFFT before it: X1, X2, X3 are a vector (1) or G0 is a grid (2)."""
+
+
 def line_axes(context: Context, name: str, cards: Sequence[Values], ids: Ints, ends: Ints) -> Lines:
     """Read the geometry of CBAR or CBEAM cards.
 
@@ -110,7 +114,7 @@ def line_axes(context: Context, name: str, cards: Sequence[Values], ids: Ints, e
 
 
 def _offt(context: Context, name: str, card: Values) -> tuple[str, str, str]:
-    offt = str(card.offt)
+    offt = _OLD_FLAGS.get(str(card.offt), str(card.offt))
     if len(offt) != 3 or offt[0] not in "GB" or any(c not in "GOEB" for c in offt[1:]):
         raise context.bulk.place(name, card.eid).error(
             f"OFFT {offt!r} is not one of GGG, BGG, GGO, ..."

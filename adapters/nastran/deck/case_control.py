@@ -28,7 +28,7 @@ class CaseControl:
     spc, mpc, method, nsm, suport1, temperature : int or None
         Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (BOTH) or (MATERIAL).
     k2gg, m2gg, k2pp, m2pp : tuple of (name, factor)
-        Names of DMIG matrices to be added.
+        Names of DMIG matrices; those of the p-set (PP) are for response analyses.
     """
 
     subcase: int = 0

@@ -160,6 +160,12 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     }
     eigen = _eigen(bulk, case)
     warnings = [*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections)]
+    for command, matrices in (("K2PP", case.k2pp), ("M2PP", case.m2pp)):
+        if matrices:
+            names = " + ".join(name for name, _ in matrices)
+            warnings.append(
+                f"{path}: {command} = {names} is for response analyses; normal modes go without it"
+            )
     if eigen is None and case.method is not None:
         warnings.append(
             f"{path}: METHOD = {case.method} selects no EIGRL or EIGR of the deck; how many modes "

@@ -21,9 +21,10 @@ _SYMMETRIC = 6
 
 
 def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Sum the matrices named by K2GG and K2PP, and by M2GG and M2PP, over the g-set.
+    """Sum the matrices named by K2GG, and by M2GG, over the g-set.
 
-    PARAM CK2, CM2 (GG) and CK3, CM3 (PP) scale them; WTMASS does not.
+    PARAM CK2 and CM2 scale them; WTMASS does not. K2PP and M2PP are for response analyses and do
+    not enter normal modes.
 
     Raises
     ------
@@ -34,12 +35,11 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
 
     n = points.n_dof
     totals = []
-    for entries in ({"k2gg": "CK2", "k2pp": "CK3"}, {"m2gg": "CM2", "m2pp": "CM3"}):
+    for names, scale in (("k2gg", "CK2"), ("m2gg", "CM2")):
         total = sp.csr_matrix((n, n))
-        for names, scale in entries.items():
-            for name, factor in getattr(deck.case, names):
-                matrix = _read(deck, points, name, names.upper())
-                total = total + factor * deck.param(scale, 1.0) * matrix
+        for name, factor in getattr(deck.case, names):
+            matrix = _read(deck, points, name, names.upper())
+            total = total + factor * deck.param(scale, 1.0) * matrix
         totals.append(total.tocsr())
     return totals[0], totals[1]
 

@@ -27,3 +27,24 @@ def test_rotor_condensed_to_grids_with_hardly_any_mass(data, number):
     nx = np.hypot(real / (2.0 * np.pi), hz)
     np.testing.assert_allclose(found.frequencies_hz[:6], nx, rtol=5e-4)
     assert found.checks.rayleigh < 1e-6
+
+
+def elastic(path, number):
+    found = solve(build_model(read_deck(path)), number)
+    return found.frequencies_hz[found.rigid_body_modes :]
+
+
+def test_orientation_flag_of_old_in_the_place_of_offt(data):
+    """CBAR ... 1: X1, X2, X3 are a vector, as before there were offsets (MSC 2020)."""
+    msc = [39.96147, 236.4137, 250.4423, 701.4011, 703.4198]
+    found = elastic(data / "nastran/bar_offset_flag/pt145.bdf", 5)
+    np.testing.assert_allclose(found, msc, rtol=1e-6)
+
+
+def test_tapered_beams_beside_a_matrix_of_response_analysis(data):
+    """MSC 2005: K2PP does not enter normal modes; a tail that tapers from 20 to 1 in a beam."""
+    path = data / "nastran/dmig_grid/fmondsp.dat"
+    msc = [5.391272, 6.282554, 12.48913, 13.63147, 13.95180, 19.32352, 20.56834, 28.68447]
+    msc += [35.84441, 35.92411, 42.05270, 56.62616]
+    np.testing.assert_allclose(elastic(path, 18), msc, rtol=1e-6)
+    assert any("K2PP = STIFF" in warning for warning in read_deck(path).warnings)
