@@ -36,7 +36,7 @@ from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness, scored
 from .search.equipment_growth import equipped
-from .search.footprints import footed
+from .search.footprints import footed, settled
 from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
@@ -49,7 +49,7 @@ from .search.model_selection import (
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import by_model_error, polished
+from .search.refit_own_basis import by_model_error, polished, refitted
 from .search.robust_search import robust
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
@@ -152,10 +152,12 @@ def _laid(
     trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
 ) -> tuple[Searcher, Found, Judgement]:
     """Lay the masses of what was accepted on footprints, if that fits better on its own basis."""
-    best = found.levels[verdict.accepted]
-    wide, laid = footed(searcher, trial.request.structure, best)
-    if laid is not best:
+    structure, best = trial.request.structure, found.levels[verdict.accepted]
+    wide, free = footed(searcher, structure, best)
+    if wide is not searcher:
         with suppress(TrueupError):
+            free = refitted(structure, _observation(trial), trial.sensors, wide.problem, free)
+            wide, laid = settled(wide, structure, free)
             laid = _polished(trial, wide, laid)
             if laid.objective < best.objective:
                 levels = list(found.levels)

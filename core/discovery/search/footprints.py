@@ -4,11 +4,12 @@ A mass that sits between grids, or is spread over a hand's breadth, moves as the
 does. Put on the nearest grid it hangs on the skin's own softness there, which moves the higher
 modes too far, so that it is fitted too small and the known parameters make up for the rest. So the
 masses of a hypothesis that earned its place are laid on discs, each grid with its share of the
-area, whose middle and radius are moved as long as the misfit falls.
+area, whose middles and radii are fitted together with all else.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,12 +18,10 @@ from scipy.spatial import Delaunay, QhullError, cKDTree
 from ...arrays import Floats, Ints
 from ..effects import point_mass
 from ..effects.candidates import Candidates, Suspect
-from ..effects.effect_laws import MassLaw
+from ..effects.effect_laws import Law, MassLaw
 from ..effects.structure_points import translations
 from ..likelihood.hypothesis import Fit
-from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure
-from .exact_scan import scan
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -30,88 +29,116 @@ _TURN = np.pi * (3.0 - np.sqrt(5.0))
 """The golden angle: points on a spiral that turn by it fill a disc evenly (Vogel 1979)."""
 
 
-def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
-    """Return a hypothesis with its masses on discs where these fit better, and one who knows them.
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """The grids of a shell around a place, laid flat.
 
-    Every mass has a footprint, so that a disc need not gain more than a point.
+    Parameters
+    ----------
+    grids : (n,) int
+        Rows of the geometry.
+    xyz : (n, 3) float
+    at : (2,) float
+        The place.
+    flat : (n, 2) float
+    mesh : float
+        Side of an element.
     """
-    for step in SEARCH.foot_steps:
-        for q in range(len(state.suspects)):
-            better = _step(searcher, structure, state, q, step)
-            if better is not None:
-                searcher, state = better
-    return searcher, state
+
+    grids: Ints
+    xyz: Floats
+    at: Floats
+    flat: Floats
+    mesh: float
+
+    @cached_property
+    def cells(self) -> Delaunay:
+        """Return the triangles among the grids."""
+        return Delaunay(self.flat)
+
+    def shares(self, theta: Floats) -> Floats:
+        """Return the shares of the grids in a disc, (n,).
+
+        `theta` (3,): its middle from the place, and ln of its radius, in sides of an element.
+        """
+        return shares(self.cells, self.at + self.mesh * theta[:2], self.mesh * np.exp(theta[2]))
 
 
-def _step(
-    searcher: Searcher, structure: Structure, state: Fit, q: int, step: float
-) -> tuple[Searcher, Fit] | None:
-    """Lay one mass on the best disc around its place, None where none fits better."""
-    suspect = state.suspects[q]
-    c = searcher.problem.catalogue[suspect.kind]
-    if c.kind is not point_mass.KIND or c.many(suspect.row) > 1:
-        return None
-    there = c.where[suspect.row]
-    radius = there["radius"] if "shares" in there else None
-    discs = _discs(structure, c.xyz[suspect.row], radius, step)
-    if not discs:
-        return None
-    searcher, kind = _with(searcher, structure, c, discs)
-    others = state.suspects[:q] + state.suspects[q + 1 :]
-    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
-    new = searcher.problem.catalogue[kind]
-    trials = new.around(suspect.theta, np.array(SEARCH.foot_sizes))
-    score = scan(small, here, kind, np.arange(len(new)), trials) + new.surprise(trials)
-    best: Fit | None = None
-    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.foot_tried]:
-        option = Suspect(kind, int(row), tuple(trials[score[row].argmin()]))
-        beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
-        trial = searcher.fitted(state, beside, SEARCH.steps_moved)
-        if trial.objective < state.objective - SEARCH.better:
-            best = trial if best is None or trial.objective < best.objective else best
-    return None if best is None else (searcher, best)
+@dataclass(frozen=True, eq=False)
+class FootLaw(Law):
+    """A mass m = e^θ₀ on a disc, whose middle and radius θ₁ to θ₃ are; see `Surroundings`."""
+
+    around: Surroundings
+    on = "M"
+
+    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
+        """Return the law as it is: for a basis that has the response to each grid."""
+        return self
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return the mass at each grid, in each of three directions."""
+        return np.array([np.repeat(np.exp(t[0]) * self.around.shares(t[1:]), 3) for t in theta])
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return its derivatives, those of the shares by central differences."""
+        h = SEARCH.foot_step * np.eye(theta.shape[1])[1:]
+        moved = [(self.value(theta + d, rows) - self.value(theta - d, rows)) for d in h]
+        return np.stack(
+            [self.value(theta, rows), *(m / (2.0 * SEARCH.foot_step) for m in moved)], 1
+        )
 
 
-Disc = tuple[Floats, float, Ints, Floats]
-"""Middle (3,), radius, grids (rows of the geometry) and their shares."""
+def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with its masses on discs to be fitted, and one who knows them."""
+    suspects = []
+    for s in state.suspects:
+        c = searcher.problem.catalogue[s.kind]
+        alone = c.kind is point_mass.KIND and c.many(s.row) == 1
+        around = surroundings(structure, c.xyz[s.row]) if alone else None
+        if around is not None:
+            s = Suspect(len(searcher.problem.catalogue), 0, (*s.theta, *SEARCH.foot[0]))
+            searcher = _with(searcher, s.kind, _free(structure, c, around))
+        suspects.append(s)
+    return searcher, replace(state, suspects=tuple(suspects))
 
 
-def _discs(structure: Structure, xyz: Floats, radius: float | None, step: float) -> list[Disc]:
-    """Return discs whose middles are up to a `step` of the mesh from a place on shells."""
+def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with its masses on the discs that were fitted, and one who knows them."""
+    suspects = []
+    for s in state.suspects:
+        c = searcher.problem.catalogue[s.kind]
+        if isinstance(c.law, FootLaw):
+            disc = _disc(structure, c, c.law.around, np.array(s.theta[1:]))
+            searcher, s = _with(searcher, s.kind, disc), replace(s, theta=s.theta[:1])
+        suspects.append(s)
+    return searcher, replace(state, suspects=tuple(suspects))
+
+
+def surroundings(structure: Structure, xyz: Floats) -> Surroundings | None:
+    """Return the grids of shells around a place (3,), None where it is on none."""
     g = structure.model.geometry
     shells = [m.corners.ravel() for m in structure.members if m.element.dimension == 2]
     if not shells:
-        return []
+        return None
     grids = np.unique(np.concatenate(shells))
     tree = cKDTree(g.xyz[grids])
     near, _ = tree.query(g.xyz[grids[tree.query(xyz)[1]]], min(SEARCH.foot_near, len(grids)))
     mesh = float(near[-1])
-    if np.linalg.norm(g.xyz[grids] - xyz, axis=1).min() > mesh or mesh == 0.0:
-        return []
+    if mesh == 0.0 or tree.query(xyz)[0] > mesh:
+        return None
     own = grids[tree.query_ball_point(xyz, SEARCH.foot_reach * mesh)]
     middle = g.xyz[own].mean(axis=0)
     _, _, axes = np.linalg.svd(g.xyz[own] - middle, full_matrices=False)
-    flat = (g.xyz[own] - middle) @ axes[:2].T
+    flat, at = (g.xyz[own] - middle) @ axes[:2].T, (xyz - middle) @ axes[:2].T
+    found = Surroundings(own, g.xyz[own], at, flat, mesh)
     try:
-        cells = Delaunay(flat)
+        found.shares(np.zeros(3))
     except (QhullError, ValueError):
-        return []
-    radii = mesh * np.array(SEARCH.foot_radii)
-    if radius is not None:
-        radii = radius * np.exp(step * np.array(SEARCH.foot_changes))
-    at = (xyz - middle) @ axes[:2].T
-    out = []
-    for a, b in step * mesh * np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]):
-        for r in radii.tolist():
-            shares = _shares(cells, at + np.array([a, b]), r)
-            kept = np.flatnonzero(shares > SEARCH.foot_share)
-            if len(kept):
-                shares = shares[kept] / shares[kept].sum()
-                out.append((shares @ g.xyz[own[kept]], r, own[kept], shares))
-    return out
+        return None
+    return found
 
 
-def _shares(cells: Delaunay, middle: Floats, radius: float) -> Floats:
+def shares(cells: Delaunay, middle: Floats, radius: float) -> Floats:
     """Return the shares of the corners of a triangulation in the area of a disc, (n,)."""
     k = np.arange(SEARCH.foot_points) + 0.5
     r, turn = radius * np.sqrt(k / len(k)), k * _TURN
@@ -121,39 +148,65 @@ def _shares(cells: Delaunay, middle: Floats, radius: float) -> Floats:
     T = cells.transform[found]
     two = np.einsum("nij,nj->ni", T[:, :2], points - T[:, 2])
     three = np.concatenate([two, 1.0 - two.sum(axis=1, keepdims=True)], axis=1)
-    shares = np.bincount(
+    each = np.bincount(
         cells.simplices[found].ravel(), np.maximum(three, 0.0).ravel(), len(cells.points)
     )
-    return np.asarray(shares / max(shares.sum(), np.finfo(float).tiny))
+    return np.asarray(each / max(each.sum(), np.finfo(float).tiny))
 
 
-def _with(
-    searcher: Searcher, structure: Structure, c: Candidates, discs: Sequence[Disc]
-) -> tuple[Searcher, int]:
-    """Put masses on discs into the catalogue; their number in it."""
-    ids, most = structure.model.geometry.ids, max(len(d[2]) for d in discs)
-    rows = np.concatenate([i * most + np.arange(len(d[2])) for i, d in enumerate(discs)])
-    shares = np.concatenate([d[3] for d in discs])
-    where = (np.sqrt(shares), (rows, np.concatenate([d[2] for d in discs])))
-    new = Candidates(
+def _free(structure: Structure, c: Candidates, around: Surroundings) -> Candidates:
+    """Return a mass on a disc about a place, its middle and radius to be fitted."""
+    ids, n = structure.model.geometry.ids, len(around.grids)
+    points = sp.csr_matrix((np.ones(n), (np.arange(n), around.grids)), (n, len(ids)))
+    (typical, spread, steps, reach) = map(np.array, SEARCH.foot)
+    return Candidates(
         kind=c.kind,
-        xyz=np.array([d[0] for d in discs]),
+        xyz=around.xyz.mean(axis=0)[None],
+        law=FootLaw(around),
+        trials=c.trials,
+        root=translations(structure, points),
+        rows_each=3 * n,
+        where=({"grids": ids[around.grids].tolist()},),
+        typical=np.append(c.typical, typical),
+        spread=np.append(c.spread, spread),
+        steps=np.append(1.0, steps),
+        lower=np.append(-np.inf, typical - reach),
+        upper=np.append(np.inf, typical + reach),
+    )
+
+
+def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floats) -> Candidates:
+    """Return a mass on a disc that stays."""
+    share = around.shares(theta)
+    kept = np.flatnonzero(share > SEARCH.foot_share)
+    own, share = around.grids[kept], share[kept] / share[kept].sum()
+    ids, n = structure.model.geometry.ids, len(kept)
+    points = sp.csr_matrix((np.sqrt(share), (np.arange(n), own)), (n, len(ids)))
+    radius = around.mesh * float(np.exp(theta[2]))
+    return Candidates(
+        kind=c.kind,
+        xyz=(share @ around.xyz[kept])[None],
         law=MassLaw(),
         trials=c.trials,
-        root=translations(structure, sp.csr_matrix(where, (len(discs) * most, len(ids)))),
-        rows_each=3 * most,
-        where=tuple(
-            {"grids": ids[d[2]].tolist(), "shares": d[3].tolist(), "radius": d[1]} for d in discs
-        ),
-        typical=c.typical,
-        spread=c.spread,
+        root=translations(structure, points),
+        rows_each=3 * n,
+        where=({"grids": ids[own].tolist(), "shares": share.tolist(), "radius": radius},),
+        typical=c.typical[:1],
+        spread=c.spread[:1],
     )
+
+
+def _with(searcher: Searcher, kind: int, new: Candidates) -> Searcher:
+    """Put candidates into the catalogue, as one of its numbers."""
     p = searcher.problem
+
+    def put(old: tuple[Any, ...], one: object) -> tuple[Any, ...]:
+        return (*old[:kind], one, *old[kind + 1 :])
+
     problem = replace(
         p,
-        catalogue=(*p.catalogue, new),
-        factors=(*p.factors, new.factors(p.basis)),
-        missing=(*p.missing, None) if p.missing else (),
+        catalogue=put(tuple(p.catalogue), new),
+        factors=put(p.factors, new.factors(p.basis)),
+        missing=put(p.missing, None) if p.missing else (),
     )
-    coarse = (*searcher.coarse, np.zeros(0, np.int64))
-    return replace(searcher, problem=problem, coarse=coarse), len(p.catalogue)
+    return replace(searcher, problem=problem, coarse=put(searcher.coarse, np.zeros(0, np.int64)))

@@ -38,13 +38,26 @@ def polished(
     evidence; the laws of the problem's catalogue are not yet fitted to any basis.
     """
     own, basis, start = _own_problem(structure, observation, seen, problem, state)
-    active = tuple(range(len(state.nuisance)))
-    new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
+    new = _refitted(own, state, start)
     return replace(
         on_whole_test(own, new),
         suspects=_back(state, new),
         in_deck=_in_deck(replace(own, basis=basis), new),
     )
+
+
+def refitted(
+    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
+) -> Fit:
+    """Return the fit as `polished` does, but for what a deck would hold of it."""
+    own, _, start = _own_problem(structure, observation, seen, problem, state)
+    new = _refitted(own, state, start)
+    return replace(new, suspects=_back(state, new))
+
+
+def _refitted(own: Problem, state: Fit, start: Sequence[Suspect]) -> Fit:
+    active = tuple(range(len(state.nuisance)))
+    return fit(own, state.nuisance, start, active, SEARCH.steps_polished)
 
 
 def by_model_error(

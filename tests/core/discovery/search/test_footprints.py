@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from trueup.core.discovery.search.footprints import _discs, _shares
+from trueup.core.discovery.search.footprints import FootLaw, shares, surroundings
 
 GRID = np.array([(i, j) for i in range(9) for j in range(9)], dtype=float)
 
@@ -14,17 +14,17 @@ GRID = np.array([(i, j) for i in range(9) for j in range(9)], dtype=float)
 @pytest.mark.parametrize("middle", [(4.0, 4.0), (4.3, 3.6), (4.5, 4.5)])
 @pytest.mark.parametrize("radius", [0.2, 0.7, 1.5])
 def test_shares_balance_at_the_middle_and_spread_as_the_disc_does(middle, radius):
-    shares = _shares(Delaunay(GRID), np.array(middle), radius)
-    assert shares.sum() == pytest.approx(1.0)
-    assert shares @ GRID == pytest.approx(middle, abs=0.03)
-    spread = shares @ np.sum((GRID - middle) ** 2, axis=1)
+    own = shares(Delaunay(GRID), np.array(middle), radius)
+    assert own.sum() == pytest.approx(1.0)
+    assert own @ GRID == pytest.approx(middle, abs=0.03)
+    spread = own @ np.sum((GRID - middle) ** 2, axis=1)
     assert 0.45 * radius**2 < spread < 0.5 * radius**2 + 0.6
 
 
 def test_a_disc_over_the_edge_weighs_on_what_is_there():
-    shares = _shares(Delaunay(GRID), np.array([0.0, 4.0]), 1.0)
-    assert shares.sum() == pytest.approx(1.0)
-    assert (shares @ GRID)[0] > 0.2
+    own = shares(Delaunay(GRID), np.array([0.0, 4.0]), 1.0)
+    assert own.sum() == pytest.approx(1.0)
+    assert (own @ GRID)[0] > 0.2
 
 
 def structure(dimension):
@@ -35,14 +35,26 @@ def structure(dimension):
     return SimpleNamespace(model=SimpleNamespace(geometry=geometry), members=[member])
 
 
-def test_discs_lie_about_a_place_on_shells_and_nowhere_else():
+def test_places_on_shells_have_surroundings_and_others_none():
     place = np.array([4.2, 4.0, 0.0])
-    discs = _discs(structure(2), place, 0.5, 0.25)
-    assert len(discs) == 27
-    for middle, radius, grids, shares in discs:
-        assert np.linalg.norm(middle - place) < 0.45
-        assert 0.5 * np.exp(-0.25) <= radius <= 0.5 * np.exp(0.25)
-        assert shares.sum() == pytest.approx(1.0)
-        assert len(grids) == len(shares)
-    assert _discs(structure(1), place, None, 0.5) == []
-    assert _discs(structure(2), place + np.array([0.0, 0.0, 9.0]), None, 0.5) == []
+    around = surroundings(structure(2), place)
+    assert around.mesh == pytest.approx(1.0)
+    own = around.shares(np.array([0.5, 0.0, 0.0]))
+    assert own.sum() == pytest.approx(1.0)
+    assert np.linalg.norm(own @ around.xyz - place) == pytest.approx(0.5, abs=0.05)
+    assert surroundings(structure(1), place) is None
+    assert surroundings(structure(2), place + np.array([0.0, 0.0, 9.0])) is None
+
+
+@pytest.mark.parametrize("theta", [(-1.0, 0.0, 0.0, -0.4), (0.5, 0.3, -0.6, 0.2)])
+def test_a_mass_keeps_its_size_as_its_disc_moves_and_grows(theta):
+    around = surroundings(structure(2), np.array([4.2, 4.0, 0.0]))
+    theta, rows = np.array([theta]), np.zeros(1, int)
+    law = FootLaw(around)
+    value, slope = law.value(theta, rows)[0], law.slope(theta, rows)[0]
+    assert value.reshape(-1, 3).sum(axis=0) == pytest.approx(np.exp(theta[0, 0]))
+    assert slope[0] == pytest.approx(value)
+    assert slope[1:].sum(axis=1) == pytest.approx(0.0, abs=1e-9)
+    moved = slope[1:, ::3] @ around.flat / np.exp(theta[0, 0])
+    assert moved[:2] == pytest.approx(np.eye(2), abs=0.1)
+    assert moved[2] == pytest.approx(0.0, abs=0.1)
