@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,6 +46,16 @@ class Frfs(Noun):
         shape = (len(self.responses), len(self.references), len(self.frequencies_hz))
         hold(self, "values", np.complex128, shape, "frequency responses")
         require_finite(self.frequencies_hz, "the frequency axis")
+
+    @property
+    def as_acceleration(self) -> Frfs:
+        """The same functions as accelerations per unit force."""
+        order = len(QUANTITIES) - 1 - QUANTITIES.index(self.quantity)
+        if not order:
+            return self
+        with np.errstate(over="ignore", invalid="ignore"):
+            values = self.values * (2j * np.pi * self.frequencies_hz) ** order
+        return replace(self, values=values, quantity=QUANTITIES[-1])
 
     def at(self, rows: Ints, columns: Ints | None = None) -> Frfs:
         """Return the functions of some responses, and of some references."""

@@ -21,7 +21,7 @@ from .rejected import rejected
 from .remarks import of_leakage, of_modes, of_window, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .survey.driving_points import driving_points, scale
-from .survey.modal_synthesis import modal_response
+from .survey.modal_synthesis import derivative_order, modal_response
 from .survey.mode_indicator import cmif
 from .survey.references import checked_references
 from .survey.survey_data import Survey
@@ -108,20 +108,24 @@ def assemble(
 
 
 def _cmif(survey: Survey) -> Indicator:
-    weight = survey.output_weight[:, None, None] * survey.input_weight[None, :, None]
-    return Indicator(survey.frequencies_hz, cmif(survey.values / weight))
+    return Indicator(survey.frequencies_hz, cmif(_as_given(survey)))
+
+
+def _as_given(survey: Survey) -> Numbers:
+    """Values of the quantity and in the units of the file."""
+    order = derivative_order(survey.quantity) - derivative_order("acceleration")
+    return np.asarray(survey.physical * (2j * np.pi * survey.frequencies_hz) ** order)
 
 
 def _measured(survey: Survey) -> Frfs:
-    values = np.where(survey.measured[:, :, None], survey.values, np.nan)
-    values /= survey.output_weight[:, None, None] * survey.input_weight[None, :, None]
+    values = np.where(survey.measured[:, :, None], _as_given(survey), np.nan)
     places = survey.frequencies_hz, survey.outputs, survey.inputs
     return Frfs(*places, values, survey.quantity, survey.source)
 
 
 def _indicator_at(survey: Survey, hz: Floats) -> Floats:
     """Multivariate mode indicator at the modes, 1 at a normal mode well excited."""
-    mif = multivariate_indicator(survey.values, survey.order)
+    mif = multivariate_indicator(survey.values)
     near = [int(np.argmin(np.abs(survey.frequencies_hz - x))) for x in hz]
     return 1.0 - np.array([mif[max(k - 2, 0) : k + 3].min() for k in near])
 
@@ -137,17 +141,17 @@ def _backgrounds(
         lines = survey.lines(b.band.first, b.band.last)
         f = survey.frequencies_hz[lines]
         measured = survey.values[:, :, lines]
-        modal = modal_response(f, t.poles, t.shapes, t.participation, survey.quantity)
+        modal = modal_response(f, t.poles, t.shapes, t.participation)
         aside = b.background
         roots = b.fit.poles[aside], b.fit.shapes[:, aside], b.fit.participation[:, aside]
         left = measured - modal
         if aside.any():
-            left = left - modal_response(f, *roots, survey.quantity)
-        terms = residual_terms(f, survey.quantity)
+            left = left - modal_response(f, *roots)
+        terms = residual_terms(f)
         size = np.linalg.norm(terms, axis=1)
         residuals = left @ np.linalg.pinv(terms / size[:, None]) / size
         weighted = Background(b.band, residuals.transpose(2, 0, 1), *roots)
-        synthesised = modal + background_response(f, weighted, survey.quantity)
+        synthesised = modal + background_response(f, weighted)
         for k in np.flatnonzero((hz >= b.band.low) & (hz <= b.band.high)):
             least = IDENTIFICATION.near_lines * float(np.median(np.diff(f)))
             half = max(2.0 * abs(t.poles[k].real) / np.pi, least)

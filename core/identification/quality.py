@@ -44,14 +44,13 @@ def phase_deviation(shapes: Numbers) -> Floats:
     return np.asarray(np.degrees((size * angle).sum(axis=0) / np.maximum(size.sum(axis=0), 1e-300)))
 
 
-def multivariate_indicator(values: Numbers, order: int) -> Floats:
+def multivariate_indicator(values: Numbers) -> Floats:
     """Multivariate mode indicator function; it dips towards 0 at a normal mode.
 
     Parameters
     ----------
     values : (n_output, n_input, n_line) complex
-    order : int
-        0, 1, 2 for displacement, velocity, acceleration.
+        Accelerations.
 
     Returns
     -------
@@ -64,9 +63,8 @@ def multivariate_indicator(values: Numbers, order: int) -> Floats:
     IMAC III.
     """
     lines = values.transpose(2, 0, 1)
-    phase, quadrature = (lines.imag, lines.real) if order == 1 else (lines.real, lines.imag)
-    a = phase.transpose(0, 2, 1) @ phase
-    b = a + quadrature.transpose(0, 2, 1) @ quadrature
+    a = lines.real.transpose(0, 2, 1) @ lines.real
+    b = a + lines.imag.transpose(0, 2, 1) @ lines.imag
     value, vector = np.linalg.eigh(b)
     excited = value > IDENTIFICATION.excited * value[:, -1:]
     root = np.where(excited, 1.0 / np.sqrt(np.where(excited, value, 1.0)), 0.0)

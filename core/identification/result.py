@@ -16,7 +16,7 @@ from .poles.pole_stabilisation import Chart
 from .quality import correlation
 from .rejected import Rejected
 from .survey.faults import Fault
-from .survey.modal_synthesis import modal_response
+from .survey.modal_synthesis import derivative_order, modal_response
 from .survey.mode_indicator import Band
 from .survey.references import DrivingPoint, Reciprocity
 from .survey.survey_numbers import SURVEY
@@ -106,9 +106,9 @@ class Identification(Noun):
         Stabilisation diagram.
     cmif : Indicator
     measured : Frfs
-        The functions fitted, responses where the shapes are given, wrong signs mended.
+        The functions, responses where the shapes are given, wrong signs mended.
     quantity : str
-        Of the functions fitted.
+        Of the functions as given; fitted as accelerations.
     window_decay : float
         What an exponential window added to the decay rates of the functions, taken out of the
         modes [1/s].
@@ -180,19 +180,20 @@ class Identification(Noun):
     def frac(self) -> Floats:
         """Frequency response assurance of each function, (n_dof, n_reference); NaN unmeasured.
 
-        |Σ H* Ĥ|² / (Σ|H|² Σ|Ĥ|²) of measured and synthesised values over the lines fitted.
+        |Σ H* Ĥ|² / (Σ|H|² Σ|Ĥ|²) of measured and synthesised accelerations over the lines fitted.
 
         References
         ----------
         Heylen, Lammens (1996), FRAC: a consistent way of comparing frequency response functions,
         Proceedings of the Conference on Identification in Engineering Systems, Swansea.
         """
-        pairs = zip(self.measured.values, self.synthesised().values, strict=True)
+        own, made = self.measured.as_acceleration, self.synthesised().as_acceleration
+        pairs = zip(own.values, made.values, strict=True)
         return np.array(
             [
                 [
-                    np.nan if np.isnan(h[0]) else correlation(h, own)
-                    for h, own in zip(*row, strict=True)
+                    np.nan if np.isnan(h[0]) else correlation(h, fit)
+                    for h, fit in zip(*row, strict=True)
                 ]
                 for row in pairs
             ]
@@ -218,7 +219,7 @@ def synthesise(
     return values
 
 
-def background_response(f: Floats, b: Background, quantity: str) -> Numbers:
+def background_response(f: Floats, b: Background, quantity: str = "acceleration") -> Numbers:
     """Functions of the residual terms and background roots of a band."""
     terms = residual_terms(f, quantity)
     values = np.tensordot(b.residuals.transpose(1, 2, 0), terms, axes=1)
@@ -227,8 +228,8 @@ def background_response(f: Floats, b: Background, quantity: str) -> Numbers:
     return np.asarray(values)
 
 
-def residual_terms(f: Floats, quantity: str) -> Numbers:
+def residual_terms(f: Floats, quantity: str = "acceleration") -> Numbers:
     """Lines of the four residual terms, (4, n_line) complex."""
     s = 2j * np.pi * np.asarray(f, dtype=float)
-    d = ("displacement", "velocity", "acceleration").index(quantity)
+    d = derivative_order(quantity)
     return np.stack([s ** (d - 4), s ** (d - 2), s**d, s ** (d + 2)])

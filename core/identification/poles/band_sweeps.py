@@ -159,10 +159,8 @@ def _data(survey: Survey, band: Band, far: Roots, error: float) -> tuple[Floats,
     f = survey.frequencies_hz[lines]
     values = survey.values[:, :, lines]
     if len(far.poles):
-        values = values - modal_response(
-            f, far.poles, far.shapes, far.participation, survey.quantity
-        )
-    return f, band_data(f, values, survey.measured, survey.order, error)
+        values = values - modal_response(f, far.poles, far.shapes, far.participation)
+    return f, band_data(f, values, survey.measured, error)
 
 
 def _roots(fit: Fit) -> Roots:

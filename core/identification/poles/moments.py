@@ -1,7 +1,7 @@
 """Inner products that a fit of poles, participation and shapes is made of.
 
 A function of output o and input i is modelled as Σ_k Re(ψ_ok l_ik) F1_k + Im(ψ_ok l_ik) F2_k in
-the span of F1 = c + c̄, F2 = j(c − c̄) with c = (jω)^d/(jω − λ), c̄ = (jω)^d/(jω − λ*); F3, F4
+the span of F1 = c + c̄, F2 = j(c − c̄) with c = (jω)²/(jω − λ), c̄ = (jω)²/(jω − λ*); F3, F4
 are the same with the derivative by λ. Real and imaginary parts of the lines are stacked, and
 the residual terms of modes above and below are projected out. Every product needed then follows
 from F'F and F'Y; the number of lines is met only once per step.
@@ -43,8 +43,6 @@ class BandData:
     ----------
     s : (n_line,) complex
         jω.
-    derivative : (n_line,) complex
-        (jω)^d.
     residual_terms : (2 n_line, 8) float
         Orthonormal basis of the lower and upper residuals, complex coefficients.
     y : (n_output, n_input, 2 n_line) float
@@ -57,7 +55,6 @@ class BandData:
     """
 
     s: Numbers
-    derivative: Numbers
     residual_terms: Floats
     y: Floats
     weight: Floats
@@ -77,25 +74,24 @@ class BandData:
 
 
 def band_data(
-    frequencies_hz: Floats, values: Numbers, measured: Numbers, order: int, error: float = 0.0
+    frequencies_hz: Floats, values: Numbers, measured: Numbers, error: float = 0.0
 ) -> BandData:
     """Prepare the functions of a band for fitting.
 
-    The modes below and above act in the band as (jω)^d [LR₂/(jω)⁴ + LR/(jω)² + UR + UR₂ (jω)²]:
+    The modes below and above act in the band as (jω)² [LR₂/(jω)⁴ + LR/(jω)² + UR + UR₂ (jω)²]:
     their mass and stiffness lines and one further term of the expansion of each.
 
     Parameters
     ----------
     frequencies_hz : (n_line,) float
     values : (n_output, n_input, n_line) complex
+        Accelerations.
     measured : (n_output, n_input) bool
-    order : int
-        How often displacement is differentiated (0, 1, 2).
     error : float
         See `BandData`.
     """
     s = 2j * np.pi * frequencies_hz
-    return _projected(s, s**order, stacked(values), measured.astype(float), error)
+    return _projected(s, stacked(values), measured.astype(float), error)
 
 
 def excerpt(data: BandData, lines: slice, functions: Floats) -> BandData:
@@ -111,19 +107,17 @@ def excerpt(data: BandData, lines: slice, functions: Floats) -> BandData:
     n_line = len(data.s)
     halves = functions.reshape(*functions.shape[:2], 2, n_line)[..., lines]
     y = np.array(halves.reshape(*functions.shape[:2], -1))
-    return _projected(data.s[lines], data.derivative[lines], y, data.weight, data.error)
+    return _projected(data.s[lines], y, data.weight, data.error)
 
 
-def _projected(
-    s: Numbers, derivative: Numbers, y: Floats, weight: Floats, error: float
-) -> BandData:
+def _projected(s: Numbers, y: Floats, weight: Floats, error: float) -> BandData:
     powers = np.array([-4, -2, 0, 2])[:, None]
-    lines = derivative * (s / np.mean(np.abs(s))) ** powers
+    lines = s**2 * (s / np.mean(np.abs(s))) ** powers
     terms = stacked(np.concatenate([lines, 1j * lines])).T
     Q, _ = np.linalg.qr(terms / np.linalg.norm(terms, axis=0))
     y -= onto(onto(y, Q), Q.T)
     y[weight == 0.0] = 0.0
-    return BandData(s, derivative, np.ascontiguousarray(Q), y, weight, error)
+    return BandData(s, np.ascontiguousarray(Q), y, weight, error)
 
 
 def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:
@@ -136,7 +130,7 @@ def basis(data: BandData, poles: Numbers, derivative: bool = True) -> Floats:
     n, count = len(data.s), 1 + derivative
     rows = np.empty((count, len(poles), 2, 2 * n))
     for k in range(count):
-        c, conjugate = data.derivative * near ** (k + 1), data.derivative * far ** (k + 1)
+        c, conjugate = data.s**2 * near ** (k + 1), data.s**2 * far ** (k + 1)
         both, apart = c + conjugate, c - conjugate
         rows[k, :, 0, :n], rows[k, :, 0, n:] = both.real, both.imag
         rows[k, :, 1, :n], rows[k, :, 1, n:] = -apart.imag, apart.real

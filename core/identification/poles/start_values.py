@@ -35,7 +35,7 @@ def complete_participation(data: BandData, poles: Numbers, part: Numbers) -> Num
     for i in range(n_input):
         rows = data.weight[:, i] > 0.0
         one = BandData(
-            data.s, data.derivative, data.residual_terms, data.y[rows, i : i + 1],
+            data.s, data.residual_terms, data.y[rows, i : i + 1],
             data.weight[rows, i : i + 1],
         )  # fmt: skip
         residues[rows, i] = fit_shapes(one, poles, np.ones((1, len(poles)), complex)).shapes

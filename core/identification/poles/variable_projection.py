@@ -61,7 +61,7 @@ def refine(
 ) -> Fit:
     """Minimise the output error over poles and participation, the shapes being projected out.
 
-    min over λ, l of Σ_oi ‖H_oi − (jω)^d [Σ_k ψ_ok l_ik/(jω−λ_k) + conj. + LR_oi/(jω)² + UR_oi]‖²
+    min over λ, l of Σ_oi ‖H_oi − (jω)² [Σ_k ψ_ok l_ik/(jω−λ_k) + conj. + LR_oi/(jω)² + UR_oi]‖²
     with ψ, LR, UR at their least-squares values for every λ, l. Gauss-Newton with the exact
     reduced (Schur complement) normal matrix and Levenberg-Marquardt damping; derivatives are
     analytic.

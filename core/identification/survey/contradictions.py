@@ -150,7 +150,7 @@ def _believed(
     changed = [c.of(survey.values[o], survey.input_weight) for c in rivals]
     driven = np.flatnonzero(np.isfinite(points).all(axis=1) & (points[:, o] != 0.0))
     for i in driven:
-        share = [positive_share(np.sign(points[i, o]) * x[i], survey.order) for x in changed]
+        share = [positive_share(np.sign(points[i, o]) * x[i]) for x in changed]
         sound = [c for c, s in zip(rivals, share, strict=True) if s > SURVEY.gives]
         if 0 < len(sound) < len(rivals):
             return sound

@@ -72,32 +72,30 @@ def _points(dofs: Dofs, geometry: Geometry | None) -> Ints:
     return number
 
 
-def positive_share(function: Numbers, order: int) -> float:
+def positive_share(function: Numbers) -> float:
     """Return the share of power that a driving point takes, less what it gives back, -1..1.
 
-    A structure at rest takes power from a force at every line: the mobility of a driving point has
-    a positive real part. Lines count by the square of the function.
+    A structure at rest takes power from a force at every line: the acceleration of a driving point
+    has a positive imaginary part. Lines count by the square of the function.
 
     Parameters
     ----------
     function : (n_line,) complex
-    order : int
-        0, 1, 2 for displacement, velocity, acceleration.
+        Acceleration.
     """
-    taken = (function * 1j ** (1 - order)).real * np.abs(function)
+    taken = function.imag * np.abs(function)
     return float(np.sum(taken) / max(float(np.sum(np.abs(taken))), 1e-300))
 
 
-def resonates(function: Numbers, order: int) -> bool:
+def resonates(function: Numbers) -> bool:
     """Say whether power flows at a driving point at all: off resonance noise alone has a share.
 
     Parameters
     ----------
     function : (n_line,) complex
-    order : int
-        0, 1, 2 for displacement, velocity, acceleration.
+        Acceleration.
     """
-    flows = np.abs((function * 1j ** (1 - order)).real) @ np.abs(function)
+    flows = np.abs(function.imag) @ np.abs(function)
     return bool(flows > SURVEY.flows * np.linalg.norm(function) ** 2)
 
 

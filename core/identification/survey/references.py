@@ -83,11 +83,7 @@ def references_mended(survey: Survey, points: Floats, neighbours: Neighbours | N
         survey = _exchanged(survey, a, b)
         survey = told(survey, Fault("swapped_references", names, sentence, "exchanged"))
     functions = _between(survey, points)
-    share = {
-        i: positive_share(f, survey.order)
-        for (i, j), f in functions.items()
-        if i == j and resonates(f, survey.order)
-    }
+    share = {i: positive_share(f) for (i, j), f in functions.items() if i == j and resonates(f)}
     for i in (i for i, s in share.items() if s <= SURVEY.gives):
         if share[i] > SURVEY.takes:
             survey = told(survey, _no_driving_point(survey, i, points))
@@ -157,7 +153,7 @@ def _correlation(there: Numbers, back: Numbers) -> float:
 def _disagreement(survey: Survey, points: Floats) -> float:
     """Mean failure of driving points and reciprocity, 0 (they hold) to 1 (they are reversed)."""
     functions = _between(survey, points)
-    share = [positive_share(f, survey.order) for (i, j), f in functions.items() if i == j]
+    share = [positive_share(f) for (i, j), f in functions.items() if i == j]
     pairs = [(i, j) for i, j in functions if i < j and (j, i) in functions]
     share += [_correlation(functions[i, j], functions[j, i]) for i, j in pairs]
     return float(np.mean((1.0 - np.array(share)) / 2.0)) if share else 0.0
@@ -200,7 +196,7 @@ def checked_references(
             size = float(np.sum(np.abs(turned)))
             off = np.abs(np.angle(turned, deg=True))
             phase = float(np.sum(off * np.abs(turned)) / size) if size > 0.0 else np.nan
-            share = positive_share(function, survey.order)
+            share = positive_share(function)
             driving.append(DrivingPoint(driving_name(survey, i, points), share, phase))
         elif i < j and (j, i) in functions:
             there, back = residues(i, j), residues(j, i)

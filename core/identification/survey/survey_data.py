@@ -37,6 +37,7 @@ class Survey:
     roving_hammer : bool
         Whether outputs and inputs are exchanged.
     quantity : str
+        Of the functions as given; `values` are accelerations whatever it is.
     source : str
     faults : tuple of Fault
         What is wrong with which functions.
@@ -72,11 +73,6 @@ class Survey:
             self.values / self.output_weight[:, None, None] / self.input_weight[None, :, None]
         )
 
-    @property
-    def order(self) -> int:
-        """How often displacement is differentiated to give the quantity."""
-        return derivative_order(self.quantity)
-
     def lines(self, low: float, high: float) -> slice:
         """Lines from `low` to `high` [Hz], both included."""
         first, last = np.searchsorted(self.frequencies_hz, [low, np.nextafter(high, np.inf)])
@@ -108,6 +104,8 @@ def left_out(survey: Survey, functions: Bools) -> Survey:
 def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)) -> Survey:
     """Check, clean, weight and orient frequency responses, their lines in some ranges [Hz].
 
+    Whatever the quantity, they are fitted as accelerations, which accelerometers measure with noise
+    alike at all lines: one and the same test has one answer.
     Functions that are no frequency responses (constant, real, with gaps) are left out and named
     in the warnings.
 
@@ -118,7 +116,8 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     """
     name = frfs.source or "the frequency responses"
     said = Said(name, frfs.responses, frfs.references)
-    derivative_order(frfs.quantity)
+    derivative_order(quantity := frfs.quantity)
+    frfs = frfs.as_acceleration
     f, keep, ranges = _axis(frfs, ranges, name)
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
@@ -163,7 +162,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     values *= input_weight[None, :, None]
     return Survey(
         f, values, measured, output_weight, input_weight, responses, references, roving,
-        frfs.quantity, frfs.source, tuple(said.faults), tuple(said.warnings), ranges,
+        quantity, frfs.source, tuple(said.faults), tuple(said.warnings), ranges,
     )  # fmt: skip
 
 

@@ -45,6 +45,35 @@ def test_any_quantity_gives_the_same_modes_and_masses(survey, quantity):
     assert np.abs(result.real_modes.shapes).max(axis=0) == pytest.approx(np.ones(6))
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_kind_of_motion_changes_nothing(survey, order):
+    """One test, written as accelerances, mobilities (order 1) or receptances (order 2)."""
+    frfs, _ = survey(11, n_mode=6, n_response=20, n_line=1000, band=(5.0, 100.0), noise=0.05)
+    known = identify(frfs)
+    again = replace(
+        frfs,
+        values=frfs.values / (2j * np.pi * frfs.frequencies_hz) ** order,
+        quantity=["velocity", "displacement"][order - 1],
+    )
+    found = identify(again)
+    same = {"rel": 1e-6, "abs": 1e-9}
+    assert found.modes.frequencies_hz == pytest.approx(known.modes.frequencies_hz, **same)
+    assert found.modes.damping == pytest.approx(known.modes.damping, **same)
+    assert found.real_modes.generalized_mass == pytest.approx(
+        known.real_modes.generalized_mass, **same
+    )
+    for name in ("frequency_std", "shape_std", "mode_indicator", "quality", "frac"):
+        assert getattr(found, name) == pytest.approx(getattr(known, name), **same)
+    assert found.remarks == known.remarks
+    assert found.warnings == known.warnings
+    shares = [[d.positive_share for d in one.driving_points] for one in (found, known)]
+    assert shares[0] == pytest.approx(shares[1], **same)
+    assert found.synthesised().quantity == found.measured.quantity == again.quantity
+    assert found.measured.values == pytest.approx(again.values, **same)
+    size = np.abs(again.values).max()
+    assert np.abs(found.synthesised().values - again.values).max() < 0.2 * size
+
+
 @pytest.mark.parametrize(
     "options",
     [

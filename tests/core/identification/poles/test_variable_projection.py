@@ -28,7 +28,7 @@ def problem(survey):
     )
     measured = np.random.default_rng(0).uniform(size=(9, 3)) < 0.7
     measured[:, 0] = True
-    data = band_data(frfs.frequencies_hz, np.array(frfs.values), measured, 2)
+    data = band_data(frfs.frequencies_hz, np.array(frfs.values), measured)
     return data, poles_from(truth.frequencies_hz, truth.damping), truth.shapes[[0, 4, 8]]
 
 
@@ -97,7 +97,7 @@ def test_refinement_takes_the_bias_out_of_the_linear_estimate(survey):
     frfs, truth = survey(
         5, frequencies=[50.0], damping=(0.01, 0.01), noise=0.3, band=(40, 60), outside=False
     )
-    data = band_data(frfs.frequencies_hz, np.array(frfs.values), np.ones((40, 2), bool), 2)
+    data = band_data(frfs.frequencies_hz, np.array(frfs.values), np.ones((40, 2), bool))
     exact = poles_from(truth.frequencies_hz, truth.damping)[0]
     (linear,) = poles_by_order(frfs.frequencies_hz, frfs.values, [4])
     best = int(np.argmin(np.abs(linear.values - exact)))

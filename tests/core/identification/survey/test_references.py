@@ -60,7 +60,7 @@ def test_a_driving_point_alone_is_reversed_where_its_point_is_reciprocal_with_an
 def test_a_driving_point_that_is_none_is_named(survey):
     frfs, _ = survey(7, n_mode=6, n_reference=1)
     values = np.array(frfs.values)
-    share = [positive_share(h[0], 2) for h in values]
+    share = [positive_share(h[0]) for h in values]
     other = int(np.argmin(np.abs(share)))
     values[[0, other]] = values[[other, 0]]
     (fault,) = checked(prepare(replace(frfs, values=values))).faults

@@ -35,7 +35,7 @@ def normalised_errors(survey, runs, kind, smooth=False, n_line=600):
         if smooth:
             e = (np.roll(e, 1, 2) + np.roll(e, -1, 2) + 2 * e) / np.sqrt(6)
         size = np.abs(H) if kind == "multiplicative" else np.sqrt(np.mean(np.abs(H) ** 2))
-        data = band_data(clean.frequencies_hz, H + 0.02 * size * e, measured, 2)
+        data = band_data(clean.frequencies_hz, H + 0.02 * size * e, measured)
         fit = refine(data, start, part)
         found = errors(data, fit)
         f_std, z_std = frequency_and_damping_errors(fit.poles, found.poles)
@@ -69,7 +69,7 @@ def test_errors_grow_with_the_noise(survey):
     stds = []
     for noise in (0.01, 0.04):
         frfs, truth = survey(2, frequencies=[50.0], noise=noise, n_response=10, n_line=400)
-        data = band_data(frfs.frequencies_hz, np.array(frfs.values), np.ones((10, 2), bool), 2)
+        data = band_data(frfs.frequencies_hz, np.array(frfs.values), np.ones((10, 2), bool))
         fit = refine(data, poles_from(truth.frequencies_hz, truth.damping), truth.shapes[[0, 9]])
         stds.append(frequency_and_damping_errors(fit.poles, errors(data, fit).poles)[0][0])
     assert stds[1] == pytest.approx(4 * stds[0], rel=0.2)
@@ -83,7 +83,7 @@ def test_references_that_disagree_widen_the_errors(survey):
     values[:, 1] = shifted.values[:, 1]
     stds = []
     for v in (np.array(frfs.values), values):
-        data = band_data(frfs.frequencies_hz, v, np.ones((10, 2), bool), 2)
+        data = band_data(frfs.frequencies_hz, v, np.ones((10, 2), bool))
         fit = refine(data, poles_from(truth.frequencies_hz, truth.damping), truth.shapes[[0, 9]])
         stds.append(frequency_and_damping_errors(fit.poles, errors(data, fit).poles)[0][0])
     assert stds[1] > 10 * stds[0]
