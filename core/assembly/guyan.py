@@ -7,8 +7,11 @@ from scipy.sparse import linalg as spla
 from ..arrays import Floats, Ints
 from ..errors import InputError
 
+_ROUNDING = 1e-14
+"""Force beside the sum of what it is the difference of."""
 
-def static_condensation(K: sp.csr_matrix, kept: Ints) -> Floats:
+
+def static_condensation(K: sp.csr_matrix, kept: Ints, rigid: Floats) -> Floats:
     """Displacements of all degrees of freedom from the kept ones, without loads on the others.
 
     Guyan (1965), *Reduction of stiffness and mass matrices*, AIAA Journal 3(2), 380.
@@ -19,6 +22,8 @@ def static_condensation(K: sp.csr_matrix, kept: Ints) -> Floats:
         Symmetric stiffness.
     kept : (m,) int
         Degrees of freedom that stay.
+    rigid : (n, k) float
+        Motions that cost no strain energy: they are followed to the last digit.
 
     Returns
     -------
@@ -51,4 +56,34 @@ def static_condensation(K: sp.csr_matrix, kept: Ints) -> Floats:
             "keep more of them"
         ) from None
     T[others] = -scale[:, None] * factor.solve(scale[:, None] * rows[:, kept].toarray())
+    if rigid.shape[1]:
+        T[others] += (rigid - T @ rigid[kept])[others] @ np.linalg.pinv(rigid[kept])
     return T
+
+
+def without_strain(K: sp.csr_matrix, motions: Floats) -> Floats:
+    """Those of some motions (n, k) whose forces K x are rounding."""
+    size = abs(K) @ np.abs(motions)
+    free = (np.abs(K @ motions) <= _ROUNDING * size).all(axis=0) & motions.any(axis=0)
+    return np.asarray(motions[:, free])
+
+
+def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
+    """T^T A T, exactly symmetric and without what is rounding of the sums that make it.
+
+    The stiffness of a few points of a soft structure is a small difference of large numbers; what
+    is left of these would resist rigid motions (m, k) a little, or less than not at all. Where A
+    is a stiffness that leaves these free, so does what is returned.
+    """
+    found, size = T.T @ (A @ T), np.abs(T.T) @ (abs(A) @ np.abs(T))
+    found = np.where(np.abs(found) > _ROUNDING * size, found, 0.0)
+    free = (np.abs(found @ rigid) <= _ROUNDING * (size @ np.abs(rigid))).all(axis=0)
+    rigid = rigid[:, free & rigid.any(axis=0)]
+    if rigid.shape[1]:
+        root = np.sqrt(np.maximum(found.diagonal(), 0.0))
+        basis = np.linalg.qr(root[:, None] * rigid)[0]
+        P = np.eye(len(root)) - (basis / np.where(root > 0.0, root, 1.0)[:, None]) @ (
+            basis.T * root
+        )
+        found = P.T @ found @ P
+    return sp.csr_matrix(0.5 * (found + found.T))

@@ -6,18 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.arrays import Bools, Ints
+from ....core.arrays import Bools, Floats, Ints
 from ....core.assembly.affine_terms import parametric_terms
-from ....core.assembly.guyan import static_condensation
+from ....core.assembly.guyan import condensed, static_condensation, without_strain
 from ....core.assembly.multipoint_constraints import Reduction, reduction, unsupported
 from ....core.data.geometry import Geometry
 from ....core.data.parameter import Parameter
 from ....core.data.parametric_model import Model, Term
 from ....core.errors import CheckError, InputError, Place
 from ....core.numerics.shared_pattern_sum import select, weighted_sum
+from ....core.reduction.component_modes import component_modes
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
-from ..properties.analysis_set import read_analysis_set
+from ..properties.analysis_set import AnalysisSet, read_analysis_set
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices
 from ..properties.grids import Points, point_dofs
@@ -84,9 +85,11 @@ def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
     constraints = read_constraints(deck, points)
     variation, narrowed = admissible(variation, parameters, structure.groups, structure.blocks)
     whole = _terms(deck, structure, variation)
-    reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
+    sets = read_analysis_set(deck, points)
+    fixed = constraints.fixed if sets is None else constraints.fixed | sets.modal
+    reduced = reduction(points.n_dof, constraints.equations, fixed, points.label)
     terms, reduced, warnings, idle = _remove_singular(deck, points, whole, reduced)
-    terms, expansion, kept, more = _condense(deck, points, terms, reduced)
+    terms, expansion, kept, more = _condense(deck, points, sets, terms, reduced)
     geometry = _geometry(deck, structure)
     model = Model(
         geometry=geometry,
@@ -164,28 +167,62 @@ def _remove_singular(
 
 
 def _condense(
-    deck: Deck, points: Points, terms: Pair, reduced: Reduction
+    deck: Deck, points: Points, sets: AnalysisSet | None, terms: Pair, reduced: Reduction
 ) -> tuple[Pair, sp.csr_matrix, Ints, tuple[str, ...]]:
-    """Apply static condensation to the analysis set, where the deck asks for it."""
-    chosen = read_analysis_set(deck, points)
-    if chosen is None:
+    """Reduce to the analysis set, where the deck asks for it."""
+    if sets is None:
         return terms, reduced.expansion, reduced.kept, ()
-    kept = np.flatnonzero(chosen[reduced.kept])
-    if not len(kept):
+    kept, modal = np.flatnonzero(sets.kept[reduced.kept]), np.flatnonzero(sets.modal)
+    if not len(kept) and not len(modal):
         raise Place(deck.path).error("ASET and OMIT leave no free degree of freedom")
+    K, M = (_total(part) for part in terms)
     try:
-        T = static_condensation(_total(terms[0]), kept)
+        rigid = without_strain(K, _rigid_motions(points, reduced.kept))
+        T = static_condensation(K, kept, rigid) if len(kept) else np.zeros((K.shape[0], 0))
     except InputError as error:
         raise Place(deck.path).error(f"ASET and OMIT: {error}") from None
-    terms = _each(terms, lambda matrices: [sp.csr_matrix(T.T @ (A @ T)) for A in matrices])
+    if len(modal):
+        held = np.flatnonzero(sets.held[reduced.kept])
+        number, fmax = _component_modes_wanted(deck, len(modal))
+        T = np.hstack([T, component_modes(K, M, T, kept, held, number, fmax)])
+        modal = modal[: T.shape[1] - len(kept)]
+    at_rest = np.zeros((T.shape[1] - len(kept), rigid.shape[1]))
+    rigid = np.vstack([rigid[kept], at_rest])
+    terms = _each(terms, lambda matrices: [condensed(A, T, rigid) for A in matrices])
     warning = (
         f"{len(reduced.kept) - len(kept)} degrees of freedom were condensed statically to the "
         f"{len(kept)} of the analysis set (ASET, OMIT)"
     )
+    if len(modal):
+        warning = (
+            f"the model is reduced to {len(kept)} degrees of freedom of the boundary and "
+            f"{len(modal)} component modes (QSET), without residual vectors"
+        )
     if any(t.factors for part in terms for t in part):
         warning += "; the condensation stays that of the deck when parameters move"
-    expansion = (reduced.expansion @ sp.csr_matrix(T)).tocsr()
-    return terms, expansion, reduced.kept[kept], (warning,)
+    expansion = (reduced.expansion @ sp.csr_matrix(T)).tolil()
+    expansion[modal, np.arange(len(kept), T.shape[1])] = 1.0
+    return terms, expansion.tocsr(), np.concatenate([reduced.kept[kept], modal]), (warning,)
+
+
+def _rigid_motions(points: Points, dofs: Ints) -> Floats:
+    """Displacements of degrees of freedom of the g-set in the six rigid motions, (n, 6)."""
+    at = np.flatnonzero(dofs < 6 * len(points.ids))
+    out = np.zeros((len(dofs), 6))
+    if len(at):
+        grid, component = np.divmod(dofs[at], 6)
+        out[at] = points.motions(grid, points.xyz[grid].mean(axis=0))[np.arange(len(at)), component]
+    return out
+
+
+def _component_modes_wanted(deck: Deck, places: int) -> tuple[int | None, float | None]:
+    """How many component modes the deck asks for, and up to which frequency."""
+    eigen = deck.eigen
+    if eigen is None:
+        raise Place(deck.path).error(
+            "QSET asks for component modes, but METHOD selects no EIGRL or EIGR that says how many"
+        )
+    return min(places, eigen.nd or places), eigen.v2
 
 
 def _each(

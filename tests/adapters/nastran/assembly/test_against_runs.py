@@ -48,3 +48,18 @@ def test_tapered_beams_beside_a_matrix_of_response_analysis(data):
     msc += [35.84441, 35.92411, 42.05270, 56.62616]
     np.testing.assert_allclose(elastic(path, 18), msc, rtol=1e-6)
     assert any("K2PP = STIFF" in warning for warning in read_deck(path).warnings)
+
+
+def test_component_modes_of_a_free_boundary(data):
+    """NX: four corners free (BNDFREE), modes of the free plate in 500 scalar points (QSET1)."""
+    found = solve(build_model(read_deck(data / "nastran/craig_bampton/extse04c.bdf")), 10)
+    assert found.rigid_body_modes == 6
+    nx = [180.551, 261.290, 332.988, 459.570]
+    np.testing.assert_allclose(found.frequencies_hz[6:], nx, rtol=3e-6)
+
+
+def test_component_modes_of_a_fixed_boundary(data):
+    """MSC 2019: three modes of nine that EIGRL asks for, since QSET has no more room."""
+    path = data / "nastran/cantilever/dynamicReduction.dat"
+    msc = [349.7303, 2168.717, 6015.472, 11974.12, 29336.18]
+    np.testing.assert_allclose(elastic(path, 5), msc, rtol=1e-6)

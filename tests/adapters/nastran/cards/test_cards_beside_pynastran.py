@@ -18,7 +18,11 @@ from trueup.adapters.nastran.deck.raw_cards import fields_of
 
 bdf = pytest.importorskip("pyNastran.bdf.bdf", reason="the peer is not installed")
 
-READ = {n: c for n, c in definitions().items() if not (c.ignored or c.refused)}
+READ = {
+    n: c
+    for n, c in definitions().items()
+    if not (c.ignored or c.refused or n.startswith("BND"))  # pyNastran does not know BNDFIX
+}
 REAL = st.builds(
     "{}{}{}".format,
     st.sampled_from(["", "-"]),
@@ -75,13 +79,13 @@ DRAWN = {
 GIVEN = """
 PID CQUADR CTRIAR CQUAD8 CTRIA6 CDAMP3 CBUSH1D|E MAT1|CM RBE2|CMA RROD|A PROD CONROD MPC DMIG PBAR
 G1 CELAS1 CELAS2 CMASS1 CMASS2 CDAMP1 CDAMP2|S1 CELAS3 CELAS4 CMASS3 CMASS4 CDAMP3 CDAMP4|CP GRDSET
-M CONM2|VALUE NSM NSML NSM1 NSML1|RID CORD2R CORD2C CORD2S|C MPC DMIG|G DMIG|CJ DMIG|N PARAM
+M CONM2|VALUE NSM NSML NSM1 NSML1|RID CORD2R CORD2C CORD2S|C MPC DMIG CSET1|G DMIG|CJ DMIG|N PARAM
 V1 PARAM|IREC DTI|MASS DTI|FORCE DTI|LENGTH DTI|TIME DTI|NAME DTI DMIG"""
 WANTED = {f"{c}.{w.split()[0]}" for w in re.split(r"[|\n]", GIVEN) for c in w.split()[1:]}
 # Behind the fields of a definition: the texts of what no row of words tells.
 BEHIND = {
     **dict.fromkeys(("PBARL", "PBEAML"), reals(3).map(lambda d: [*[None] * 4, *d])),
-    **dict.fromkeys(("SPOINT", "SPC1", "ASET1", "OMIT1"), LIST),
+    **dict.fromkeys(("SPOINT", "SPC1", "ASET1", "OMIT1", "BSET1", "CSET1", "QSET1"), LIST),
     **dict.fromkeys(("NSM1", "NSML1"), GRIDS),
     "PBEAM": SECTION | st.builds(lambda a, b: [*a, "NO", "1.", *b], SECTION, SECTION),
     "PBUSH": reals(23).map(
@@ -116,6 +120,7 @@ THEIRS = {
     **{f"{card}.x": lambda o: o.x if o.g0 is None else [o.g0, None, None]
        for card in ("CBAR", "CBEAM", "CBUSH", "BAROR", "BEAMOR")},
     **{f"{card}.points": lambda o: [o.e1, o.e2, o.e3] for card in ("CORD2R", "CORD2C", "CORD2S")},
+    **dict.fromkeys([f"{n}SET{d}.nodes" for n in "BCQ" for d in ("", "1")], "ids"),
     **{f"DTI.{k}": lambda o, k=k: o.fields[k] for k in ("mass", "force", "length", "time")},
     "CONM1.m": lambda o: o.mass_matrix[np.tril_indices(6)],
     "PBUSH.rcv": lambda o: [o.sa, o.st, o.ea, o.et],
@@ -136,7 +141,7 @@ APART = {
 # Where blank, Nastran and pyNastran derive them of others; trueup does when the value is used.
 DERIVED = """PSHELL.z1 PSHELL.z2 PCOMP.z0 PCOMPG.z0 PBAR.k1 PBAR.k2 PTUBE.t MAT1.g MAT1.nu MAT8.g1z
 MAT8.g2z BAROR.offt BEAMOR.offt RBAR.cna RBAR.cma RBAR.cmb"""
-SETS = ("SPOINT", "ASET1", "OMIT1", "SPC1", "NSMADD", "SPCADD", "MPCADD")
+SETS = ("SPOINT", "ASET1", "OMIT1", "BSET1", "CSET1", "QSET1", "SPC1", "NSMADD", "SPCADD", "MPCADD")
 
 
 @st.composite
