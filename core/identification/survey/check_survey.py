@@ -9,11 +9,10 @@ from .coherence import Coherence, coherence_checked
 from .contradictions import contradictions_mended
 from .double_hits import second_hits
 from .driving_points import driving_points
-from .faults import Fault, listed
 from .function_faults import noise_ratio
-from .neighbours import neighbours_of, points_mended
+from .neighbours import neighbours_of, points_mended, points_of_wrong_gain_left_out
 from .references import references_mended
-from .survey_data import Survey, noise_levels, told
+from .survey_data import Survey, named_and_left_out, noise_levels, weighed
 from .survey_numbers import SURVEY
 
 
@@ -30,37 +29,45 @@ def checked(
     coherence : Coherence, optional
         Of the functions that the survey was made of.
     """
+    given = survey
+    survey = _second_hits_left_out(_noisy_left_out(survey))
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = contradictions_mended(survey, points, neighbours_of(survey, geometry))
+    survey = points_of_wrong_gain_left_out(survey, geometry)
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = points_mended(survey, neighbours_of(survey, geometry))
     survey = references_mended(survey, points, neighbours_of(survey, geometry))
-    return coherence_checked(_second_hits_named(_noise_named(survey)), coherence)
+    if survey.faults != given.faults:
+        survey = weighed(survey)
+    return coherence_checked(survey, coherence)
 
 
-def _noise_named(survey: Survey) -> Survey:
+def _noisy_left_out(survey: Survey) -> Survey:
+    """Name noisy functions; leave out those of an output that has better ones.
+
+    An output of which all are noisy has a small weight, and no other functions to tell its shape.
+    """
     ratio = noise_ratio(survey.physical, survey.measured, noise_levels)
-    rows, columns = np.nonzero(ratio > SURVEY.noisy)
-    if not len(rows):
-        return survey
-    names = tuple(survey.function(o, i) for o, i in zip(rows, columns, strict=True))
-    worst = ratio[rows, columns].max()
-    sentence = (
-        f"{listed(names)}: noise floor up to {worst:.0f} times that of the survey (an overload, a "
-        "double hit or a loose sensor makes such)"
-    )
-    return told(survey, Fault("noise_floor", names, sentence))
+    noisy = survey.measured & (ratio > SURVEY.noisy)
+    all_of_it = (noisy == survey.measured).all(axis=1, keepdims=True)
+    why = "an overload, a double hit or a loose sensor makes such"
+    for bad, done in ((noisy & ~all_of_it, "left out"), (noisy & all_of_it, "")):
+        what = (
+            f"noise floor up to {ratio[bad].max(initial=0.0):.0f} times that of the survey ({why})"
+        )
+        survey = named_and_left_out(survey, "noise_floor", bad, what, done)
+    return survey
 
 
-def _second_hits_named(survey: Survey) -> Survey:
+def _second_hits_left_out(survey: Survey) -> Survey:
     delay = second_hits(survey)
-    rows, columns = np.nonzero(delay)
-    if not len(rows):
+    if not delay.any():
         return survey
-    names = tuple(survey.function(o, i) for o, i in zip(rows, columns, strict=True))
-    after = 1e3 * float(np.median(delay[rows, columns]))
-    sentence = (
-        f"{listed(names)}: phase ripples every {1e3 / after:.3g} Hz, as after a second hit "
-        f"{after:.3g} ms behind the first"
+    after = 1e3 * float(np.median(delay[delay > 0.0]))
+    hit = delay > 0.0
+    together = np.count_nonzero(hit, axis=1, keepdims=True) >= SURVEY.echo_together
+    what = (
+        f"phase ripples every {1e3 / after:.3g} Hz, as after a second hit {after:.3g} ms behind "
+        "the first"
     )
-    return told(survey, Fault("double_hit", names, sentence))
+    return named_and_left_out(survey, "double_hit", survey.measured & (hit | together), what)

@@ -1,47 +1,54 @@
-"""Functions that contradict the others of their point: of the wrong sign, or exchanged."""
+"""Functions that contradict the others of their point: wrong in sign or size, or exchanged."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from scipy.signal import find_peaks
 
-from ...arrays import Floats, Ints, Numbers
+from ...arrays import Bools, Floats, Ints, Numbers
 from .driving_points import positive_share
 from .faults import Fault, listed
 from .neighbours import Neighbours
+from .participation import followed
 from .survey_data import Survey, left_out, told
 from .survey_numbers import SURVEY
+
+_IN = {"wrong_sign": "sign", "wrong_gain": "size"}
 
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """What may have happened to the functions of one output: order and sign of its inputs."""
+    """What may have happened to the functions of one output: order and factors of its inputs."""
 
     order: Ints
-    signs: Floats
+    factors: Floats
 
     @property
     def touched(self) -> Ints:
-        return np.flatnonzero((self.order != np.arange(len(self.order))) | (self.signs < 0.0))
+        return np.flatnonzero((self.order != np.arange(len(self.order))) | (self.factors != 1.0))
+
+    @property
+    def kind(self) -> str:
+        if (self.factors == 1.0).all():
+            return "swapped_references"
+        return "wrong_sign" if self.factors.min() < 0.0 else "wrong_gain"
 
     def of(self, functions: Numbers, input_weight: Floats) -> Numbers:
         """Undo it, functions (..., n_input, n_line) in the weighting of a survey."""
-        factor = self.signs * input_weight / input_weight[self.order]
+        factor = self.factors * input_weight / input_weight[self.order]
         return np.asarray(functions[..., self.order, :] * factor[:, None])
 
 
 def contradictions_mended(survey: Survey, points: Floats, neighbours: Neighbours | None) -> Survey:
-    """Turn or exchange the functions that contradict the others, and name them.
+    """Turn or exchange the functions that contradict the others, leave out those of wrong size.
 
-    At a resonance the functions of every output go as its participation, which is the first right
-    singular vector of all functions at the line. Where those of one output follow it
-    far better with one of them turned, or with two exchanged, that is what happened. Two
-    references do not say which of them is turned: the driving point and the neighbours may. Where
-    nothing does, both functions are left out.
+    At a resonance the functions of every output go as its participation. Where those of one output
+    follow it far better with one of them turned or multiplied, or with two exchanged, that is what
+    happened. Many that are wrong alike hide each other: what is found is mended, and the rest
+    judged again. Two references do not say which of them is wrong: the driving point and the
+    neighbours may. Where nothing does, both functions are left out.
 
     Parameters
     ----------
@@ -50,39 +57,65 @@ def contradictions_mended(survey: Survey, points: Floats, neighbours: Neighbours
         From `driving_points`.
     neighbours : Neighbours, optional
     """
-    complete = np.flatnonzero(survey.measured.all(axis=1))
-    if survey.values.shape[1] < 2 or len(complete) < SURVEY.signs_outputs:
-        return survey
-    changes = _changes(survey.values.shape[1])
-    values = survey.values.copy()
-    known: dict[tuple[int, ...], list[int]] = {}
-    unknown = np.zeros(survey.measured.shape, bool)
-    for o, rivals in _contradicting(survey, complete, changes):
-        likely = _believed(survey, o, [changes[k] for k in rivals], points, neighbours)
-        if len(likely) == 1:
-            values[o] = likely[0].of(values[o], survey.input_weight)
-            exchange = likely[0].signs.min() > 0.0
-            known.setdefault((int(exchange), *likely[0].touched.tolist()), []).append(o)
-        else:
-            unknown[o, np.unique(np.concatenate([c.touched for c in likely]))] = True
-    mended = told(replace(survey, values=values), *_named(survey, known))
-    if not unknown.any():
-        return mended
-    doubtful = [survey.function(o, i) for o, i in zip(*np.nonzero(unknown), strict=True)]
-    sentence = (
-        f"{listed(doubtful)}: contradict each other in sign, and nothing tells which is wrong; "
-        "left out"
-    )
-    return told(
-        left_out(mended, unknown), Fault("wrong_sign", tuple(doubtful), sentence, "left out")
-    )
+    judged = np.flatnonzero(survey.measured.all(axis=1))
+    mended = survey
+    known: list[tuple[int, _Change]] = []
+    unknown = {kind: np.zeros(survey.measured.shape, bool) for kind in _IN}
+    wrong = np.zeros(survey.measured.shape, bool)
+    settled: set[int] = set()
+    while survey.values.shape[1] > 1 and len(judged) >= SURVEY.signs_outputs:
+        found = [(o, c) for o, c in _contradicting(mended, judged) if o not in settled]
+        if not found:
+            break
+        values = mended.values.copy()
+        for o, rivals in found:
+            likely = _believed(survey, o, rivals, points, neighbours)
+            if len(likely) == 1:
+                values[o] = likely[0].of(values[o], survey.input_weight)
+                known.append((o, likely[0]))
+            else:
+                kind = "wrong_gain" if any(c.kind == "wrong_gain" for c in likely) else "wrong_sign"
+                unknown[kind][o, np.unique(np.concatenate([c.touched for c in likely]))] = True
+        mended = replace(mended, values=values)
+        settled |= {o for o, _ in found}
+        wrong = np.any([*unknown.values()], axis=0)
+        judged = judged[~wrong[judged].any(axis=1)]
+    for o, change in known:
+        if change.kind == "wrong_gain":
+            wrong[o, change.touched] = True
+    return left_out(told(mended, *_named(survey, known), *_doubtful(survey, unknown)), wrong)
+
+
+def _contradicting(survey: Survey, rows: Ints) -> list[tuple[int, list[_Change]]]:
+    """Find outputs that follow the participation far better after a change, and those changes.
+
+    A gain may take any value: it has to be better whichever peak is left out.
+    """
+    seen = followed(survey, rows)
+    if seen is None:
+        return []
+    n_input, weight = len(seen.participation), survey.input_weight
+    changes = [[c] * len(rows) for c in _changes(n_input)]
+    changes += [_gains(seen.factors(k), k, n_input) for k in range(n_input)]
+    now = seen.left(seen.functions)
+    after = np.empty((len(changes), len(rows)))
+    for k, of_output in enumerate(changes):
+        changed = [c.of(h, weight) for c, h in zip(of_output, seen.functions, strict=True)]
+        better = seen.left(np.stack(changed)) / np.maximum(now, 1e-300)
+        gain = k >= len(changes) - n_input
+        after[k] = better.max(axis=1) if gain else better[:, 0]
+    best = after.min(axis=0)
+    contradicting = []
+    for n in np.flatnonzero(best < SURVEY.signs_better):
+        rivals = np.flatnonzero(after[:, n] <= SURVEY.signs_rival * best[n])
+        contradicting.append((int(rows[n]), [changes[k][n] for k in rivals]))
+    return contradicting
 
 
 def _changes(n_input: int) -> list[_Change]:
-    """As it is, each function turned, each two exchanged."""
+    """Each function turned, each two exchanged."""
     same, plus = np.arange(n_input), np.ones(n_input)
-    found = [_Change(same, plus)]
-    found += [_Change(same, np.where(same == k, -1.0, 1.0)) for k in range(n_input)]
+    found = [_Change(same, np.where(same == k, -1.0, 1.0)) for k in range(n_input)]
     for a, b in combinations(range(n_input), 2):
         order = same.copy()
         order[[a, b]] = b, a
@@ -90,51 +123,12 @@ def _changes(n_input: int) -> list[_Change]:
     return found
 
 
-def _contradicting(
-    survey: Survey, complete: Ints, changes: Sequence[_Change]
-) -> list[tuple[int, list[int]]]:
-    """Find outputs that follow the participation far better after a change, and those changes."""
-    own = survey.values[complete]
-    _, size, vh = np.linalg.svd(own.transpose(2, 0, 1), full_matrices=False)
-    lines, weight = _ruled(size)
-    if not len(lines):
-        return []
-    own, part = own[..., lines] * weight, vh[lines, 0].conj().T
-    left = np.empty((len(changes), len(complete)))
-    for k, change in enumerate(changes):
-        changed = change.of(own, survey.input_weight)
-        total = np.sum(np.abs(changed) ** 2, axis=(1, 2))
-        along = np.sum(np.abs(np.einsum("oin,in->on", changed, part)) ** 2, axis=1)
-        left[k] = 1.0 - along / np.maximum(total, 1e-300)
-    best = left[1:].min(axis=0)
-    found = []
-    for n in np.flatnonzero(best < SURVEY.signs_better * left[0]):
-        rivals = np.flatnonzero(left[:, n] <= SURVEY.signs_rival * best[n])
-        found.append((int(complete[n]), rivals.tolist()))
-    return found
-
-
-def _ruled(size: Floats) -> tuple[Ints, Floats]:
-    """Return the lines about peaks at which one mode rules, and weights that make peaks equal.
-
-    None where the peaks are few: what a mode does at its node looks like a fault at one peak, not
-    at several.
-
-    Parameters
-    ----------
-    size : (n_line, n_value) float
-        Singular values.
-    """
-    clear = size[:, 0] > SURVEY.signs_clear * np.sum(size[:, 1:2], axis=1)
-    decibel = 20.0 * np.log10(np.maximum(size[:, 0], 1e-300))
-    tops, _ = find_peaks(decibel, prominence=SURVEY.signs_prominence_db)
-    reach = np.arange(-SURVEY.signs_lines, SURVEY.signs_lines + 1)
-    about = [np.clip(t + reach, 0, len(size) - 1) for t in tops]
-    kept = [np.unique(lines[clear[lines]]) for lines in about if clear[lines].any()]
-    if len(kept) < SURVEY.signs_peaks:
-        return np.empty(0, np.int64), np.empty(0)
-    weight = [np.full(len(k), 1.0 / np.linalg.norm(size[k, 0])) for k in kept]
-    return np.concatenate(kept), np.concatenate(weight)
+def _gains(factor: Floats, k: int, n_input: int) -> list[_Change]:
+    """Multiply function `k` of each output, where by more than measurements err."""
+    same = np.arange(n_input)
+    sure = np.abs(np.log(np.maximum(factor, 1e-300))) > np.log(SURVEY.gain_least)
+    factor = np.where(sure & (factor > 0.0), factor, 1.0)
+    return [_Change(same, np.where(same == k, f, 1.0)) for f in factor]
 
 
 def _believed(
@@ -161,23 +155,47 @@ def _believed(
     return rivals
 
 
-def _named(survey: Survey, known: dict[tuple[int, ...], list[int]]) -> list[Fault]:
+def _named(survey: Survey, known: list[tuple[int, _Change]]) -> list[Fault]:
     faults = []
-    turned = [(o, c[0]) for (exchange, *c), rows in known.items() if not exchange for o in rows]
+    turned = sorted((o, int(c.touched[0])) for o, c in known if c.kind == "wrong_sign")
     if turned:
-        names = [survey.function(o, i) for o, i in sorted(turned)]
+        names = [survey.function(*place) for place in turned]
         sentence = (
             f"{listed(names)}: of the wrong sign, as the other functions of that point say; turned"
         )
         faults.append(Fault("wrong_sign", tuple(names), sentence, "turned"))
-    for (exchange, *pair), rows in known.items():
-        if exchange:
-            a, b = (survey.inputs.labels[i] for i in pair)
-            at = listed([survey.outputs.labels[o] for o in rows])
-            names = [survey.function(o, i) for o in rows for i in pair]
+    exchanged = [(o, tuple(c.touched)) for o, c in known if c.kind == "swapped_references"]
+    for pair in dict.fromkeys(pair for _, pair in exchanged):
+        rows = sorted(o for o, p in exchanged if p == pair)
+        a, b = (survey.inputs.labels[i] for i in pair)
+        at = listed([survey.outputs.labels[o] for o in rows])
+        names = [survey.function(o, i) for o in rows for i in pair]
+        sentence = (
+            f"{a} and {b}: their functions at {at} stand under each other's name, as the "
+            "other points say; exchanged"
+        )
+        faults.append(Fault("swapped_references", tuple(names), sentence, "exchanged"))
+    scaled = sorted((o, int(c.touched[0]), 1.0 / c.factors.prod())
+                    for o, c in known if c.kind == "wrong_gain")  # fmt: skip
+    if scaled:
+        names = [survey.function(o, i) for o, i, _ in scaled]
+        sizes = [f"{n} (about {g:.3g} times)" for n, (*_, g) in zip(names, scaled, strict=True)]
+        sentence = (
+            f"{listed(sizes)}: too large or too small, as the other functions of that point say (a "
+            "wrong unit, range or calibration?); left out"
+        )
+        faults.append(Fault("wrong_gain", tuple(names), sentence, "left out"))
+    return faults
+
+
+def _doubtful(survey: Survey, unknown: dict[str, Bools]) -> list[Fault]:
+    faults = []
+    for kind, functions in unknown.items():
+        names = tuple(survey.function(o, i) for o, i in zip(*np.nonzero(functions), strict=True))
+        if names:
             sentence = (
-                f"{a} and {b}: their functions at {at} stand under each other's name, as the "
-                "other points say; exchanged"
+                f"{listed(names)}: contradict each other in {_IN[kind]}, and nothing tells which "
+                "is wrong; left out"
             )
-            faults.append(Fault("swapped_references", tuple(names), sentence, "exchanged"))
+            faults.append(Fault(kind, names, sentence, "left out"))
     return faults

@@ -16,8 +16,8 @@ class Fault:
     ----------
     kind : str
         ``no_response``, ``dead_channel``, ``overload``, ``noise_floor``, ``double_hit``,
-        ``wrong_sign``, ``swapped_references``, ``swapped_points``, ``driving_point`` or
-        ``low_coherence``.
+        ``wrong_sign``, ``wrong_gain``, ``swapped_references``, ``swapped_points``,
+        ``driving_point`` or ``low_coherence``.
     functions : tuple of str
         Response and reference of each as the file has them, such as ``40:Z/12:Z``.
     sentence : str

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Floats, Numbers
 from ...data.geometry import Geometry
 from .faults import Fault, listed
-from .survey_data import Survey, told
+from .survey_data import Survey, named_and_left_out, told
 from .survey_numbers import SURVEY
 
 
@@ -36,10 +36,20 @@ class Neighbours:
         if not np.isfinite(self.unlike_now[o]):
             return np.inf
         own = functions / survey.output_weight[o]
+        there = self.expected(survey, o)
+        return float(np.sum(np.abs(own - there) ** 2) / max(np.sum(np.abs(own) ** 2), 1e-300))
+
+    def factor(self, survey: Survey, o: int) -> float:
+        """Real factor by which the functions of output `o` are nearest to what is expected."""
+        own = survey.values[o] / survey.output_weight[o]
+        there = self.expected(survey, o)
+        return float(np.vdot(own, there).real / max(np.sum(np.abs(own) ** 2), 1e-300))
+
+    def expected(self, survey: Survey, o: int) -> Numbers:
+        """Functions (n_input, n_line) of output `o` that follow from its neighbours' ones."""
         near = np.flatnonzero(self.weights[o])
         scale = self.weights[o, near] / survey.output_weight[near]
-        there = np.tensordot(scale, survey.values[near], axes=1)
-        return float(np.sum(np.abs(own - there) ** 2) / max(np.sum(np.abs(own) ** 2), 1e-300))
+        return np.asarray(np.tensordot(scale, survey.values[near], axes=1))
 
 
 def neighbours_of(survey: Survey, geometry: Geometry | None) -> Neighbours | None:
@@ -78,6 +88,30 @@ def _interpolation(survey: Survey, geometry: Geometry) -> Floats:
         value = np.linalg.solve(terms.T @ terms + slope, terms.T * trust[:, 0])[0]
         weights[o, same[near]] = value * np.sign(outputs.axis[same[near]] @ outputs.axis[o])
     return weights
+
+
+def points_of_wrong_gain_left_out(survey: Survey, geometry: Geometry | None) -> Survey:
+    """Leave out, one by one, the points that do as their neighbours do, but far more or less."""
+    while (neighbours := neighbours_of(survey, geometry)) is not None:
+        known = np.flatnonzero(np.isfinite(neighbours.unlike_now))
+        factor = np.array([neighbours.factor(survey, o) for o in known])
+        size = np.abs(np.log(np.maximum(factor, 1e-300))) * (factor > 0.0)
+        k = int(np.argmax(size))
+        o = int(known[k])
+        scaled = factor[k] * survey.values[o]
+        if (
+            size[k] < np.log(SURVEY.neighbour_gain)
+            or neighbours.unlike(survey, o, scaled) > SURVEY.neighbour_left
+        ):
+            break
+        bad = np.zeros(survey.measured.shape, bool)
+        bad[o] = survey.measured[o]
+        what = (
+            f"all functions of {survey.outputs.labels[o]} are about {1.0 / factor[k]:.2g} times "
+            "what the neighbours say (a wrong unit, range or calibration?)"
+        )
+        survey = named_and_left_out(survey, "wrong_gain", bad, what)
+    return survey
 
 
 def points_mended(survey: Survey, neighbours: Neighbours | None) -> Survey:

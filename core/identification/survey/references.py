@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import Floats, Ints, Numbers
 from .driving_points import positive_share, resonates
-from .faults import Fault
+from .faults import Fault, listed
 from .neighbours import Neighbours
 from .survey_data import Survey, told
 from .survey_numbers import SURVEY
@@ -98,11 +98,33 @@ def references_mended(survey: Survey, points: Floats, neighbours: Neighbours | N
             survey = _turned(survey, np.flatnonzero(survey.measured[:, i]), i, "the neighbours")
         else:
             survey = told(survey, _reversed(survey, i, points))
-    return survey
+    return told(survey, *_of_other_size(survey, points))
+
+
+def _of_other_size(survey: Survey, points: Floats) -> list[Fault]:
+    """Name functions that are reciprocal but for a factor."""
+    functions = _between(survey, points)
+    said: list[str] = []
+    names: list[str] = []
+    for i, j in ((i, j) for i, j in functions if i < j and (j, i) in functions):
+        there, back = functions[i, j], functions[j, i]
+        factor = float(np.linalg.norm(there) / max(float(np.linalg.norm(back)), 1e-300))
+        large = abs(np.log(max(factor, 1e-300))) > np.log(SURVEY.gain_least)
+        if large and _correlation(there, back) > SURVEY.reciprocal_surely:
+            pair = function_between(survey, i, j, points), function_between(survey, j, i, points)
+            said.append(f"{pair[0]} is {factor:.3g} times {pair[1]}")
+            names += pair
+    if not said:
+        return []
+    sentence = (
+        f"{listed(said)}, which is reciprocal: the calibration of a reference, or of its point, is "
+        "wrong, and modal masses with it"
+    )
+    return [Fault("wrong_gain", tuple(dict.fromkeys(names)), sentence)]
 
 
 def _no_driving_point(survey: Survey, i: int, points: Floats) -> Fault:
-    name = driving_name(survey, i, points)
+    name = function_between(survey, i, i, points)
     sentence = (
         f"{name}: not the function of a driving point, it gives power back at some of its "
         "resonances; another point, direction or channel is under that name"
@@ -111,7 +133,7 @@ def _no_driving_point(survey: Survey, i: int, points: Floats) -> Fault:
 
 
 def _reversed(survey: Survey, i: int, points: Floats) -> Fault:
-    name, label = driving_name(survey, i, points), survey.inputs.labels[i]
+    name, label = function_between(survey, i, i, points), survey.inputs.labels[i]
     sentence = (
         f"{name}: the driving point gives power back: this function has the wrong sign, or all of "
         f"{label} as a reference, or all of this point; nothing tells which, not turned"
@@ -128,9 +150,9 @@ def _turned(survey: Survey, rows: Ints, i: int, teller: str) -> Survey:
     return told(replace(survey, values=values), Fault("wrong_sign", names, sentence, "turned"))
 
 
-def driving_name(survey: Survey, i: int, points: Floats) -> str:
-    """Name the function(s) of the driving point of an input."""
-    return " + ".join(survey.function(o, i) for o in np.flatnonzero(points[i]))
+def function_between(survey: Survey, i: int, j: int, points: Floats) -> str:
+    """Name the function(s) at the driving point of input `i` for input `j`."""
+    return " + ".join(survey.function(o, j) for o in np.flatnonzero(points[i]))
 
 
 def _between(survey: Survey, points: Floats) -> dict[tuple[int, int], Numbers]:
@@ -197,13 +219,12 @@ def checked_references(
             off = np.abs(np.angle(turned, deg=True))
             phase = float(np.sum(off * np.abs(turned)) / size) if size > 0.0 else np.nan
             share = positive_share(function)
-            driving.append(DrivingPoint(driving_name(survey, i, points), share, phase))
+            driving.append(DrivingPoint(function_between(survey, i, i, points), share, phase))
         elif i < j and (j, i) in functions:
             there, back = residues(i, j), residues(j, i)
             size = float(np.sqrt(np.sum(np.abs(there) ** 2 + np.abs(back) ** 2)))
             apart = float(np.linalg.norm(there - back)) / size if size > 0.0 else np.nan
-            between = [" + ".join(survey.function(o, y) for o in np.flatnonzero(points[x]))
-                       for x, y in ((i, j), (j, i))]  # fmt: skip
+            between = [function_between(survey, x, y, points) for x, y in ((i, j), (j, i))]
             alike = _correlation(function, functions[j, i])
             pairs.append(Reciprocity(between[0], between[1], alike, apart))
     return tuple(driving), tuple(pairs)

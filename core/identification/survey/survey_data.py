@@ -85,6 +85,29 @@ def told(survey: Survey, *faults: Fault) -> Survey:
     return replace(survey, faults=survey.faults + faults, warnings=survey.warnings + sentences)
 
 
+def weighed(survey: Survey) -> Survey:
+    """Weigh the functions anew, after some were exchanged or left out."""
+    values = survey.physical
+    measured = survey.measured.astype(bool)
+    output_weight, input_weight = _weights(measured, *_noise_and_size(values, measured))
+    values = values * output_weight[:, None, None] * input_weight[None, :, None]
+    return replace(survey, values=values, output_weight=output_weight, input_weight=input_weight)
+
+
+def named_and_left_out(
+    survey: Survey, kind: str, functions: Bools, what: str, done: str = "left out"
+) -> Survey:
+    """Name functions (n_output, n_input), and leave them out unless they are too many."""
+    names = tuple(survey.function(o, i) for o, i in zip(*np.nonzero(functions), strict=True))
+    if not names:
+        return survey
+    if np.count_nonzero(functions) > SURVEY.left_out_most * np.count_nonzero(survey.measured):
+        done = ""
+    sentence = f"{listed(names)}: {what}" + (f"; {done}" if done else "")
+    survey = told(survey, Fault(kind, names, sentence, done))
+    return left_out(survey, functions) if done else survey
+
+
 def left_out(survey: Survey, functions: Bools) -> Survey:
     """Take functions (n_output, n_input) out, and outputs or inputs that have no other."""
     measured = survey.measured & ~functions
@@ -117,7 +140,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     name = frfs.source or "the frequency responses"
     said = Said(name, frfs.responses, frfs.references)
     derivative_order(quantity := frfs.quantity)
-    frfs = frfs.as_acceleration
+    given, frfs = frfs, frfs.as_acceleration
     f, keep, ranges = _axis(frfs, ranges, name)
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
@@ -132,8 +155,11 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     if not measured.any():
         reason = f": {said.warnings[-1]}" if said.warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
-    cut = "is", "cut off at one value (an overload)"
-    said.name("overload", measured & cut_off(frfs), cut)
+    cut = measured & cut_off(given)
+    few = np.count_nonzero(cut) <= SURVEY.left_out_most * np.count_nonzero(measured)
+    at_one = "is", "cut off at one value (an overload)"
+    said.name("overload", cut, at_one, "left out" if few else "")
+    measured &= ~(cut & few)
     smooth = float(np.median(noise[measured] / np.maximum(rms[measured], 1e-300)))
     if smooth < SURVEY.too_smooth:
         said.warnings.append(

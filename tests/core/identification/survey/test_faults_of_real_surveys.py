@@ -72,8 +72,8 @@ def test_imperfect_surveys_have_no_fault(kind):
 @pytest.mark.parametrize("place", [(0, 39), (0, 0), (1, 20), (2, 73), (2, 30), (1, 60)])
 @pytest.mark.parametrize("references", [(0, 1, 2), (0, 1), (1, 2), (0, 2)])
 def test_one_function_of_the_wrong_sign(aeroplane, place, references):
-    if place[0] not in references or (place, references) == ((2, 73), (1, 2)):
-        pytest.skip("not among these references; the one below")
+    if place[0] not in references:
+        pytest.skip("not among these references")
     mended = changed(aeroplane, turn(place), references)
     (fault,) = mended.faults
     label = aeroplane.frfs.responses.labels[place[0]], aeroplane.frfs.references.labels[place[1]]
@@ -82,10 +82,10 @@ def test_one_function_of_the_wrong_sign(aeroplane, place, references):
 
 
 @needs_data
-def test_a_driving_point_that_no_other_is_reciprocal_with_is_said_and_not_turned(aeroplane):
-    """Point 74 moves along Y, which accelerometer 102:Z hardly sees; nothing else tells."""
+def test_a_driving_point_that_contradicts_its_other_function(aeroplane):
+    """Point 74 moves along Y, which accelerometer 102:Z hardly sees."""
     (fault,) = changed(aeroplane, turn((2, 73)), (1, 2)).faults
-    assert (fault.kind, fault.functions, fault.done) == ("wrong_sign", ("74:Y/74:Y",), "")
+    assert (fault.kind, fault.functions, fault.done) == ("wrong_sign", ("74:Y/74:Y",), "turned")
 
 
 @needs_data
@@ -173,8 +173,9 @@ def _hit_twice(values, rng):
 @needs_data
 @pytest.mark.parametrize(("fault", "kind", "done"), [
     (_dead, "dead_channel", "left out"), (_zero, "dead_channel", "left out"),
-    (_constant, "dead_channel", "left out"), (_noisy, "noise_floor", ""), (_cut, "overload", ""),
-    (_cut_in_time, "overload", ""), (_hit_twice, "double_hit", ""),
+    (_constant, "dead_channel", "left out"), (_noisy, "noise_floor", "left out"),
+    (_cut, "overload", "left out"), (_cut_in_time, "overload", "left out"),
+    (_hit_twice, "double_hit", "left out"),
 ])  # fmt: skip
 @pytest.mark.parametrize("seed", range(2))
 def test_a_function_that_is_worth_less(aeroplane, fault, kind, done, seed):

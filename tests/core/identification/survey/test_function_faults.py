@@ -54,7 +54,7 @@ def test_a_resonance_that_one_function_alone_sees_is_no_fault(frfs):
 @pytest.mark.parametrize("level", [0.1, 0.5])
 def test_a_noise_floor_far_above_the_survey_is_named(frfs, level):
     (fault,) = faults(frfs, lambda h, rng: h + level * np.abs(h).std() * noise(rng, len(h)))
-    assert (fault.kind, fault.functions, fault.done) == ("noise_floor", ("8:Z/1:Z",), "")
+    assert (fault.kind, fault.functions, fault.done) == ("noise_floor", ("8:Z/1:Z",), "left out")
 
 
 def test_noise_in_the_notches_of_a_force_spectrum_is_named(frfs):

@@ -1,0 +1,129 @@
+"""The participation that the functions of every output follow at resonances, and how well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import find_peaks, peak_widths
+
+from ...arrays import Floats, Ints, Numbers
+from .survey_data import Survey
+from .survey_numbers import SURVEY
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """Functions of outputs at the lines where one mode rules, and the direction they follow there.
+
+    Parameters
+    ----------
+    functions : (n_output, n_input, n_clear) complex
+        Less the mean of the lines on either side, which leaves a peak its own mode; peaks made
+        equal.
+    participation : (n_input, n_clear) complex
+    peak : (n_clear,) int
+        To which each line belongs.
+    """
+
+    functions: Numbers
+    participation: Numbers
+    peak: Ints
+
+    def left(self, functions: Numbers) -> Floats:
+        """Share of each output's functions that does not follow, (n_output, 1 + n_peak).
+
+        At all peaks first, then at all but one each time.
+        """
+        power = np.sum(np.abs(functions) ** 2, axis=1)
+        amplitude = np.einsum("oin,in->on", functions, self.participation.conj())
+        member = (self.peak[:, None] == np.unique(self.peak)).astype(float)
+        total, along = power @ member, np.abs(amplitude) ** 2 @ member
+        without = np.eye(member.shape[1] + 1)[1:]
+        total, along = (x.sum(axis=1, keepdims=True) - x @ without for x in (total, along))
+        return np.asarray(1.0 - along / np.maximum(total, 1e-300))
+
+    def factors(self, k: int) -> Floats:
+        """Real factor that makes function `k` of each output follow as the output's others do."""
+        part = self.participation
+        others = np.arange(len(part)) != k
+        known = np.sum(np.abs(part[others]) ** 2, axis=0)
+        amplitude = np.einsum("oin,in->on", self.functions[:, others], part[others].conj())
+        expected = amplitude * part[k] / np.maximum(known, 1e-300)
+        own = self.functions[:, k]
+        total = np.maximum(np.sum(np.abs(own) ** 2, axis=1), 1e-300)
+        return np.asarray(np.sum((own.conj() * expected).real, axis=1) / total)
+
+
+def followed(survey: Survey, rows: Ints) -> Followed | None:
+    """Find what the functions of outputs `rows` follow at resonances.
+
+    The participation at a line is the direction that leaves the least of the functions of all
+    outputs, magnitudes and not squares summed, so that outputs which are wrong draw it aside
+    little. None where peaks are few: what a mode does at its node looks like a fault at one peak,
+    not at several.
+
+    References
+    ----------
+    Lerman, Maunu (2018), Fast, robust and non-convex subspace recovery, Information and
+    Inference 7, 277-336.
+    """
+    raw = survey.values[rows]
+    size = np.linalg.norm(raw, axis=(1, 2))
+    raw = raw / np.maximum(size, np.median(size))[:, None, None]
+    level = np.sqrt(np.sum(np.abs(raw) ** 2, axis=(0, 1)))
+    decibel = 20.0 * np.log10(np.maximum(level, 1e-300))
+    tops, _ = find_peaks(decibel, prominence=SURVEY.signs_prominence_db)
+    if len(tops) < SURVEY.signs_peaks:
+        return None
+    functions = _less_beside(raw, survey, tops, level)
+    weight = 1.0 / np.maximum(np.linalg.norm(functions, axis=(1, 2)), 1e-300)
+    for _ in range(SURVEY.signs_rounds):
+        gram = np.einsum("o,oin,ojn->nij", weight, functions, functions.conj(), optimize=True)
+        square, directions = np.linalg.eigh(gram)
+        lines, scale, peak = _ruled(np.sqrt(np.maximum(square[:, ::-1], 0.0)), tops)
+        if not len(lines):
+            return None
+        own, part = functions[..., lines] * scale, directions[lines, :, -1].T
+        away = np.maximum(_not_along(own, part), SURVEY.signs_follow)
+        weight = 1.0 / np.maximum(np.linalg.norm(own, axis=(1, 2)) * np.sqrt(away), 1e-300)
+    return Followed(own, part, peak)
+
+
+def _less_beside(functions: Numbers, survey: Survey, tops: Ints, level: Floats) -> Numbers:
+    """Take off the mean of the lines a few typical half-power bandwidths to either side."""
+    width = float(np.median(peak_widths(level**2, tops, rel_height=0.5)[0]))
+    reach = max(round(SURVEY.signs_beside * width), SURVEY.signs_lines + 1)
+    result = np.zeros_like(functions)
+    for lines in (survey.lines(*ends) for ends in survey.ranges):
+        own, kept = functions[..., lines], result[..., lines]
+        if own.shape[2] > 2 * reach:
+            beside = own[..., : -2 * reach] + own[..., 2 * reach :]
+            kept[..., reach:-reach] = own[..., reach:-reach] - 0.5 * beside
+    return result
+
+
+def _not_along(functions: Numbers, part: Numbers) -> Floats:
+    total = np.sum(np.abs(functions) ** 2, axis=(1, 2))
+    along = np.sum(np.abs(np.einsum("oin,in->on", functions, part.conj())) ** 2, axis=1)
+    return np.asarray(1.0 - along / np.maximum(total, 1e-300))
+
+
+def _ruled(size: Floats, tops: Ints) -> tuple[Ints, Floats, Ints]:
+    """Return lines at which one mode rules, weights that make peaks equal, the peak of each line.
+
+    Parameters
+    ----------
+    size : (n_line, n_value) float
+        Singular values.
+    tops : (n_peak,) int
+    """
+    clear = size[:, 0] > SURVEY.signs_clear * np.sum(size[:, 1:2], axis=1)
+    reach = np.arange(-SURVEY.signs_lines, SURVEY.signs_lines + 1)
+    about = [np.clip(t + reach, 0, len(size) - 1) for t in tops]
+    kept = [np.unique(lines[clear[lines]]) for lines in about if clear[lines].any()]
+    if len(kept) < SURVEY.signs_peaks:
+        return np.empty(0, np.int64), np.empty(0), np.empty(0, np.int64)
+    weight = [np.full(len(k), 1.0 / np.linalg.norm(size[k, 0])) for k in kept]
+    peak = np.repeat(np.arange(len(kept)), [len(k) for k in kept])
+    return np.concatenate(kept), np.concatenate(weight), peak
