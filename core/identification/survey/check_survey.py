@@ -37,7 +37,7 @@ def checked(
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = points_mended(survey, neighbours_of(survey, geometry))
     survey = references_mended(survey, points, neighbours_of(survey, geometry))
-    if survey.faults != given.faults:
+    if any(f.done for f in survey.faults[len(given.faults) :]):
         survey = weighed(survey)
     return coherence_checked(survey, coherence)
 

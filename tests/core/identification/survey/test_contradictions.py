@@ -88,3 +88,22 @@ def test_two_functions_of_a_point_under_each_others_name_are_exchanged(survey, n
     assert "at 5:Z, 12:Z stand under each other's name" in fault.sentence
     right = prepare(frfs)
     assert mended.physical == pytest.approx(right.physical)
+
+
+def test_a_function_of_the_wrong_size_is_left_out(survey):
+    frfs, _ = survey(12, n_mode=6, n_response=20, n_line=1000, n_reference=3)
+    values = np.array(frfs.values)
+    values[3, 2] *= 5.0
+    mended = checked(prepare(replace(frfs, values=values)))
+    (fault,) = mended.faults
+    assert (fault.kind, fault.functions, fault.done) == ("wrong_gain", ("4:Z/20:Z",), "left out")
+    assert np.argwhere(~mended.measured).tolist() == [[3, 2]]
+
+
+def test_of_two_references_alone_nothing_tells_whose_size_is_wrong(survey):
+    frfs, _ = survey(3, n_mode=6)
+    values = np.array(frfs.values)
+    values[7, 0] *= 5.0
+    (fault,) = checked(prepare(replace(frfs, values=values))).faults
+    assert (fault.kind, fault.done) == ("wrong_gain", "left out")
+    assert fault.functions == ("8:Z/1:Z", "8:Z/40:Z")

@@ -113,15 +113,19 @@ def test_two_accelerometers_under_each_others_name(aeroplane, pair):
 
 
 @needs_data
-@pytest.mark.parametrize("points", [[11], [30, 31, 32], list(range(20))])
-def test_two_accelerometers_under_each_others_name_at_some_points(aeroplane, points):
+@pytest.mark.parametrize("pair", [[0, 1], [0, 2]])
+@pytest.mark.parametrize("points", [[11], [30, 31, 32], list(range(29, 39)), list(range(20))])
+def test_two_accelerometers_under_each_others_name_at_some_points(aeroplane, pair, points):
+    """Many that are exchanged alike pull aside what the others are held against."""
+
     def exchange(values):
-        values[np.ix_([0, 1], points)] = values[np.ix_([1, 0], points)]
+        values[np.ix_(pair, points)] = values[np.ix_(pair[::-1], points)]
 
     mended = changed(aeroplane, exchange)
     (fault,) = mended.faults
     assert (fault.kind, fault.done) == ("swapped_references", "exchanged")
-    assert mended.physical == pytest.approx(in_band(aeroplane).physical)
+    assert len(fault.functions) == 2 * len(points)
+    assert mended.values == pytest.approx(in_band(aeroplane).values)
 
 
 @needs_data
@@ -134,6 +138,51 @@ def test_two_hammer_points_under_each_others_name(aeroplane, pair):
     (fault,) = mended.faults
     assert (fault.kind, fault.done) == ("swapped_points", "exchanged")
     assert mended.values == pytest.approx(in_band(aeroplane).values)
+
+
+def _times(place, factor):
+    def change(values):
+        values[place] *= factor
+
+    return change
+
+
+@needs_data
+@pytest.mark.parametrize(("place", "factor"), [
+    ((0, 19), 1e3), ((1, 40), 1e-3), ((2, 33), 9.81), ((2, 3), 0.1), ((1, 30), 2.0), ((2, 10), 2.0),
+])  # fmt: skip
+def test_a_function_of_the_wrong_size_is_left_out(aeroplane, place, factor):
+    mended = changed(aeroplane, _times(place, factor))
+    (fault,) = mended.faults
+    label = aeroplane.frfs.responses.labels[place[0]], aeroplane.frfs.references.labels[place[1]]
+    assert (fault.kind, fault.functions) == ("wrong_gain", ("/".join(label),))
+    assert fault.done == "left out"
+    assert not mended.measured[mended.outputs.labels.index(label[1])].all()
+
+
+@needs_data
+@pytest.mark.parametrize(("point", "factor"), [(5, 1e-3), (10, 9.81), (19, 1e3), (39, 1e3)])
+def test_a_hammer_point_of_the_wrong_size_is_left_out(aeroplane, point, factor):
+    """Its functions agree among themselves; the neighbours do not."""
+    mended = changed(aeroplane, _times((slice(None), point), factor))
+    (fault,) = mended.faults
+    label = aeroplane.frfs.references.labels[point]
+    assert (fault.kind, fault.done) == ("wrong_gain", "left out")
+    assert f"all functions of {label} are about" in fault.sentence
+    assert label not in mended.outputs.labels
+
+
+@needs_data
+@pytest.mark.parametrize("reference", [0, 2])
+def test_a_reference_of_the_wrong_size_is_not_reciprocal(aeroplane, reference):
+    (fault,) = changed(aeroplane, _times(reference, 10.0)).faults
+    assert (fault.kind, fault.done) == ("wrong_gain", "")
+    assert fault.functions == ("74:Y/40:Z", "40:Z/74:Y")
+
+
+@needs_data
+def test_a_factor_that_all_functions_have_cannot_be_seen(aeroplane):
+    assert changed(aeroplane, _times(slice(None), 1e3)).faults == ()
 
 
 def _noise(rng, shape):
