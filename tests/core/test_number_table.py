@@ -37,7 +37,7 @@ FORMULAS: dict[str, set[float]] = {
     "mode_indicator.py": {4, 20.0},
     "check_survey.py": {1000.0},
     "coherence.py": {10.0},
-    "contradictions.py": {20.0},
+    "participation.py": {20.0},
     "double_hits.py": {4},
 }
 """What may stand outside the tables: counts of directions and degrees of freedom, halves, squares,
