@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.arrays import Floats, Ints
+from ....core.data.shapes import HEXA, PENTA
 from ....core.elements import ELEMENTS, Element
 from ....core.elements.middle_nodes import spread
 from ..deck.card_definition import Values
@@ -73,9 +74,33 @@ def _placed(
     if element.dimension == 3:
         _refuse_repeated(context, name, ids, nodes)
     T = spread(element.edges, kept)
+    if T is None:
+        nodes = _upright(context, name, element, ids, nodes)
     xyz = context.points.xyz[nodes] if T is None else T @ context.points.xyz[nodes]
     check_shape(context, name, element, ids, xyz)
     return Placed(name, element, cards, ids, nodes, xyz, T, keys, of)
+
+
+def _upright(context: Context, name: str, element: Element, ids: Ints, nodes: Ints) -> Ints:
+    """Exchange the faces of bricks and wedges whose second face lies behind the first.
+
+    Nastran asks for consecutive grids about a face and those opposite, either way round.
+    """
+    if element.shape not in (HEXA, PENTA) or element.sound is None:
+        return nodes
+    half, every = element.corners // 2, np.arange(element.nodes)
+    faces = [every[half : 2 * half], every[:half]]
+    edges = every[2 * half :].reshape(-1, half)[::-1].ravel()
+    turned = nodes[:, np.concatenate([*faces, edges])]
+    behind = ~element.sound(context.points.xyz[nodes])
+    behind[behind] = element.sound(context.points.xyz[turned[behind]])
+    if behind.any():
+        place = context.bulk.place(name, int(ids[np.flatnonzero(behind)[0]]))
+        more = f" (and {int(behind.sum()) - 1} more)" if behind.sum() > 1 else ""
+        context.notes.append(
+            f"{place}{more}: the second face lies behind the first; taken the other way round"
+        )
+    return np.where(behind[:, None], turned, nodes)
 
 
 def _refuse_repeated(context: Context, name: str, ids: Ints, nodes: Ints) -> None:

@@ -16,14 +16,18 @@ def _card(name: str, corners: int, nodes: int, elements: str) -> Card:
     names = [f"G{k}" for k in range(1, nodes + 1)]
     first, middle = ",".join(names[:corners]), ",".join(names[corners:])
     layout = f"EID:i! PID:i! {first}>nodes:i! {middle}>nodes:i"
-    return Card(name, layout, "eid", elements=elements, properties="PSOLID")
+    return Card(name, layout, "eid", elements=elements, properties="PSOLID PCOMPS PLSOLID")
 
+
+_REFUSED = {"PCOMPS": "solid laminates", "PLSOLID": "hyperelastic solids"}
+"""Properties that are known and not supported: of what."""
 
 CARDS = (
     _card("CTETRA", 4, 10, "tetra4 tetra10"),
     _card("CPYRAM", 5, 13, "pyramid5 pyramid13"),
     _card("CPENTA", 6, 15, "penta6 penta15"),
     _card("CHEXA", 8, 20, "hexa8 hexa20"),
+    *(Card(name, "PID:i! ...", "pid") for name in _REFUSED),
     Card(
         "PSOLID", "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH", "pid"
     ),
@@ -85,6 +89,8 @@ def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
     """Return the element's word for the integration that PSOLID asks for."""
     card = context.bulk.table(key[0])[key[1]]
     place = context.bulk.place(*key)
+    if key[0] in _REFUSED:
+        raise place.error(f"{_REFUSED[key[0]]} are not supported: give {name} a PSOLID")
     if card.fctn != "SMECH":
         raise place.error(f"FCTN {card.fctn} (fluid elements) is not supported")
     if len(element.integrations) < 2:

@@ -1,0 +1,78 @@
+"""Solids as decks give them: either way round, properties that are known and not supported."""
+
+import numpy as np
+import pytest
+
+from trueup.adapters.nastran import build_model, read_deck
+from trueup.core.errors import InputError
+
+GRIDS = "".join(
+    f"GRID,{8 * z + n},,{x},{y},{float(z)}\n"
+    for z in (0, 1)
+    for n, x, y in ((1, 0.0, 0.0), (2, 1.2, 0.1), (3, 1.4, 0.9), (4, 0.2, 0.7))
+)
+RINGS = ((1, 2), (2, 3), (3, 4), (4, 1)), ((1, 9), (2, 10), (3, 11), (4, 12))
+RINGS += (((9, 10), (10, 11), (11, 12), (12, 9)),)
+MIDDLE = {(a, b): 100 * a + b for ring in RINGS for a, b in ring}
+MATERIAL = "MAT1,1,7.E4,,.3,2.7-9\n"
+PROPERTY = "PSOLID,1,1\n"
+
+
+@pytest.fixture
+def solve(tmp_path):
+    def matrices(elements, grids=GRIDS, properties=PROPERTY + MATERIAL):
+        path = tmp_path / "solid.bdf"
+        path.write_text("BEGIN BULK\n" + grids + elements + properties + "ENDDATA\n")
+        model = build_model(read_deck(path))
+        return model.K().toarray(), model.M().toarray(), model.warnings
+
+    return matrices
+
+
+@pytest.mark.parametrize(
+    ("right", "turned"),
+    [
+        ("CHEXA,7,1,1,2,3,4,9,10\n,11,12\n", "CHEXA,7,1,9,10,11,12,1,2\n,3,4\n"),
+        ("CHEXA,7,1,1,2,3,4,9,10\n,11,12\n", "CHEXA,7,1,1,4,3,2,9,12\n,11,10\n"),
+        ("CPENTA,7,1,1,2,3,9,10,11\n", "CPENTA,7,1,9,10,11,1,2,3\n"),
+        ("CPENTA,7,1,1,2,3,9,10,11\n", "CPENTA,7,1,1,3,2,9,11,10\n"),
+    ],
+)
+def test_either_way_round_is_the_same_solid(solve, right, turned):
+    """Nastran asks for consecutive grids about a face, not for a sense of rotation."""
+    K, M, quiet = solve(right)
+    K2, M2, said = solve(turned)
+    np.testing.assert_allclose(K2, K, atol=1e-12 * K.max())
+    np.testing.assert_allclose(M2, M, rtol=1e-12)
+    assert not any("other way round" in w for w in quiet)
+    assert any("7" in w and "taken the other way round" in w for w in said)
+
+
+def test_middle_nodes_turn_with_their_faces(solve):
+    at = {int(line.split(",")[1]): np.array(line.split(",")[3:], float)
+          for line in GRIDS.splitlines()}  # fmt: skip
+    grids = GRIDS + "".join(
+        f"GRID,{n},," + ",".join(f"{v:.4f}" for v in (at[a] + at[b]) / 2 + 0.01) + "\n"
+        for (a, b), n in MIDDLE.items()
+    )
+    low, up, top = ([*MIDDLE.values()][k : k + 4] for k in (0, 4, 8))
+
+    def card(*nodes):
+        texts = [str(n) for n in nodes]
+        lines = [texts[:6], texts[6:14], texts[14:]]
+        return "CHEXA,7,1," + "\n,".join(",".join(line) for line in lines) + "\n"
+
+    K, *_ = solve(card(1, 2, 3, 4, 9, 10, 11, 12, *low, *up, *top), grids)
+    K2, *_ = solve(card(9, 10, 11, 12, 1, 2, 3, 4, *top, *up, *low), grids)
+    np.testing.assert_allclose(K2, K, atol=1e-12 * K.max())
+
+
+def test_a_solid_that_is_none_either_way_is_refused(solve):
+    with pytest.raises(InputError, match=r"CHEXA 7 .* is flat or turned inside out"):
+        solve("CHEXA,7,1,1,3,2,4,9,11\n,10,12\n")
+
+
+@pytest.mark.parametrize("name", ["PCOMPS", "PLSOLID"])
+def test_properties_that_are_not_supported_are_named(solve, name):
+    with pytest.raises(InputError, match=rf"{name} 1 \(.*line 11\): .*not supported: give CPENTA"):
+        solve("CPENTA,7,1,1,2,3,9,10,11\n", properties=f"{name},1,1\n" + MATERIAL)
