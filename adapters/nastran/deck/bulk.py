@@ -13,10 +13,11 @@ from ....core.errors import Place
 from ....core.noun import Noun
 from .card_definition import Card, Values
 from .card_reading import read_card, read_columns
-from .continuations import in_order
+from .continuations import in_order, wrong_labels
 from .field_values import FieldError, Fields
 from .logical_lines import Line
 from .raw_cards import Raw, columns_of, cut, fields_of
+from .replication import written_out
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,8 +188,8 @@ def _filled(card: Card, fields: Fields, default: Fields) -> Fields:
 
 def read_bulk(
     lines: Iterable[Line], files: tuple[Path, ...], definitions: Mapping[str, Card]
-) -> tuple[Bulk, dict[str, list[Raw]]]:
-    """Read all cards that have a layout; return them and the raw others by name.
+) -> tuple[Bulk, dict[str, list[Raw]], tuple[str, ...]]:
+    """Read all cards that have a layout; return them, the raw others by name, and warnings.
 
     Raises
     ------
@@ -200,7 +201,8 @@ def read_bulk(
     kept: dict[str, list[Raw]] = {}
     numbered: dict[str, dict[int, Raw]] = {}
     others: dict[str, list[Raw]] = {}
-    raws = list(cut(in_order(lines), files))
+    ordered = in_order(written_out(lines, files))
+    raws = list(cut(ordered, files))
     wanted = {card.blanks_from for card in definitions.values()}
     defaults = {raw.name: fields_of(raw.lines) for raw in raws if raw.name in wanted}
     reader = CardReader(files, definitions, defaults)
@@ -225,7 +227,20 @@ def read_bulk(
                 lists.setdefault(name, []).append(values)
             held.append(raw)
     _check_spaces(numbered, reader)
-    return Bulk(reader, tables, lists, kept, numbered), others
+    warnings = _labels_told(wrong_labels(ordered), files)
+    return Bulk(reader, tables, lists, kept, numbered), others, warnings
+
+
+def _labels_told(wrong: list[tuple[Line, str]], files: tuple[Path, ...]) -> tuple[str, ...]:
+    """Say which continuations bear a wrong label: the first, and how many more."""
+    if not wrong:
+        return ()
+    line, what = wrong[0]
+    more = f" (and {len(wrong) - 1} more)" if wrong[1:] else ""
+    return (
+        f"{Place(files[line.file], line.number)}: the continuation {what}{more}; it is taken as "
+        "the continuation of that line",
+    )
 
 
 def _check_spaces(numbered: Mapping[str, Mapping[int, Raw]], reader: CardReader) -> None:

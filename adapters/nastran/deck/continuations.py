@@ -42,6 +42,18 @@ def in_order(lines: Iterable[Line]) -> list[Line]:
     return out
 
 
+def wrong_labels(ordered: Iterable[Line]) -> list[tuple[Line, str]]:
+    """Continuations, in order, whose label is another than the one that the line above calls."""
+    return [
+        (line, f"'+{_head(line.text)}' follows a line that calls '+{_tail(above.text)}'")
+        for above, line in pairwise(ordered)
+        if line.text[:1] in ("+", "*")
+        and (label := _head(line.text))
+        and (called := _tail(above.text))
+        and label != called
+    ]
+
+
 def _head(text: str) -> str:
     """Label in the first field of a continuation, "" where there is none."""
     if text[:1] not in ("+", "*"):

@@ -57,7 +57,13 @@ def value_of(field: Field, at: int, text: str | None) -> Any:
     try:
         return CONVERT[field.kind](text)
     except ValueError:
-        raise FieldError(at, field.name, f"holds {text!r}, {WRONG[field.kind]}") from None
+        what = f"holds {text!r}, {WRONG[field.kind]}"
+        if len(text.split()) > 1:
+            what = (
+                f"holds {text!r}, several values run together: in free fields commas "
+                "part them all, in fixed fields each has its columns"
+            )
+        raise FieldError(at, field.name, what) from None
 
 
 def take(fields: Fields, at: int, word: str) -> Any:

@@ -45,7 +45,7 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
     Raises
     ------
     InputError
-        A line that neither starts a card nor continues one; replicated cards.
+        A line that neither starts a card nor continues one.
     """
     current: Raw | None = None
     seen: set[str] = set()
@@ -71,8 +71,7 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
         text = _from_first_column(text)
         name = _SEPARATOR.split(text[:10], maxsplit=1)[0][:8].upper().rstrip("*")
         if not _NAME.fullmatch(name):
-            what = "replication, which is not supported" if "=" in name else "not a card's name"
-            raise Place(files[line.file], line.number).error(f"{name!r} is {what}")
+            raise Place(files[line.file], line.number).error(f"{name!r} is not a card's name")
         current = Raw(name, [text], line.file, line.number)
     if current is not None:
         yield current

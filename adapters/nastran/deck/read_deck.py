@@ -147,7 +147,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     changed = source if isinstance(source, DeckText) else None
     path = source.files[0].path if isinstance(source, DeckText) else Path(source)
     sections = read_sections(changed or path)
-    bulk, others = read_bulk(sections.bulk, sections.files, definitions)
+    bulk, others, bulk_warnings = read_bulk(sections.bulk, sections.files, definitions)
     if not bulk.raw:
         raise Place(path).error("no bulk data card was found: is this a Nastran deck?")
     case, case_warnings = read_case_control(sections.case, sections.files)
@@ -159,7 +159,13 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         for name, raws in (*bulk.raw.items(), *others.items())
     }
     eigen = _eigen(bulk, case)
-    warnings = [*case_warnings, *unit_warnings, *skip_warnings, *_solution(sections)]
+    warnings = [
+        *case_warnings,
+        *bulk_warnings,
+        *unit_warnings,
+        *skip_warnings,
+        *_solution(sections),
+    ]
     for command, matrices in (("K2PP", case.k2pp), ("M2PP", case.m2pp)):
         if matrices:
             names = " + ".join(name for name, _ in matrices)

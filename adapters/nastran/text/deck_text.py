@@ -1,5 +1,6 @@
 """A deck as the text of all its files: nothing is lost, and every line knows its section."""
 
+import contextlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -223,6 +224,16 @@ class _Walk:
         self._has_control = self._in_bulk = True
         self._part = " ".join(rest)
 
+    def _over_lines(self, k: int, texts: list[str], where: Place) -> tuple[int, str, int]:
+        """Follow a name without quotes that goes on in the next line or two."""
+        for more in (1, 2):
+            written, used = parse_include(texts, where, more)
+            if used > 1 and used == 1 + more:
+                with contextlib.suppress(InputError):
+                    return self._follow(k, written, where), written, used
+        written, used = parse_include(texts, where)
+        return self._follow(k, written, where), written, used
+
     def _include(self, k: int, row: int, done: int, parents: tuple[int, ...]) -> int:
         file = self._file(k)
         where = Place(file.path, row + 1)
@@ -231,7 +242,10 @@ class _Walk:
         if file.encoding == "utf-8":
             texts = [t.encode("latin-1").decode("utf-8") for t in texts]
         written, used = parse_include(texts, where)
-        child = self._follow(k, written, where)
+        try:
+            child = self._follow(k, written, where)
+        except InputError:
+            child, written, used = self._over_lines(k, texts, where)
         if child in parents:
             raise where.error(f"INCLUDE {written!r} includes itself")
         self._take(k, done, row)

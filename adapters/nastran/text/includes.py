@@ -12,7 +12,7 @@ _WINDOWS_VARIABLE = re.compile(r"%(\w+)%")
 _MOST_LINES = 50
 
 
-def parse_include(lines: list[str], where: Place) -> tuple[str, int]:
+def parse_include(lines: list[str], where: Place, more: int = 0) -> tuple[str, int]:
     """Return the path that an INCLUDE names as it is written, and how many lines it takes.
 
     Parameters
@@ -21,6 +21,8 @@ def parse_include(lines: list[str], where: Place) -> tuple[str, int]:
         The line that starts with INCLUDE and those after it.
     where : Place
         File and line, for messages.
+    more : int
+        Lines over which a name without quotes goes on.
 
     Raises
     ------
@@ -39,6 +41,9 @@ def parse_include(lines: list[str], where: Place) -> tuple[str, int]:
         name = match["path"].strip() if match else ""
     else:
         name = body.split("$", 1)[0].strip()
+        for line in lines[1 : 1 + more]:
+            name += line.split("$", 1)[0].strip()
+            used += 1
     if not name:
         raise where.error("INCLUDE names no file")
     return name, used
