@@ -15,6 +15,7 @@ class IdentificationNumbers:
     excited: float = number(1e-9, "of the largest eigenvalue", "below which a combination of references excites nothing", ROUNDING)
     near_lines: float = number(5.0, "lines", "to either side of a mode over which its quality is judged, at least", SURVEYS)
     by_hand: float = number(0.005, "of f", "within which a root stands that is taken or refused by hand", "what is read off a chart")
+    damping: float = number(0.01, "of critical", "of a pole that is started by hand where there is no mode", "typical of metal structures")
     orders: tuple[int, int] = number((2, 20), "orders", "first and last whose poles tell conjugated functions", SURVEYS)
     orders_last: int = number(6, "orders", "the last, whose stable poles are counted", SURVEYS)
     backwards: int = number(3, "-", "times as many of the conjugated functions say that these run backwards", SURVEYS)

@@ -18,6 +18,7 @@ from .number_of_modes import fewer, more
 from .poles.band_sweeps import fit_range
 from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
+from .poles.pole_numbers import POLES
 from .result import Identification
 from .survey.check_survey import checked
 from .survey.coherence import Coherence
@@ -81,7 +82,8 @@ def identify(
     ------
     InputError
         Functions that are no frequency responses, a frequency axis that does not rise, too few
-        lines, functions of the opposite sign convention, no root where one is taken or refused,
+        lines, functions that are all equal or of the opposite sign convention, no root where one is
+        taken or refused, one both taken and refused,
         fewer roots than modes asked for, bands that are none, an exponential window that no record
         has.
 
@@ -100,7 +102,8 @@ def identify(
     fits = fit_range(survey, parts, proposals)
     if not any(fit.core.any() for fit in fits):
         _refuse_conjugated(survey)
-    fits = by_hand(fits, proposals, take, refuse, survey.ranges)
+    fits, taken = by_hand(fits, proposals, take, refuse, survey.ranges)
+    survey = replace(survey, warnings=(*survey.warnings, *taken, *_bounded(survey, max_order)))
     unwanted = dict.fromkeys(refuse, "refused by hand")
     found = assemble(survey, fits, proposals, geometry, unwanted, window)
     if modes is None or len(found.modes) == modes:
@@ -113,6 +116,14 @@ def identify(
     said = f"{modes} modes are asked for: rejected roots ({of} Hz) are taken among them"
     forced = assemble(survey, fits, proposals, geometry, unwanted, window)
     return replace(forced, warnings=(*forced.warnings, said))
+
+
+def _bounded(survey: Survey, max_order: int | None) -> tuple[str, ...]:
+    """Say that a model order is out of reach."""
+    most, n = POLES.columns_most // len(survey.inputs), len(survey.inputs)
+    if max_order is None or max_order <= most:
+        return ()
+    return (f"the model order {max_order} is bounded at {most}, the most for {n} reference(s)",)
 
 
 def _parts(survey: Survey) -> tuple[tuple[Band, ...], Floats]:

@@ -94,6 +94,10 @@ def of_modes(
         spread = np.sqrt(np.mean(std[sure] ** 2) / np.mean(shape[sure] ** 2))
         if spread > IDENTIFICATION.weak:
             found.append(f"uncertain shape ({100 * spread:.0f} %)")
+        if survey.coherence is not None:
+            coherence = survey.coherence[int(np.argmin(np.abs(survey.frequencies_hz - hz)))]
+            if coherence < SURVEY.coherent:
+                found.append(f"low coherence at its resonance ({coherence:.2f})")
         width = abs(t.poles[k].real) / np.pi
         if any(abs(hz - edge) < width for ends in survey.ranges for edge in ends):
             found.append("at the edge of the measured range")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -57,16 +57,17 @@ def coherence_checked(survey: Survey, coherence: Coherence | None) -> Survey:
         names = tuple(survey.function(o, i) for o, i in zip(*np.nonzero(low), strict=True))
         sentence = f"{listed(names)}: coherence down to {own.min():.2f} where they are large"
         faults.append(Fault("low_coherence", names, sentence))
-    rest, sound = power[~low].sum(axis=0), shared[~low].sum(axis=0)
-    tops = _resonances(survey)
     near = np.ones(3)
-    at = np.convolve(sound, near, "same") / np.maximum(np.convolve(rest, near, "same"), 1e-300)
-    poor = tops[(at[tops] < SURVEY.coherent) & (rest[tops] > 0.0)]
+    every, sound = power.sum(axis=(0, 1)), shared.sum(axis=(0, 1))
+    by_line = np.where(every > 0.0, np.convolve(sound, near, "same"), np.nan)
+    by_line /= np.maximum(np.convolve(every, near, "same"), 1e-300)
+    tops = _resonances(survey)
+    poor = tops[by_line[tops] < SURVEY.coherent]
     if len(poor):
-        where = listed([f"{survey.frequencies_hz[k]:.2f} Hz ({at[k]:.2f})" for k in poor])
+        where = listed([f"{survey.frequencies_hz[k]:.2f} Hz ({by_line[k]:.2f})" for k in poor])
         sentence = f"low coherence at the resonances near {where}, of all functions together"
         faults.append(Fault("low_coherence", (), sentence))
-    return told(survey, *faults)
+    return told(replace(survey, coherence=by_line), *faults)
 
 
 def _resonances(survey: Survey) -> Ints:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from .faults import Fault, listed
 from .function_faults import cut_off, dead
 from .modal_synthesis import derivative_order
 from .survey_numbers import SURVEY
-
-_OF_MANY = {"is": "are", "has": "have", "holds": "hold"}
+from .usable_functions import Said, lines_with_values, refuse_copies, usable
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +44,8 @@ class Survey:
         What is to be told, the sentences of `faults` among it.
     ranges : tuple of (low, high)
         First and last line [Hz] of each part of the axis that is used, rising.
+    coherence : (n_line,) float, optional
+        Of all functions together, each counting by its square; NaN where it was not measured.
     """
 
     frequencies_hz: Floats
@@ -60,6 +61,7 @@ class Survey:
     faults: tuple[Fault, ...]
     warnings: tuple[str, ...]
     ranges: tuple[tuple[float, float], ...]
+    coherence: Floats | None = None
 
     def function(self, output: int, input_: int) -> str:
         """Name a function by response and reference as the file has them."""
@@ -144,7 +146,9 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     f, keep, ranges = _axis(frfs, ranges, name)
     values = np.ascontiguousarray(frfs.values[:, :, keep])
     responses, references = frfs.responses, frfs.references
-    measured = _measured(values, said)
+    filled = lines_with_values(values, f, said)
+    f, values = f[filled], values[:, :, filled]
+    measured = usable(values, f, said)
     noise, rms = _noise_and_size(values, measured)
     quiet = measured & (noise > SURVEY.noise_only * rms)
     said.name("dead_channel", quiet, ("holds", "nothing but noise"), "left out")
@@ -155,6 +159,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     if not measured.any():
         reason = f": {said.warnings[-1]}" if said.warnings else ""
         raise InputError(f"{name} holds no frequency response that can be fitted{reason}")
+    refuse_copies(values[measured], name)
     cut = measured & cut_off(given)
     few = np.count_nonzero(cut) <= SURVEY.left_out_most * np.count_nonzero(measured)
     at_one = "is", "cut off at one value (an overload)"
@@ -243,52 +248,6 @@ def _axis(
         ends.append((float(f[own][0]), float(f[own][-1])))
         keep |= own
     return np.asarray(f[keep]), keep, tuple(ends)
-
-
-def _measured(values: Numbers, said: Said) -> Bools:
-    """Which combinations are frequency responses, (n_response, n_reference); names the others."""
-    nan = np.isnan(values)
-    missing = nan.all(axis=2)
-    measured = ~missing
-    with np.errstate(invalid="ignore", over="ignore"):
-        gaps = measured & ~np.isfinite(np.abs(values).max(axis=2) ** 2)
-        constant = measured & ~gaps & (np.abs(values - values[:, :, :1]).max(axis=2) == 0.0)
-        real = measured & ~gaps & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
-        low, high = values.real.min(axis=2), values.real.max(axis=2)
-        unit = real & (low >= 0.0) & (high <= 1.0 + SURVEY.coherence_most)
-    for bad, verb, rest in (
-        (gaps, "has", "lines without a finite value"),
-        (constant, "is", "the same at every line (a dead channel)"),
-        (unit, "is", "real and between 0 and 1 (a coherence, not a frequency response)"),
-        (real & ~unit, "is", "real (a spectrum or a time record, not a frequency response)"),
-    ):
-        kind = "dead_channel" if bad is constant else "no_response"
-        said.name(kind, bad, (verb, rest), "left out")
-    return np.asarray(measured & ~gaps & ~constant & ~real)
-
-
-@dataclass(frozen=True, eq=False)
-class Said:
-    """What is said of the functions of a file, as it is found."""
-
-    source: str
-    responses: Dofs
-    references: Dofs
-    faults: list[Fault] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-
-    def name(self, kind: str, bad: Bools, what: tuple[str, str], done: str = "") -> None:
-        """Name the functions (n_response, n_reference) that are bad; `what` begins with a verb."""
-        rows, columns = np.nonzero(bad)
-        if not len(rows):
-            return
-        o, i = self.responses.labels, self.references.labels
-        names = tuple(f"{o[a]}/{i[b]}" for a, b in zip(rows, columns, strict=True))
-        verb, rest = what
-        verb = _OF_MANY[verb] if len(names) > 1 else verb
-        sentence = f"{self.source}: {listed(names)} {verb} {rest}" + (f": {done}" if done else "")
-        self.faults.append(Fault(kind, names, sentence, done))
-        self.warnings.append(sentence)
 
 
 def _one_component(

@@ -12,6 +12,8 @@ class SurveyNumbers:
     too_smooth: float = number(1e-5, "noise over rms", "below which functions were computed, not measured", SURVEYS)
     noise_only: float = number(0.7, "noise over rms", "above which a response holds nothing else", SURVEYS)
     coherence_most: float = number(1e-6, "-", "by which a coherence exceeds 1", ROUNDING)
+    copies: int = number(3, "functions", "that are equal to the last digit, at least, to be copies; two may be by symmetry", SURVEYS)
+    line_without: float = number(0.5, "of the functions", "without a value at a line, above which the line and not the functions are left out", SURVEYS)
     level_rounds: int = number(5, "rounds", "in which levels of inputs and outputs settle", "they settle in few")
     named: int = number(5, "names", "that a message lists", "what a reader takes in")
 

@@ -123,6 +123,17 @@ def test_what_a_survey_holds_besides_is_rejected_with_its_reason(aeroplane):
     assert any("errors of the survey" in r.reason for r in rejected if r.frequency_hz < 35.0)
 
 
+@needs(AEROPLANE)
+def test_a_root_of_the_chart_is_held_where_the_functions_would_draw_it_away():
+    frfs = read_universal([AEROPLANE]).frfs
+    found = identify(frfs, fmin=15.0, fmax=60.0)
+    never = [r.frequency_hz for r in found.rejected if "explains no more" in r.reason]
+    taken = identify(frfs, fmin=15.0, fmax=60.0, take=never[:1])
+    assert np.abs(taken.modes.frequencies_hz / never[0] - 1.0).min() < 5e-3
+    assert len(taken.modes) == len(found.modes) + 1
+    assert any("is held where the stabilisation chart has it" in w for w in taken.warnings)
+
+
 @pytest.mark.slow
 @needs(AEROPLANE)
 def test_halves_of_a_survey_agree_within_their_errors(aeroplane):

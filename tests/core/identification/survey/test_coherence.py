@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trueup.core.identification import identify
 from trueup.core.identification.survey.check_survey import checked
 from trueup.core.identification.survey.coherence import Coherence
 from trueup.core.identification.survey.survey_data import prepare
@@ -54,6 +55,15 @@ def test_a_resonance_of_low_coherence_is_named(measured):
     assert {f.kind for f in found} == {"low_coherence"}
     said = next(f.sentence for f in found if not f.functions)
     assert float(said.split("near ")[1].split(" Hz")[0]) == pytest.approx(hz, abs=0.2)
+
+
+def test_the_mode_of_a_resonance_of_low_coherence_bears_a_remark(measured):
+    frfs, truth, coherence = measured
+    values = coherence.values.copy()
+    values[:, :, np.abs(frfs.frequencies_hz - truth.frequencies_hz[2]) < 0.2] *= 0.6
+    found = identify(frfs, coherence=replace(coherence, values=values))
+    marked = ["low coherence at its resonance (0.60)" in r for r in found.remarks]
+    assert found.modes.frequencies_hz[marked] == pytest.approx([truth.frequencies_hz[2]], rel=1e-3)
 
 
 def test_a_roving_hammer_and_missing_coherences_are_met(measured):

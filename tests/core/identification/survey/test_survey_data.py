@@ -50,11 +50,37 @@ def test_what_is_no_frequency_response_is_named_and_left_out(frfs, values, words
     assert len(found.outputs) == 11
 
 
-def test_a_gap_in_one_function_costs_that_function_only(frfs):
-    found = prepare(with_values(frfs, (5, 0, 17), np.nan))
-    assert "6:Z/1:Z has lines without a finite value" in found.warnings[0]
+@pytest.mark.parametrize("nothing", [np.nan, np.inf, 1.8e308, 0.0])
+def test_a_gap_in_one_function_costs_that_function_only(frfs, nothing):
+    """What wrote the file may have put nil, or a value without a square, where it had none."""
+    found = prepare(with_values(frfs, (5, 0, 17), nothing))
+    hz = frfs.frequencies_hz[17]
+    assert (
+        f"6:Z/1:Z has no value (not finite, or nil) at up to one line, {hz:.4g} Hz"
+        in (found.warnings[0])
+    )
     assert not found.measured[5, 0]
     assert found.measured.sum() == 23
+
+
+def test_a_gap_says_of_how_many_functions_and_where(frfs):
+    found = prepare(with_values(frfs, (slice(4, 7), slice(None), slice(100, 200)), 0.0))
+    low, high = frfs.frequencies_hz[[100, 199]]
+    assert "and 1 more have no value" in found.warnings[0]
+    assert f"at up to 100 lines between {low:.4g} and {high:.4g} Hz" in found.warnings[0]
+
+
+def test_a_line_that_no_function_has_costs_that_line_only(frfs):
+    found = prepare(with_values(frfs, (slice(None), slice(None), 17), np.nan))
+    assert "most functions have no value at one line" in found.warnings[0]
+    assert found.measured.all()
+    assert found.frequencies_hz == pytest.approx(np.delete(frfs.frequencies_hz, 17))
+
+
+def test_one_function_under_many_names_is_refused(frfs):
+    same = np.broadcast_to(frfs.values[0, 0], frfs.values.shape)
+    with pytest.raises(InputError, match="all 24 functions of survey 1 are equal to the last"):
+        identify(replace(frfs, values=same))
 
 
 def test_missing_combinations_are_no_reason_to_warn(frfs):
@@ -102,6 +128,11 @@ def test_what_cannot_be_used_is_refused_in_one_sentence(frfs, change, words):
 def test_options_that_leave_nothing_are_refused(frfs, options, words):
     with pytest.raises(InputError, match=words):
         identify(frfs, **options)
+
+
+def test_a_model_order_out_of_reach_is_said(frfs):
+    found = identify(frfs, max_order=500)
+    assert "the model order 500 is bounded at 90, the most for 2 reference(s)" in found.warnings
 
 
 def test_a_line_at_zero_hertz_is_left_out(frfs):
