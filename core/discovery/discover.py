@@ -49,7 +49,7 @@ from .search.model_selection import (
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import by_model_error, polished, refitted
+from .search.refit_own_basis import by_model_error, polished, refitted, sized
 from .search.robust_search import robust
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
@@ -319,7 +319,10 @@ def _contested(
 def _completed(
     trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
 ) -> tuple[Found, Judgement, Completeness]:
-    """Keep the effects that are likelier than an error of the model without any place."""
+    """Keep the effects that are likelier than an error of the model without any place.
+
+    Their magnitudes are those at which the test is likeliest beside such an error.
+    """
     structure, observation = trial.request.structure, _observation(trial)
     deck = by_model_error(
         structure, observation, trial.sensors, searcher.problem, trial.zero, moving=False
@@ -327,8 +330,11 @@ def _completed(
     old, accepted = found.levels, verdict.accepted
     tried = partial(_by_model_error, trial, searcher)
     found, kept, whole = completeness(searcher, found, verdict, deck, tried)
-    if kept and found.levels[kept] is not old[kept]:
-        best = _polished(trial, searcher, found.levels[kept])
+    if kept:
+        best, p = found.levels[kept], searcher.problem
+        with suppress(TrueupError):
+            best = best if best is old[kept] else _polished(trial, searcher, best)
+            best = sized(structure, observation, trial.sensors, p, best, whole.best.fit.suspects)
         found = replace(found, levels=(*found.levels[:kept], best, *found.levels[kept + 1 :]))
     if kept < accepted:
         found = Found(found.levels[: kept + 1], found.rivals[: kept + 1])

@@ -32,6 +32,7 @@ FORMULAS: dict[str, set[float]] = {
     "significance.py": {4, 70.0},
     "survey_data.py": {4, 70.0},
     "footprints.py": {5.0},
+    "link_spring.py": {0.7548776662466927, 0.5698402909980532},
     "quality.py": {4.0},
     "result.py": {4},
     "mode_indicator.py": {4, 20.0},

@@ -5,6 +5,7 @@ from . import (
     distributed_mass,
     ground_spring,
     joint_flexibility,
+    link_spring,
     local_damper,
     local_stiffness,
     point_mass,
@@ -31,6 +32,7 @@ KINDS: dict[str, EffectKind] = {
         support_flexibility.KIND,
         joint_flexibility.KIND,
         tuned_absorber.KIND,
+        link_spring.KIND,
         local_damper.KIND,
     )
 }

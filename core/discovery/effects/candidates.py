@@ -77,6 +77,11 @@ class Candidates:
         return len(self.xyz)
 
     @property
+    def spots(self) -> Floats:
+        """Return what places are near each other by, (n, d)."""
+        return self.xyz
+
+    @property
     def first(self) -> Ints:
         """Places that a first scan may look at."""
         return np.arange(len(self))

@@ -84,6 +84,8 @@ class EffectKind:
         Whether undamped modes show it.
     plural : str
         The label of several; "" where it ends with another s.
+    late : bool
+        Whether it is looked for only where the others leave much.
     """
 
     name: str
@@ -100,6 +102,7 @@ class EffectKind:
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
     in_modes: bool = True
     plural: str = ""
+    late: bool = False
 
     def said(self, number: int) -> str:
         """Return so many of it in words: ``an attached mass``, ``two attached masses``."""

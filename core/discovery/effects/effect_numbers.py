@@ -68,6 +68,12 @@ class EffectNumbers:
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
+    links_across: float = number(9.0, "places", "likewise, of both ends of springs between two places")
+    link_spacing: float = number(0.02, SIZE, "between the ends of links, at least")
+    link_thinned: float = number(1.15, "-", "times the spacing, where there are more")
+    link_ends: int = number(250, "grids", "that links may end at, at most", "memory")
+    link_lengths: tuple[float, float] = number((0.1, 0.7), SIZE, "least and largest length of a link")
+
     absorber_masses: tuple[float, ...] = number((0.008, 0.016, 0.032, 0.06), MASS, "that are tried")
     absorber_mass: float = number(0.025, MASS, "median beforehand")
     absorber_spread: float = number(1.0, "of ln m", "standard deviation of it")

@@ -33,7 +33,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     suspect = best.suspects[number]
     before, after = best.suspects[:number], best.suspects[number + 1 :]
     c = searcher.problem.catalogue[suspect.kind]
-    away = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
+    away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
     near = np.flatnonzero(away < POSTERIOR.near * searcher.size)[: POSTERIOR.most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))

@@ -67,7 +67,7 @@ def first_places(c: Candidates, factors: Rows, columns: int, size: float) -> Int
         live = c.first[moves > SEARCH.still * moves.max(initial=0.0)]
         along = np.array([w["components"][0] for w in c.where])[live]
         parts = [live[along == k] for k in np.unique(along)]
-    spread = [rows[thinned(c.xyz[rows], size / c.kind.across)] for rows in parts]
+    spread = [rows[thinned(c.spots[rows], size / c.kind.across)] for rows in parts]
     return np.concatenate([c.first[:0], *spread])
 
 

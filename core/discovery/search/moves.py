@@ -72,7 +72,7 @@ class Searcher:
             seen = look(small, here, kind, rows)
             tried = list(zip(seen.cost, seen.rows, seen.theta, strict=True))
             coarse = best_apart(
-                c.xyz[seen.rows], seen.cost, self.effort.apart * self.size, self.effort.looked_at
+                c.spots[seen.rows], seen.cost, self.effort.apart * self.size, self.effort.looked_at
             )
             done = set(seen.rows.tolist())
             for i in coarse:
@@ -90,24 +90,24 @@ class Searcher:
                 tried += zip(fine.min(axis=1), near, trials[fine.argmin(axis=1)], strict=True)
             best = np.array([t[0] for t in tried])
             every = np.array([t[1] for t in tried], dtype=np.int64)
-            for i in best_apart(c.xyz[every], best, self.effort.apart * self.size, count):
+            for i in best_apart(c.spots[every], best, self.effort.apart * self.size, count):
                 out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
 
     def _around(self, kind: int, row: int) -> Ints:
         """Places next to one, nearest first."""
-        xyz = self.problem.catalogue[kind].xyz
-        distance = np.linalg.norm(xyz - xyz[row], axis=1)
+        spots = self.problem.catalogue[kind].spots
+        distance = np.linalg.norm(spots - spots[row], axis=1)
         near = np.flatnonzero(distance < self.effort.apart * self.size)
         return np.asarray(near[np.argsort(distance[near], kind="stable")][: self.effort.around])
 
     def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
         """Places too near to a suspect of the same kind to be a second one, (n,)."""
-        xyz = self.problem.catalogue[kind].xyz
+        spots = self.problem.catalogue[kind].spots
         taken = np.zeros(len(rows), bool)
         for s in state.suspects:
             if s.kind == kind:
-                apart = np.linalg.norm(xyz[rows] - xyz[s.row], axis=1)
+                apart = np.linalg.norm(spots[rows] - spots[s.row], axis=1)
                 taken |= apart < self.effort.apart * self.size
         return taken
 
@@ -155,7 +155,7 @@ class Searcher:
         if stretches := stretches_beside(self.problem.catalogue, suspect):
             return self._best_of(state, q, stretches)
         c = self.problem.catalogue[suspect.kind]
-        distance = np.linalg.norm(c.xyz - c.xyz[suspect.row], axis=1)
+        distance = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
         rows = rows[np.argsort(distance[rows], kind="stable")][: self.effort.neighbours]
         without = evaluate(self.problem, state.nuisance, others)

@@ -46,6 +46,26 @@ def polished(
     )
 
 
+def sized(
+    structure: Structure,
+    observation: sp.csr_matrix,
+    seen: Bools,
+    problem: Problem,
+    state: Fit,
+    suspects: Sequence[Suspect],
+) -> Fit:
+    """Return a polished fit with magnitudes that were found otherwise, those of its `suspects`.
+
+    The known parameters for a deck are fitted beside these. The other arguments are those of
+    `polished`.
+    """
+    moved = replace(state, suspects=tuple(suspects))
+    own, basis, start = _own_problem(structure, observation, seen, problem, moved)
+    return replace(
+        moved, in_deck=_in_deck(replace(own, basis=basis), replace(moved, suspects=start))
+    )
+
+
 def refitted(
     structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
 ) -> Fit:

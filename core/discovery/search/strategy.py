@@ -22,6 +22,29 @@ from .search_numbers import SEARCH
 
 
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
+    """Search with all kinds but the late ones, and with these where much is left.
+
+    One of these is put beside every level of what was found; from the best of them the search goes
+    on with the others.
+    """
+    late = [c.kind.late for c in searcher.problem.catalogue]
+    usual = _with(searcher, [not x for x in late])
+    found = _by_tuning(usual, progress)
+    scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
+    if not any(late) or scale < SEARCH.second_opinion:
+        return found
+    progress("looking for springs between two places")
+    alone, best = _with(searcher, late), int(np.argmin(costs))
+    beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
+    tried = [(cost(searcher, f, scale), f) for f in beside if f is not None]
+    price, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
+    if top is None or price > costs[best]:
+        return found.with_rivals(f for _, f in tried[:best])
+    levels = [*found.levels[: len(top.suspects)], top]
+    return _better(searcher, found, grown(usual, enough(searcher), progress, levels))
+
+
+def _by_tuning(searcher: Searcher, progress: Callable[[str], None]) -> Found:
     """Search with simple kinds, and with all where a tuned one does clearly better."""
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
     found = _simple(_with(searcher, [not t for t in tuned]), progress)

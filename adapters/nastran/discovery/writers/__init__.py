@@ -7,6 +7,7 @@ from . import (
     distributed_mass,
     ground_spring,
     joint_flexibility,
+    link_spring,
     local_damper,
     local_stiffness,
     point_mass,
@@ -24,6 +25,7 @@ WRITERS: dict[str, Writer] = {
     "joint_flexibility": joint_flexibility.write,
     "tuned_absorber": tuned_absorber.write,
     "local_damper": local_damper.write,
+    "link_spring": link_spring.write,
 }
 
 

@@ -27,6 +27,20 @@ CONM2,4,1,,0.01
 ENDDATA
 """
 
+TWO_MASSES = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,456
+GRID,2,,30.,40.,0.,,3456
+CELAS2,1,4.0E4,1,1
+CELAS2,2,6.0E4,1,2
+CELAS2,3,9.0E4,1,3
+CELAS2,5,1.0E4,2,1
+CELAS2,6,2.0E4,2,2
+CONM2,4,1,,0.01
+CONM2,7,2,,0.01
+ENDDATA
+"""
+
 STIFF_ARMS = """CEND
 BEGIN BULK
 GRID,1,,0.,0.,0.,,123456
@@ -108,6 +122,14 @@ def test_a_spring_acts_along_the_basic_axis_whatever_the_grids_own_axes(tmp_path
     K = T @ np.diag([4e4, 6e4, 9e4]) @ T.T
     K[c - 1, c - 1] += 3e4
     np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K), 0.01), rtol=1e-6)
+
+
+def test_a_spring_between_two_masses_acts_along_the_line_through_them(tmp_path):
+    what = finding("link_spring", {"stiffness": 3e4, "components": [1]}, grids=[1, 2])
+    _, found = completed(tmp_path, TWO_MASSES, what)
+    n = np.array([-0.6, -0.8, 0.0, 0.6, 0.8])
+    K = np.diag([4e4, 6e4, 9e4, 1e4, 2e4]) + 3e4 * np.outer(n, n)
+    np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K)[:3], 0.01), rtol=1e-6)
 
 
 def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):

@@ -1,11 +1,15 @@
 """Simple explanations first, absorbers where these do clearly worse: on a string of beads."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.search import strategy
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.model_selection import judge
 from trueup.core.discovery.search.strategy import searched, simplified
@@ -68,6 +72,17 @@ def test_an_absorber_that_gains_little_more_than_a_mass_is_told_as_one():
     (suspect,) = found.levels[1].suspects
     assert (s.problem.catalogue[suspect.kind].kind.name, suspect.row) == ("point_mass", 9)
     assert found.rivals[1] == ()
+
+
+@pytest.mark.parametrize(("left", "looked"), [(0.5, False), (50.0, True)])
+def test_late_kinds_are_looked_for_where_the_others_leave_much(left, looked, monkeypatch):
+    s = searcher(hidden(tension=1.1), modes_out=(4, 10))
+    springs = replace(s.problem.catalogue[1], kind=replace(KINDS["ground_spring"], late=True))
+    catalogue = (s.problem.catalogue[0], springs, s.problem.catalogue[2])
+    s, said = replace(s, problem=replace(s.problem, catalogue=catalogue)), []
+    monkeypatch.setattr(strategy, "_scale", lambda *_: left)
+    searched(s, said.append)
+    assert any("two places" in line for line in said) == looked
 
 
 def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
