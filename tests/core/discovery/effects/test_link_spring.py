@@ -64,5 +64,5 @@ def test_links_are_near_each_other_where_both_their_ends_are(structure):
     rows = {tuple(sorted(w["grids"])): i for i, w in enumerate(found.where)}
     cross, other = found.spots[rows[(1, 11)]], found.spots[rows[(3, 9)]]
     assert found.xyz[rows[(1, 11)]] == pytest.approx(found.xyz[rows[(3, 9)]])
-    assert np.linalg.norm(cross - other) > 0.2 * np.sqrt(2.0) - 1e-9
+    assert np.linalg.norm(cross - other) == pytest.approx(0.2)
     assert np.linalg.norm(cross - found.spots[rows[(2, 11)]]) == pytest.approx(0.1 / np.sqrt(2.0))
