@@ -55,7 +55,7 @@ def written_out(lines: Iterable[Line], files: Sequence[Path]) -> Iterator[Line]:
 
 
 def _fields(text: str) -> list[str]:
-    """The name and the fields of a line, without a label of a continuation."""
+    """Return the name and the fields of a line, without a label of a continuation."""
     if "," in text[:10] or ("," in text and text.lstrip()[:1] == "="):
         fields = [f.strip() for f in text.split(",")]
         return fields[: 5 if "*" in fields[0] else 9]
