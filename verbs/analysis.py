@@ -55,16 +55,23 @@ def read_analysis(
     modes : path or Modes, optional
         Analysis modes of the user's own Nastran run.
     """
-    from ..adapters.nastran import build_model, parse_parameter
+    from ..adapters.nastran import build_model, drawn_model, parse_parameter
     from ..core.eigen import normal_modes
 
     deck = None if isinstance(source, Model) else read_deck(source)
     name = None if deck is None else deck.path
     specs = tuple(parse_parameter(p) for p in study.parameters)
+    unknown: tuple[str, ...] = ()
     with naming(name):
-        model = source if deck is None else build_model(deck, specs)
+        try:
+            model = source if deck is None else build_model(deck, specs)
+        except InputError as error:
+            if modes is None or deck is None or specs:
+                raise
+            model = drawn_model(deck)
+            unknown = (f"grids and elements only are taken of the deck: {error}",)
     assert isinstance(model, Model)
-    warnings = (*(deck.warnings if deck else ()), *model.warnings)
+    warnings = (*(deck.warnings if deck else ()), *model.warnings, *unknown)
     if modes is not None:
         given = analysis_modes(modes, deck)
         return Analysis(deck, specs, model, given, _rigid(given), warnings)

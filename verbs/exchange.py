@@ -32,6 +32,8 @@ class Cargo:
         By name.
     from_deck : bool
         Whether the geometry is that of a deck, which goes on holding it.
+    no_matrices : str
+        Why a deck gives its geometry only.
     rest : list of str
         What the sources hold that no part of this can carry, in words.
     notes : list of str
@@ -48,6 +50,7 @@ class Cargo:
     matrices: dict[str, Any] = field(default_factory=dict)
     functions: dict[str, Any] = field(default_factory=dict)
     from_deck: bool = False
+    no_matrices: str = ""
     rest: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     extras: dict[str, Any] = field(default_factory=dict)
@@ -155,7 +158,13 @@ def _deck(source: object, alone: bool, cargo: Cargo) -> Any:
     cargo.notes += deck.warnings
     cargo.from_deck = True
     if alone:
-        model = build_model(deck)
+        try:
+            model = build_model(deck)
+        except InputError as error:
+            _set_geometry(cargo, deck_geometry(deck), deck.path)
+            cargo.no_matrices = str(error)
+            cargo.notes.append(f"grids and elements only are taken of the deck: {error}")
+            return deck
         cargo.notes += [w for w in model.warnings if w not in cargo.notes]
         _set_geometry(cargo, model.geometry, deck.path)
         for m in model_matrices(model):

@@ -41,17 +41,10 @@ def describe_deck(path: Path | str) -> dict[str, Any]:
 
 
 def deck_geometry(deck: Deck) -> Geometry:
-    """Return grids and elements of a deck for drawing.
+    """Return grids and elements of a deck for drawing; elements without known matrices too."""
+    from .assembly.drawn_model import drawn_geometry
 
-    Elements are left out where the deck has some that trueup does not assemble.
-    """
-    from .assembly.build_model import build_model
-
-    try:
-        return build_model(deck).geometry
-    except InputError:
-        points = read_points(deck.bulk)
-        return Geometry(points.ids, points.xyz, deck.length_unit)
+    return drawn_geometry(deck, read_points(deck.bulk))
 
 
 def _contents(deck: Deck) -> dict[str, Any]:
