@@ -23,6 +23,10 @@ InPlaceOption = Annotated[
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
 
+StudyOption = Annotated[
+    Path | None,
+    typer.Option("--study", metavar="FILE", help="Study file (TOML); options win."),
+]
 FminOption = Annotated[
     float | None, typer.Option("--fmin", help="Identify modes in lines from here [Hz].")
 ]
@@ -153,7 +157,7 @@ def comparing(
     signature = [
         keyword("deck", Annotated[Path | None, typer.Argument(metavar="DECK")]),
         keyword("test", Annotated[list[Path] | None, typer.Argument(metavar="TEST...")]),
-        keyword("study", _option(Path, "Study file (TOML); options win.", metavar="FILE")),
+        keyword("study", StudyOption),
         *(keyword(name, annotation) for name, annotation in shared.items()),
         *([keyword("in_place", InPlaceOption, False)] if changes_deck else []),
         keyword("json", JsonOption),

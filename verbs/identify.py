@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -28,9 +28,9 @@ from ..core.results.modes import (
     rejected_rows,
 )
 from .folder import Folder
-from .options import Say, checked_call, unheard
+from .options import Files, Say, checked_call, study_of, unheard
 from .sources import Source, existing, files_of
-from .study import Hertz, converted
+from .study import Study, converted, read_study, seen_from, study_toml
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function
@@ -50,6 +50,8 @@ class Identified(IdentifyTables, Folder):
         Of the responses.
     page : str
         The stabilisation chart as one self-contained HTML page.
+    study : Study or None
+        What was asked of files; None of objects.
     skipped : tuple of Skipped
         What of the files was not read, and why.
     """
@@ -57,6 +59,7 @@ class Identified(IdentifyTables, Folder):
     content: StoreContent = field(metadata=BESIDE)
     units: Units | None = field(metadata=BESIDE)
     page: str = field(metadata=BESIDE)
+    study: Study | None = field(default=None, metadata=BESIDE)
     skipped: tuple[Skipped, ...] = field(default=(), metadata=BESIDE)
 
     def write(self, path: Path | str, complex_shapes: bool = False) -> Path:
@@ -95,6 +98,9 @@ class Identified(IdentifyTables, Folder):
             self.write(work / "modes_complex.unv", complex_shapes=True)
         write_store(work / "result.h5", **vars(self.content))
         (work / "stabilisation.html").write_text(self.page, encoding="utf-8")
+        if self.study is not None:
+            said = study_toml(seen_from(work, self.study))
+            (work / "study.toml").write_text(said, encoding="utf-8")
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
@@ -104,12 +110,14 @@ class Identified(IdentifyTables, Folder):
         modes, page = run / "modes.unv", run / "stabilisation.html"
         units = read_universal([modes]).units if modes.is_file() else None
         shown = page.read_text(encoding="utf-8") if page.is_file() else ""
-        return cls.from_dict(result, content=content, units=units, page=shown)
+        asked = run / "study.toml"
+        study = read_study(asked) if asked.is_file() else None
+        return cls.from_dict(result, content=content, units=units, page=shown, study=study)
 
 
 @checked_call
 def identify(
-    frf: Source,
+    frf: Source | None = None,
     fmin: float | None = None,
     fmax: float | None = None,
     max_order: int | None = None,
@@ -119,6 +127,7 @@ def identify(
     refuse: float | Sequence[float] = (),
     bands: str | Sequence[str | tuple[float, float]] = (),
     modes: int | None = None,
+    study: Study | Files | None = None,
     progress: Say = unheard,
 ) -> Identified:
     """Find modes in measured frequency responses, close pairs included.
@@ -127,7 +136,8 @@ def identify(
     ----------
     frf : path, sequence of paths, Measurement or Frfs
         Responses of motion to force at any number of references; coherence functions among the
-        files tell which of them, and which resonances, were measured poorly.
+        files tell which of them, and which resonances, were measured poorly. Default: the ``test``
+        of the study.
     fmin, fmax : float, optional
         Use lines from here, up to here, Hz.
     max_order : int, optional
@@ -142,6 +152,9 @@ def identify(
         takes no part.
     modes : int, optional
         As many modes as there are: the best founded, rejected roots among them where need be.
+    study : Study or path, optional
+        What stands here under other arguments may stand there (`modes` as ``identify_modes``);
+        arguments win.
     progress : callable
         Told what is done, a few words at a time.
 
@@ -159,30 +172,27 @@ def identify(
     from ..adapters.universal.joining.join_coherence import coherence_of
     from ..core.identification import identify as find
 
-    who = Place(shown="identify")
-    fmin, fmax = (converted(n, v, float | None, who) for n, v in (("fmin", fmin), ("fmax", fmax)))
-    max_order = converted("max_order", max_order, int | None, who)
+    given = {"fmin": fmin, "fmax": fmax, "max_order": max_order, "take": take, "refuse": refuse,
+             "exponential_window": exponential_window, "bands": bands}  # fmt: skip
+    asked = study_of(
+        "identify", study, {k: v for k, v in given.items() if v not in (None, ())}, given
+    )
+    number = converted("modes", modes, int | None, Place(shown="identify"))
+    if frf is None and not asked.test:
+        raise InputError("identify: no file of a test is given; give one, or a study that names it")
     progress("reading")
-    files = () if isinstance(frf, Frfs | Measurement) else tuple(files_of(frf))
+    files = asked.test if frf is None else _files(frf)
     read = read_responses(files) if files else _content(frf)
     assert read.frfs is not None
     coherence, of_coherence = coherence_of(read)
     progress("identifying")
     found = find(
         read.frfs,
-        fmin=fmin,
-        fmax=fmax,
-        max_order=max_order,
         geometry=read.geometry,
         coherence=coherence,
-        take=converted("take", take, tuple[float, ...], who),
-        refuse=converted("refuse", refuse, tuple[float, ...], who),
-        exponential_window=converted(
-            "exponential_window", exponential_window, float | str | None, who
-        ),
-        bands=converted("bands", bands, tuple[Hertz, ...], who),
-        modes=converted("modes", modes, int | None, who),
+        **asked.identification | ({} if number is None else {"modes": number}),
     )
+    asked = replace(asked, test=files, identify_modes=number or asked.identify_modes)
     warnings = (*read.warnings, *_lost(read.skipped), *of_coherence, *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
     return Identified(
@@ -207,8 +217,13 @@ def identify(
         ),
         units=read.units,
         page=stabilisation_page(found, name, warnings, read.geometry),
+        study=asked if files else None,
         skipped=read.skipped,
     )
+
+
+def _files(frf: Source) -> tuple[Path, ...]:
+    return () if isinstance(frf, Frfs | Measurement) else tuple(files_of(frf))
 
 
 def _content(source: Source) -> UniversalContent:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from ..core.results.plain import Table
 from ..core.results.update import ChangingTables, InPlace, UpdateTables
 from ..core.updating.stages import Iteration
 from .folder import Folder
-from .study import Study, read_study, study_toml
+from .study import Study, read_study, seen_from, study_toml
 
 if TYPE_CHECKING:
     from .plots import Plots
@@ -71,13 +70,7 @@ class Run(RunTables, Folder):
             diff = self.deck.diff
             (work / "changes.diff").write_text(diff, encoding="utf-8", newline="")
         write_store(work / "result.h5", **vars(self.content))
-        study = replace(
-            self.study,
-            deck=self.study.deck and _from(work, self.study.deck),
-            test=tuple(_from(work, p) for p in self.study.test),
-            modes=self.study.modes and _from(work, self.study.modes),
-        )
-        (work / "study.toml").write_text(study_toml(study), encoding="utf-8")
+        (work / "study.toml").write_text(study_toml(seen_from(work, self.study)), encoding="utf-8")
         (work / "report.html").write_text(render(self, self.content, diff), encoding="utf-8")
 
     @classmethod
@@ -162,11 +155,3 @@ def content_of(
         },
         history=Table(history).to_dict(),
     )
-
-
-def _from(folder: Path, path: Path) -> Path:
-    """Return a path as seen from a folder, so that both can be moved together."""
-    try:
-        return Path(os.path.relpath(path.parent.resolve() / path.name, folder.resolve()))
-    except ValueError:  # on another drive
-        return path.absolute()

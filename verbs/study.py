@@ -228,6 +228,20 @@ def merge(
     return dataclasses.replace(study, **values)
 
 
+def seen_from(folder: Path, study: Study) -> Study:
+    """Return the study with its paths as seen from a folder, so that both can be moved together."""
+    deck, modes = (p and _seen_from(folder, p) for p in (study.deck, study.modes))
+    test = tuple(_seen_from(folder, p) for p in study.test)
+    return dataclasses.replace(study, deck=deck, test=test, modes=modes)
+
+
+def _seen_from(folder: Path, path: Path) -> Path:
+    try:
+        return Path(os.path.relpath(path.parent.resolve() / path.name, folder.resolve()))
+    except ValueError:  # on another drive
+        return path.absolute()
+
+
 def study_toml(study: Study) -> str:
     """Write the study as TOML that runs it again, defaults included."""
     lines = ["# trueup study: run it again with  trueup VERB --study study.toml"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...core.errors import InputError, Place
+from ...verbs.study import Study, read_study
 from ..answer import free_folder
 from ..console import emit_json, speaks, stdout, tell, working
 from ..options import (
@@ -21,6 +22,7 @@ from ..options import (
     Output,
     QuietOption,
     RefuseOption,
+    StudyOption,
     TakeOption,
     VerboseOption,
 )
@@ -32,7 +34,8 @@ _FILES = (".unv", ".uff", ".h5")
 
 
 def identify(
-    frf: Annotated[list[Path], typer.Argument(metavar="FRF...")],
+    frf: Annotated[list[Path] | None, typer.Argument(metavar="FRF...")] = None,
+    study: StudyOption = None,
     fmin: FminOption = None,
     fmax: FmaxOption = None,
     bands: BandsOption = None,
@@ -61,15 +64,20 @@ def identify(
     from ...verbs.identify import identify as find
 
     output = Output(json=json, force=force, quiet=quiet, verbose=verbose)
-    target = out or free_folder(f"{frf[0].stem}_identify")
+    filed = read_study(study) if study else Study()
+    files = frf or list(filed.test)
+    if not files:
+        raise typer.BadParameter("give FRF, or a study file (--study) that names it as its test")
+    out = out or filed.out
+    target = out or free_folder(f"{files[0].stem}_identify")
     alone = out is not None and out.suffix.lower() in _FILES
     if alone:
-        _refuse(target, frf, force)
+        _refuse(target, files, force)
     else:
         refuse_existing(target, force)
     with working("reading", output) as say:
         found = find(
-            frf,
+            files,
             fmin,
             fmax,
             max_order,
@@ -78,6 +86,7 @@ def identify(
             exponential_window=exponential_window,
             bands=bands or (),
             modes=modes,
+            study=filed,
             progress=say,
         )
     if alone:

@@ -96,7 +96,7 @@ def test_the_run_folder(frf: Path, call: Call, result_of: Callable[[Path], Any])
     run = Path("survey_identify")
     assert {p.name for p in run.iterdir()} == {
         "modes.unv", "modes_complex.unv", "result.h5", "result.json", "stabilisation.html",
-        "tables",
+        "study.toml", "tables",
     }  # fmt: skip
     hz = [m["frequency_hz"] for m in result_of(run)["modes"]]
     content = read_universal([run / "modes.unv"])
@@ -117,6 +117,22 @@ def test_the_run_folder(frf: Path, call: Call, result_of: Callable[[Path], Any])
     assert call("identify", frf, "--quiet").status == 0
     assert Path("survey_identify_2").is_dir()
     assert "stabilisation.html" in call("report", run).sentence
+
+
+def test_all_of_it_can_stand_in_a_study(
+    frf: Path, call: Call, result_of: Callable[[Path], Any]
+) -> None:
+    study = Path("study.toml")
+    study.write_text('test = ["survey.unv"]\nfmin = 35.0\nrefuse = [80.0]\nout = "by_study"\n')
+    assert "1 mode between 35" in call("identify", "--study", study).out
+    again = call("identify", "--study", Path("by_study", "study.toml"), "--out", "again")
+    assert again.status == 0
+    assert result_of(Path("again"))["modes"] == result_of(Path("by_study"))["modes"]
+    both = call("identify", frf, "--study", study, "--fmin", 6, "--out", "both")
+    assert "2 modes between 6" in both.out
+    assert "names it as its test" in call("identify").err
+    study.write_text("tests = 1")
+    assert "'tests'" in call("identify", "--study", study).sentence
 
 
 @pytest.mark.parametrize("suffix", ["unv", "h5"])
@@ -205,7 +221,7 @@ def test_one_reference_warns_of_pairs(frf: Path, call: Call) -> None:
         (["--fmin", 200], "frequency line"),
         (["--max-order", 1], "order"),
         (["--refuse", 33], "no mode to refuse"),
-        (["--take", 33], "no rejected root to take"),
+        (["--take", 33], "no root can be taken at"),
         (
             ["--take", 70, "--fmax", 60],
             "no root can be taken at 70 Hz: only 5 to 59.93 Hz take part",

@@ -56,9 +56,9 @@ def usable(values: Numbers, frequencies_hz: Floats, said: Said) -> Bools:
     measured = ~np.isnan(values).all(axis=2)
     with np.errstate(invalid="ignore", over="ignore"):
         constant = measured & (np.abs(values - values[:, :, :1]).max(axis=2) == 0.0)
+        real = measured & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
         without = _without(values)
-        gaps = measured & ~constant & without.any(axis=2)
-        real = measured & ~gaps & ~constant & (np.abs(values.imag).max(axis=2) == 0.0)
+        gaps = measured & ~constant & ~real & without.any(axis=2)
         low, high = values.real.min(axis=2), values.real.max(axis=2)
         unit = real & (low >= 0.0) & (high <= 1.0 + SURVEY.coherence_most)
     somewhere = without[gaps].any(axis=0)
