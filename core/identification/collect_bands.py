@@ -57,7 +57,7 @@ def assemble(
     points = driving_points(survey.outputs, survey.inputs, geometry)
     poles = t.poles + window
     f_std, z_std = frequency_and_damping_errors(poles, t.pole_covariance)
-    scaling = scale(t.poles, p.shapes, p.participation, points)
+    scaling = scale(t.poles, p.shapes, p.participation, points, survey.inputs)
     driving, reciprocity = checked_references(survey, points, t.poles, p.shapes, p.participation)
     backgrounds, quality = _backgrounds(survey, fits, t)
     sure = np.where(p.known, p.shapes, 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.spatial import cKDTree
 from ...arrays import Floats, Ints, Numbers
 from ...data.dofs import Dofs
 from ...data.geometry import Geometry
+from .faults import listed
 from .survey_numbers import SURVEY
 
 
@@ -99,7 +101,9 @@ def resonates(function: Numbers) -> bool:
     return bool(flows > SURVEY.flows * np.linalg.norm(function) ** 2)
 
 
-def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats) -> Scaling:
+def scale(
+    poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats, inputs: Dofs
+) -> Scaling:
     """Find modal masses from the driving points, after checking them by reciprocity.
 
     A normal mode has l = φ/(2 j ω_d m) at the point it is driven at; the modal mass m is the
@@ -114,6 +118,7 @@ def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Float
         Physical units (shape times participation is displacement per force).
     points : (n_input, n_output) float
         From `driving_points`.
+    inputs : Dofs
 
     References
     ----------
@@ -128,10 +133,9 @@ def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Float
     at = points[driven] @ shapes
     part = participation[driven]
     apart = _unreciprocal(at, part, np.abs(poles) ** 2 / np.abs(poles.real))
-    if apart > SURVEY.unreciprocal:
-        return Scaling(none, (f"the functions between the driving points differ by "
-                              f"{100 * apart:.0f} % from their reciprocal: modal masses are "
-                              "withheld",))  # fmt: skip
+    total = float(np.sqrt(np.sum(apart**2)))
+    if total > SURVEY.unreciprocal:
+        return Scaling(none, (_said_of(apart, total, inputs.take(driven).labels),))
     q = np.sum(at.conj() * part, axis=0) / np.maximum(np.sum(np.abs(at) ** 2, axis=0), 1e-300)
     inverse_mass = 2j * poles.imag * q
     in_phase = np.cos(np.radians(SURVEY.in_phase_deg)) * np.abs(inverse_mass)
@@ -147,10 +151,27 @@ def scale(poles: Numbers, shapes: Numbers, participation: Numbers, points: Float
     return Scaling(np.asarray(inverse_mass.real / mass), tuple(warnings))
 
 
-def _unreciprocal(at: Numbers, part: Numbers, level: Floats) -> float:
-    """Relative difference of the residues between pairs of driving points and their reciprocal."""
+def _unreciprocal(at: Numbers, part: Numbers, level: Floats) -> Floats:
+    """Difference of residues between driving points and their reciprocal, over the size of all.
+
+    Returns
+    -------
+    (n_driven, n_driven) float
+        Above the diagonal, else 0.
+    """
     a = at[:, None, :] * part[None, :, :] * level
-    upper = np.triu_indices(len(at), 1)
-    there, back = a[upper], a.transpose(1, 0, 2)[upper]
-    size = float(np.sum(np.abs(there) ** 2) + np.sum(np.abs(back) ** 2))
-    return float(np.sqrt(np.sum(np.abs(there - back) ** 2) / size)) if size > 0.0 else 0.0
+    a[np.diag_indices(len(a))] = 0.0
+    size = float(np.linalg.norm(a))
+    apart = np.triu(np.linalg.norm(a - a.transpose(1, 0, 2), axis=2))
+    return np.asarray(apart / size if size > 0.0 else 0.0 * apart)
+
+
+def _said_of(apart: Floats, total: float, labels: Sequence[str]) -> str:
+    """Name the pairs that make most of what is not reciprocal."""
+    places = sorted(zip(*np.nonzero(apart), strict=True), key=lambda place: -apart[place])
+    worst = [f"{labels[i]} and {labels[j]}" for i, j in places
+             if apart[i, j] > SURVEY.unreciprocal_part * apart.max()]  # fmt: skip
+    return (
+        f"the functions between the driving points differ by {100 * total:.0f} % from their "
+        f"reciprocal, most between {listed(worst)}: modal masses are withheld"
+    )

@@ -49,6 +49,7 @@ class SurveyNumbers:
     spanned: float = number(1e-6, "-", "least singular value of the directions of a node, over the largest", ROUNDING)
     in_phase_deg: float = number(45.0, "deg", "phase of a modal mass, at most", SURVEYS)
     unreciprocal: float = number(0.3, "of H", "difference of H_ij and H_ji above which scaling is withheld", SURVEYS)
+    unreciprocal_part: float = number(0.7, "of the most", "that a pair of points differs by, to be named beside it", SURVEYS)
     window_sure: float = number(3.0, "standard deviations", "below nil, that damping less that of a window is at most", SURVEYS)
     even: float = number(1e-3, "of the spacing", "by which lines may be unevenly spaced", "single precision of a file")
     disagree: float = number(0.1, "-", "mean failure of driving points and reciprocity (0 to 1) from which exchanges of references are tried; aeroplane 0.005", SURVEYS)

@@ -32,7 +32,7 @@ def test_modal_mass_of_plain_driving_points():
     dofs, shapes, part = structure()
     drive = np.array([2, 7])
     points = driving_points(dofs, dofs.take(drive))
-    found = scale(POLES, shapes, part[drive], points)
+    found = scale(POLES, shapes, part[drive], points, dofs.take(drive))
     assert found.modal_mass == pytest.approx(MASS)
     assert found.warnings == ()
 
@@ -42,7 +42,7 @@ def test_a_force_askew_is_met_by_three_responses():
     axis = np.array([0.6, 0.0, 0.8])
     inputs = Dofs([2], [3], [axis])
     points = driving_points(dofs, inputs)
-    found = scale(POLES, shapes, (axis @ part[3:6])[None], points)
+    found = scale(POLES, shapes, (axis @ part[3:6])[None], points, inputs)
     assert found.modal_mass == pytest.approx(MASS)
 
 
@@ -58,7 +58,7 @@ def test_a_response_mounted_backwards_counts_with_its_sign():
     backwards = Dofs(dofs.node, dofs.component, -dofs.axis)
     inputs = dofs.take(np.array([4]))
     points = driving_points(backwards, inputs)
-    assert scale(POLES, -shapes, part[[4]], points).modal_mass == pytest.approx(MASS)
+    assert scale(POLES, -shapes, part[[4]], points, inputs).modal_mass == pytest.approx(MASS)
 
 
 def test_nodes_at_one_position_are_one_point():
@@ -67,7 +67,7 @@ def test_nodes_at_one_position_are_one_point():
     geometry = Geometry([1, 2, 3, 4, 99], xyz)
     inputs = Dofs([99], [1])
     points = driving_points(dofs, inputs, geometry)
-    found = scale(POLES, shapes, part[[3]], points)
+    found = scale(POLES, shapes, part[[3]], points, inputs)
     assert found.modal_mass == pytest.approx(MASS)
     assert np.isnan(driving_points(dofs, inputs)).all()
 
@@ -75,7 +75,7 @@ def test_nodes_at_one_position_are_one_point():
 def test_no_driving_point_is_said():
     dofs, shapes, part = structure()
     inputs = Dofs([99], [1])
-    found = scale(POLES, shapes, part[[0]], driving_points(dofs, inputs))
+    found = scale(POLES, shapes, part[[0]], driving_points(dofs, inputs), inputs)
     assert np.isnan(found.modal_mass).all()
     assert "no driving point" in found.warnings[0]
 
@@ -84,9 +84,19 @@ def test_residues_that_are_not_reciprocal_give_no_modal_mass():
     dofs, shapes, part = structure()
     inputs = dofs.take(np.array([2, 7, 9]))
     points = driving_points(dofs, inputs)
-    found = scale(POLES, shapes, part[[7, 2, 9]], points)
+    found = scale(POLES, shapes, part[[7, 2, 9]], points, inputs)
     assert np.isnan(found.modal_mass).all()
     assert "from their reciprocal" in found.warnings[0]
+
+
+def test_of_residues_that_are_not_reciprocal_the_worst_pairs_are_named():
+    dofs, shapes, part = structure()
+    inputs = dofs.take(drive := np.array([2, 7, 9]))
+    turned = part[drive]
+    turned[2] *= -1.0
+    found = scale(POLES, shapes, turned, driving_points(dofs, inputs), inputs)
+    pairs = found.warnings[0].split("most between ")[1].split(": modal")[0].split(", ")
+    assert all("4:X" in pair for pair in pairs)
 
 
 def test_a_driving_point_takes_power_and_a_reversed_one_gives_it_back():
@@ -100,7 +110,7 @@ def test_a_driving_point_takes_power_and_a_reversed_one_gives_it_back():
 def test_a_reversed_force_is_named():
     dofs, shapes, part = structure()
     inputs = dofs.take(np.array([2]))
-    found = scale(POLES, shapes, -part[[2]], driving_points(dofs, inputs))
+    found = scale(POLES, shapes, -part[[2]], driving_points(dofs, inputs), inputs)
     assert np.isnan(found.modal_mass).all()
     assert "wrong sign" in found.warnings[0]
 
