@@ -10,6 +10,7 @@ from .deck.number_spaces import space_of
 from .deck.read_deck import Deck, EigenRequest
 from .deck_reader import read_deck
 from .properties.grids import read_points
+from .properties.unit_slips import unit_slips
 
 _FORMAT = "Nastran deck"
 
@@ -17,7 +18,8 @@ _FORMAT = "Nastran deck"
 def describe_deck(path: Path | str) -> dict[str, Any]:
     """Say what a deck with all its INCLUDE files, or a part of one, holds.
 
-    Nothing is assembled: numbers that refer to nothing are found by `build_model`.
+    Numbers that refer to nothing are found by `build_model`; here what cannot be assembled has
+    neither mass nor frequency among its magnitudes.
 
     Returns
     -------
@@ -30,13 +32,18 @@ def describe_deck(path: Path | str) -> dict[str, Any]:
     InputError
         A file that cannot be read, a card that is not a card: file, line, field.
     """
+    from .assembly.magnitudes import magnitudes  # slow to import, and not needed to read a deck
+
     deck = read_deck(path)
+    known = magnitudes(deck)
+    size = known.get("size", 0.0)
+    slips = unit_slips(deck, size) if isinstance(size, float) else ()
     return {
         "path": str(path),
         "format": _FORMAT,
-        "contents": _contents(deck),
+        "contents": {**_contents(deck), **({"magnitudes": known} if known else {})},
         "skipped": list(deck.skipped),
-        "warnings": list(deck.warnings),
+        "warnings": [*deck.warnings, *slips],
     }
 
 

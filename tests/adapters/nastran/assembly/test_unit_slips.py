@@ -1,6 +1,9 @@
 """Slips of units: each is named with its factor, and nothing is said of what makes sense."""
 
+import numpy as np
 import pytest
+
+from trueup.adapters.nastran import describe_deck
 
 
 @pytest.fixture
@@ -76,3 +79,30 @@ def test_lengths_that_the_materials_contradict(said, E, rho, size, more, words):
 
 def test_declared_units_that_agree_are_not_mentioned(said):
     assert said(2.1e5, 7.85e-9, 800.0, "PARAM,UNITSYS,N-MM") == []
+
+
+def test_magnitudes_are_told_at_first_sight(tmp_path):
+    """A rod of two materials: E A / L and half of the mass at its free end make the frequency."""
+    (tmp_path / "rod.bdf").write_text(
+        "GRID,1,,0.,0.,0.,,123456\nGRID,2,,500.,0.,0.,,23456\nCROD,1,1,1,2\nPROD,1,1,30.\n"
+        "MAT1,1,2.1E5,,.3,7.85E-9\nMAT1,2,7.E4,,.3,2.7E-9\n"
+    )
+    told = describe_deck(tmp_path / "rod.bdf")
+    found = told["contents"]["magnitudes"]
+    mass = 7.85e-9 * 30.0 * 500.0
+    assert found["mass"] == pytest.approx(mass, rel=1e-3)
+    assert (found["size"], found["E"], found["density"]) == (
+        500.0, "70000 to 210000", "2.7e-09 to 7.85e-09",
+    )  # fmt: skip
+    hz = np.sqrt(2.1e5 * 30.0 / 500.0 / (mass / 2.0)) / (2.0 * np.pi)
+    assert found["first_frequency_hz"] == pytest.approx(hz, rel=1e-3)
+    assert told["warnings"] == []
+
+
+def test_slips_are_told_at_first_sight_even_of_what_cannot_be_assembled(tmp_path):
+    (tmp_path / "part.bdf").write_text(
+        "GRID,1,,0.,0.,0.\nGRID,2,,500.,0.,0.\nCGAP,1,1,1,2\nMAT1,1,2.1E5,,.3,7850.\n"
+    )
+    told = describe_deck(tmp_path / "part.bdf")
+    assert set(told["contents"]["magnitudes"]) == {"size", "E", "density"}
+    assert any("its density is to be multiplied by 1e-12" in w for w in told["warnings"])
