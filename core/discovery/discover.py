@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -34,22 +33,24 @@ from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexi
 from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
-from .search.completeness import Completeness, completeness, scored
+from .search.completeness import Completeness, completeness
 from .search.equipment_growth import equipped
 from .search.footprints import footed, settled
 from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
+    adequate,
     contenders,
     cost,
     held_out,
     judge,
     noise_scale,
+    scored,
     with_rival,
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import by_model_error, polished, refitted, sized
+from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
 from .search.robust_search import robust
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
@@ -88,6 +89,8 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
     progress("weighing what was found against the error of the model")
     found, verdict, whole = _completed(trial, searcher, found, verdict)
+    known = for_deck(trial.own, searcher.problem, found.levels[verdict.accepted])
+    found = found.with_level(known)
     out = modes_out, sensors_out
     said = build_discovery(request, searcher, found, verdict, whole, tested, out)
     progress("weighing dashpots by the measured damping")
@@ -102,7 +105,7 @@ class _Trial:
     def __init__(
         self,
         request: Request,
-        ground: _Ground,
+        ground: _Deck,
         aside: Bools,
         noise: float,
         modes_out: Bools,
@@ -110,10 +113,23 @@ class _Trial:
     ) -> None:
         self.ground, self.aside = ground, aside
         self.request = replace(request, placed=request.placed.take(~aside))
-        self.sensors = ~sensors_out[~aside]
+        sensors = ~sensors_out[~aside]
         self.problem, self.null, self.zero = _prepared(
-            self.request, ground, noise, ~modes_out, self.sensors
+            self.request, ground, noise, ~modes_out, sensors
         )
+        placed, structure = self.request.placed, request.structure
+        motion = placed.observation.matrix @ structure.model.expansion
+        observation = sp.csr_matrix(placed.weighted(motion))
+        self.own = Ground(structure, ground.plain, ground.compliance, observation, sensors)
+        self._judged: dict[Fit, Judged | None] = {}
+
+    def judged(self, problem: Problem, f: Fit) -> Judged | None:
+        """Return a hypothesis as the error of the model judges it, None where it does not solve."""
+        if f not in self._judged:
+            self._judged[f] = None
+            with suppress(TrueupError):
+                self._judged[f] = by_model_error(self.own, problem, f)
+        return self._judged[f]
 
 
 def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
@@ -128,10 +144,12 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress)
-    if judge(searcher, found).scale > DISCOVERY.estimated:
+    verdict = judge(searcher, found)
+    best = found.levels[verdict.accepted]
+    if verdict.scale > DISCOVERY.estimated and not adequate(searcher, best):
         progress("estimating how far off the model is everywhere")
         ways = [(searcher, found), robust(searcher, progress)]
-        searcher, found = max(ways, key=lambda way: _score(trial, *way))
+        searcher, found = max(ways, key=lambda way: _score(*way))
     searcher, found = _reshaped(trial.request, searcher, found)
     progress("weighing the best hypotheses on bases of their own")
     found, verdict = _weighed(trial, searcher, found)
@@ -140,7 +158,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if one is not best:
         with suppress(TrueupError):
             as_many = found.levels[len(one.suspects)]
-            both = (_polished(trial, searcher, f) for f in (one, as_many))
+            both = (polished(trial.own, searcher.problem, f) for f in (one, as_many))
             one = min(both, key=lambda f: f.objective)
             levels = (*found.levels[: verdict.accepted], one)
             scale = max(verdict.scale, noise_scale(searcher.problem, one))
@@ -156,30 +174,28 @@ def _laid(
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
         with suppress(TrueupError):
-            free = refitted(structure, _observation(trial), trial.sensors, wide.problem, free)
+            free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
-            laid = _polished(trial, wide, laid)
+            laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
-                levels = list(found.levels)
-                levels[verdict.accepted] = laid
-                return wide, replace(found, levels=tuple(levels)), verdict
+                return wide, found.with_level(laid), verdict
     return searcher, found, verdict
 
 
-def _score(trial: _Trial, searcher: Searcher, found: Found) -> float:
+def _score(searcher: Searcher, found: Found) -> float:
     """Return ln of the evidence for what a search found, by the error of the model."""
-    best = found.levels[judge(searcher, found).accepted]
-    return scored(searcher, best, partial(_by_model_error, trial, searcher)).score
+    return scored(searcher, found.levels[judge(searcher, found).accepted]).score
 
 
 @dataclass(frozen=True, eq=False)
-class _Ground:
+class _Deck:
     """What does not depend on the sensors.
 
-    The basis, the error of the mesh on it, how many modes may match, what loads do to the deck as
-    it is, and every effect that may be missing.
+    The basis with the deck's masses and with consistent bars, the error of the mesh on it, how many
+    modes may match, what loads do to the deck as it is, and every effect that may be missing.
     """
 
+    plain: Basis
     basis: Basis
     mesh: Floats
     columns: int
@@ -187,12 +203,13 @@ class _Ground:
     catalogue: list[Candidates]
 
 
-def _ground(request: Request, modes: Bools) -> _Ground:
+def _ground(request: Request, modes: Bools) -> _Deck:
     top = float(request.placed.test.frequencies_hz.max())
     targets = _below(request.solution.eigenvalues, top)
-    basis = build_basis(request.structure.model, request.solution, targets)
-    basis = with_consistent_bars(request.structure, basis)
-    return _Ground(
+    plain = build_basis(request.structure.model, request.solution, targets)
+    basis = with_consistent_bars(request.structure, plain)
+    return _Deck(
+        plain,
         basis,
         lumping(request.structure, basis.vectors),
         targets + DISCOVERY.band_more,
@@ -207,7 +224,7 @@ def _below(eigenvalues: Floats, top: float) -> int:
 
 
 def _prepared(
-    request: Request, ground: _Ground, noise: float, modes: Bools, sensors: Bools
+    request: Request, ground: _Deck, noise: float, modes: Bools, sensors: Bools
 ) -> tuple[Problem, Fit, Fit]:
     """Return the problem without suspects, its best fit, and the fit with nothing moved."""
     model, placed = request.structure.model, request.placed
@@ -295,7 +312,7 @@ def _first_solved(trial: _Trial, searcher: Searcher, fits: Sequence[Fit]) -> Fit
     """Return the first fit that its own completed model bears, fitted on it."""
     for f in fits:
         with suppress(TrueupError):
-            return _polished(trial, searcher, f)
+            return polished(trial.own, searcher.problem, f)
     return None
 
 
@@ -312,7 +329,7 @@ def _contested(
     near = [f for f in rivals if behind(f) < DISCOVERY.contested][: DISCOVERY.contested_most]
     for rival in near if verdict.accepted else ():
         with suppress(TrueupError):
-            found = with_rival(searcher, found, rival, _polished(trial, searcher, rival))
+            found = with_rival(searcher, found, rival, polished(trial.own, searcher.problem, rival))
     return found, judge(searcher, found)
 
 
@@ -323,45 +340,20 @@ def _completed(
 
     Their magnitudes are those at which the test is likeliest beside such an error.
     """
-    structure, observation = trial.request.structure, _observation(trial)
-    deck = by_model_error(
-        structure, observation, trial.sensors, searcher.problem, trial.zero, moving=False
-    )
+    deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, accepted = found.levels, verdict.accepted
-    tried = partial(_by_model_error, trial, searcher)
-    found, kept, whole = completeness(searcher, found, verdict, deck, tried)
+    found, kept, whole = completeness(searcher, found, verdict, deck)
     if kept:
-        best, p = found.levels[kept], searcher.problem
-        with suppress(TrueupError):
-            best = best if best is old[kept] else _polished(trial, searcher, best)
-            best = sized(structure, observation, trial.sensors, p, best, whole.best.fit.suspects)
-        found = replace(found, levels=(*found.levels[:kept], best, *found.levels[kept + 1 :]))
+        best = found.levels[kept]
+        if best is not old[kept]:
+            with suppress(TrueupError):
+                best = polished(trial.own, searcher.problem, best)
+        found = found.with_level(replace(best, suspects=whole.best.fit.suspects))
     if kept < accepted:
         found = Found(found.levels[: kept + 1], found.rivals[: kept + 1])
         verdict = judge(searcher, found)
         verdict = replace(verdict, accepted=kept)
     return found, verdict, whole
-
-
-def _by_model_error(trial: _Trial, searcher: Searcher, f: Fit) -> Judged | None:
-    """Return a hypothesis as the error of the model judges it, None where it does not solve."""
-    structure, observation = trial.request.structure, _observation(trial)
-    with suppress(TrueupError):
-        return by_model_error(structure, observation, trial.sensors, searcher.problem, f)
-    return None
-
-
-def _polished(trial: _Trial, searcher: Searcher, state: Fit) -> Fit:
-    """Fit a hypothesis on a basis of its own."""
-    observation = _observation(trial)
-    return polished(trial.request.structure, observation, trial.sensors, searcher.problem, state)
-
-
-def _observation(trial: _Trial) -> sp.csr_matrix:
-    """Return what the sensors see of the free degrees of freedom, weighted."""
-    structure, placed = trial.request.structure, trial.request.placed
-    motion = placed.observation.matrix @ structure.model.expansion
-    return sp.csr_matrix(placed.weighted(motion))
 
 
 def _searcher(trial: _Trial) -> Searcher:
@@ -379,7 +371,7 @@ def _searcher(trial: _Trial) -> Searcher:
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, request.effort)
+    return Searcher(small, coarse, active, null.nuisance, size, request.effort, trial.judged)
 
 
 def _missing(

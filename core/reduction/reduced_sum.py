@@ -62,6 +62,16 @@ class ReducedSum:
         """Return the sum on the basis turned by T (r, s)."""
         return replace(self, turn=T if self.turn is None else self.turn @ T)
 
+    def widened(self, V: Floats, W: Floats) -> ReducedSum:
+        """Return the sum on the vectors V, on which it is made, and W (n_free, s)."""
+        n, most = V.shape[1], V.shape[1] + W.shape[1]
+        whole = np.zeros((len(self.terms), most, most))
+        for wide, known, term in zip(whole, self.whole, self.terms, strict=True):
+            response = term.matrix @ W
+            wide[:n, :n], wide[:n, n:], wide[n:, n:] = known, V.T @ response, W.T @ response
+            wide[n:, :n] = wide[:n, n:].T
+        return ReducedSum(self.terms, whole)
+
     def plus(self, change: Floats, parameter: int | None = None) -> ReducedSum:
         """Return the sum with a matrix (r, r) on the basis more, times p - 1 of a `parameter`."""
         none = sp.csr_matrix(self.terms[0].matrix.shape)

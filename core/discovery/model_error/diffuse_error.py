@@ -47,6 +47,11 @@ class Diffuse:
     match: Ints
     stray: Floats
 
+    @property
+    def complete(self) -> bool:
+        """Whether every mode is explained and no error is left that frequencies could tell."""
+        return self.error <= MODEL_ERROR.frequency and not np.any(self.stray > 0.5)
+
 
 @dataclass(frozen=True, eq=False)
 class Seen:

@@ -23,6 +23,7 @@ class ModelErrorNumbers:
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03, 0.1), "rms", "of smooth fields, sizes that are tried")
     usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)
     usual_spread: float = number(1.2, "of ln ε", "standard deviation of them", BY_HAND)
+    adequate: float = number(0.1, "-", "adequacy below which something else is missing")
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
     tolerance: float = number(0.1, "ln L", "gain of such a step that counts")
     dampings: int = number(4, "trials", "of Levenberg's damping a step")

@@ -34,6 +34,11 @@ class Fields:
     stiffness: Floats
     mass: Floats
 
+    def turned(self, T: Floats) -> Fields:
+        """Return the fields on the basis turned by T (≥ r, s); its further vectors are local."""
+        own = T[: self.mass.shape[1]]
+        return Fields(self.names, own.T @ self.stiffness @ own, own.T @ self.mass @ own)
+
 
 def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
     """Return the smooth fields of a structure on a basis (n_free, r), the deck's values moved."""

@@ -14,6 +14,7 @@ from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
+from ..model_error.model_error_numbers import MODEL_ERROR
 from ..posterior.credible_places import Place, between, credible_places
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
@@ -66,7 +67,7 @@ def build_discovery(
     decide = frame_needed(request.placed.alignment) if findings else ()
     sure = verdict.posterior >= NARRATIVE.sure and verdict.foretold > NARRATIVE.contradicted
     sure = sure and whole.clear and not any(map(_says_nothing, findings))
-    adequate = whole.adequacy > NARRATIVE.adequate
+    adequate = whole.adequacy > MODEL_ERROR.adequate
     if findings and sure and adequate and not decide:
         word = "effect"
     elif findings:

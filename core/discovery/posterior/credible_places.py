@@ -39,14 +39,18 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
     trials = c.around(suspect.theta, np.array(POSTERIOR.sizes))
     score = scan(small, here, suspect.kind, rows, trials)
-    chosen = np.argsort(score.min(axis=1), kind="stable")[: POSTERIOR.fitted]
-    chosen = np.union1d(chosen, np.flatnonzero(rows == suspect.row))
-    tried = []
-    for i in chosen:
+    order = np.argsort(score.min(axis=1), kind="stable")[: POSTERIOR.fitted]
+    own = np.flatnonzero(rows == suspect.row)
+    tried: list[Fit] = []
+    vain = 0
+    for i in [*own, *order[order != own[0]]]:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
         suspects = (*before, moved, *after)
         tried.append(fit(small, best.nuisance, suspects, searcher.active, POSTERIOR.steps))
-    least = min(f.objective for f in tried)
+        least = min(f.objective for f in tried)
+        vain = 0 if tried[-1].objective - least < SEARCH.credible * scale else vain + 1
+        if vain == POSTERIOR.in_vain:
+            break
     kept = [f for f in tried if f.objective - least < SEARCH.credible * scale]
     weight = np.exp([-0.5 * (f.objective - least) / scale for f in kept])
     share = (weight / weight.sum()).tolist()

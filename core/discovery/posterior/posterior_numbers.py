@@ -13,6 +13,7 @@ class PosteriorNumbers:
     most: int = number(400, "places", "of them, at most", "time")
     sizes: tuple[float, ...] = number((-0.6, -0.3, 0.0, 0.3, 0.6), "θ", "steps of the magnitude with which they are")
     fitted: int = number(30, "places", "at which all else follows, the most promising")
+    in_vain: int = number(8, "places", "one after the other that are not credible, after which no more are fitted", "time")
     steps: int = number(3, "steps", "in which it does")
     sensors: int = number(3, "sensors", "that are proposed, at most", "what a reader takes in")
     sensors_apart: float = number(0.1, SIZE, "how far apart they are")

@@ -46,6 +46,10 @@ class Compliance:
         each = [self._factor.compliances(loads[some].T.toarray()) for some in parts]
         return np.concatenate(each)
 
+    def responses(self, loads: Floats) -> Floats:
+        """Return (K − σM)⁻¹ L of loads L (n_free, n)."""
+        return np.asarray(self._factor.solve(np.ascontiguousarray(loads)))
+
     def among(self, loads: sp.csr_matrix) -> Floats:
         """Return L (K − σM)⁻¹ Lᵀ of the rows of `loads` L (n, n_free), (n, n)."""
         n = loads.shape[0]

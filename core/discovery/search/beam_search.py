@@ -30,6 +30,11 @@ class Found:
     levels: tuple[Fit, ...]
     rivals: tuple[tuple[Fit, ...], ...]
 
+    def with_level(self, f: Fit) -> Found:
+        """Return the same with another best hypothesis of as many suspects."""
+        k = len(f.suspects)
+        return Found((*self.levels[:k], f, *self.levels[k + 1 :]), self.rivals)
+
     def with_rivals(self, fits: Iterable[Fit]) -> Found:
         """Return the same with further rivals, each to those of as many suspects."""
         rivals = [list(level) for level in self.rivals]
@@ -43,17 +48,20 @@ def grown(
     enough: Callable[[Fit, Fit, float], bool],
     progress: Callable[[str], None] = lambda _: None,
     first: Sequence[Fit] = (),
+    explains: Callable[[Fit], bool] = lambda _: False,
 ) -> Found:
     """Grow the beam until one more suspect no longer earns its place.
 
     ``enough(previous, next, share)`` says whether the richer fit is not worth that share of what
     its suspects cost; `first` are hypotheses of no suspect, one and more, the last of which is
-    grown.
+    grown; ``explains(fit)`` ends the search where a hypothesis leaves nothing to explain.
     """
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]
     beam = levels[-1:]
     for depth in range(len(levels), searcher.effort.most + 1):
+        if explains(levels[-1]):
+            break
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
         for state in beam:

@@ -7,29 +7,18 @@ more than it could have been anywhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...arrays import Floats
 from ...errors import CheckError
-from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from .beam_search import Found
-from .model_selection import Judgement, choices, contenders, cost
+from .model_selection import Judgement, contenders, cost, needed, scored
 from .moves import Searcher
 from .search_numbers import SEARCH
-
-
-@dataclass(frozen=True, eq=False)
-class Scored:
-    """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""
-
-    fit: Fit
-    judged: Judged | None
-    score: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,35 +80,18 @@ class Completeness:
         return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.stray > 0.5))
 
 
-def scored(searcher: Searcher, f: Fit, judge: Callable[[Fit], Judged | None]) -> Scored:
-    """Return a hypothesis with its evidence, less ln of the number of choices it had."""
-    judged = judge(f)
-    paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
-
-
-def needed(error: float) -> float:
-    """Return the gain, ln of a likelihood, that an effect needs beside an error that is left.
-
-    The larger the error, the more of it the likeliest place of the likeliest kind takes up.
-    """
-    return SEARCH.claimed * (1.0 + error / SEARCH.imitated)
-
-
 def completeness(
     searcher: Searcher,
     found: Found,
     verdict: Judgement,
     deck: Judged,
-    judge: Callable[[Fit], Judged | None],
 ) -> tuple[Found, int, Completeness]:
     """Return the best of what was found, the number of its suspects, and how well it explains.
 
     The levels up to the accepted one compete, then what is found with the nearest rivals. `deck`
-    is how likely the test is by the deck as it is; ``judge(fit)`` says that of hypotheses, None of
-    one whose model does not solve.
+    is how likely the test is by the deck as it is.
     """
-    levels = [scored(searcher, f, judge) for f in found.levels[: verdict.accepted + 1]]
+    levels = [scored(searcher, f) for f in found.levels[: verdict.accepted + 1]]
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
         least = needed(level.judged.diffuse.error) if kept and level.judged else SEARCH.suspect
@@ -129,7 +101,7 @@ def completeness(
         contenders(searcher, found, kept), key=lambda f: cost(searcher, f, verdict.scale)
     )
     tried = [f for f in tried if len(f.suspects) == kept][: SEARCH.rivals_judged if kept else 0]
-    others = (scored(searcher, f, judge) for f in tried)
+    others = (scored(searcher, f) for f in tried)
     field = sorted([levels[kept], *others], key=lambda s: -s.score)
     best, alone = field[0], levels[0]
     ahead = best.score - field[1].score if len(field) > 1 else np.inf

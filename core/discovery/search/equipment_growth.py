@@ -7,7 +7,7 @@ then with its centre off the structure and other radii of gyration, in steps tha
 have to gain more than four further unknowns are worth.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,23 +47,28 @@ def _one(
     """Return a hypothesis with equipment in place of one mass, None where that is not worth it."""
     s, least = state.suspects[q], SEARCH.equipment_steps[-1] * searcher.size
     body = Body((0.0, 0.0, 0.0), least)
-    found: list[tuple[float, int, Candidates, list[Stand], Searcher, Fit]] = []
     if block is not None:
         radius = block * float(np.exp(s.theta[0] / 3.0)) / float(np.sqrt(6.0))
         body = replace(body, radius=radius)
-    for c, row in _places(searcher, s):
-        stands = _stands(structure, c, row)
-        if stands:
-            _, wide, fit = _best(searcher, state, q, c, stands, [body], state)
-            found.append((fit.objective, len(found), c, stands, wide, fit))
+    places = [(c, _stands(structure, c, row)) for c, row in _places(searcher, s)]
+    looked = [
+        (c, stands, _looked(searcher, state, q, c, stands, [body], state))
+        for c, stands in places
+        if stands
+    ]
+    looked.sort(key=lambda place: float(place[2].score.min()))
+    found = []
+    for c, stands, look in looked[: SEARCH.equipment_tried]:
+        _, wide, fit = _fitted(look, state, q, state)
+        found.append((fit.objective, c, stands, wide, fit))
     if not found:
         return None
-    found.sort()
-    _, _, c, stands, wide, fit = found[0]
+    found.sort(key=lambda place: place[0])
+    _, _, _, wide, fit = found[0]
     known = block is not None and fit.objective < state.objective
     best = (wide, fit) if known else None
     enough = state.misfit > scale * SEARCH.equipment_gain
-    for _, _, c, stands, _, _ in found[: SEARCH.equipment_tried] if enough else ():
+    for _, c, stands, _, _ in found if enough else ():
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
         if fit.objective < now.objective - scale * SEARCH.equipment_gain:
@@ -109,7 +114,8 @@ def _grown(
         for _ in range(SEARCH.equipment_rounds):
             tried = _around(body, step * searcher.size)
             now = state if best is None else best[1]
-            k, wide, fit = _best(searcher, state, q, template, stands, tried, now)
+            look = _looked(searcher, state, q, template, stands, tried, now)
+            k, wide, fit = _fitted(look, state, q, now)
             if best is not None and fit.objective > best[1].objective - SEARCH.better:
                 break
             body, best = tried[k], (wide, fit)
@@ -119,7 +125,16 @@ def _grown(
     return best
 
 
-def _best(
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """Bodies in place of one mass: the search that knows them, what each size promises."""
+
+    searcher: Searcher
+    trials: Floats
+    score: Floats
+
+
+def _looked(
     searcher: Searcher,
     state: Fit,
     q: int,
@@ -127,19 +142,25 @@ def _best(
     stands: list[Stand],
     bodies: list[Body],
     now: Fit,
-) -> tuple[int, Searcher, Fit]:
-    """Return which of some bodies fits best in place of one mass, the search and the fit with it.
-
-    `now` is the best fit so far, with a body or without. Those that promise most with all else as
-    it stands are fitted, from a lighter mass as well: which test mode is which may hang on it.
-    """
+) -> _Look:
+    """Look at bodies in place of one mass with all else as it stands in the best fit so far."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
     made = equipment(template, stands, bodies)
     wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
     small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
     trials = made.around(now.suspects[q].theta, np.array(SEARCH.equipment_sizes))
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
-    near, fits = wide.local(state)[0], []
+    return _Look(wide, trials, score)
+
+
+def _fitted(look: _Look, state: Fit, q: int, now: Fit) -> tuple[int, Searcher, Fit]:
+    """Return which of the bodies fits best in place of one mass, the search and the fit with it.
+
+    Those that promise most are fitted, from a lighter mass as well: which test mode is which may
+    hang on it.
+    """
+    wide, trials, score = look.searcher, look.trials, look.score
+    kind, near, fits = len(wide.problem.catalogue) - 1, wide.local(state)[0], []
     for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
         for theta in (trials[score[row].argmin()], trials[0]):
             new = Suspect(kind, row, tuple(theta.tolist()))

@@ -11,6 +11,9 @@ from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
+from ..model_error.adequacy import adequacy
+from ..model_error.diffuse_fit import Judged
+from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -146,18 +149,64 @@ def _foretold(searcher: Searcher, levels: Sequence[Fit], accepted: int) -> float
     return (before or 0.0) - (now or 0.0)
 
 
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""
+
+    fit: Fit
+    judged: Judged | None
+    score: float
+
+
+def scored(searcher: Searcher, f: Fit) -> Scored:
+    """Return a hypothesis with its evidence, less ln of the number of choices it had."""
+    judged = searcher.judged(searcher.problem, f)
+    paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
+    return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
+
+
+def needed(error: float) -> float:
+    """Return the gain, ln of a likelihood, that an effect needs beside an error that is left.
+
+    The larger the error, the more of it the likeliest place of the likeliest kind takes up.
+    """
+    return SEARCH.claimed * (1.0 + error / SEARCH.imitated)
+
+
+def complete(searcher: Searcher, f: Fit) -> bool:
+    """Whether a hypothesis leaves no error that could be told from scatter."""
+    if noise_scale(searcher.problem, f) > SEARCH.complete:
+        return False
+    judged = searcher.judged(searcher.problem, f)
+    return judged is not None and judged.diffuse.complete
+
+
+def adequate(searcher: Searcher, f: Fit) -> bool:
+    """Whether a hypothesis leaves an error as right models do, and hardly a mode unexplained."""
+    judged = searcher.judged(searcher.problem, f)
+    if judged is None:
+        return False
+    left = judged.diffuse
+    strays = np.count_nonzero(left.stray > 0.5) <= SEARCH.strays * len(left.stray)
+    return bool(strays and adequacy(left.error) > MODEL_ERROR.adequate)
+
+
 def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     """Return the rule that ends the search: one more suspect is not worth its price.
 
     What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
-    the assumed one here; `judge` weighs again with what the best hypothesis leaves.
+    the assumed one here, unless the poorer one is adequate; `judge` weighs again with what the best
+    hypothesis leaves.
     """
 
     def rule(previous: Fit, best: Fit, share: float) -> bool:
-        scale = min(noise_scale(searcher.problem, best), SEARCH.most_noise)
+        scale = noise_scale(searcher.problem, best)
         added = burden(searcher, best) - burden(searcher, previous)
         added = max(added, *(price(searcher, s) for s in best.suspects))
-        return (previous.objective - best.objective) / scale < share * added
+        gain = (previous.objective - best.objective) / (share * added)
+        if gain >= scale or gain < min(scale, SEARCH.most_noise):
+            return gain < scale
+        return bool(previous.suspects) and adequate(searcher, previous)
 
     return rule
 

@@ -5,7 +5,7 @@ of its own eigenvectors; suspects are fitted together, moved to better neighbour
 one is taken out and looked for anew.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..effects.candidates import Suspect, beside as stretches_beside
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
+from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
 from .coarse_scan import look
 from .exact_scan import best_apart, scan
@@ -25,7 +26,8 @@ from .search_numbers import SEARCH
 class Searcher:
     """The search with what it needs at every step.
 
-    `coarse` holds for every kind the rows that a first scan looks at.
+    `coarse` holds for every kind the rows that a first scan looks at; ``judged(problem, fit)`` is a
+    hypothesis as the error of the model judges it, None where its model does not solve.
     """
 
     problem: Problem
@@ -34,6 +36,7 @@ class Searcher:
     start: Floats
     size: float
     effort: Effort
+    judged: Callable[[Problem, Fit], Judged | None] = lambda *_: None
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""

@@ -1,106 +1,107 @@
-"""Fit a hypothesis once more on a basis made for it alone.
+"""Fit a hypothesis once more on a basis made for it.
 
 The basis of the search is the same for every place, so it lacks what a heavy mass or a stiff
-spring does in its own neighbourhood. Here the modes are those of the model with the effects in
-it, and the static response to each effect and each parameter is added.
+spring does in its own neighbourhood. Here the static response to each effect stands beside the
+modes of the deck and its responses to the known parameters.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Bools, Floats
-from ...data.parametric_model import Model
-from ...eigen.normal_modes import solve
-from ...numerics.factorisation import factorise
+from ...errors import CheckError
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
-from ..likelihood.map_fit import evaluate, fit, on_whole_test
+from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
 from ..likelihood.mode_likelihood import targets
 from ..model_error.diffuse_fit import Judged, everything, judged, with_drift
-from ..model_error.smooth_fields import smooth_fields
+from ..model_error.smooth_fields import Fields, smooth_fields
 from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
-from ..reduction.search_basis import Basis, basis_on, beside, with_answers
+from ..reduction.reduction_numbers import REDUCTION
+from ..reduction.residual_flexibility import Compliance
+from ..reduction.search_basis import Basis, beside, structural
 from .model_selection import noise_scale
 from .search_numbers import SEARCH
 
 
-def polished(
-    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
-) -> Fit:
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What every hypothesis is fitted on.
+
+    Parameters
+    ----------
+    structure : Structure
+    basis : Basis
+        Modes of the deck and its responses to the known parameters, masses as the deck has them.
+    compliance : Compliance
+    observation : (n_sensor, n_free) sparse
+        Of all sensors, weighted.
+    seen : (n_sensor,) bool
+        Those of the evidence.
+    """
+
+    structure: Structure
+    basis: Basis
+    compliance: Compliance
+    observation: sp.csr_matrix
+    seen: Bools
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Smooth fields on the basis."""
+        return smooth_fields(self.structure, self.basis.vectors)
+
+    @cached_property
+    def mass(self) -> sp.csr_matrix:
+        """The deck's mass matrix, (n_free, n_free)."""
+        return self.structure.model.M()
+
+
+def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """Return the fit with parameters and magnitudes fitted on a basis of its own.
 
-    `observation` (n_sensor, n_free) is of all sensors, `seen` (n_sensor,) are those of the
-    evidence; the laws of the problem's catalogue are not yet fitted to any basis.
+    The laws of the problem's catalogue are not yet fitted to any basis.
     """
-    own, basis, start = _own_problem(structure, observation, seen, problem, state)
-    new = _refitted(own, state, start)
-    return replace(
-        on_whole_test(own, new),
-        suspects=_back(state, new),
-        in_deck=_in_deck(replace(own, basis=basis), new),
-    )
-
-
-def sized(
-    structure: Structure,
-    observation: sp.csr_matrix,
-    seen: Bools,
-    problem: Problem,
-    state: Fit,
-    suspects: Sequence[Suspect],
-) -> Fit:
-    """Return a polished fit with magnitudes that were found otherwise, those of its `suspects`.
-
-    The known parameters for a deck are fitted beside these. The other arguments are those of
-    `polished`.
-    """
-    moved = replace(state, suspects=tuple(suspects))
-    own, basis, start = _own_problem(structure, observation, seen, problem, moved)
-    return replace(
-        moved, in_deck=_in_deck(replace(own, basis=basis), replace(moved, suspects=start))
-    )
-
-
-def refitted(
-    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
-) -> Fit:
-    """Return the fit as `polished` does, but for what a deck would hold of it."""
-    own, _, start = _own_problem(structure, observation, seen, problem, state)
-    new = _refitted(own, state, start)
-    return replace(new, suspects=_back(state, new))
-
-
-def _refitted(own: Problem, state: Fit, start: Sequence[Suspect]) -> Fit:
+    own, start = _own_problem(ground, problem, state)
     active = tuple(range(len(state.nuisance)))
-    return fit(own, state.nuisance, start, active, SEARCH.steps_polished)
+    new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
+    return replace(on_whole_test(own, new), suspects=_back(state, new))
 
 
-def by_model_error(
-    structure: Structure,
-    observation: sp.csr_matrix,
-    seen: Bools,
-    problem: Problem,
-    state: Fit,
-    moving: bool = True,
-) -> Judged:
-    """Return a fit as the whole test and the diffuse error judge it, on a basis of its own.
+def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
+    """Return a fit that knows its known parameters for a deck, the effects as found.
+
+    A deck has neither the trend for the error of the mesh nor masses better than its elements':
+    moduli, thicknesses and inertias have to absorb both.
+    """
+    own, start = _own_problem(ground, problem, state, as_deck=True)
+    return replace(state, in_deck=_in_deck(own, replace(state, suspects=start)))
+
+
+def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = True) -> Judged:
+    """Return a fit as the whole test and the diffuse error judge it, on modes of its own.
 
     Parameters and smooth fields of stiffness and mass move along; where nothing is `moving`, the
-    error of the mesh alone. The other arguments are those of `polished`.
+    error of the mesh alone.
     """
-    own, _, start = _own_problem(structure, observation, seen, problem, state)
-    whole = own.entire()
-    vectors = own.basis.vectors
-    here = evaluate(whole, state.nuisance, start)
+    own, start = _own_problem(ground, problem, state)
+    size = min(SEARCH.own_times * own.modes, own.basis.size)
+    _, modes = solve(own, state.nuisance, start, size)
+    T = structural(*np.split(modes, [own.basis.size]))
+    small = replace(own, basis=own.basis.bare()).turned(T).entire()
+    here = evaluate(small, state.nuisance, start)
     if moving:
-        found = with_drift(whole, here, lambda: smooth_fields(structure, vectors))
+        found = with_drift(small, here, lambda: ground.fields.turned(T))
     else:
-        found = judged(whole, here, everything(whole)[-1:])
+        found = judged(small, here, everything(small)[-1:])
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
 
 
@@ -111,34 +112,69 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
 
 
 def _own_problem(
-    structure: Structure, observation: sp.csr_matrix, seen: Bools, problem: Problem, state: Fit
-) -> tuple[Problem, Basis, tuple[Suspect, ...]]:
-    """Return the problem on a basis of its own, that basis as the deck has it, and a start."""
-    top = float(targets(problem.whole).max())
-    basis, chosen, modes = _own_basis(structure.model, problem.catalogue, state, top)
-    everywhere = np.asarray(observation @ basis.vectors)
+    ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
+) -> tuple[Problem, tuple[Suspect, ...]]:
+    """Return the problem on a basis of its own, masses better than a deck's or not, and a start."""
+    wide = [(problem.catalogue[s.kind], s.row) for s in state.suspects]
+    basis = _widened(ground, wide, problem.columns)
+    everywhere = np.asarray(ground.observation @ basis.vectors)
+    top = SEARCH.own_above * float(targets(problem.whole).max())
+    modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     own = replace(
         problem,
-        basis=with_consistent_bars(structure, basis),
-        sensors=everywhere[seen],
+        basis=basis if as_deck else with_consistent_bars(ground.structure, basis),
+        sensors=everywhere[ground.seen],
         everywhere=everywhere,
-        mesh=lumping(structure, basis.vectors),
-        catalogue=tuple(c for c, _ in chosen),
-        factors=tuple(U for _, U in chosen),
+        mesh=lumping(ground.structure, basis.vectors),
+        catalogue=tuple(_alone(c, row, state) for c, row in wide),
+        factors=tuple(_factor(c, row, basis.vectors)[None] for c, row in wide),
         missing=(),
         modes=min(basis.size, max(modes, problem.columns)),
         turn=None,
         rest=None,
     )
-    return own, basis, tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
+    start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
+    values = evaluate(own, state.nuisance, start).eigenvalues
+    if values[0] < -SEARCH.rigid * values[-1]:
+        raise CheckError("the completed model has a negative stiffness")
+    return own, start
+
+
+def _widened(ground: Ground, places: Sequence[tuple[Candidates, int]], columns: int) -> Basis:
+    """Return the basis with the static responses to effects."""
+    basis, V = ground.basis, ground.basis.vectors
+    loads = [
+        _root(c, row).T.toarray() if c.rows_each else c.full(row) @ V[:, :columns]
+        for c, row in places
+    ]
+    if not loads:
+        return replace(basis, motion=np.zeros((0, basis.size)))
+    X = ground.compliance.responses(np.hstack(loads))
+    W = beside(X, V, ground.mass, REDUCTION.dependent)
+    both = np.hstack([V, W])
+    stiffness, mass = (s.widened(V, W) for s in (basis.stiffness, basis.mass))
+    return Basis(both, np.zeros((0, both.shape[1])), stiffness, mass)
+
+
+def _root(c: Candidates, row: int) -> sp.csr_matrix:
+    return c.root[row * c.rows_each : (row + 1) * c.rows_each]
+
+
+def _factor(c: Candidates, row: int, V: Floats) -> Floats:
+    """Return rows (q, r) whose outer products are the matrix of one place on a basis."""
+    if c.rows_each:
+        return np.asarray(_root(c, row) @ V)
+    values, vectors = np.linalg.eigh(V.T @ (c.full(row) @ V))
+    return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))).T)
+
+
+def _alone(c: Candidates, row: int, state: Fit) -> Candidates:
+    law = c.law.on_basis(np.array([row]), None, state.log_p, 0.0)
+    return replace(c, xyz=c.xyz[[row]], law=law, where=(c.where[row],))
 
 
 def _in_deck(own: Problem, found: Fit) -> InDeck:
-    """Return the known parameters for a deck, the effects as found.
-
-    A deck has neither the trend for the error of the mesh nor masses better than its elements':
-    moduli, thicknesses and inertias have to absorb both.
-    """
+    """Return the known parameters of a fit for a deck, its effects held as they are."""
     held = tuple(
         replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), SEARCH.held))
         for c, s in zip(own.catalogue, found.suspects, strict=True)
@@ -154,57 +190,3 @@ def _in_deck(own: Problem, found: Fit) -> InDeck:
     start = np.append(known.alone, 0.0)
     alone = fit(own, start, found.suspects, clear, SEARCH.steps_polished)
     return replace(known, alone=alone.log_p)
-
-
-def _own_basis(
-    model: Model, catalogue: Sequence[Candidates], state: Fit, top: float
-) -> tuple[Basis, list[tuple[Candidates, Floats]], int]:
-    p = np.exp(state.log_p)
-    K, M = model.K(p), model.M(p)
-    loads = []
-    for s in state.suspects:
-        c = catalogue[s.kind]
-        A = c.full(s.row)
-        if c.rows_each:
-            root = c.root[s.row * c.rows_each : (s.row + 1) * c.rows_each]
-            value = c.law.value(np.array([s.theta]), np.array([s.row]))[0]
-            change = (root.T @ sp.diags(np.broadcast_to(value, c.rows_each)) @ root).tocsr()
-            loads.append(root.T.toarray())
-        else:
-            change = float(c.law.value(np.array([s.theta]), np.array([s.row]))[0, 0]) * A
-            loads.append(A)
-        if c.law.on == "K":
-            K = (K + change).tocsr()
-        elif c.law.on == "M":
-            M = (M + change).tocsr()
-    modes = int(np.count_nonzero(state.eigenvalues < SEARCH.own_above * top)) + SEARCH.own_more
-    solution = solve((K, M), n_modes=modes, count=False)
-    phi = solution.vectors
-    values = solution.eigenvalues
-    elastic = values > SEARCH.rigid * values.max()
-    asked = phi[:, elastic & (values < SEARCH.own_reached * top)]
-    shift = SEARCH.own_shift * float(values[elastic].min())
-    A = factorise((K + shift * M).tocsr(), definite=True)
-    local = [x if isinstance(x, np.ndarray) else x @ asked for x in loads]
-    V = np.asarray(phi)
-    if local:
-        X = A.solve(np.ascontiguousarray(np.hstack(local)))
-        V = np.hstack([V, beside(X, V, M, SEARCH.own_dependent)])
-    V = with_answers(model, p, V, asked, M, A)
-    basis = basis_on(model, V, np.zeros((0, V.shape[1])))
-    chosen = []
-    for s in state.suspects:
-        c = catalogue[s.kind]
-        if c.rows_each:
-            U = np.asarray(c.root[s.row * c.rows_each : (s.row + 1) * c.rows_each] @ V)
-        else:
-            values, vectors = np.linalg.eigh(V.T @ (c.full(s.row) @ V))
-            U = (vectors * np.sqrt(np.maximum(values, 0.0))).T
-        one = replace(
-            c,
-            xyz=c.xyz[[s.row]],
-            law=c.law.on_basis(np.array([s.row]), None, state.log_p, 0.0),
-            where=(c.where[s.row],),
-        )
-        chosen.append((one, U[None]))
-    return basis, chosen, phi.shape[1]

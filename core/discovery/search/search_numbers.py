@@ -77,7 +77,8 @@ class SearchNumbers:
     beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
     same_effect: float = number(40.0, LN, "what the second of them must gain more")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")
-    most_noise: float = number(3.0, "of the assumed variance", "by which the end of the search is judged, at most")
+    complete: float = number(2.0, "of the assumed variance", "what a hypothesis leaves at most of which it is asked whether it leaves any error", "time")
+    most_noise: float = number(3.0, "of the assumed variance", "by which the end of the search is judged, at most, of hypotheses that are not adequate")
     overlooked: float = number(4.0, LN, "price of a mode that the test did not see", "one mode in seven is overlooked: 2 ln 7")
     credible: float = number(6.0, LN, "explanations no further behind are told", "likelihood ratio of exp(3)")
     explains: float = number(4.0, LN, "a suspect explains a mode whose misfit it lowers by this", "two standard deviations")
@@ -110,10 +111,8 @@ class SearchNumbers:
     foot_reach: float = number(2.6, "sides of an element", "around a place that footprints may lie")
     own_above: float = number(1.6, "of the test's highest eigenvalue", "up to which a hypothesis gets modes of its own")
     own_more: int = number(8, "modes", "more than these")
-    own_reached: float = number(1.2, "of the test's highest eigenvalue", "up to which modes get static responses to parameters")
-    own_dependent: float = number(1e-13, "of the squared length", "static response to an effect that is new beside the modes", ROUNDING)
-    own_shift: float = number(0.25, "of the lowest elastic eigenvalue", "shift of its static responses")
-    rigid: float = number(1e-6, "of the largest eigenvalue", "below which a mode has no strain", ROUNDING)
+    own_times: int = number(2, "times", "as many make the basis on which a hypothesis is weighed", "time")
+    rigid: float = number(1e-6, "of the largest eigenvalue", "by which the lowest of a completed model may lie below zero", ROUNDING)
     held: float = number(1e-3, "θ", "standard deviation of a magnitude that is to stay")
 
 

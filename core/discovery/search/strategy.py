@@ -9,6 +9,7 @@ does so too where something was found in a model small enough for a second opini
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit, softened
 from ..likelihood.map_fit import fit
 from .beam_search import Found, grown
-from .model_selection import cost, enough, noise_scale, with_unseen
+from .model_selection import adequate, complete, cost, enough, noise_scale, with_unseen
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -48,11 +49,13 @@ def _by_tuning(searcher: Searcher, progress: Callable[[str], None]) -> Found:
     """Search with simple kinds, and with all where a tuned one does clearly better."""
     tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
     found = _simple(_with(searcher, [not t for t in tuned]), progress)
-    if not any(tuned):
-        return found
-    progress("looking for absorbers beside what was found")
     costs = _costs(searcher, found, found)
     best = int(np.argmin(costs))
+    if not any(tuned) or complete(searcher, found.levels[-1]):
+        return found
+    if best and adequate(searcher, found.levels[best]):
+        return found
+    progress("looking for absorbers beside what was found")
     alone = _with(searcher, tuned)
     beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
     scale = _scale(searcher, found, found)
@@ -68,7 +71,9 @@ def _by_tuning(searcher: Searcher, progress: Callable[[str], None]) -> Found:
 
 def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
     """Search with simple kinds; where much is left, by a wider noise first as well."""
-    found = grown(searcher, enough(searcher), progress)
+    found = grown(searcher, enough(searcher), progress, explains=partial(complete, searcher))
+    if complete(searcher, found.levels[-1]):
+        return found
     scale, best = _scale(searcher, found, found), int(np.argmin(_costs(searcher, found, found)))
     if scale < SEARCH.second_opinion or (best and not _small(searcher)):
         return found

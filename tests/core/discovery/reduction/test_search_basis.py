@@ -45,6 +45,12 @@ def test_the_reduced_sum_is_the_full_sum_on_the_turned_basis(turn):
     np.testing.assert_allclose(own.at(P), (V @ turn).T @ (full @ (V @ turn)), atol=1e-10)
 
 
+def test_a_sum_on_more_vectors_is_that_on_all_of_them():
+    W = RNG.normal(size=(30, 2))
+    wide = reduced_sum(TERMS, V).widened(V, W)
+    np.testing.assert_allclose(wide.whole, reduced_sum(TERMS, np.hstack([V, W])).whole, atol=1e-12)
+
+
 def test_the_slopes_are_those_of_the_sum():
     own = reduced_sum(TERMS, V)
     for slope, step in zip(own.slopes(P, [1, 0]), (1e-6 * np.eye(2))[::-1], strict=True):

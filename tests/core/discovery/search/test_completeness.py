@@ -54,17 +54,18 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped():
     one = Some(kind=0)
     levels = [Some(suspects=()), Some(suspects=(one,)), Some(suspects=(one, one))]
     kind = Some(kind="mass", tunings=1)
-    searcher = Some(
-        problem=Some(catalogue=[kind], whole=Some(frequencies_hz=HZ)), coarse=[np.arange(100)]
-    )
     evidence = {0: 0.0, 1: 30.0, 2: 40.0}
+    searcher = Some(
+        problem=Some(catalogue=[kind], whole=Some(frequencies_hz=HZ)),
+        coarse=[np.arange(100)],
+        judged=lambda _, f: judged(np.zeros(10), evidence=evidence[len(f.suspects)]),
+    )
     none = judged(np.zeros(10))
     _, kept, said = completeness(
         searcher,
         Some(levels=levels, rivals=((), (), ())),
         Some(accepted=2, scale=1.0),
         none,
-        lambda f: judged(np.zeros(10), evidence=evidence[len(f.suspects)]),
     )
     assert kept == 1
     assert said.gain == pytest.approx(30.0 - np.log(100))

@@ -1,6 +1,8 @@
 """Searching and judging on a string of beads, where the truth is in the catalogue."""
 
 from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace as Some
 
 import numpy as np
 import pytest
@@ -10,7 +12,15 @@ from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.posterior.credible_places import Place, between, credible_places
 from trueup.core.discovery.search.beam_search import Found, grown
-from trueup.core.discovery.search.model_selection import cost, enough, instead, judge, with_unseen
+from trueup.core.discovery.search.model_selection import (
+    adequate,
+    complete,
+    cost,
+    enough,
+    instead,
+    judge,
+    with_unseen,
+)
 
 
 def found_in(s):
@@ -115,3 +125,31 @@ def test_a_rival_of_another_kind_that_fits_as_well_is_told():
     assert (other.kind, other.row) == (1, 7)
     assert weight == pytest.approx(np.exp(-1.0), rel=1e-6)
     assert verdict.posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), rel=1e-3)
+
+
+def leaving(error, stray=0.0):
+    left = Some(error=error, stray=np.full(10, stray), complete=error < 1e-3)
+    return lambda *_: Some(diffuse=left)
+
+
+def test_a_search_ends_where_nothing_is_left_to_explain():
+    s = replace(searcher(hidden(masses=[(7, 2.0)])), judged=leaving(5e-4))
+    found = grown(s, enough(s), explains=partial(complete, s))
+    assert [len(f.suspects) for f in found.levels] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("error", "stray", "is_adequate"), [(0.002, 0.0, True), (0.1, 0.0, False), (0.002, 1.0, False)]
+)
+def test_a_hypothesis_is_adequate_that_leaves_what_right_models_do(error, stray, is_adequate):
+    s = replace(searcher(hidden()), judged=leaving(error, stray))
+    assert adequate(s, s.null()) is is_adequate
+
+
+def test_what_an_adequate_hypothesis_leaves_is_noise():
+    s = searcher(hidden(masses=[(7, 2.0)]), scatter=(0.03, 0.2))
+    null = s.null()
+    one = fit(s.problem, null.nuisance, (Suspect(0, 7, (0.7,)),), (0,), 20)
+    worse = replace(one, objective=one.objective + 150.0)
+    assert not enough(replace(s, judged=leaving(0.1)))(worse, one, 1.0)
+    assert enough(replace(s, judged=leaving(0.002)))(worse, one, 1.0)
