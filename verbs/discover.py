@@ -19,14 +19,13 @@ from ..core.discovery.likelihood.frf_evidence import place_responses
 from ..core.discovery.reduction.elements_and_supports import Structure
 from ..core.discovery.screening.completed_model import (
     SolvedModel,
-    borne_out,
     upheld,
     written,
 )
 from ..core.discovery.screening.mode_selection import reference_modes, said_of_others, vibrating
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import InputError
-from ..core.localisation.error_localisation import Disagreement, agrees, disagreement
+from ..core.localisation.error_localisation import Disagreement, disagreement
 from ..core.results.correlation import compared
 from ..core.results.discovery import JudgementTable, gap_table
 from ..core.results.evidence import damping_table, misfit_table, response_table
@@ -111,7 +110,6 @@ def discover(
     progress("discovering")
     request, unplaced = _request(deck, structure, known.spreads, solution, before, side, elastic)
     found = core.discover(request, progress)
-    found = borne_out(found, maps is not None and agrees(before, maps))
     progress("completing the deck and solving it again")
 
     def completed(found: Discovery) -> CompletedDeck:
@@ -120,7 +118,7 @@ def discover(
             len(before.analysis),
         )  # fmt: skip
 
-    found, done = upheld(written(found, "significant"), before, completed)
+    found, done = upheld(written(found, "significant"), completed)
     if asked.adopt != "significant":
         found = written(found, asked.adopt)
         done = completed(found)

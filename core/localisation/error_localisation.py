@@ -73,15 +73,6 @@ class Disagreement(Noun):
     total: float
 
 
-def agrees(compared: Comparison, found: Disagreement) -> bool:
-    """Whether every mode of a test pairs and agrees in frequency and shape within its scatter."""
-    within = [np.abs(d).max(initial=0.0) for d in (found.misfit.by_mode, found.misfit.frequency)]
-    whole = (
-        len(compared.correlation.pairs) >= MAPS.enough and not compared.correlation.unpaired_test
-    )
-    return bool(whole and max(within) <= MAPS.within)
-
-
 def disagreement(
     compared: Comparison,
     groups: Sequence[ElementGroup],

@@ -15,8 +15,6 @@ class LocalisationNumbers:
     few_sensors: int = number(6, "sensors", "below which noise cannot be judged", CHECK)
     shape_noise: float = number(0.03, "of the rms of a shape", "noise where it cannot", "modal tests")
     rigid: float = number(1e-3, "of the highest frequency", "below which a mode is one of a rigid body", CHECK)
-    within: float = number(2.0, "standard deviations", "within which every mode of a test agrees", "normal distribution")
-    enough: int = number(6, "modes", "that it takes to say so", CHECK)
 
     near: float = number(0.1, "of f", "modes no further apart mix too readily to say where", CHECK)
     frequency: float = number(0.005, "of f", "standard deviation of a frequency", "modal tests")

@@ -65,8 +65,7 @@ def build_discovery(
     moved = _moved(best, verdict.scale)
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
-    sure = verdict.posterior >= NARRATIVE.sure and verdict.foretold > NARRATIVE.contradicted
-    sure = sure and whole.clear and not any(map(_says_nothing, findings))
+    sure = whole.clear and not any(map(_says_nothing, findings))
     adequate = whole.adequacy > MODEL_ERROR.adequate
     if findings and sure and adequate and not decide:
         word = "effect"

@@ -9,8 +9,6 @@ SIZE, READER = "of the structure's size", "what a reader takes in"
 
 @dataclass(frozen=True)
 class NarrativeNumbers:
-    sure: float = number(0.8, "-", "posterior of a hypothesis from which on its effects are told as such")
-    contradicted: float = number(-4.0, "2 ln L", "held-out modes and sensors that lose more by the last effect speak against it", "a likelihood ratio of exp(2)")
     off_one: float = number(4.0, "standard deviations", "that a factor is off 1, at most, by the likelihood without it")
     nothing: float = number(0.6, "-", "adequacy of a model below which it is not said to lack nothing")
     matters: float = number(3.0, "ln L", "what known parameters must gain")

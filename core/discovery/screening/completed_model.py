@@ -8,11 +8,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...correlation.comparison import Comparison, Placed
-from ...correlation.mode_pairing import Correlation
 from ...data.dofs import Dofs
 from ...eigen.normal_modes import Eigensolution
 from ...errors import TrueupError
-from ..effects import KINDS
 from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
 from .screening_numbers import SCREENING
@@ -42,24 +40,16 @@ class Completed(Protocol):
 C = TypeVar("C", bound=Completed)
 
 
-def upheld(
-    found: Discovery, before: Comparison, complete: Callable[[Discovery], C]
-) -> tuple[Discovery, C]:
-    """Complete the model; withdraw the verdict where it cannot be, or comes no nearer to the test.
-
-    `before` is of the model as it came, which solves: what does not then is the finding's fault.
-    """
+def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discovery, C]:
+    """Complete the model; withdraw the verdict where it cannot be: the model as it came solves."""
     try:
-        done = complete(found)
+        return found, complete(found)
     except TrueupError as error:
         if found.verdict not in ADOPTED:
             raise
-        found = _undecided(found, f"a deck that solves: completed as found, {error}")
+        why = f"a deck that solves: completed as found, {error}"
+        found = replace(found, verdict="undecided", would_decide=(why, *found.would_decide))
         return found, complete(found)
-    if found.verdict in ADOPTED and no_nearer(before.correlation, done.after.compared.correlation):
-        found = withdrawn(found)
-        done = complete(found)
-    return found, done
 
 
 def written(found: Discovery, adopt: str) -> Discovery:
@@ -79,40 +69,6 @@ def _written(m: MovedParameter, adopt: str) -> MovedParameter:
     taken = adopt == "all" or (adopt == "significant" and m.significant)
     far = abs(m.factor - 1.0) > SCREENING.moved
     return replace(m, written=m.factor if taken and far else 1.0)
-
-
-def borne_out(found: Discovery, agrees: bool) -> Discovery:
-    """Return what was found; nothing where the model as it is agrees with every mode of the test.
-
-    Dampers and faults of sensors show elsewhere and stay.
-    """
-    told = any(f.side == "test" or not KINDS[f.kind].in_modes for f in found.findings)
-    if not agrees or told:
-        return found
-    return replace(found, verdict="no_gap", findings=(), would_decide=())
-
-
-def no_nearer(before: Correlation, after: Correlation) -> bool:
-    """Whether fewer modes pair, or as many with frequencies that are farther off."""
-    was, now = before.mean_abs_deviation_percent, after.mean_abs_deviation_percent
-    if len(after.pairs) != len(before.pairs) or was is None or now is None:
-        return len(after.pairs) < len(before.pairs)
-    return now > was
-
-
-def withdrawn(found: Discovery) -> Discovery:
-    """Return a verdict that the completed model did not bear out."""
-    if found.verdict == "parameters_only":
-        return replace(found, verdict="no_gap")
-    why = (
-        "a finer mesh, or one with consistent mass (PARAM,COUPMASS,1): completed as found, the "
-        "deck came no nearer to the test than it was"
-    )
-    return _undecided(found, why)
-
-
-def _undecided(found: Discovery, why: str) -> Discovery:
-    return replace(found, verdict="undecided", would_decide=(why, *found.would_decide))
 
 
 def sound_test(placed: Placed, found: Discovery, had: Dofs, has: Dofs) -> Placed:

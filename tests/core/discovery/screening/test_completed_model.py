@@ -1,12 +1,11 @@
-"""A verdict that the deck as it is does not bear out."""
+"""A model completed by what was found: one that does not solve, what is written."""
 
 from dataclasses import dataclass, field
-from types import SimpleNamespace
 
 import pytest
 
 from trueup.core.discovery.findings import MovedParameter
-from trueup.core.discovery.screening.completed_model import borne_out, upheld, written
+from trueup.core.discovery.screening.completed_model import upheld, written
 from trueup.core.errors import CheckError
 
 
@@ -18,22 +17,7 @@ class Said:
     parameters: tuple = ()
 
 
-def finding(side, kind):
-    return SimpleNamespace(side=side, kind=kind)
-
-
-MASS = Said("effect", (finding("model", "point_mass"),))
-
-
-def test_nothing_is_missing_where_every_mode_agrees_with_the_deck():
-    assert borne_out(MASS, agrees=True) == Said("no_gap", (), (), ())
-    assert borne_out(MASS, agrees=False) is MASS
-
-
-def test_what_modes_do_not_show_stays():
-    for side, kind in (("test", "sensor_gain"), ("model", "local_damper")):
-        said = Said("effect", (finding(side, kind),))
-        assert borne_out(said, agrees=True) is said
+MASS = Said("effect", ("a mass",))
 
 
 def test_a_completed_deck_that_does_not_solve_is_the_findings_fault():
@@ -42,7 +26,7 @@ def test_a_completed_deck_that_does_not_solve_is_the_findings_fault():
             raise CheckError("the model is a mechanism")
         return "the deck as it is"
 
-    found, done = upheld(MASS, None, complete)
+    found, done = upheld(MASS, complete)
     assert done == "the deck as it is"
     assert found.verdict == "undecided"
     assert found.findings == MASS.findings
@@ -54,7 +38,7 @@ def test_a_deck_that_never_solved_is_not():
         raise CheckError("the model is a mechanism")
 
     with pytest.raises(CheckError, match="mechanism"):
-        upheld(Said("no_gap"), None, complete)
+        upheld(Said("no_gap"), complete)
 
 
 CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)
