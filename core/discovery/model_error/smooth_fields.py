@@ -3,7 +3,8 @@
 Thickness, modulus and density of a real structure are not the same everywhere, and no list of
 effects has that. A field multiplies the matrices of all elements by 1 + a q(x), q a polynomial of
 the position: one amplitude a each for stiffness and mass, of the rms 1 over the structure's mass,
-orthogonal to a change everywhere alike, which is a parameter's.
+orthogonal to a change everywhere alike, which is a parameter's. A structure that was tested free
+hung on something: soft springs all over it, which lift every eigenvalue alike, stand for that.
 """
 
 from __future__ import annotations
@@ -50,6 +51,21 @@ def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
         tuple(f"{what} {w}" for what in ("stiffness", "mass") for w in words),
         np.concatenate([k, none]),
         np.concatenate([none, m]),
+    )
+
+
+SUSPENSION = "a suspension"
+
+
+def suspended(fields: Fields, M: Floats, lowest: float) -> Fields:
+    """Return fields and, last of them, springs to ground in proportion to the mass M (r, r).
+
+    With an amplitude of 1 the structure would swing on them at its `lowest` eigenvalue.
+    """
+    return Fields(
+        (*fields.names, SUSPENSION),
+        np.concatenate([fields.stiffness, lowest * M[None]]),
+        np.concatenate([fields.mass, np.zeros_like(M)[None]]),
     )
 
 

@@ -1,7 +1,11 @@
 """What an error of the model without a place is told as."""
 
+import numpy as np
+
 from ...arrays import Ints
 from ..effects.sentence_parts import mode_ranges
+from ..model_error.diffuse_fit import Drift
+from ..model_error.smooth_fields import SUSPENSION
 from ..search.completeness import Completeness
 from .narrative_numbers import NARRATIVE
 
@@ -17,7 +21,13 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
     if best.drifts and best.evidence - best.plain > NARRATIVE.looks_like:
-        d = best.drifts[0]
-        said.append(f"it looks like {d.name} that drifts by {100.0 * abs(d.amplitude):.2g} %")
+        said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)
+
+
+def _drift(d: Drift) -> str:
+    if d.name == SUSPENSION:
+        share = 100.0 * np.sqrt(abs(d.amplitude))
+        return f"{d.name} on which it swings at {share:.2g} % of its lowest frequency"
+    return f"{d.name} that drifts by {100.0 * abs(d.amplitude):.2g} %"

@@ -22,7 +22,7 @@ from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
 from ..likelihood.mode_likelihood import targets
 from ..model_error.diffuse_fit import Judged, everything, judged, with_drift
-from ..model_error.smooth_fields import Fields, smooth_fields
+from ..model_error.smooth_fields import Fields, smooth_fields, suspended
 from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
 from ..reduction.reduction_numbers import REDUCTION
@@ -89,8 +89,8 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
 def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = True) -> Judged:
     """Return a fit as the whole test and the diffuse error judge it, on modes of its own.
 
-    Parameters and smooth fields of stiffness and mass move along; where nothing is `moving`, the
-    error of the mesh alone.
+    Parameters and smooth fields of stiffness and mass move along, of a free structure its
+    suspension too; where nothing is `moving`, the error of the mesh alone.
     """
     own, start = _own_problem(ground, problem, state)
     size = min(SEARCH.own_times * own.modes, own.basis.size)
@@ -98,8 +98,18 @@ def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = 
     T = structural(*np.split(modes, [own.basis.size]))
     small = replace(own, basis=own.basis.bare()).turned(T).entire()
     here = evaluate(small, state.nuisance, start)
+
+    def fields() -> Fields:
+        known = ground.fields.turned(T)
+        rigid = np.count_nonzero(here.eigenvalues < SEARCH.rigid * here.eigenvalues.max())
+        if rigid < 6:
+            return known
+        return suspended(
+            known, small.basis.M(np.exp(state.log_p)), float(targets(small.whole).min())
+        )
+
     if moving:
-        found = with_drift(small, here, lambda: ground.fields.turned(T))
+        found = with_drift(small, here, fields)
     else:
         found = judged(small, here, everything(small)[-1:])
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))

@@ -1,8 +1,14 @@
 """Polynomials that stiffness and mass drift by."""
 
 import numpy as np
+import pytest
 
-from trueup.core.discovery.model_error.smooth_fields import _polynomials
+from trueup.core.discovery.model_error.smooth_fields import (
+    SUSPENSION,
+    Fields,
+    _polynomials,
+    suspended,
+)
 
 
 def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
@@ -21,3 +27,15 @@ def test_a_flat_structure_has_no_field_across():
     q, names = _polynomials(xyz, np.ones(200))
     assert q.shape == (200, 5)
     assert not any("z" in n for n in names)
+
+
+def test_a_suspension_lifts_every_eigenvalue_by_that_of_its_swinging():
+    values = np.array([0.0, 0.0, 100.0, 900.0, 2500.0])
+    none = np.zeros((0, 5, 5))
+    fields = suspended(Fields((), none, none), np.eye(5), 100.0)
+    assert fields.names == (SUSPENSION,)
+    share = 0.2
+    lifted = np.linalg.eigvalsh(np.diag(values) + share**2 * fields.stiffness[0])
+    assert np.sqrt(lifted[0]) == pytest.approx(share * np.sqrt(100.0))
+    assert lifted - values == pytest.approx(lifted[0])
+    assert not fields.mass.any()
