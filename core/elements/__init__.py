@@ -10,7 +10,7 @@ from .beam import BEAM
 from .curved_shell import QUAD8, TRIA6
 from .element import Element
 from .hexa import HEXA8, HEXA20
-from .lumped import BUSH, GROUNDED_BUSH, MASS, SPRING
+from .lumped import BUSH, GENERAL, GROUNDED_BUSH, MASS, SPRING
 from .penta import PENTA6, PENTA15
 from .pyramid import PYRAMID5, PYRAMID13
 from .quad4 import QUAD4

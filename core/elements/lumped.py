@@ -75,5 +75,19 @@ def bush_stiffness(axes: Floats, k: Floats, arm_a: Floats, arm_b: Floats) -> Flo
     return congruent(K, offset_transform(arm_a, arm_b))
 
 
+def general_stiffness(K: Floats, S: Floats) -> Floats:
+    """Stiffness K (n, m, m) against the difference of m motions and S (n, m, k) times k others.
+
+    Returns
+    -------
+    (n, m + k, m + k) float
+    """
+    difference = np.concatenate([np.broadcast_to(np.eye(K.shape[1]), K.shape), -S], axis=2)
+    return np.asarray(difference.swapaxes(1, 2) @ K @ difference)
+
+
+GENERAL = Element(
+    name="general", shape=None, freedoms=1, stiffness=general_stiffness, material=False
+)
 BUSH = Element(name="bush", shape=LINE, freedoms=6, stiffness=bush_stiffness, material=False)
 GROUNDED_BUSH = replace(BUSH, name="grounded_bush", shape=POINT)

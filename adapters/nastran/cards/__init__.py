@@ -24,7 +24,20 @@ from ..properties import (
     rigid_elements,
     thermal,
 )
-from . import bars, beams, bushes, dashpots, masses, not_read, panels, rods, shells, solids, springs
+from . import (
+    bars,
+    beams,
+    bushes,
+    dashpots,
+    general_elements,
+    masses,
+    not_read,
+    panels,
+    rods,
+    shells,
+    solids,
+    springs,
+)
 from .element_group import Context, Group, Key, Settings, property_groups
 
 
@@ -58,6 +71,7 @@ FAMILIES: list[Family] = [
     Family("rods", rods.CARDS, rods.rods),
     Family("bushes", bushes.CARDS, bushes.bushes, bushes.bush_dampers),
     Family("springs", springs.CARDS, springs.springs),
+    Family("general elements", general_elements.CARDS, general_elements.general_elements),
     Family("dashpots", dashpots.CARDS, dampers=dashpots.dashpots),
     Family("masses", masses.CARDS, masses.masses),
     Family("control", control_cards.CARDS),

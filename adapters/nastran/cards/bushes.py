@@ -1,4 +1,4 @@
-"""Bushings: CBUSH and CBUSH1D."""
+"""Bushings and gaps: CBUSH, CBUSH1D, CGAP."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -18,6 +18,8 @@ Six = Callable[[Values], Sequence[float]]
 """The six stiffnesses or dampings of a property."""
 
 _NO_OTHER = (0.0,) * 5
+_OPEN = 1e-14
+"""Stiffness of an open gap beside that of the closed one, where PGAP does not say it."""
 
 _LINES = {
     "K": ("k", [f"K{n}:r=0." for n in range(1, 7)]),
@@ -91,6 +93,20 @@ CARDS = (
         "pid",
         moves=Moves(concentrated=("K",)),
     ),
+    Card(
+        "CGAP",
+        "EID:i! PID:i=EID GA,GB>nodes:i! X1,X2,X3>x:ir CID:i",
+        "eid",
+        elements="bush",
+        properties="PGAP",
+    ),
+    Card(
+        "PGAP",
+        "PID:i! U0:r=0. F0:r=0. KA:r! KB:r KT:r MU1:r=0. MU2:r=MU1 TMAX:r=0. MAR:r=100. "
+        "TRMIN:r=.001",
+        "pid",
+        moves=Moves(concentrated=("KA",)),
+    ),
 )
 
 
@@ -103,8 +119,27 @@ class _Bush(NamedTuple):
 
 
 def bushes(context: Context) -> list[Group]:
-    """Make the groups of CBUSH and CBUSH1D, between two grids or one and the ground."""
-    return _groups(context, {"CBUSH": lambda p: p.k, "CBUSH1D": lambda p: (p.k, *_NO_OTHER)})
+    """Make the groups of CBUSH and CBUSH1D, between two grids or one and the ground, and CGAP."""
+    if context.bulk.table("CGAP"):
+        closed = [_is_closed(p) for p in context.bulk.table("PGAP").values()]
+        context.notes.append(
+            f"CGAP stand as they do at the start: {sum(closed)} properties (PGAP) closed, "
+            f"{len(closed) - sum(closed)} open"
+        )
+    stiffnesses: dict[str, Six] = {"CBUSH": lambda p: p.k, "CBUSH1D": lambda p: (p.k, *_NO_OTHER)}
+    return _groups(context, {**stiffnesses, "CGAP": _gap})
+
+
+def _is_closed(gap: Values) -> bool:
+    return bool(gap.u0 <= 0.0)
+
+
+def _gap(gap: Values) -> Sequence[float]:
+    """Stiffnesses of a gap as it stands at the start, as in linear solutions."""
+    if not _is_closed(gap):
+        return (_OPEN * gap.ka if gap.kb is None else gap.kb, *_NO_OTHER)
+    lateral = gap.mu1 * gap.ka if gap.kt is None else gap.kt
+    return (gap.ka, lateral, lateral, 0.0, 0.0, 0.0)
 
 
 def bush_dampers(context: Context) -> list[Group]:
@@ -147,7 +182,7 @@ def _group(context: Context, name: str, values: Six, cards: list[Values], ground
             k = np.array([values(p) for p in properties])[position]
             K = bush_stiffness(axes[rows], k, arm_a[rows], arm_b[rows])[:, :size, :size]
         if wanted[1]:
-            mass = np.array([p.m for p in properties])[position]
+            mass = np.array([getattr(p, "m", 0.0) for p in properties])[position]
             if mass.any():
                 pattern = np.repeat(half, 6) * np.tile([1.0, 1, 1, 0, 0, 0], len(half))
                 M = mass[:, None, None] * np.diag(pattern)
@@ -169,6 +204,8 @@ def _geometry(context: Context, name: str, card: Values, ends: Ints) -> _Bush:
         at = xyz[0] + np.array(card.si) @ frame.directions(xyz[:1])[0]
     else:
         at = xyz[0] + (card.s if name == "CBUSH" else 0.0) * line
+    if name == "CGAP":  # translations only, and the same stiffness in all lateral directions
+        return _Bush(axes, [np.zeros(3)] * 2, False)
     return _Bush(axes, [at - x for x in xyz], axial_only)
 
 

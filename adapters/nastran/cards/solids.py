@@ -27,7 +27,8 @@ CARDS = (
     _card("CPYRAM", 5, 13, "pyramid5 pyramid13"),
     _card("CPENTA", 6, 15, "penta6 penta15"),
     _card("CHEXA", 8, 20, "hexa8 hexa20"),
-    *(Card(name, "PID:i! ...", "pid") for name in _REFUSED),
+    Card("PCOMPS", "PID:i! ...", "pid"),
+    Card("PLSOLID", "PID:i! MID:i! ...", "pid"),
     Card(
         "PSOLID", "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH", "pid"
     ),

@@ -21,7 +21,8 @@ bdf = pytest.importorskip("pyNastran.bdf.bdf", reason="the peer is not installed
 READ = {
     n: c
     for n, c in definitions().items()
-    if not (c.ignored or c.refused or n.startswith("BND"))  # pyNastran does not know BNDFIX
+    # pyNastran does not know BNDFIX and its like; GENEL has a test of its own
+    if not (c.ignored or c.refused or n.startswith(("BND", "GENEL")))
 }
 REAL = st.builds(
     "{}{}{}".format,
@@ -118,7 +119,7 @@ RBE3.components comps|RBE3.groups Gijs|DMIG.values Real"""
 THEIRS = {
     **dict(pair.split() for pair in re.split(r"[|\n]", NAMED.strip())),
     **{f"{card}.x": lambda o: o.x if o.g0 is None else [o.g0, None, None]
-       for card in ("CBAR", "CBEAM", "CBUSH", "BAROR", "BEAMOR")},
+       for card in ("CBAR", "CBEAM", "CBUSH", "CGAP", "BAROR", "BEAMOR")},
     **{f"{card}.points": lambda o: [o.e1, o.e2, o.e3] for card in ("CORD2R", "CORD2C", "CORD2S")},
     **dict.fromkeys([f"{n}SET{d}.nodes" for n in "BCQ" for d in ("", "1")], "ids"),
     **{f"DTI.{k}": lambda o, k=k: o.fields[k] for k in ("mass", "force", "length", "time")},
@@ -140,7 +141,7 @@ APART = {
 }  # fmt: skip
 # Where blank, Nastran and pyNastran derive them of others; trueup does when the value is used.
 DERIVED = """PSHELL.z1 PSHELL.z2 PCOMP.z0 PCOMPG.z0 PBAR.k1 PBAR.k2 PTUBE.t MAT1.g MAT1.nu MAT8.g1z
-MAT8.g2z BAROR.offt BEAMOR.offt RBAR.cna RBAR.cma RBAR.cmb"""
+MAT8.g2z PGAP.kb PGAP.kt BAROR.offt BEAMOR.offt RBAR.cna RBAR.cma RBAR.cmb"""
 SETS = ("SPOINT", "ASET1", "OMIT1", "BSET1", "CSET1", "QSET1", "SPC1", "NSMADD", "SPCADD", "MPCADD")
 
 
