@@ -136,7 +136,8 @@ def identify(
     ----------
     frf : path, sequence of paths, Measurement or Frfs
         Responses of motion to force at any number of references; coherence functions among the
-        files tell which of them, and which resonances, were measured poorly. Default: the ``test``
+        files tell which of them, and which resonances, were measured poorly, time records which
+        were cut off or hit twice. Default: the ``test``
         of the study.
     fmin, fmax : float, optional
         Use lines from here, up to here, Hz.
@@ -170,7 +171,9 @@ def identify(
     """
     from ..adapters.report.stabilisation_page import stabilisation_page
     from ..adapters.universal.joining.join_coherence import coherence_of
+    from ..adapters.universal.joining.time_records import time_records_of
     from ..core.identification import identify as find
+    from ..core.identification.survey.time_records import faults_of_records
 
     given = {"fmin": fmin, "fmax": fmax, "max_order": max_order, "take": take, "refuse": refuse,
              "exponential_window": exponential_window, "bands": bands}  # fmt: skip
@@ -193,6 +196,9 @@ def identify(
         **asked.identification | ({} if number is None else {"modes": number}),
     )
     asked = replace(asked, test=files, identify_modes=number or asked.identify_modes)
+    of_records = faults_of_records(time_records_of(read))
+    found = replace(found, faults=(*found.faults, *of_records))
+    of_coherence = (*of_coherence, *(f.sentence for f in of_records))
     warnings = (*read.warnings, *_lost(read.skipped), *of_coherence, *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
     return Identified(

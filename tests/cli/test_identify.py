@@ -352,3 +352,18 @@ def test_a_function_that_is_there_twice_is_told(frf: Path, call: Call) -> None:
     assert answer.status == 0
     warnings = json.loads(answer.out)["warnings"]
     assert sum("were read before; the first is kept" in w for w in warnings) == 8
+
+
+def test_time_records_beside_the_functions_are_looked_at(frf: Path, call: Call) -> None:
+    """One of a response that was cut off at 1, of dataset 58, type 1."""
+    t = np.arange(400) / 200.0
+    wave = np.clip(3.0 * np.exp(-t) * np.sin(30.0 * t), -1.0, 1.0)
+    head = "\n".join(["    -1", "    58", *["NONE"] * 5])
+    codes = f"{1:5d}{0:10d}{1:5d}{0:10d} {'NONE':10s}{3:10d}{3:4d} {'NONE':10s}{0:10d}{0:4d}"
+    axis = f"{2:10d}{len(t):10d}{1:10d}{0.0:13.5e}{t[1]:13.5e}{0.0:13.5e}"
+    of = "\n".join(f"{k:10d}{0:5d}{0:5d}{0:5d} {'NONE':20s} {'NONE':20s}" for k in (17, 12, 0, 0))
+    rows = "\n".join("".join(f"{v:13.5e}" for v in wave[k : k + 6]) for k in range(0, len(wave), 6))
+    record = frf.with_name("record.unv")
+    record.write_text("\n".join([head, codes, axis, of, rows, "    -1", ""]))
+    said = " ".join(call("identify", frf, record).err.split())
+    assert "time records of 3:Z: cut off at one value (an overload)" in said
