@@ -38,6 +38,7 @@ FORMULAS: dict[str, set[float]] = {
     "mode_indicator.py": {4, 20.0},
     "check_survey.py": {1000.0},
     "coherence.py": {10.0},
+    "time_records.py": {1e3},
     "participation.py": {20.0},
     "double_hits.py": {4},
 }
