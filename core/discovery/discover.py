@@ -11,7 +11,6 @@ import scipy.sparse as sp
 
 from ..arrays import Bools, Floats
 from ..correlation.mac import realised
-from ..data.length_units import METRES
 from ..errors import TrueupError
 from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
@@ -272,30 +271,21 @@ def _reshaped(request: Request, searcher: Searcher, found: Found) -> tuple[Searc
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
         searcher, levels[k] = reshaped(searcher, levels[k], verdict.scale)
-        searcher, levels[k] = equipped(
-            request.structure, searcher, levels[k], verdict.scale, _block(request)
-        )
+        searcher, levels[k] = equipped(request.structure, searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
-
-
-def _block(request: Request) -> float | None:
-    """Return the side of a cube of steel of unit mass; None where units are not known."""
-    kilograms, unit = request.masses.kilograms, request.placed.test_geometry.length_unit
-    if kilograms is None or unit is None:
-        return None
-    return float((kilograms / DISCOVERY.steel) ** (1.0 / 3.0) / METRES[unit])
 
 
 def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:
     """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again.
 
-    Of one whose completed model does not solve (a release larger than what is there) the next best
+    The best with one suspect stays, for what it is by the error of the model. Of
+    one whose completed model does not solve (a release larger than what is there) the next best
     takes the place.
     """
     done: set[int] = set()
     verdict = judge(searcher, found)
     while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
-        levels, most = list(found.levels), verdict.accepted
+        levels, most = list(found.levels), max(verdict.accepted, 1)
         for k in sorted(wanted):
             solved = _first_solved(trial, searcher, (levels[k], *found.rivals[k]))
             if solved is None and k:
@@ -341,19 +331,16 @@ def _completed(
     Their magnitudes are those at which the test is likeliest beside such an error.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
-    old, accepted = found.levels, verdict.accepted
+    old, careful = found.levels, verdict.accepted
     found, kept, whole = completeness(searcher, found, verdict, deck)
+    best = found.levels[kept]
     if kept:
-        best = found.levels[kept]
-        if best is not old[kept]:
+        if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)
-        found = found.with_level(replace(best, suspects=whole.best.fit.suspects))
-    if kept < accepted:
-        found = Found(found.levels[: kept + 1], found.rivals[: kept + 1])
-        verdict = judge(searcher, found)
-        verdict = replace(verdict, accepted=kept)
-    return found, verdict, whole
+        best = replace(best, suspects=whole.best.fit.suspects)
+    found = Found((*found.levels[:kept], best), found.rivals[: kept + 1])
+    return found, replace(judge(searcher, found), accepted=kept), whole
 
 
 def _searcher(trial: _Trial) -> Searcher:

@@ -136,8 +136,7 @@ class Discovery:
 
     `evidence_for` is twice the log of how much more likely the verdict is than the known
     parameters alone; `posterior` its probability among the hypotheses compared; `foretold` by how
-    much the last effect lowers the misfit of what was held out from the search, in units of the
-    noise found.
+    many standard deviations modes held out agree that it foretells them better than these.
     """
 
     verdict: str

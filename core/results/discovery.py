@@ -36,12 +36,14 @@ class GapTable(Noun):
 
 @dataclass(frozen=True)
 class JudgementTable:
-    """Twice the log of how much likelier the verdict is, its probability, what it foretold.
+    """Twice the log of how much likelier the verdict is, and its probability.
 
-    `error` is the diffuse error of the model, relative, completed by what was found,
-    `error_alone` with the known parameters alone; `gain` is ln of how much likelier the test is by
-    what was found, choices paid for; `adequacy` is the probability that a right model would leave
-    an error as large; `unexplained` are test modes that no mode of the model explains.
+    `foretold` is by how many standard deviations test modes agree that what was found, fitted to
+    others, foretells them better than the known parameters alone do. `error` is the diffuse error
+    of the model, relative, completed by what was found, `error_alone` with the known parameters
+    alone; `gain` is ln of how much likelier the test is by what was found, choices paid for;
+    `adequacy` is the probability that a right model would leave an error as large; `unexplained`
+    are test modes that no mode of the model explains.
     """
 
     evidence: float

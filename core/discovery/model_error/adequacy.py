@@ -6,10 +6,12 @@ from scipy.special import ndtr
 from .model_error_numbers import MODEL_ERROR
 
 
-def adequacy(error: float) -> float:
+def adequacy(error: float, noise: float = 0.0) -> float:
     """Return the probability that a model which lacks nothing leaves a diffuse error as large.
 
-    Errors that right models left are normal in their logs.
+    Errors that right models left are normal in their logs. A structure whose readings scatter,
+    relative `noise`, is as far from any linear model in a part of that.
     """
-    off = np.log(error / MODEL_ERROR.usual) / MODEL_ERROR.usual_spread
+    usual = np.hypot(MODEL_ERROR.usual, MODEL_ERROR.usual_noise * noise)
+    off = np.log(error / usual) / MODEL_ERROR.usual_spread
     return float(ndtr(-off))

@@ -114,10 +114,19 @@ def _first(near: Diffuse | None, low: float, step: float, n: int) -> Sequence[in
     return (round(float(np.log(near.error / low) / step)),)
 
 
-def _at(seen: Seen, error: float) -> Diffuse:
-    """Return the best over the noise at one error."""
+def likelihood_of(seen: Seen, known: Diffuse) -> Floats:
+    """Return ln of the likelihood of each test mode at a known error and noise, (n_test,)."""
+    return _at(seen, known.error, np.array([known.noise])).each
+
+
+def _noises(seen: Seen) -> Floats:
     low, high, n = MODEL_ERROR.noises
-    noises = np.unique(np.maximum(np.geomspace(low, high, n), seen.reading))
+    return np.asarray(np.unique(np.maximum(np.geomspace(low, high, n), seen.reading)))
+
+
+def _at(seen: Seen, error: float, noises: Floats | None = None) -> Diffuse:
+    """Return the best over the noise at one error."""
+    noises = _noises(seen) if noises is None else noises
     logs = _frequencies(seen, error)[None] + _shapes(seen, error, noises)
     astray = _stray(seen)
     both = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)

@@ -49,6 +49,8 @@ class Judged:
         The evidence without any smooth field.
     drifts : tuple of Drift
         Smooth fields that are likelier than none, the largest first.
+    problem, state : Problem, Fit
+        What was fitted: with the smooth fields, where there are any, as further parameters.
     """
 
     fit: Fit
@@ -56,6 +58,8 @@ class Judged:
     evidence: float
     information: Floats
     plain: float
+    problem: Problem
+    state: Fit
     drifts: tuple[Drift, ...] = ()
 
 
@@ -164,7 +168,8 @@ def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
     H, _ = _normal_equations(problem, now, best, active)
     spread = _spread(problem, now, active)
     occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
-    return Judged(now, best, height - occam, H, height - occam)
+    evidence = height - occam
+    return Judged(now, best, evidence, H, evidence, problem, now)
 
 
 def _step(H: Floats, g: Floats, damping: float) -> Floats:

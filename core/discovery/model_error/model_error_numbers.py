@@ -10,7 +10,7 @@ BY_HAND = "set by hand from the errors left where what was hidden is known, not 
 
 @dataclass(frozen=True)
 class ModelErrorNumbers:
-    errors: tuple[float, float, int] = number((3e-4, 0.3, 16), "of K", "least and largest diffuse error that is tried, and how many")
+    errors: tuple[float, float, int] = number((3e-4, 1.0, 19), "of K", "least and largest diffuse error that is tried, and how many")
     noises: tuple[float, float, int] = number((0.005, 0.5, 15), NOISE, "least and largest noise of a reading that is tried, and how many")
     frequency: float = number(0.001, "of f", "standard deviation of a measured frequency, at least")
     reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
@@ -21,7 +21,9 @@ class ModelErrorNumbers:
     flat: float = number(0.05, "-", "what a polynomial must have of its own beside the others", "thin structures have no fields across")
     most: float = number(0.4, "rms", "of a smooth field, at most")
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03, 0.1), "rms", "of smooth fields, sizes that are tried")
+    folds: int = number(5, "parts", "of the test modes, each of which is foretold by the others")
     usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)
+    usual_noise: float = number(0.1, "of K a relative noise of readings", "what it is beside that in a poor test", BY_HAND)
     usual_spread: float = number(1.2, "of ln ε", "standard deviation of them", BY_HAND)
     adequate: float = number(0.1, "-", "adequacy below which something else is missing")
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")

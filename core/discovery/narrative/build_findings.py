@@ -23,7 +23,6 @@ from ..search.model_selection import (
     Judgement,
     contenders,
     cost,
-    deviations,
     explained,
     instead,
     times,
@@ -52,12 +51,10 @@ def build_discovery(
     """
     outcome = _Outcome(request, searcher, found, verdict, whole)
     best = outcome.best
-    spread = deviations(best, verdict.scale)
-    ends = np.cumsum([len(best.active), *(len(s.theta) for s in best.suspects)])
-    own = np.split(spread, ends[:-1])[1:]
+    own = np.split(whole.deviations, np.cumsum([len(s.theta) for s in best.suspects])[:-1])
     findings = [
         _finding(outcome, k, place, off)
-        for k, off in enumerate(own)
+        for k, off in enumerate(own[: len(best.suspects)])
         for place in range(len(outcome.places(best.suspects[k])))
     ]
     nodes = request.placed.observation.sensors.node
@@ -67,7 +64,7 @@ def build_discovery(
     decide = frame_needed(request.placed.alignment) if findings else ()
     sure = whole.clear and not any(map(_says_nothing, findings))
     adequate = whole.adequacy > MODEL_ERROR.adequate
-    if findings and sure and adequate and not decide:
+    if findings and sure and not decide:
         word = "effect"
     elif findings:
         word = "undecided"
@@ -78,9 +75,9 @@ def build_discovery(
         word = "test_fault"
     elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
-    elif whole.adequacy < NARRATIVE.nothing:
+    elif not whole.lacks_nothing:
         word = "undecided"
-    if word == "undecided":
+    if word == "undecided" or not adequate:
         decide = (*left_over(whole, request.numbers), *decide)
     return Discovery(
         word,
@@ -88,9 +85,9 @@ def build_discovery(
         _alternatives(outcome),
         moved,
         verdict.scale,
-        verdict.evidence,
-        verdict.posterior,
-        verdict.foretold,
+        2.0 * whole.gain,
+        whole.posterior,
+        whole.agree,
         tuple(int(i) for i in request.numbers[held_out[0]]),
         tuple(int(nodes[i]) for i in np.flatnonzero(held_out[1])),
         tested.faults,
@@ -183,7 +180,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     where = Where.of(c.where[row], c.xyz[row], region=spot)
     many = len(o.places(s))
     text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, many)
-    credible, sure = _credible(o, number, place, places), _confidence(o.verdict)
+    credible, sure = _credible(o, number, place, places), _confidence(o)
     return Finding("model", c.kind.name, where, magnitude, interval, credible, sure, text)
 
 
@@ -199,14 +196,14 @@ def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> 
     )
 
 
-def _confidence(verdict: Judgement) -> float:
+def _confidence(o: _Outcome) -> float:
     """Chance that a finding is right.
 
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
     sure, the less so the more misfit even the best one leaves.
     """
-    left = 1.0 + NARRATIVE.left_over * (verdict.scale - 1.0)
-    return verdict.posterior * NARRATIVE.in_catalogue / left
+    left = 1.0 + NARRATIVE.left_over * (o.verdict.scale - 1.0)
+    return o.whole.posterior * NARRATIVE.in_catalogue / left
 
 
 def _moved(best: Fit, scale: float) -> tuple[MovedParameter, ...]:

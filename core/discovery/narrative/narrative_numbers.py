@@ -10,7 +10,6 @@ SIZE, READER = "of the structure's size", "what a reader takes in"
 @dataclass(frozen=True)
 class NarrativeNumbers:
     off_one: float = number(4.0, "standard deviations", "that a factor is off 1, at most, by the likelihood without it")
-    nothing: float = number(0.6, "-", "adequacy of a model below which it is not said to lack nothing")
     matters: float = number(3.0, "ln L", "what known parameters must gain")
     looks_like: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of")
     in_catalogue: float = number(0.91, "-", "share of clear findings that are right", "python -m benchmarks.discovery.calibrate FOLDER")

@@ -15,8 +15,9 @@ from ...arrays import Floats
 from ...errors import CheckError
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
+from ..model_error.held_out import agreement, foretold
 from .beam_search import Found
-from .model_selection import Judgement, contenders, cost, needed, scored
+from .model_selection import Judgement, by_such_a_test, contenders, cost, needed, scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -35,8 +36,9 @@ class Completeness:
         The same beside one or more suspects fewer.
     ahead : float
         ln of how much likelier it is than its nearest rival elsewhere.
-    hz : (n_test,) float
-        Of the test modes.
+    agree : float
+        By how many standard deviations modes that they were not fitted to agree that the best
+        foretells them better than the known parameters alone do.
     """
 
     deck: Judged
@@ -45,7 +47,7 @@ class Completeness:
     gain: float
     last: float
     ahead: float
-    hz: Floats
+    agree: float
 
     @property
     def moved(self) -> float:
@@ -53,26 +55,41 @@ class Completeness:
         return self.alone.plain - self.deck.evidence
 
     @property
+    def posterior(self) -> float:
+        """Probability of the best among what was found and the known parameters alone."""
+        alone = np.exp(-self.gain) if self.best is not self.alone else 0.0
+        return float(1.0 / (1.0 + np.exp(-self.ahead) + alone))
+
+    @property
+    def deviations(self) -> Floats:
+        """Standard deviations of the magnitudes of the best, suspect after suspect."""
+        n = sum(len(s.theta) for s in self.best.fit.suspects)
+        variance = np.diag(np.linalg.pinv(self.best.information))
+        return np.asarray(np.sqrt(np.maximum(variance[len(variance) - n :], 0.0)))
+
+    @property
     def clear(self) -> bool:
         """Whether what was found explains more than an error of the model would seem to.
 
-        What moves modes at an end of the band alone may be an error of those.
+        It has to gain enough, to be ahead of what else was found, and to foretell: what is not
+        there gains on modes that it is fitted to, not on others.
         """
-        error = self.best.diffuse.error
-        gained = self.best.diffuse.each - self.alone.diffuse.each
-        order = np.argsort(self.hz)
-        inner = float(np.sum(gained[order[SEARCH.ends : -SEARCH.ends]]))
         return bool(
-            self.gain > needed(error)
+            self.gain > needed(self.best)
             and self.ahead > SEARCH.ahead
-            and inner > SEARCH.inner * float(np.sum(gained))
-            and len(self.unexplained) <= SEARCH.strays * len(gained)
+            and self.agree > SEARCH.agree
+            and len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
         )
 
     @property
     def adequacy(self) -> float:
-        """Probability that a right model would leave an error as large as the best."""
-        return adequacy(self.best.diffuse.error)
+        """Probability that a right model leaves an error as large, by a test like this."""
+        return by_such_a_test(self.best)
+
+    @property
+    def lacks_nothing(self) -> bool:
+        """Whether what is left is usual for a good model before a good test."""
+        return _lacks_nothing(self.best)
 
     @property
     def unexplained(self) -> tuple[int, ...]:
@@ -88,13 +105,19 @@ def completeness(
 ) -> tuple[Found, int, Completeness]:
     """Return the best of what was found, the number of its suspects, and how well it explains.
 
-    The levels up to the accepted one compete, then what is found with the nearest rivals. `deck`
-    is how likely the test is by the deck as it is.
+    The levels up to the accepted one compete, one suspect where the known parameters alone leave
+    something, then what is found with the nearest rivals. `deck` is how likely the test is by the
+    deck as it is.
     """
-    levels = [scored(searcher, f) for f in found.levels[: verdict.accepted + 1]]
+    levels = [scored(searcher, found.levels[0])]
+    alone = levels[0].judged
+    if alone is None:
+        raise CheckError("the deck with its known parameters fitted does not solve")
+    most = max(verdict.accepted, 0 if _lacks_nothing(alone) else 1)
+    levels += [scored(searcher, f) for f in found.levels[1 : most + 1]]
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
-        least = needed(level.judged.diffuse.error) if kept and level.judged else SEARCH.suspect
+        least = needed(level.judged) if kept and level.judged else SEARCH.suspect
         if level.score - levels[kept].score > least:
             kept = k
     tried = sorted(
@@ -103,15 +126,19 @@ def completeness(
     tried = [f for f in tried if len(f.suspects) == kept][: SEARCH.rivals_judged if kept else 0]
     others = (scored(searcher, f) for f in tried)
     field = sorted([levels[kept], *others], key=lambda s: -s.score)
-    best, alone = field[0], levels[0]
+    best = field[0]
     ahead = best.score - field[1].score if len(field) > 1 else np.inf
     if best is not levels[kept]:
         rest = tuple(f for f in found.rivals[kept] if f is not best.fit)
         rivals = (*found.rivals[:kept], (levels[kept].fit, *rest), *found.rivals[kept + 1 :])
         found = Found((*found.levels[:kept], best.fit, *found.levels[kept + 1 :]), rivals)
-    if best.judged is None or alone.judged is None:
-        raise CheckError("the deck with its known parameters fitted does not solve")
+    assert best.judged is not None
     fewer = max((level.score for level in levels[:kept]), default=best.score)
-    gain, last = best.score - alone.score, best.score - fewer
-    hz = searcher.problem.whole.frequencies_hz
-    return found, kept, Completeness(deck, alone.judged, best.judged, gain, last, float(ahead), hz)
+    gain, last = best.score - levels[0].score, best.score - fewer
+    agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
+    whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), agree)
+    return found, kept, whole
+
+
+def _lacks_nothing(judged: Judged) -> bool:
+    return adequacy(judged.diffuse.error) > SEARCH.nothing

@@ -1,10 +1,8 @@
 """A mass grows into equipment where the test tells its offset or how it resists being turned.
 
-A mass on a stand of 60 mm looks like a heavier one, or like one with an absorber beside it, and
-nothing heavy is a point: it is at least as wide as a block of steel. So each mass of a hypothesis
-that earned its place is tried as such a block, which stays where it explains the test no worse;
-then with its centre off the structure and other radii of gyration, in steps that get smaller, which
-have to gain more than four further unknowns are worth.
+A mass on a stand of 60 mm looks like a heavier one, or like one with an absorber beside it. So each
+mass of a hypothesis that earned its place is tried with its centre off the structure and with radii
+of gyration, in steps that get smaller, which have to gain more than four more unknowns are worth.
 """
 
 from dataclasses import dataclass, replace
@@ -27,48 +25,33 @@ Better = tuple[Searcher, Fit] | None
 
 
 def equipped(
-    structure: Structure, searcher: Searcher, state: Fit, scale: float, block: float | None
+    structure: Structure, searcher: Searcher, state: Fit, scale: float
 ) -> tuple[Searcher, Fit]:
     """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them.
 
     The noise has `scale` times the assumed variance: what equipment gains has to be that much more.
-    `block` is the side of a cube of steel of unit mass, None where the units are not known.
     """
     for q, s in enumerate(state.suspects):
         if searcher.problem.catalogue[s.kind].kind.joins(point_mass.KIND):
-            better = _one(structure, searcher, state, q, scale, block)
+            better = _one(structure, searcher, state, q, scale)
             searcher, state = better or (searcher, state)
     return searcher, state
 
 
-def _one(
-    structure: Structure, searcher: Searcher, state: Fit, q: int, scale: float, block: float | None
-) -> Better:
+def _one(structure: Structure, searcher: Searcher, state: Fit, q: int, scale: float) -> Better:
     """Return a hypothesis with equipment in place of one mass, None where that is not worth it."""
-    s, least = state.suspects[q], SEARCH.equipment_steps[-1] * searcher.size
-    body = Body((0.0, 0.0, 0.0), least)
-    if block is not None:
-        radius = block * float(np.exp(s.theta[0] / 3.0)) / float(np.sqrt(6.0))
-        body = replace(body, radius=radius)
-    places = [(c, _stands(structure, c, row)) for c, row in _places(searcher, s)]
+    if state.misfit <= scale * SEARCH.equipment_gain:
+        return None
+    body = Body((0.0, 0.0, 0.0), SEARCH.equipment_steps[-1] * searcher.size)
+    places = [(c, _stands(structure, c, row)) for c, row in _places(searcher, state.suspects[q])]
     looked = [
-        (c, stands, _looked(searcher, state, q, c, stands, [body], state))
+        (float(_looked(searcher, state, q, c, stands, [body], state).score.min()), c, stands)
         for c, stands in places
         if stands
     ]
-    looked.sort(key=lambda place: float(place[2].score.min()))
-    found = []
-    for c, stands, look in looked[: SEARCH.equipment_tried]:
-        _, wide, fit = _fitted(look, state, q, state)
-        found.append((fit.objective, c, stands, wide, fit))
-    if not found:
-        return None
-    found.sort(key=lambda place: place[0])
-    _, _, _, wide, fit = found[0]
-    known = block is not None and fit.objective < state.objective
-    best = (wide, fit) if known else None
-    enough = state.misfit > scale * SEARCH.equipment_gain
-    for _, c, stands, _, _ in found if enough else ():
+    looked.sort(key=lambda place: place[0])
+    best: Better = None
+    for _, c, stands in looked[: SEARCH.equipment_tried]:
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
         if fit.objective < now.objective - scale * SEARCH.equipment_gain:

@@ -1,11 +1,11 @@
-"""Does a richer hypothesis earn its place, how sure is it, and what else could it be."""
+"""Does a richer hypothesis earn its place, and what else could it be."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Bools, Floats
+from ...arrays import Bools
 from ..effects.candidates import Suspect
 from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
@@ -24,16 +24,11 @@ class Judgement:
     """What the search amounts to.
 
     `scale` multiplies every variance: the misfit that the best hypothesis leaves, per degree of
-    freedom, but at least 1. `accepted` is the number of suspects that earn their place;
-    `foretold` by how much the last of them lowers the misfit of modes and sensors held out from
-    the search, in units of that noise.
+    freedom, but at least 1. `accepted` is the number of suspects that earn their place.
     """
 
     scale: float
     accepted: int
-    posterior: float
-    evidence: float
-    foretold: float
 
 
 def noise_scale(problem: Problem, best: Fit) -> float:
@@ -94,17 +89,7 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
     scale = noise_scale(searcher.problem, best)
     costs = [cost(searcher, f, scale) for f in found.levels]
-    accepted = int(np.argmin(costs))
-    rivals = [cost(searcher, f, scale) for f in contenders(searcher, found, accepted)]
-    others = np.array([*rivals, *(c for k, c in enumerate(costs) if k < accepted)])
-    weight = float(np.sum(np.exp(-0.5 * (others - costs[accepted])))) if len(others) else 0.0
-    return Judgement(
-        scale,
-        accepted,
-        1.0 / (1.0 + weight),
-        costs[0] - costs[accepted],
-        _foretold(searcher, found.levels, accepted) / scale,
-    )
+    return Judgement(scale, int(np.argmin(costs)))
 
 
 def cost(searcher: Searcher, f: Fit, scale: float) -> float:
@@ -141,14 +126,6 @@ def with_rival(searcher: Searcher, found: Found, rival: Fit, fitted: Fit) -> Fou
     return Found(tuple(levels), tuple(rivals))
 
 
-def _foretold(searcher: Searcher, levels: Sequence[Fit], accepted: int) -> float:
-    """Return by how much the last effect lowers the misfit of what was held out."""
-    if not accepted:
-        return 0.0
-    now, before = (with_unseen(searcher, levels[k]).unseen for k in (accepted, accepted - 1))
-    return (before or 0.0) - (now or 0.0)
-
-
 @dataclass(frozen=True, eq=False)
 class Scored:
     """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""
@@ -165,12 +142,20 @@ def scored(searcher: Searcher, f: Fit) -> Scored:
     return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
 
 
-def needed(error: float) -> float:
-    """Return the gain, ln of a likelihood, that an effect needs beside an error that is left.
+def needed(judged: Judged) -> float:
+    """Return the gain, ln of a likelihood, that an effect needs beside the error that is left.
 
-    The larger the error, the more of it the likeliest place of the likeliest kind takes up.
+    An error of the model has a likeliest place as well, and what that gains is a share of what
+    every mode says: `claimed` a mode is more than it, whatever the error that is left; where right
+    models leave as much half of the time, 1 is.
     """
-    return SEARCH.claimed * (1.0 + error / SEARCH.imitated)
+    a_mode = SEARCH.claimed ** (1.0 - 2.0 * by_such_a_test(judged))
+    return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
+
+
+def by_such_a_test(judged: Judged) -> float:
+    """Return the probability that a right model leaves an error as large, by a test like this."""
+    return adequacy(judged.diffuse.error, judged.diffuse.noise)
 
 
 def complete(searcher: Searcher, f: Fit) -> bool:
@@ -256,14 +241,6 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
     gained = (left - kept) / scale
     clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())
     return tuple(int(j) for j in np.flatnonzero(clear))
-
-
-def deviations(best: Fit, scale: float) -> Floats:
-    """Return the standard deviations of the unknowns: active parameters, then magnitudes."""
-    H = best.information
-    if not len(H):
-        return np.zeros(0)
-    return np.asarray(np.sqrt(np.maximum(np.diag(np.linalg.pinv(H)), 0.0) * scale))
 
 
 def held_out(n: int, start: int, every: int, enough: int) -> Bools:

@@ -5,60 +5,77 @@ from types import SimpleNamespace as Some
 import numpy as np
 import pytest
 
+from trueup.core.discovery.search import completeness as room
 from trueup.core.discovery.search.completeness import Completeness, completeness
 
-HZ = np.arange(10.0, 20.0)
 
-
-def judged(each, error=0.001, stray=(), evidence=0.0):
+def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
-    shared = Some(each=np.asarray(each, float), error=error, stray=chance)
+    shared = Some(each=np.asarray(each, float), error=error, noise=noise, stray=chance)
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(each, gain=30.0, ahead=np.inf, **more):
+def found(gain=30.0, ahead=np.inf, agree=3.0, **more):
     none = judged(np.zeros(10))
-    return Completeness(none, none, judged(each, **more), gain, gain, ahead, HZ)
+    return Completeness(none, none, judged(np.zeros(10), **more), gain, gain, ahead, agree)
 
 
-def test_what_many_modes_gain_by_is_clear():
-    assert found(np.full(10, 3.0)).clear
+def test_what_many_modes_gain_by_and_foretell_is_clear():
+    assert found().clear
 
 
 def test_a_small_gain_is_not_clear():
-    assert not found(np.full(10, 3.0), gain=4.0).clear
+    assert not found(gain=4.0).clear
+
+
+def test_what_foretells_modes_held_out_no_better_is_not_clear():
+    assert not found(gain=1000.0, agree=1.0).clear
 
 
 def test_the_larger_the_error_that_is_left_the_more_has_to_be_gained():
-    assert not found(np.full(10, 3.0), error=0.02).clear
-    assert found(np.full(10, 30.0), error=0.02, gain=300.0).clear
+    assert not found(error=0.02).clear
+    assert found(error=0.02, gain=50.0).clear
+
+
+def test_five_nats_a_mode_are_clear_whatever_is_left():
+    assert found(error=0.3, gain=51.0).clear
+    assert not found(error=0.3, gain=40.0).clear
+
+
+def test_a_poor_test_excuses_an_error_of_the_model():
+    assert not found(error=0.01, gain=20.0).clear
+    assert found(error=0.01, noise=0.2, gain=20.0).clear
+
+
+def test_a_poor_test_does_not_show_that_nothing_is_missing():
+    assert found(error=0.001).lacks_nothing
+    assert not found(error=0.01, noise=0.2).lacks_nothing
 
 
 def test_two_places_that_are_as_good_are_not_clear():
-    assert not found(np.full(10, 3.0), ahead=1.0).clear
-
-
-@pytest.mark.parametrize("end", [slice(0, 2), slice(-2, None)])
-def test_modes_at_an_end_of_the_band_decide_nothing(end):
-    each = np.zeros(10)
-    each[end] = 15.0
-    assert not found(each).clear
+    assert not found(ahead=1.0).clear
+    assert found(ahead=1.0).posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), abs=1e-6)
 
 
 def test_an_explanation_with_many_modes_left_is_not_clear():
-    assert found(np.full(10, 3.0), stray=(4,)).clear
-    assert not found(np.full(10, 3.0), stray=(4, 5)).clear
+    assert found(stray=(4,)).clear
+    assert not found(stray=(4, 5)).clear
 
 
-def test_a_suspect_that_gains_less_than_its_choices_is_dropped():
+def gaining(evidence):
+    return judged(np.full(10, evidence), evidence=evidence)
+
+
+def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
+    monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
     one = Some(kind=0)
     levels = [Some(suspects=()), Some(suspects=(one,)), Some(suspects=(one, one))]
     kind = Some(kind="mass", tunings=1)
-    evidence = {0: 0.0, 1: 30.0, 2: 40.0}
+    evidence = {0: 0.0, 1: 30.0, 2: 39.0}
     searcher = Some(
-        problem=Some(catalogue=[kind], whole=Some(frequencies_hz=HZ)),
+        problem=Some(catalogue=[kind]),
         coarse=[np.arange(100)],
-        judged=lambda _, f: judged(np.zeros(10), evidence=evidence[len(f.suspects)]),
+        judged=lambda _, f: gaining(evidence[len(f.suspects)]),
     )
     none = judged(np.zeros(10))
     _, kept, said = completeness(
@@ -69,3 +86,4 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped():
     )
     assert kept == 1
     assert said.gain == pytest.approx(30.0 - np.log(100))
+    assert said.agree > 2.5

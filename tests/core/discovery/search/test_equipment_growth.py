@@ -49,7 +49,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     masses = s.problem.catalogue[0]
     row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
     point = s.fitted(s.null(), (Suspect(0, row, (float(np.log(0.5)),)),))
-    wide, grown = equipped(request.structure, s, point, 1.0, None)
+    wide, grown = equipped(request.structure, s, point, 1.0)
     (found,) = grown.suspects
     c = wide.problem.catalogue[found.kind]
     assert c.where[found.row]["grids"] == [6]

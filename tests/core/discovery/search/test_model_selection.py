@@ -41,8 +41,6 @@ def test_a_bead_heavier_than_it_should_be_is_found_beside_a_wrong_tension(bead):
     assert best.suspects[0].row == bead
     assert np.exp(best.suspects[0].theta[0]) == pytest.approx(2.0, rel=0.05)
     assert np.exp(best.nuisance[0]) == pytest.approx(1.1, rel=0.01)
-    assert verdict.posterior > 0.5
-    assert verdict.foretold > 0.0
 
 
 def test_a_spring_to_ground_is_found():
@@ -124,7 +122,6 @@ def test_a_rival_of_another_kind_that_fits_as_well_is_told():
     ((other, weight),) = instead(s, found, verdict, 0)
     assert (other.kind, other.row) == (1, 7)
     assert weight == pytest.approx(np.exp(-1.0), rel=1e-6)
-    assert verdict.posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), rel=1e-3)
 
 
 def leaving(error, stray=0.0):
