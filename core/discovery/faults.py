@@ -45,7 +45,7 @@ POLARITY = FaultKind(
 GAIN = FaultKind(
     "sensor_gain",
     "sensor gain",
-    "Sensor {sensors} reads {size:.2f} times what all the others say it should",
+    "Sensor {sensors} reads {size:.2f} times what all the others say it should there",
     "factor",
 )
 SWAP = FaultKind(
