@@ -16,6 +16,7 @@ from .collect_bands import assemble
 from .identification_numbers import IDENTIFICATION
 from .number_of_modes import fewer, more
 from .poles.band_sweeps import fit_range
+from .poles.complete_blocks import complete_blocks
 from .poles.plscf import poles_by_order
 from .poles.pole_candidates import propose
 from .poles.pole_numbers import POLES
@@ -127,9 +128,14 @@ def _bounded(survey: Survey, max_order: int | None) -> tuple[str, ...]:
 
 
 def _parts(survey: Survey) -> tuple[tuple[Band, ...], Floats]:
-    """Split each range that is used into bands; return the frequencies of the peaks, too."""
-    indicator = cmif(survey.values)
-    floor = float(np.sqrt(survey.values.shape[0]) + np.sqrt(survey.values.shape[1]))
+    """Split each range that is used into bands; return the frequencies of the peaks, too.
+
+    Peaks are those of the most telling complete part: one of a mode would come again in further
+    singular values where combinations are missing.
+    """
+    rows, columns = complete_blocks(survey.measured)[0]
+    indicator = cmif(survey.values[np.ix_(rows, columns)])
+    floor = float(np.sqrt(len(rows)) + np.sqrt(len(columns)))
     bands: list[Band] = []
     lines = []
     for own in (survey.lines(*ends) for ends in survey.ranges):

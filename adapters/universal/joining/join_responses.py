@@ -102,9 +102,16 @@ def _largest_group(records: Sequence[Record], report: Report) -> list[Record]:
         if group is not best:
             report.warnings.append(
                 f"{group[0].where}: {len(group)} frequency response(s) have another frequency "
-                f"axis than the other {len(best)} and stand apart from them"
+                f"axis{_ends(group[0].head)} than the other {len(best)}{_ends(best[0].head)} and "
+                "stand apart from them"
             )
     return best
+
+
+def _ends(head: Head58) -> str:
+    if not head.even:
+        return ""
+    return f" ({head.start:g} to {head.start + (head.n_point - 1) * head.step:g} Hz)"
 
 
 def _frfs(

@@ -15,8 +15,8 @@ from .moments import BandData, band_data
 from .pole_candidates import Proposal
 from .pole_numbers import POLES
 from .pole_selection import prune, select
-from .pole_splitting import modes_of
-from .soundness import survey_error
+from .pole_splitting import modes_of, strength
+from .soundness import satellites, survey_error
 from .start_values import start_from
 from .variable_projection import Fit, fit_shapes, refine
 
@@ -73,8 +73,9 @@ def fit_range(
     """Fit all bands, each with the contributions of the modes of all others removed.
 
     Unless the stable poles leave far more than noise, the survey is first believed to hold one
-    set of poles and noise. Where that leaves more than noise in the end, modes are searched for
-    anew in the knowledge of the error, see `BandData`.
+    set of poles and noise. Where that leaves more than noise in the end, or not only because roots
+    that scatter of the poles makes explain it, modes are searched for anew in the knowledge of the
+    error, see `BandData`.
     """
     of_outputs, of_inputs = survey.measured.shape
     none = Roots(*(np.empty(s, complex) for s in (0, (of_inputs, 0), (of_outputs, 0))))
@@ -93,12 +94,20 @@ def fit_range(
                          _sweep(survey, bands, found, 0.0, refined))  # fmt: skip
     if error < POLES.error_surely:
         fits = _searched(survey, bands, proposals, found.copy(), 0.0)
-        left = survey_error((b.data, b.frequencies_hz, b.fit) for b in fits)
+        left = survey_error(_singly(b) for b in fits)
         if left < POLES.error_none:
             return fits
         error = max(error, left)
         del fits
     return _searched(survey, bands, proposals, found, error)
+
+
+def _singly(b: BandFit) -> tuple[BandData, Floats, Fit]:
+    """Fit a band with no more roots to a resonance than it surely has directions."""
+    fit = b.fit
+    while (doubles := satellites(b.data, b.frequencies_hz, fit, strength(fit), strict=True)).any():
+        fit = refine(b.data, fit.poles[~doubles], fit.participation[:, ~doubles])
+    return b.data, b.frequencies_hz, fit
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Floats, Ints, Numbers
+from .complete_blocks import complete_blocks
 
 _IN_TURN = ["einsum_path", (0, 1), (0, 1)]  # of three factors, without looking for a better order
 
@@ -71,6 +72,11 @@ class BandData:
         rows, number = np.unique(self.weight, axis=0, return_inverse=True)
         number = number.ravel()
         return tuple((rows[p], np.flatnonzero(number == p)) for p in range(len(rows)))
+
+    @cached_property
+    def blocks(self) -> tuple[tuple[Ints, Ints], ...]:
+        """Outputs and inputs of which every combination was measured, see `complete_blocks`."""
+        return tuple(complete_blocks(self.weight > 0.0))
 
 
 def band_data(

@@ -93,6 +93,7 @@ class PoleNumbers:
     error_none: float = number(2e-5, "of the energy", "left over by all modes, below which it has none", SURVEYS)
     error_least: float = number(1e-4, "of the energy", "that is taken for the error when directions of a resonance are counted", SURVEYS)
     one_resonance: float = number(3.0, WIDTHS, "within which roots belong to one resonance", SURVEYS)
+    overlapping: float = number(1.0, WIDTHS, "within which roots are so alike that scatter of one may make several", SURVEYS)
     seen_widths: float = number(2.0, WIDTHS, "to either side, in which the directions of a resonance are counted", SURVEYS)
     direction: float = number(3.0, "-", "times the error of the survey, which a direction of a resonance is to exceed", SURVEYS)
     scatter: float = number(25.0, "-", "the same where outputs or inputs alone tell it", SURVEYS)

@@ -177,12 +177,15 @@ class Memory:
         Sum of squares over all functions in excess of white noise.
     near : (n_line, n_mode) bool
         The lines looked at.
+    excess : (n_line,) float
+        Sum of squares over all functions at each line, less that of the differences there.
     """
 
     ratio: Floats
     scatter: Floats
     systematic: Floats
     near: Numbers
+    excess: Floats
 
 
 def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
@@ -211,6 +214,7 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
         2.0 / np.sqrt(count * heard_of),
         np.maximum(level - white, 0.0) * count * all_of / heard_of,
         near,
+        (square - np.pad(rough, 2, "edge")) * all_of / heard_of,
     )
 
 

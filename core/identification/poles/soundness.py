@@ -33,19 +33,23 @@ def sound(data: BandData, f: Floats, fit: Fit) -> Bools:
     """Tell which roots are more than the errors of the survey, (n_mode,) bool.
 
     Two estimates of the error in a root, over its own energy: what is left over around it and is
-    not noise, and what of its shape is in quadrature (errors have as much in phase). Their
-    geometric mean is to stay below a limit. All are sound where the survey leaves noise only.
+    not noise, and what of its shape is in quadrature (errors have as much in phase), at the outputs
+    measured with most inputs, which know it best. Their geometric mean is to stay below a limit.
+    All are sound where the survey leaves noise only.
     """
     if not len(fit.poles) or data.error == 0.0:
         return np.ones(len(fit.poles), bool)
     left = left_over(data, f, fit)
-    collinear = np.sqrt(phase_collinearity(fit.shapes))
+    outputs, _ = data.blocks[0]
+    collinear = np.sqrt(phase_collinearity(fit.shapes[outputs]))
     error = left * (1.0 - collinear) / np.maximum(collinear, 1e-300)
     return np.asarray(error < POLES.error_most**2)
 
 
 def left_over(data: BandData, f: Floats, fit: Fit) -> Floats:
-    """Energy that is left over around each root and is not noise, over the root's own there.
+    """Energy that is left over where each root stands and is not noise, over the root's own.
+
+    Lines count by the energy of the root, so a narrow one does not answer for what is beside it.
 
     Returns
     -------
@@ -53,13 +57,12 @@ def left_over(data: BandData, f: Floats, fit: Fit) -> Floats:
     """
     memory = memory_of_residual(data, f, fit)
     own = energy_by_line(data, fit, basis(data, fit.poles, derivative=False)[:, 0])
-    here = np.sum(own * memory.near, axis=0)
-    excess = np.where(memory.ratio > 1.0 + POLES.sure * memory.scatter, memory.systematic, 0.0)
-    return np.asarray(excess / np.maximum(here, 1e-300))
+    left = np.maximum(memory.excess @ own, 0.0) / np.maximum(np.sum(own**2, axis=0), 1e-300)
+    return np.asarray(np.where(memory.ratio > 1.0 + POLES.sure * memory.scatter, left, 0.0))
 
 
-def resonances(f: Floats, fit: Fit) -> list[list[int]]:
-    """Roots by rising frequency, in groups that stand within each other's width."""
+def resonances(f: Floats, fit: Fit, widths: float) -> list[list[int]]:
+    """Roots by rising frequency, in groups that stand within some half bandwidths."""
     spacing = 2.0 * np.pi * float(np.median(np.diff(f)))
     order = np.argsort(fit.poles.imag)
     decay, omega = -fit.poles.real, fit.poles.imag
@@ -67,7 +70,7 @@ def resonances(f: Floats, fit: Fit) -> list[list[int]]:
     for k in order:
         if groups:
             last = groups[-1][-1]
-            reach = POLES.one_resonance * min(decay[k], decay[last]) + spacing
+            reach = widths * min(decay[k], decay[last]) + spacing
             if omega[k] - omega[last] < reach:
                 groups[-1].append(int(k))
                 continue
@@ -75,20 +78,22 @@ def resonances(f: Floats, fit: Fit) -> list[list[int]]:
     return groups
 
 
-def directions(f: Floats, fit: Fit, group: list[int], error: float) -> int:
+def directions(data: BandData, f: Floats, fit: Fit, group: list[int], strict: bool) -> int:
     """Count the independent directions of a resonance, at least one.
 
     A frequency that scatters from output to output makes many roots of one participation, one
     that scatters from input to input many of one shape; two modes differ in both. Where they
     differ in one only (as all do before a single reference), directions must be stronger than
     such scatter makes them; but where a survey without error has no more inputs (or outputs) than
-    they show, all roots count.
+    they show, all roots count. Only functions measured tell it, by blocks that are complete: a
+    root that serves some functions alone says nothing of the others.
 
     Parameters
     ----------
-    error : float
-        Energy of what a resonance leaves over, of its own.
+    strict : bool
+        No direction counts that outputs or inputs alone tell.
     """
+    error, told, strong = data.error, [], []
     poles, omega = fit.poles[group], 2.0 * np.pi * f
     lines = (np.abs(omega[:, None] - poles.imag) < POLES.seen_widths * -poles.real).any(axis=1)
     lines[[int(np.argmin(np.abs(omega - w))) for w in poles.imag]] = True
@@ -96,22 +101,25 @@ def directions(f: Floats, fit: Fit, group: list[int], error: float) -> int:
     functions = np.einsum(
         "ok,ik,kn->oin", fit.shapes[:, group], fit.participation[:, group], near, optimize=True
     )
-    told, strong = [], []
-    for matrix in (functions, functions.transpose(1, 0, 2)):
-        energy = np.linalg.svd(matrix.reshape(len(matrix), -1), compute_uv=False) ** 2
-        limit = POLES.direction * max(error, POLES.error_least) * energy[0]
-        count = int(np.count_nonzero(energy > limit))
-        if count == len(matrix) and error == 0.0:
-            return len(group)
-        told.append(count)
-        strong.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
-    return max(min(told), *strong) if error > 0.0 else min(told)
+    for block in data.blocks:
+        own, both = functions[np.ix_(*block)], []
+        for matrix in (own, own.transpose(1, 0, 2)):
+            energy = np.linalg.svd(matrix.reshape(len(matrix), -1), compute_uv=False) ** 2
+            limit = POLES.direction * max(error, POLES.error_least) * energy[0]
+            both.append(int(np.count_nonzero(energy > limit)))
+            if both[-1] == len(matrix) and error == 0.0 and not strict:
+                return len(group)
+            strong.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
+        told.append(min(both))
+    return max(*told, *strong) if error > 0.0 and not strict else max(told)
 
 
-def satellites(data: BandData, f: Floats, fit: Fit, strength: Floats) -> Bools:
+def satellites(
+    data: BandData, f: Floats, fit: Fit, strength: Floats, strict: bool = False
+) -> Bools:
     """Weakest root of each resonance that has more roots than directions, (n_mode,) bool."""
     found = np.zeros(len(fit.poles), bool)
-    for group in resonances(f, fit):
-        if len(group) > 1 and len(group) > directions(f, fit, group, data.error):
+    for group in resonances(f, fit, POLES.overlapping if strict else POLES.one_resonance):
+        if len(group) > 1 and len(group) > directions(data, f, fit, group, strict):
             found[group[int(np.argmin(strength[group]))]] = True
     return found

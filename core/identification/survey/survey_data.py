@@ -149,6 +149,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     filled = lines_with_values(values, f, said)
     f, values = f[filled], values[:, :, filled]
     measured = usable(values, f, said)
+    missing = np.isnan(values).all(axis=2)
     noise, rms = _noise_and_size(values, measured)
     quiet = measured & (noise > SURVEY.noise_only * rms)
     said.name("dead_channel", quiet, ("holds", "nothing but noise"), "left out")
@@ -178,6 +179,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
     noise, rms = noise[rows][:, columns], rms[rows][:, columns]
     responses = responses.take(np.flatnonzero(rows))
     references = references.take(np.flatnonzero(columns))
+    _say_missing(missing[rows][:, columns], responses, references, said)
     roving = len(references) > len(responses)
     if roving:
         values, measured = np.ascontiguousarray(values.transpose(1, 0, 2)), measured.T
@@ -248,6 +250,15 @@ def _axis(
         ends.append((float(f[own][0]), float(f[own][-1])))
         keep |= own
     return np.asarray(f[keep]), keep, tuple(ends)
+
+
+def _say_missing(missing: Bools, responses: Dofs, references: Dofs, said: Said) -> None:
+    names = [f"{responses.labels[o]}/{references.labels[i]}" for o, i in np.argwhere(missing)]
+    if names:
+        said.warnings.append(
+            f"{said.source} lacks {len(names)} of {missing.size} combinations of response and "
+            f"reference ({listed(names)}): shapes rest on fewer functions there"
+        )
 
 
 def _one_component(

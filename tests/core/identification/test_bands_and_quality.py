@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from trueup.core.identification.poles.pole_candidates import complete_blocks
+from trueup.core.identification.poles.complete_blocks import complete_blocks
 from trueup.core.identification.quality import (
     correlation,
     multivariate_indicator,

@@ -119,7 +119,8 @@ def test_the_most_common_axis_is_taken_and_the_others_told(uff, write):
     content = read_universal(write(text))
     assert content.frfs.responses.labels == ["5:X", "6:X"]
     assert len(content.functions) == 1
-    assert "1 frequency response(s) have another frequency axis" in content.warnings[0]
+    assert "1 frequency response(s) have another frequency axis (" in content.warnings[0]
+    assert " Hz) than the other 2 (" in content.warnings[0]
 
 
 def test_uneven_axes_that_differ_are_told(uff, write):

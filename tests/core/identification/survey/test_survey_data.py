@@ -83,9 +83,10 @@ def test_one_function_under_many_names_is_refused(frfs):
         identify(replace(frfs, values=same))
 
 
-def test_missing_combinations_are_no_reason_to_warn(frfs):
+def test_missing_combinations_are_told_in_one_sentence(frfs):
     found = prepare(with_values(frfs, (5, 0), np.nan))
-    assert found.warnings == ()
+    (warning,) = found.warnings
+    assert "lacks 1 of 24 combinations of response and reference (6:Z/1:Z)" in warning
     assert not found.measured[5, 0]
     assert np.all(found.values[5, 0] == 0.0)
 
