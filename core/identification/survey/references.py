@@ -107,7 +107,8 @@ def _of_other_size(survey: Survey, points: Floats) -> list[Fault]:
     said: list[str] = []
     names: list[str] = []
     sound = {i for (i, j), f in functions.items() if i == j and resonates(f)}
-    for i, j in ((i, j) for i, j in functions if i < j and {i, j} <= sound):
+    pairs = [(i, j) for i, j in functions if i < j and (j, i) in functions and {i, j} <= sound]
+    for i, j in pairs:
         there, back = functions[i, j], functions[j, i]
         factor = float(np.linalg.norm(there) / max(float(np.linalg.norm(back)), 1e-300))
         large = abs(np.log(max(factor, 1e-300))) > np.log(SURVEY.gain_least)
