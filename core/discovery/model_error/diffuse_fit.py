@@ -108,7 +108,7 @@ def with_fields(problem: Problem, fields: Fields, size: float) -> Problem:
             np.insert(old, n, np.full(k, new))
             for old, new in (
                 (problem.prior.spread, size),
-                (problem.prior.lower, -MODEL_ERROR.most),
+                (problem.prior.lower, fields.least),
                 (problem.prior.upper, MODEL_ERROR.most),
             )
         )

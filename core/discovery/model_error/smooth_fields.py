@@ -35,6 +35,11 @@ class Fields:
     stiffness: Floats
     mass: Floats
 
+    @property
+    def least(self) -> Floats:
+        """Least amplitudes, (n,): a suspension holds, it does not push away."""
+        return np.array([0.0 if n == SUSPENSION else -MODEL_ERROR.most for n in self.names])
+
     def turned(self, T: Floats) -> Fields:
         """Return the fields on the basis turned by T (≥ r, s); its further vectors are local."""
         own = T[: self.mass.shape[1]]

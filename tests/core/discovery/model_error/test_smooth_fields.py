@@ -39,3 +39,4 @@ def test_a_suspension_lifts_every_eigenvalue_by_that_of_its_swinging():
     assert np.sqrt(lifted[0]) == pytest.approx(share * np.sqrt(100.0))
     assert lifted - values == pytest.approx(lifted[0])
     assert not fields.mass.any()
+    assert fields.least == pytest.approx(0.0)
