@@ -8,6 +8,7 @@ best values gain less what it costs to have had a choice of values.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -142,7 +143,7 @@ def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
     """Return a hypothesis fitted by the diffuse error; the problem's evidence is all that counts.
 
     The entries of ``state.nuisance``, of which the `active` move, are ln p of the parameters, then
-    of the fields, then the mesh.
+    of the fields, then the mesh. A step to where a mass is negative is too long.
     """
     now, best = state, diffuse(seen(problem, state))
     height = best.log - 0.5 * surprise(problem, now.nuisance, now.suspects)
@@ -151,13 +152,14 @@ def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
         H, g = _normal_equations(problem, now, best, active)
         better = None
         for _ in range(MODEL_ERROR.dampings):
-            trial = stepped(problem, now, active, _step(H, g, damping))
-            d = diffuse(seen(problem, trial), best)
-            new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
-            if new > height:
-                better = trial, d, new
-                damping *= LIKELIHOOD.damping_down
-                break
+            with suppress(np.linalg.LinAlgError):
+                trial = stepped(problem, now, active, _step(H, g, damping))
+                d = diffuse(seen(problem, trial), best)
+                new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
+                if new > height:
+                    better = trial, d, new
+                    damping *= LIKELIHOOD.damping_down
+                    break
             damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:
             break
