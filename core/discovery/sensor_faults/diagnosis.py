@@ -18,7 +18,7 @@ from ...correlation.mac import realised
 from ...data.dofs import Dofs
 from ...data.parametric_model import Model
 from ...sensors.sensor_map import observe
-from ..faults import AXIS, SWAP, Fault
+from ..faults import AXIS, FAULTS, SWAP, Fault
 from ..likelihood.hypothesis import Fit, Problem
 from .fault_hypotheses import Alternative
 from .fault_posterior import Weighed, weigh
@@ -104,11 +104,16 @@ def _swapped(weighed: Weighed, s: Swap) -> Fault:
 
 
 def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
-    """Return the likeliest kind of fault of a node, if it is likely enough."""
+    """Return the likeliest kind of fault of a node, if it is likely enough.
+
+    One that an error of the model may look like has to be surer.
+    """
     share = weighed.shares(i)
     if sum(share.values()) < SENSORS.named:
         return []
     kind = max(share, key=lambda k: share[k])
+    if FAULTS[kind].like_model and share[kind] < SENSORS.sure:
+        return []
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
     return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]
 

@@ -86,7 +86,7 @@ class SensorNumbers:
     beside: float = number(0.4, "of the nodes", "at which it may, near to another that is off its prediction")
     near: float = number(0.15, SIZE, "how near that is")
     unlike: float = number(0.5, "of their errors", "how far these are from alike")
-    sure: float = number(0.9, "-", "chance of a fault that no error of a model looks like, above which none is assumed")
+    sure: float = number(0.9, "-", "chance of a fault that no error of a model looks like, above which none is assumed; of one that it may look like, from which on it is told")
     cleared: float = number(0.01, "-", "chance of not being sound below which a node is not swapped")
     mad: float = number(1.4826, "-", "standard deviation over the median absolute deviation", "normal distribution")
 
