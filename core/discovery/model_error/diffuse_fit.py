@@ -205,8 +205,10 @@ def _normal_equations(
     rest = t - own * c
     sure = 1.0 - d.stray
     variance = 0.5 * d.error**2 + here.scatter**2
-    off = 0.5 * np.log(np.maximum(lk, np.finfo(float).tiny) / targets(problem.evidence))
-    dlam = 0.5 * F[:, k, count] / np.maximum(lk, np.finfo(float).tiny)
+    aim = targets(problem.evidence)
+    floor = np.maximum(lk, LIKELIHOOD.least_eigenvalue * aim)
+    off = 0.5 * np.log(floor / aim)
+    dlam = 0.5 * F[:, k, count] / floor
     H = (dlam * (sure / variance)) @ dlam.T
     g = dlam @ (off * sure / variance)
     white = covariances(here, d)
