@@ -11,6 +11,7 @@ from .curved_shell import QUAD8, TRIA6
 from .element import Element
 from .hexa import HEXA8, HEXA20
 from .lumped import BUSH, GENERAL, GROUNDED_BUSH, MASS, SPRING
+from .patches import PATCH_CONNECTOR
 from .penta import PENTA6, PENTA15
 from .pyramid import PYRAMID5, PYRAMID13
 from .quad4 import QUAD4

@@ -21,8 +21,8 @@ bdf = pytest.importorskip("pyNastran.bdf.bdf", reason="the peer is not installed
 READ = {
     n: c
     for n, c in definitions().items()
-    # pyNastran does not know BNDFIX and its like; GENEL has a test of its own
-    if not (c.ignored or c.refused or n.startswith(("BND", "GENEL")))
+    # pyNastran does not know BNDFIX, CWELD and their like; GENEL has a test of its own
+    if not (c.ignored or c.refused or n.startswith(("BND", "GENEL", "CWELD", "PWELD")))
 }
 REAL = st.builds(
     "{}{}{}".format,
@@ -68,7 +68,7 @@ ISOP REDUCED FULL|TFLAG 0 1|NORM MASS MAX|METHOD LAN AHOU|MSGLVL 0 1 2 3 4|PARAM
 PARAM.V1 0.5 227.25|X3:r -2. 1.5|X4:r 2. 1.5E2|NSM.TYPE PSHELL PBAR PBEAM|NSML.TYPE PSHELL PROD
 NSM1.TYPE PSHELL|NSML1.TYPE ELEMENT|PBARL.TYPE BAR TUBE2|PBEAML.TYPE BAR|components:i 1 2 3
 RBAR.CNA 123456|RROD.CMA 1 2 3|DMIG.NAME MADE|DMIG.CJ 1 2 3|DTI.NAME UNITS|DTI.IREC 1|DTI.MASS KG
-DTI.FORCE N|DTI.LENGTH M MM|DTI.TIME S"""
+DTI.FORCE N|CFAST.TYPE PROP ELEM|MFLAG 0 1|DTI.LENGTH M MM|DTI.TIME S"""
 BLANK = "EIGR.G EIGR.C PARAM.V2 RBAR.CNB RBAR.CMA RROD.CMB PBAR.I12 RBAR1.TREF RROD.TREF DMIG.B"
 DRAWN = {
     **{w.split()[0]: words(w.partition(" ")[2]) for w in re.split(r"[|\n]", WORDS.strip())},
@@ -80,6 +80,7 @@ DRAWN = {
 GIVEN = """
 PID CQUADR CTRIAR CQUAD8 CTRIA6 CDAMP3 CBUSH1D|E MAT1|CM RBE2|CMA RROD|A PROD CONROD MPC DMIG PBAR
 G1 CELAS1 CELAS2 CMASS1 CMASS2 CDAMP1 CDAMP2|S1 CELAS3 CELAS4 CMASS3 CMASS4 CDAMP3 CDAMP4|CP GRDSET
+GS CFAST|KT1 PFAST|KT2 PFAST|KT3 PFAST
 M CONM2|VALUE NSM NSML NSM1 NSML1|RID CORD2R CORD2C CORD2S|C MPC DMIG CSET1|G DMIG|CJ DMIG|N PARAM
 V1 PARAM|IREC DTI|MASS DTI|FORCE DTI|LENGTH DTI|TIME DTI|NAME DTI DMIG"""
 WANTED = {f"{c}.{w.split()[0]}" for w in re.split(r"[|\n]", GIVEN) for c in w.split()[1:]}
