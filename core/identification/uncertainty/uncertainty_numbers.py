@@ -16,6 +16,7 @@ class UncertaintyNumbers:
     enough: int = number(8, "responses", "whose scatter tells the error of their mean", SURVEYS)
     disagree: float = number(9.0, "-", "variance between references over the noise's, above which they disagree", "three standard deviations")
 
+    run: int = number(3, "-", "one part in so many of the outputs, in the order of the file, that may be one run", SURVEYS)
     smoothed: int = number(7, "lines", "over which the noise level is averaged", SURVEYS)
     lags: int = number(24, "lines", "over which a residual remembers, at most", SURVEYS)
     lags_share: int = number(4, "-", "one in so many lines, likewise", SURVEYS)

@@ -76,3 +76,10 @@ def test_driving_points_and_reciprocity_are_reported(survey):
     assert (pair.function, pair.reciprocal) == ("1:Z/40:Z", "40:Z/1:Z")
     assert pair.correlation > 0.99
     assert pair.difference < 0.02
+
+
+def test_a_reference_that_lacks_the_function_of_another_point_is_no_fault(survey):
+    frfs, _ = survey(7, n_mode=6)
+    values = np.array(frfs.values)
+    values[0, 1] = np.nan
+    assert checked(prepare(replace(frfs, values=values))).faults == ()

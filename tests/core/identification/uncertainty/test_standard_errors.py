@@ -5,7 +5,7 @@ import pytest
 
 from trueup.core.identification.poles.moments import band_data
 from trueup.core.identification.poles.variable_projection import refine
-from trueup.core.identification.survey.modal_synthesis import poles_from
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 from trueup.core.identification.uncertainty.standard_errors import (
     errors,
     frequency_and_damping_errors,
@@ -88,3 +88,34 @@ def test_references_that_disagree_widen_the_errors(survey):
         stds.append(frequency_and_damping_errors(fit.poles, errors(data, fit).poles)[0][0])
     assert stds[1] > 10 * stds[0]
     assert stds[1] > 0.005
+
+
+def loaded(frequencies_of):
+    """Fit one mode of 30 responses, each with a frequency of its own over that of the mode."""
+    f = np.linspace(40.0, 60.0, 400)
+    shapes = np.random.default_rng(3).standard_normal(30)
+    poles = poles_from(50.0 * frequencies_of(shapes), np.full(30, 0.005))
+    values = np.stack([
+        modal_response(f, poles[o : o + 1], shapes[o : o + 1, None], shapes[[0, 29], None] / 2j)[0]
+        for o in range(30)
+    ])  # fmt: skip
+    noise = np.random.default_rng(4).standard_normal(values.shape)
+    values = values + 1e-3 * np.sqrt(np.mean(np.abs(values) ** 2)) * noise
+    data = band_data(f, values, np.ones((30, 2), bool))
+    fit = refine(data, poles_from([50.0], [0.005]), shapes[[0, 29], None] + 0j)
+    std = frequency_and_damping_errors(fit.poles, errors(data, fit).poles)[0][0]
+    return float(np.abs(fit.poles[0]) / (2 * np.pi)) - 50.0, float(std)
+
+
+def test_what_the_mass_of_a_roving_sensor_takes_off_is_within_the_error():
+    off, std = loaded(lambda shapes: 1.0 - 5e-4 * shapes**2)
+    assert off < -0.02
+    assert abs(off) < 2.0 * std
+
+
+def test_runs_of_a_survey_do_not_average_out_as_its_points_do():
+    """The same three frequencies, ten points after each other or in turn."""
+    of_run = np.array([-1e-3, 0.3e-3, 0.7e-3])
+    _, in_turn = loaded(lambda shapes: 1.0 + np.tile(of_run, 10))
+    _, in_runs = loaded(lambda shapes: 1.0 + np.repeat(of_run, 10))
+    assert in_runs > 1.3 * in_turn
