@@ -102,10 +102,24 @@ class TestWhatIsLeftOut:
         assert any("NSM1 cards are not used" in w for w in model(rod + nsm).warnings)
         assert not any("NSM" in w for w in model(rod + nsm, case="NSM = 4").warnings)
 
-    @pytest.mark.parametrize("card", ["BNDFIX,1,123", "BNDFREE1,123,1"])
-    def test_sets_of_component_modes_are_refused_under_all_their_names(self, model, card):
-        with pytest.raises(InputError, match=r"deck.bdf line \d+: BND.* component modes"):
-            model(GRID + MASS + "CELAS2,1,900.,1,1\n" + card)
+    @pytest.mark.parametrize(
+        "card",
+        ["ASET,1,1", "BSET,1,1", "BNDFIX,1,1", "BNDFIX1,1,1", "CSET1,1,1", "BNDFREE1,1,1"],
+    )
+    def test_sets_of_the_boundary_are_read_under_all_their_names(self, model, card):
+        rods = "GRID,1\nGRID,2,,1.\nGRID,3,,2.,,,,123456\nCELAS2,1,4.,1,1,2,1\n"
+        found = model(rods + "CELAS2,2,4.,2,1,3,1\nCONM2,9,1,,1.\n" + card)
+        assert found.free_labels == ("1:1",)
+        assert found.K().toarray() == pytest.approx(2.0)
+
+    def test_component_modes_need_to_be_asked_for(self, model):
+        springs = GRID + MASS + "SPOINT,77\nCELAS2,1,900.,1,1\n"
+        with pytest.raises(InputError, match="METHOD selects no EIGRL"):
+            model(springs + "ASET,1,1\nQSET,77")
+        with pytest.raises(InputError, match=r"77:0 .* is in ASET and in the q-set"):
+            model(springs + "ASET,77\nQSET,77")
+        with pytest.raises(InputError, match=r"line \d+: DYNRED.* this reduction"):
+            model(springs + "DYNRED,7,1.")
 
 
 BAR = "GRID,1\nGRID,2,,1.\nCBAR,1,1,1,2,0.,0.,1.\nMAT1,1,2.6,,.3,1.\n"
