@@ -51,6 +51,7 @@ from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
 from .search.robust_search import robust
+from .search.search_numbers import SEARCH
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
 
@@ -149,8 +150,13 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         progress("estimating how far off the model is everywhere")
         ways = [(searcher, found), robust(searcher, progress)]
         searcher, found = max(ways, key=lambda way: _score(*way))
-    searcher, found = _reshaped(trial.request, searcher, found)
     progress("weighing the best hypotheses on bases of their own")
+    verdict = judge(searcher, found)
+    wide, laid, _ = _laid(trial, searcher, found, verdict)
+    explained = noise_scale(wide.problem, laid.levels[verdict.accepted]) < SEARCH.complete
+    if explained:
+        searcher, found = wide, laid
+    searcher, found = _reshaped(trial.request, searcher, found, stands=not explained)
     found, verdict = _weighed(trial, searcher, found)
     best = found.levels[verdict.accepted]
     one = merged(searcher, best)
@@ -162,7 +168,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
             levels = (*found.levels[: verdict.accepted], one)
             scale = max(verdict.scale, noise_scale(searcher.problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
-    return _laid(trial, searcher, found, verdict)
+    return (searcher, found, verdict) if explained else _laid(trial, searcher, found, verdict)
 
 
 def _laid(
@@ -265,13 +271,16 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
-def _reshaped(request: Request, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
-    """Give patches and masses of the hypotheses that earned their place better shapes."""
+def _reshaped(
+    request: Request, searcher: Searcher, found: Found, stands: bool
+) -> tuple[Searcher, Found]:
+    """Give patches of the hypotheses that earned their place better shapes, masses `stands`."""
     verdict = judge(searcher, found)
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
         searcher, levels[k] = reshaped(searcher, levels[k], verdict.scale)
-        searcher, levels[k] = equipped(request.structure, searcher, levels[k], verdict.scale)
+        if stands:
+            searcher, levels[k] = equipped(request.structure, searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
 
 

@@ -13,6 +13,8 @@ import numpy as np
 
 from ...arrays import Floats
 from ...errors import CheckError
+from ..discovery_numbers import DISCOVERY
+from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
@@ -120,10 +122,14 @@ def completeness(
         least = needed(level.judged) if kept and level.judged else SEARCH.suspect
         if level.score - levels[kept].score > least:
             kept = k
-    tried = sorted(
-        contenders(searcher, found, kept), key=lambda f: cost(searcher, f, verdict.scale)
-    )
-    tried = [f for f in tried if len(f.suspects) == kept][: SEARCH.rivals_judged if kept else 0]
+
+    def behind(f: Fit) -> float:
+        pair = (cost(searcher, g, verdict.scale) for g in (f, found.levels[kept]))
+        return next(pair) - next(pair)
+
+    tried = sorted(contenders(searcher, found, kept), key=behind)
+    tried = [f for f in tried if len(f.suspects) == kept and behind(f) < DISCOVERY.contested]
+    tried = tried[: SEARCH.rivals_judged if kept else 0]
     others = (scored(searcher, f) for f in tried)
     field = sorted([levels[kept], *others], key=lambda s: -s.score)
     best = field[0]

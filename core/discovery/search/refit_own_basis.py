@@ -7,8 +7,7 @@ modes of the deck and its responses to the known parameters.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -31,6 +30,23 @@ from ..reduction.search_basis import Basis, beside, structural
 from .model_selection import noise_scale
 from .search_numbers import SEARCH
 
+Places = tuple[tuple[Candidates, int], ...]
+"""Candidates and row of every suspect."""
+
+
+@dataclass(frozen=True, eq=False)
+class Own:
+    """A basis for effects at some places: with the deck's masses, with better ones.
+
+    `seen` (n_sensor, r) is what sensors read, `mesh` see `Problem`, `factors` rows of the effects.
+    """
+
+    plain: Basis
+    better: Basis
+    seen: Floats
+    mesh: Floats
+    factors: tuple[Floats, ...]
+
 
 @dataclass(frozen=True, eq=False)
 class Ground:
@@ -46,6 +62,8 @@ class Ground:
         Of all sensors, weighted.
     seen : (n_sensor,) bool
         Those of the evidence.
+    known : dict
+        Bases that were made.
     """
 
     structure: Structure
@@ -53,6 +71,7 @@ class Ground:
     compliance: Compliance
     observation: sp.csr_matrix
     seen: Bools
+    known: dict[Places, Own] = field(default_factory=dict)
 
     @cached_property
     def fields(self) -> Fields:
@@ -93,10 +112,10 @@ def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = 
     suspension too; where nothing is `moving`, the error of the mesh alone.
     """
     own, start = _own_problem(ground, problem, state)
-    size = min(SEARCH.own_times * own.modes, own.basis.size)
+    size = min(SEARCH.own_times * own.modes, len(own.mesh))
     _, modes = solve(own, state.nuisance, start, size)
-    T = structural(*np.split(modes, [own.basis.size]))
-    small = replace(own, basis=own.basis.bare()).turned(T).entire()
+    T = structural(*np.split(modes, [len(own.mesh)]))
+    small = own.turned(T).entire()
     here = evaluate(small, state.nuisance, start)
 
     def fields() -> Fields:
@@ -125,45 +144,52 @@ def _own_problem(
     ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
 ) -> tuple[Problem, tuple[Suspect, ...]]:
     """Return the problem on a basis of its own, masses better than a deck's or not, and a start."""
-    wide = [(problem.catalogue[s.kind], s.row) for s in state.suspects]
-    basis = _widened(ground, wide, problem.columns)
-    everywhere = np.asarray(ground.observation @ basis.vectors)
+    places = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
+    if places not in ground.known:
+        ground.known[places] = _own(ground, places, problem.columns)
+    own = ground.known[places]
     top = SEARCH.own_above * float(targets(problem.whole).max())
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
-    own = replace(
+    new = replace(
         problem,
-        basis=basis if as_deck else with_consistent_bars(ground.structure, basis),
-        sensors=everywhere[ground.seen],
-        everywhere=everywhere,
-        mesh=lumping(ground.structure, basis.vectors),
-        catalogue=tuple(_alone(c, row, state) for c, row in wide),
-        factors=tuple(_factor(c, row, basis.vectors)[None] for c, row in wide),
+        basis=own.plain if as_deck else own.better,
+        sensors=own.seen[ground.seen],
+        everywhere=own.seen,
+        mesh=own.mesh,
+        catalogue=tuple(_alone(c, row, state) for c, row in places),
+        factors=own.factors,
         missing=(),
-        modes=min(basis.size, max(modes, problem.columns)),
+        modes=min(len(own.mesh), max(modes, problem.columns)),
         turn=None,
         rest=None,
     )
     start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
-    values = evaluate(own, state.nuisance, start).eigenvalues
+    values = evaluate(new, state.nuisance, start).eigenvalues
     if values[0] < -SEARCH.rigid * values[-1]:
         raise CheckError("the completed model has a negative stiffness")
-    return own, start
+    return new, start
 
 
-def _widened(ground: Ground, places: Sequence[tuple[Candidates, int]], columns: int) -> Basis:
+def _own(ground: Ground, places: Places, columns: int) -> Own:
     """Return the basis with the static responses to effects."""
     basis, V = ground.basis, ground.basis.vectors
     loads = [
         _root(c, row).T.toarray() if c.rows_each else c.full(row) @ V[:, :columns]
         for c, row in places
     ]
-    if not loads:
-        return replace(basis, motion=np.zeros((0, basis.size)))
-    X = ground.compliance.responses(np.hstack(loads))
-    W = beside(X, V, ground.mass, REDUCTION.dependent)
-    both = np.hstack([V, W])
-    stiffness, mass = (s.widened(V, W) for s in (basis.stiffness, basis.mass))
-    return Basis(both, np.zeros((0, both.shape[1])), stiffness, mass)
+    if loads:
+        X = ground.compliance.responses(np.hstack(loads))
+        W = beside(X, V, ground.mass, REDUCTION.dependent)
+        stiffness, mass = (s.widened(V, W) for s in (basis.stiffness, basis.mass))
+        V = np.hstack([V, W])
+        basis = Basis(V, np.zeros((0, V.shape[1])), stiffness, mass)
+    return Own(
+        basis.bare(),
+        with_consistent_bars(ground.structure, basis).bare(),
+        np.asarray(ground.observation @ V),
+        lumping(ground.structure, V),
+        tuple(_factor(c, row, V)[None] for c, row in places),
+    )
 
 
 def _root(c: Candidates, row: int) -> sp.csr_matrix:

@@ -76,7 +76,7 @@ class SearchNumbers:
     beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
     same_effect: float = number(40.0, LN, "what the second of them must gain more")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")
-    complete: float = number(2.0, "of the assumed variance", "what a hypothesis leaves at most of which it is asked whether it leaves any error", "time")
+    complete: float = number(2.0, "of the assumed variance", "what a hypothesis leaves at most whose masses need no stands, and of which it is asked whether it leaves any error", "time")
     most_noise: float = number(3.0, "of the assumed variance", "by which the end of the search is judged, at most, of hypotheses that are not adequate")
     overlooked: float = number(4.0, LN, "price of a mode that the test did not see", "one mode in seven is overlooked: 2 ln 7")
     credible: float = number(6.0, LN, "explanations no further behind are told", "likelihood ratio of exp(3)")

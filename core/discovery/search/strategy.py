@@ -32,10 +32,13 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     usual = _with(searcher, [not x for x in late])
     found = _by_tuning(usual, progress)
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
+    best = int(np.argmin(costs))
     if not any(late) or scale < SEARCH.second_opinion:
         return found
+    if best and adequate(searcher, found.levels[best]):
+        return found
     progress("looking for springs between two places")
-    alone, best = _with(searcher, late), int(np.argmin(costs))
+    alone = _with(searcher, late)
     beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
     tried = [(cost(searcher, f, scale), f) for f in beside if f is not None]
     price, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
