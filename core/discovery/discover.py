@@ -45,13 +45,13 @@ from .search.model_selection import (
     judge,
     noise_scale,
     scored,
+    usual,
     with_rival,
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
 from .search.robust_search import robust
-from .search.search_numbers import SEARCH
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench
 
@@ -153,7 +153,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     progress("weighing the best hypotheses on bases of their own")
     verdict = judge(searcher, found)
     wide, laid, _ = _laid(trial, searcher, found, verdict)
-    explained = noise_scale(wide.problem, laid.levels[verdict.accepted]) < SEARCH.complete
+    explained = usual(wide, laid.levels[verdict.accepted])
     if explained:
         searcher, found = wide, laid
     searcher, found = _reshaped(trial.request, searcher, found, stands=not explained)

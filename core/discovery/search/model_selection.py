@@ -166,6 +166,14 @@ def complete(searcher: Searcher, f: Fit) -> bool:
     return judged is not None and judged.diffuse.complete
 
 
+def usual(searcher: Searcher, f: Fit) -> bool:
+    """Whether a hypothesis leaves no more error than right models usually do."""
+    if noise_scale(searcher.problem, f) > SEARCH.complete:
+        return False
+    judged = searcher.judged(searcher.problem, f)
+    return judged is not None and judged.diffuse.error <= MODEL_ERROR.usual
+
+
 def adequate(searcher: Searcher, f: Fit) -> bool:
     """Whether a hypothesis leaves an error as right models do, and hardly a mode unexplained."""
     judged = searcher.judged(searcher.problem, f)
