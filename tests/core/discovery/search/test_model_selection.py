@@ -19,6 +19,7 @@ from trueup.core.discovery.search.model_selection import (
     enough,
     instead,
     judge,
+    usual,
     with_unseen,
 )
 
@@ -141,6 +142,12 @@ def test_a_search_ends_where_nothing_is_left_to_explain():
 def test_a_hypothesis_is_adequate_that_leaves_what_right_models_do(error, stray, is_adequate):
     s = replace(searcher(hidden()), judged=leaving(error, stray))
     assert adequate(s, s.null()) is is_adequate
+
+
+def test_an_error_is_usual_that_half_of_right_models_leave():
+    s = searcher(hidden())
+    assert usual(replace(s, judged=leaving(0.002)), s.null())
+    assert not usual(replace(s, judged=leaving(0.01)), s.null())
 
 
 def test_what_an_adequate_hypothesis_leaves_is_noise():
