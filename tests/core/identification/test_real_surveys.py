@@ -161,5 +161,55 @@ def test_halves_of_a_survey_agree_within_their_errors(aeroplane):
             f_std = np.hypot(one.frequency_std[a], two.frequency_std[b])
             z_std = np.hypot(one.damping_std[a], two.damping_std[b])
             off.append((pair / f_std, z / z_std))
-    assert len(off) >= 11
+    assert len(off) == 13
     assert np.mean(np.abs(off) < 2.0) > 0.9
+
+
+def _file_cut_in_half(values):
+    """All functions of the first response, those of the second to half of the points."""
+    values[1, 36:] = values[2] = np.nan
+
+
+def _part_of_the_range(values):
+    values.reshape(-1, values.shape[2])[:25, 200:897] = np.nan  # 25 to 112 Hz
+
+
+def _functions_that_end_early(values):
+    values.reshape(-1, values.shape[2])[:50] = np.nan
+
+
+@pytest.mark.slow
+@needs(AEROPLANE)
+@pytest.mark.parametrize("lose", [_file_cut_in_half, _part_of_the_range, _functions_that_end_early])
+def test_what_a_real_survey_lacks_doubles_and_invents_nothing(aeroplane, lose):
+    content = read_universal([AEROPLANE])
+    values = np.array(content.frfs.values)
+    lose(values)
+    found = identify(
+        replace(content.frfs, values=values), fmin=15.0, fmax=180.0, geometry=content.geometry
+    )
+    known = aeroplane.modes.frequencies_hz
+    assert found.modes.frequencies_hz == pytest.approx(known, abs=0.3)
+    said = [w for w in found.warnings if "combinations of response" in w or "no value" in w]
+    assert len(said) == 1
+
+
+@pytest.mark.slow
+@needs(AEROPLANE)
+def test_a_real_survey_as_receptance_gives_the_same_modes(aeroplane):
+    content = read_universal([AEROPLANE])
+    frfs = content.frfs
+    s = 2j * np.pi * np.maximum(frfs.frequencies_hz, 1e-9)
+    receptance = replace(frfs, values=frfs.values / s**2, quantity="displacement")
+    found = identify(receptance, fmin=15.0, fmax=180.0, geometry=content.geometry)
+    assert found.modes.frequencies_hz == pytest.approx(aeroplane.modes.frequencies_hz, rel=1e-6)
+    assert found.modes.damping == pytest.approx(aeroplane.modes.damping, rel=1e-4)
+    assert found.frac == pytest.approx(aeroplane.frac, abs=1e-5)
+
+
+@pytest.mark.slow
+@needs(AEROPLANE)
+def test_a_narrow_band_of_a_real_survey_holds_its_three_modes():
+    content = read_universal([AEROPLANE])
+    found = identify(content.frfs, fmin=120.0, fmax=131.0, geometry=content.geometry)
+    assert found.modes.frequencies_hz == pytest.approx([125.20, 125.69, 129.74], abs=0.3)
