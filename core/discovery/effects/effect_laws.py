@@ -214,7 +214,8 @@ class ReleaseLaw(Law):
     unit displacement puts on the rest and d its own stiffness, both for the deck as it is, and f
     the factor by which the known parameters change them: a release all but cancels d, so that it
     has to follow. `own` (n, q) holds d, `elasticity` (n, q, n_parameter) ∂ln d/∂ln p, `log_p`
-    (n_parameter,) where the parameters stand. The first `free` coordinates get no stiffness.
+    (n_parameter,) where the parameters stand, `base` where d was found. The first `free`
+    coordinates get no stiffness.
     """
 
     own: Floats
@@ -222,6 +223,7 @@ class ReleaseLaw(Law):
     log_p: Floats
     free: int = 0
     turn: Floats | None = None
+    base: Floats | float = 0.0
     on = "K"
     shared = True
 
@@ -236,12 +238,12 @@ class ReleaseLaw(Law):
         d, W = directions(left, self.free)
         weight = W**2 * own[:, None, :]
         elasticity = weight @ self.elasticity[rows] / weight.sum(axis=2, keepdims=True)
-        return ReleaseLaw(np.maximum(d, least), elasticity, log_p, self.free, W)
+        return ReleaseLaw(np.maximum(d, least), elasticity, log_p, self.free, W, self.base)
 
     def factor(self, rows: Ints) -> Floats:
         """Return f, (n, q)."""
         known = self.elasticity[rows]
-        return np.asarray(np.exp(known @ self.log_p[: known.shape[-1]]))
+        return np.asarray(np.exp(known @ (self.log_p[: known.shape[-1]] - self.base)))
 
     def _stiffness(self, theta: Floats) -> Floats:
         """Return e^θ of each coordinate, nil of the free ones, (n, q)."""

@@ -1,7 +1,7 @@
 """A support that gives: a clamp that is not rigid, a foot that turns, an edge that moves."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -59,6 +59,44 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         made.append(_released(s, list(_stretches(s, edges, component, scale.size)), carrying))
     made.append(_released(s, list(_hinges(s, edges, scale.size)), carrying))
     return tuple(c for c in made if c is not None)
+
+
+def at_parameters(structure: Structure, c: Candidates, row: int, log_p: Floats) -> Candidates:
+    """Return one of some candidates with the stiffness that its supports hold at ln p.
+
+    A release takes away all but a thousandth of that, so that to follow the parameters by its
+    slopes from the deck's values alone leaves more, or less than nothing.
+    """
+    assert structure.supports is not None
+    s, w = _at(structure, structure.supports, np.exp(log_p)), c.where[row]
+    own = np.isin(s.grid, w["grids"])
+    sprung, free = (
+        np.flatnonzero(own & np.isin(s.component, w.get(key, ())))
+        for key in ("components", "free_components")
+    )
+    made = _released(s, [_Place(sprung, free)], 1.0)
+    assert made is not None
+    assert isinstance(made.law, ReleaseLaw)
+    law = replace(made.law, base=log_p)
+    return replace(made, law=law, typical=c.typical, spread=c.spread)
+
+
+def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
+    """Return the supports of a structure with other parameters."""
+    n, grids = structure.displacement.shape[0], structure.model.geometry.index_of(s.grid)
+    held = 6 * grids + s.component - 1
+    root, coupling = s.root, s.coupling
+    for m in structure.members:
+        rows = np.flatnonzero(np.isin(m.coordinates(np.arange(len(m.ids))), held).any(axis=1))
+        (K, _), (deck, _) = (m.matrices(rows, x) for x in (p, structure.model.deck_point))
+        if K is None or deck is None or not len(rows):
+            continue
+        at = m.coordinates(rows)
+        i = np.broadcast_to(at[:, :, None], K.shape).ravel()
+        j = np.broadcast_to(at[:, None, :], K.shape).ravel()
+        change = sp.csr_matrix(((K - deck).ravel(), (i, j)), (n, n))[held]
+        root, coupling = root + change @ structure.displacement, coupling + change[:, held]
+    return replace(s, root=root.tocsr(), coupling=coupling.tocsr())
 
 
 def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[_Place]:

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from ...arrays import Bools, Floats
 from ...errors import CheckError
+from ..effects import support_flexibility
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
@@ -144,10 +145,14 @@ def _own_problem(
     ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
 ) -> tuple[Problem, tuple[Suspect, ...]]:
     """Return the problem on a basis of its own, masses better than a deck's or not, and a start."""
-    places = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
-    if places not in ground.known:
-        ground.known[places] = _own(ground, places, problem.columns)
-    own = ground.known[places]
+    deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
+    places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
+    if places != deck:
+        own = _own(ground, places, problem.columns)
+    else:
+        if places not in ground.known:
+            ground.known[places] = _own(ground, places, problem.columns)
+        own = ground.known[places]
     top = SEARCH.own_above * float(targets(problem.whole).max())
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     new = replace(
@@ -168,6 +173,13 @@ def _own_problem(
     if values[0] < -SEARCH.rigid * values[-1]:
         raise CheckError("the completed model has a negative stiffness")
     return new, start
+
+
+def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tuple[Candidates, int]:
+    """Return candidates and row of a place as the known parameters of a fit make it."""
+    if c.kind is not support_flexibility.KIND:
+        return c, row
+    return support_flexibility.at_parameters(structure, c, row, state.log_p), 0
 
 
 def _own(ground: Ground, places: Places, columns: int) -> Own:
