@@ -63,7 +63,7 @@ def static_condensation(K: sp.csr_matrix, kept: Ints, rigid: Floats) -> Floats:
 
 def without_strain(K: sp.csr_matrix, motions: Floats) -> Floats:
     """Those of some motions (n, k) whose forces K x are rounding."""
-    size = abs(K) @ np.abs(motions)
+    size = _magnitudes(K) @ np.abs(motions)
     free = (np.abs(K @ motions) <= _ROUNDING * size).all(axis=0) & motions.any(axis=0)
     return np.asarray(motions[:, free])
 
@@ -75,7 +75,7 @@ def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
     is left of these would resist rigid motions (m, k) a little, or less than not at all. Where A
     is a stiffness that leaves these free, so does what is returned.
     """
-    found, size = T.T @ (A @ T), np.abs(T.T) @ (abs(A) @ np.abs(T))
+    found, size = T.T @ (A @ T), np.abs(T.T) @ (_magnitudes(A) @ np.abs(T))
     found = np.where(np.abs(found) > _ROUNDING * size, found, 0.0)
     free = (np.abs(found @ rigid) <= _ROUNDING * (size @ np.abs(rigid))).all(axis=0)
     rigid = rigid[:, free & rigid.any(axis=0)]
@@ -87,3 +87,8 @@ def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
         )
         found = P.T @ found @ P
     return sp.csr_matrix(0.5 * (found + found.T))
+
+
+def _magnitudes(A: sp.csr_matrix) -> sp.csr_matrix:
+    """Return |A|; scipy's own would sort the indices of `A` in place, which other matrices share."""
+    return sp.csr_matrix((np.abs(A.data), A.indices, A.indptr), A.shape)

@@ -177,7 +177,8 @@ def _condense(
         raise Place(deck.path).error("ASET and OMIT leave no free degree of freedom")
     K, M = (_total(part) for part in terms)
     try:
-        rigid = without_strain(K, _rigid_motions(points, reduced.kept))
+        rigid = _rigid_motions(points, reduced.kept)[:, : 6 * bool(len(modal))]
+        rigid = without_strain(K, rigid)
         T = static_condensation(K, kept, rigid) if len(kept) else np.zeros((K.shape[0], 0))
     except InputError as error:
         raise Place(deck.path).error(f"ASET and OMIT: {error}") from None
@@ -188,7 +189,10 @@ def _condense(
         modal = modal[: T.shape[1] - len(kept)]
     at_rest = np.zeros((T.shape[1] - len(kept), rigid.shape[1]))
     rigid = np.vstack([rigid[kept], at_rest])
-    terms = _each(terms, lambda matrices: [condensed(A, T, rigid) for A in matrices])
+    if len(modal):
+        terms = _each(terms, lambda matrices: [condensed(A, T, rigid) for A in matrices])
+    else:
+        terms = _each(terms, lambda matrices: [sp.csr_matrix(T.T @ (A @ T)) for A in matrices])
     warning = (
         f"{len(reduced.kept) - len(kept)} degrees of freedom were condensed statically to the "
         f"{len(kept)} of the analysis set (ASET, OMIT)"
