@@ -90,5 +90,5 @@ def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
 
 
 def _magnitudes(A: sp.csr_matrix) -> sp.csr_matrix:
-    """Return |A|; scipy's own would sort the indices of `A` in place, which other matrices share."""
+    """Return |A|; scipy's own would sort the indices of `A`, which other matrices share."""
     return sp.csr_matrix((np.abs(A.data), A.indices, A.indptr), A.shape)
