@@ -137,6 +137,8 @@ class Discovery:
     `evidence_for` is twice the log of how much more likely the verdict is than the known
     parameters alone; `posterior` its probability among the hypotheses compared; `foretold` by how
     many standard deviations modes held out agree that it foretells them better than these.
+    `proposal` says that the effects explain much and foretell, but leave more than right models
+    do: the verdict is ``undecided``, and the deck is completed by them all the same.
     """
 
     verdict: str
@@ -157,5 +159,16 @@ class Discovery:
     gain: float = 0.0
     adequacy: float = 1.0
     unexplained: tuple[int, ...] = ()
+    proposal: bool = False
     damping: ModalDamping | None = None
     responses: ResponseGap | None = None
+
+    @property
+    def completes(self) -> bool:
+        """Whether the deck is completed by the effects that were found."""
+        return self.verdict == "effect" or self.proposal
+
+    @property
+    def adopted(self) -> bool:
+        """Whether the deck is changed at all."""
+        return self.completes or self.verdict == "parameters_only"

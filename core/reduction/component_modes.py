@@ -5,9 +5,7 @@ import scipy.sparse as sp
 
 from ..arrays import Floats, Ints
 from ..eigen.normal_modes import solve
-
-_DEPENDENT = 1e-6
-"""Part of a mode that is left beside the constraint modes, in mass: less is rounding."""
+from .derivative_numbers import DERIVATIVES
 
 
 def component_modes(
@@ -55,4 +53,4 @@ def component_modes(
     shapes -= constraint_modes @ shapes[kept]
     shapes[kept] = 0.0
     left = np.einsum("nk,nk->k", shapes, M @ shapes)
-    return np.asarray(shapes[:, left > _DEPENDENT])
+    return np.asarray(shapes[:, left > DERIVATIVES.held_already])

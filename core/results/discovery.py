@@ -7,7 +7,6 @@ from typing import Self
 
 from ..correlation.comparison import Comparison
 from ..discovery.findings import Alternative, Discovery, Finding
-from ..discovery.screening.completed_model import ADOPTED
 from ..noun import OPTIONAL, Noun
 from .correlation import Gap, PairRow, gap
 from .evidence import DampingTable, MisfitTable, ResponseTable
@@ -43,7 +42,8 @@ class JudgementTable:
     of the model, relative, completed by what was found, `error_alone` with the known parameters
     alone; `gain` is ln of how much likelier the test is by what was found, choices paid for;
     `adequacy` is the probability that a right model would leave an error as large; `unexplained`
-    are test modes that no mode of the model explains.
+    are test modes that no mode of the model explains. `proposal` says that the deck is completed by
+    what was found though more is left than right models leave, and the verdict ``undecided``.
     """
 
     evidence: float
@@ -54,6 +54,7 @@ class JudgementTable:
     gain: float = 0.0
     adequacy: float = 1.0
     unexplained: tuple[int, ...] = ()
+    proposal: bool = False
 
     @classmethod
     def of(cls, found: Discovery) -> Self:
@@ -67,6 +68,7 @@ class JudgementTable:
             found.gain,
             found.adequacy,
             found.unexplained,
+            found.proposal,
         )
 
 
@@ -89,8 +91,8 @@ class DiscoverTables(ChangingTables):
 
     @property
     def adopted(self) -> bool:
-        """Whether the verdict changed the deck."""
-        return self.verdict in ADOPTED
+        """Whether what was found changed the deck."""
+        return self.verdict in ("effect", "parameters_only") or self.judgement.proposal
 
 
 def gap_table(found: Discovery, before: Comparison, after: Comparison) -> GapTable:

@@ -73,7 +73,7 @@ def complete(
     refused: list[str] = []
     for f in found.findings:
         written: tuple[str, ...] = ()
-        if f.side == "model" and found.verdict == "effect":
+        if f.side == "model" and found.completes:
             try:
                 adopted = adopt(text, deck, f)
                 text, written = adopted.deck, adopted.cards

@@ -88,10 +88,13 @@ def _discover(answer: DiscoverTables) -> list[str]:
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after
-    if verdict in ("no_gap", "undecided") or old == new:
+    if not answer.adopted or old == new:
         told.append(_sentence(_of(new) + " with the model"))
     else:
-        told.append(_sentence("with that adopted, " + _change(old, new, "completed model")))
+        adopted = (
+            "with that adopted, " if verdict != "undecided" else "with that put into the deck, "
+        )
+        told.append(_sentence(adopted + _change(old, new, "completed model")))
         told += _lost(answer)
     rivals = [a for a in answer.alternatives if a.kinds]
     if best and rivals:

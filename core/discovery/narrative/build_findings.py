@@ -62,9 +62,9 @@ def build_discovery(
     moved = _moved(best, verdict.scale)
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
-    sure = whole.clear and not any(map(_says_nothing, findings))
+    clear = whole.clear and bool(findings) and not decide and not any(map(_says_nothing, findings))
     adequate = whole.adequacy > MODEL_ERROR.adequate
-    if findings and sure and not decide:
+    if clear and adequate:
         word = "effect"
     elif findings:
         word = "undecided"
@@ -98,6 +98,7 @@ def build_discovery(
         gain=whole.gain,
         adequacy=whole.adequacy,
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
+        proposal=clear and not adequate,
     )
 
 

@@ -50,7 +50,9 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
             f"the same test with the dashpot taken off: it is heavy enough to move modes {which} "
             f"as the {beside_it} beside it would",
         )
-    return replace(said, verdict=verdict, findings=(*model, finding, *rest), would_decide=decide)
+    every = (*model, finding, *rest)
+    proposal = said.proposal and not len(shaken)
+    return replace(said, verdict=verdict, findings=every, would_decide=decide, proposal=proposal)
 
 
 def _beside(request: Request, damper: Finding, model: list[Finding]) -> str:

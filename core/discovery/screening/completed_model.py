@@ -15,9 +15,6 @@ from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
 from .screening_numbers import SCREENING
 
-ADOPTED = ("effect", "parameters_only")
-"""Verdicts that change the model."""
-
 
 @dataclass(frozen=True, eq=False)
 class SolvedModel:
@@ -45,20 +42,21 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
     try:
         return found, complete(found)
     except TrueupError as error:
-        if found.verdict not in ADOPTED:
+        if not found.adopted:
             raise
         why = f"a deck that solves: completed as found, {error}"
-        found = replace(found, verdict="undecided", would_decide=(why, *found.would_decide))
+        decide = (why, *found.would_decide)
+        found = replace(found, verdict="undecided", proposal=False, would_decide=decide)
         return found, complete(found)
 
 
 def written(found: Discovery, adopt: str) -> Discovery:
     """Return what was found with the factors that its completed model takes.
 
-    `adopt` says which known parameters move: the "significant", "all" or "none". A verdict that
-    changes no model moves none.
+    `adopt` says which known parameters move: the "significant", "all" or "none". What changes no
+    model moves none.
     """
-    if found.verdict not in ADOPTED:
+    if not found.adopted:
         adopt = "none"
     return replace(found, parameters=tuple(_written(m, adopt) for m in found.parameters))
 
