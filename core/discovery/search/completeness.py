@@ -73,13 +73,15 @@ class Completeness:
     def clear(self) -> bool:
         """Whether what was found explains more than an error of the model would seem to.
 
-        It has to gain enough, to be ahead of what else was found, and to foretell: what is not
-        there gains on modes that it is fitted to, not on others.
+        It has to gain enough, to be ahead of what else was found, and to foretell (what is not
+        there gains on modes that it is fitted to, not on others) or to leave a small part of the
+        error that the known parameters alone leave: what is not there hardly lessens it.
         """
+        left = self.best.diffuse.error / self.alone.diffuse.error
         return bool(
             self.gain > needed(self.best)
             and self.ahead > SEARCH.ahead
-            and self.agree > SEARCH.agree
+            and (self.agree > SEARCH.agree or left < SEARCH.small_part)
             and len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
         )
 

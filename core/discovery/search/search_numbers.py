@@ -69,6 +69,7 @@ class SearchNumbers:
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields from which on an effect is clear whatever is left", "fresh cases with causes that no list has")
     agree: float = number(1.28, "standard deviations", "by which modes held out agree that it is there", "one in ten by chance")
+    small_part: float = number(0.25, "of the error before", "what true effects left, and false ones never", "twelve cases by another program")
     ahead: float = number(2.0, "ln L", "by which it must be ahead of its nearest rival elsewhere")
     rivals_judged: int = number(2, "rivals", "that are judged by the diffuse error, at most", "time")
     nothing: float = number(0.6, "-", "adequacy of a model below which it is not said to lack nothing")

@@ -15,8 +15,8 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(gain=30.0, ahead=np.inf, agree=3.0, **more):
-    none = judged(np.zeros(10))
+def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, **more):
+    none = judged(np.zeros(10), error=before)
     return Completeness(none, none, judged(np.zeros(10), **more), gain, gain, ahead, agree)
 
 
@@ -29,7 +29,12 @@ def test_a_small_gain_is_not_clear():
 
 
 def test_what_foretells_modes_held_out_no_better_is_not_clear():
-    assert not found(gain=1000.0, agree=1.0).clear
+    assert not found(gain=1000.0, agree=1.0, before=0.003).clear
+
+
+def test_what_takes_the_error_away_is_clear_though_few_modes_tell():
+    assert found(agree=0.8, before=0.005).clear
+    assert not found(agree=0.8, before=0.003).clear
 
 
 def test_the_larger_the_error_that_is_left_the_more_has_to_be_gained():
