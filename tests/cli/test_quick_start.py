@@ -9,7 +9,7 @@ DECK = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3
 HEAVY = "h5py scipy.signal scipy.stats scipy.optimize scipy.spatial pyNastran trueup.core.discovery"
 
 
-@pytest.mark.parametrize(("verb", "heavy"), [("inspect", f"{HEAVY} scipy"), ("solve", HEAVY)])
+@pytest.mark.parametrize(("verb", "heavy"), [("inspect", HEAVY), ("solve", HEAVY)])
 def test_a_verb_imports_no_more_than_it_needs(tmp_path, verb, heavy):
     (tmp_path / "rod.bdf").write_text(DECK)
     told = f"import sys, trueup\ntrueup.{verb}('rod.bdf')\nprint(*sys.modules)"

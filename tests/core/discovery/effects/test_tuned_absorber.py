@@ -136,7 +136,6 @@ def test_an_absorber_is_found_beside_a_wrong_tension(bead, mass, hz):
     assert suspect.row == bead
     assert np.exp(suspect.theta) == pytest.approx([mass, hz], rel=0.1)
     assert np.exp(suspect.theta[1]) == pytest.approx(hz, rel=0.02)
-    assert verdict.posterior > 0.5
 
 
 @pytest.mark.slow

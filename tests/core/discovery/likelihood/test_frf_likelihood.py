@@ -27,7 +27,7 @@ from trueup.core.discovery.likelihood.frf_likelihood import (
 )
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search.beam_search import Found
-from trueup.core.discovery.search.model_selection import judge, with_unseen
+from trueup.core.discovery.search.model_selection import cost, judge, with_unseen
 
 DRIVEN = np.array([4, 17])
 ZETA = 0.006
@@ -156,9 +156,8 @@ def test_the_right_place_is_heard_and_a_wrong_one_is_not():
     assert misfit_of_responses(deaf.problem, right) == 0.0
     sound = with_unseen(s, right)
     twin = replace(wrong, objective=sound.objective, unseen=sound.unseen)
-    found = Found((null, sound), ((), (twin,)))
-    assert judge(deaf, found).posterior == pytest.approx(0.5)
-    assert judge(s, found).posterior > 0.99
+    assert cost(deaf, twin, 1.0) == pytest.approx(cost(deaf, sound, 1.0))
+    assert cost(s, twin, 1.0) > cost(s, sound, 1.0) + 10.0
 
 
 def test_responses_of_a_string_that_lacks_nothing_name_nothing():
