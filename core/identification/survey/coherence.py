@@ -65,7 +65,8 @@ def coherence_checked(survey: Survey, coherence: Coherence | None) -> Survey:
     poor = tops[by_line[tops] < SURVEY.coherent]
     if len(poor):
         where = listed([f"{survey.frequencies_hz[k]:.2f} Hz ({by_line[k]:.2f})" for k in poor])
-        sentence = f"low coherence at the resonances near {where}, of all {'other ' * bool(low.any())}functions together"
+        which = "all other" if low.any() else "all"
+        sentence = f"low coherence at the resonances near {where}, of {which} functions together"
         faults.append(Fault("low_coherence", (), sentence))
     return told(replace(survey, coherence=by_line), *faults)
 
