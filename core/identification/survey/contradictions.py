@@ -126,8 +126,8 @@ def _changes(n_input: int) -> list[_Change]:
 def _gains(factor: Floats, k: int, n_input: int) -> list[_Change]:
     """Multiply function `k` of each output, where by more than measurements err."""
     same = np.arange(n_input)
-    sure = np.abs(np.log(np.maximum(factor, 1e-300))) > np.log(SURVEY.gain_least)
-    factor = np.where(sure & (factor > 0.0), factor, 1.0)
+    factor = np.where(factor > 0.0, factor, 1.0)
+    factor = np.where(np.abs(np.log(factor)) > np.log(SURVEY.gain_least), factor, 1.0)
     return [_Change(same, np.where(same == k, f, 1.0)) for f in factor]
 
 

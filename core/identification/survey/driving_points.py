@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...arrays import Floats, Ints, Numbers
+from ...arrays import Bools, Floats, Ints, Numbers
 from ...data.dofs import Dofs
 from ...data.geometry import Geometry
 from .faults import listed
@@ -101,6 +101,26 @@ def resonates(function: Numbers) -> bool:
     return bool(flows > SURVEY.flows * np.linalg.norm(function) ** 2)
 
 
+def coupled(size: Floats) -> Bools:
+    """Say which functions between driving points are large enough to be reciprocal.
+
+    One that symmetry or its directions make nil holds noise, which is not.
+
+    Parameters
+    ----------
+    size : (n_driven, n_driven) float
+        Norm of each function; NaN where it was not measured.
+
+    Returns
+    -------
+    (n_driven, n_driven) bool
+        Of those off the diagonal, where reciprocals are not far below the driving points.
+    """
+    off = ~np.eye(len(size), dtype=bool) & np.isfinite(size * size.T)
+    own = np.sqrt(np.outer(size.diagonal(), size.diagonal()))
+    return np.asarray(off & ~(np.sqrt(size * size.T) < SURVEY.uncoupled * own))
+
+
 def scale(
     poles: Numbers, shapes: Numbers, participation: Numbers, points: Floats, inputs: Dofs
 ) -> Scaling:
@@ -160,7 +180,7 @@ def _unreciprocal(at: Numbers, part: Numbers, level: Floats) -> Floats:
         Above the diagonal, else 0.
     """
     a = at[:, None, :] * part[None, :, :] * level
-    a[np.diag_indices(len(a))] = 0.0
+    a[~coupled(np.linalg.norm(a, axis=2))] = 0.0
     size = float(np.linalg.norm(a))
     apart = np.triu(np.linalg.norm(a - a.transpose(1, 0, 2), axis=2))
     return np.asarray(apart / size if size > 0.0 else 0.0 * apart)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import find_peaks, peak_widths
 
 from ...arrays import Floats, Ints, Numbers
-from .survey_data import Survey
+from .survey_data import Survey, noise_levels
 from .survey_numbers import SURVEY
 
 
@@ -21,12 +21,15 @@ class Followed:
     functions : (n_output, n_input, n_clear) complex
         Less the mean of the lines on either side, which leaves a peak its own mode; peaks made
         equal.
+    noise : (n_output, n_input, n_clear) float
+        Of the functions, as lines beside each other tell it.
     participation : (n_input, n_clear) complex
     peak : (n_clear,) int
         To which each line belongs.
     """
 
     functions: Numbers
+    noise: Floats
     participation: Numbers
     peak: Ints
 
@@ -44,15 +47,23 @@ class Followed:
         return np.asarray(1.0 - along / np.maximum(total, 1e-300))
 
     def factors(self, k: int) -> Floats:
-        """Real factor that makes function `k` of each output follow as the output's others do."""
+        """Real factor that makes function `k` of each output follow as the output's others do.
+
+        Lines count by the part that the others have there, which makes the noise of what is
+        expected even; NaN where that or the function itself does not stand well above its noise.
+        """
         part = self.participation
         others = np.arange(len(part)) != k
-        known = np.sum(np.abs(part[others]) ** 2, axis=0)
-        amplitude = np.einsum("oin,in->on", self.functions[:, others], part[others].conj())
-        expected = amplitude * part[k] / np.maximum(known, 1e-300)
-        own = self.functions[:, k]
-        total = np.maximum(np.sum(np.abs(own) ** 2, axis=1), 1e-300)
-        return np.asarray(np.sum((own.conj() * expected).real, axis=1) / total)
+        known = np.sqrt(np.sum(np.abs(part[others]) ** 2, axis=0))
+        ratio = part[others].conj() * part[k] / np.maximum(known, 1e-300)
+        expected = np.einsum("oin,in->on", self.functions[:, others], ratio)
+        blur = np.einsum("oin,in->o", self.noise[:, others] ** 2, np.abs(ratio) ** 2)
+        own = self.functions[:, k] * known
+        total, least = np.sum(np.abs(own) ** 2, axis=1), SURVEY.gain_clear**2
+        clear = np.sum(np.abs(expected) ** 2, axis=1) > least * blur
+        clear &= total > least * np.sum((self.noise[:, k] * known) ** 2, axis=1)
+        factor = np.sum((own.conj() * expected).real, axis=1) / np.maximum(total, 1e-300)
+        return np.where(clear, factor, np.nan)
 
 
 def followed(survey: Survey, rows: Ints) -> Followed | None:
@@ -87,7 +98,8 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
         own, part = functions[..., lines] * scale, directions[lines, :, -1].T
         away = np.maximum(_not_along(own, part), SURVEY.signs_follow)
         weight = 1.0 / np.maximum(np.linalg.norm(own, axis=(1, 2)) * np.sqrt(away), 1e-300)
-    return Followed(own, part, peak)
+    noise = noise_levels(raw)[:, :, None] * np.sqrt(1.5) * scale
+    return Followed(own, noise, part, peak)
 
 
 def _less_beside(functions: Numbers, survey: Survey, tops: Ints, level: Floats) -> Numbers:

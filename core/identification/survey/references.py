@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from ...arrays import Floats, Ints, Numbers
-from .driving_points import positive_share, resonates
+from .driving_points import coupled, positive_share, resonates
 from .faults import Fault, listed
 from .neighbours import Neighbours
 from .survey_data import Survey, told
@@ -107,8 +107,7 @@ def _of_other_size(survey: Survey, points: Floats) -> list[Fault]:
     said: list[str] = []
     names: list[str] = []
     sound = {i for (i, j), f in functions.items() if i == j and resonates(f)}
-    pairs = [(i, j) for i, j in functions if i < j and (j, i) in functions and {i, j} <= sound]
-    for i, j in pairs:
+    for i, j in (pair for pair in _pairs(functions) if {*pair} <= sound):
         there, back = functions[i, j], functions[j, i]
         factor = float(np.linalg.norm(there) / max(float(np.linalg.norm(back)), 1e-300))
         large = abs(np.log(max(factor, 1e-300))) > np.log(SURVEY.gain_least)
@@ -169,6 +168,16 @@ def _between(survey: Survey, points: Floats) -> dict[tuple[int, int], Numbers]:
     return found
 
 
+def _pairs(functions: dict[tuple[int, int], Numbers]) -> list[tuple[int, int]]:
+    """Return the inputs whose functions, there and back, can be held against each other."""
+    n = 1 + max((i for i, _ in functions), default=-1)
+    size = np.full((n, n), np.nan)
+    for i, j in functions:
+        size[i, j] = np.linalg.norm(functions[i, j])
+    held = np.triu(coupled(size))
+    return [(int(i), int(j)) for i, j in zip(*np.nonzero(held), strict=True)]
+
+
 def _correlation(there: Numbers, back: Numbers) -> float:
     size = float(np.linalg.norm(there) * np.linalg.norm(back))
     return float(np.vdot(there, back).real / size) if size > 0.0 else 1.0
@@ -178,8 +187,7 @@ def _disagreement(survey: Survey, points: Floats) -> float:
     """Mean failure of driving points and reciprocity, 0 (they hold) to 1 (they are reversed)."""
     functions = _between(survey, points)
     share = [positive_share(f) for (i, j), f in functions.items() if i == j]
-    pairs = [(i, j) for i, j in functions if i < j and (j, i) in functions]
-    share += [_correlation(functions[i, j], functions[j, i]) for i, j in pairs]
+    share += [_correlation(functions[i, j], functions[j, i]) for i, j in _pairs(functions)]
     return float(np.mean((1.0 - np.array(share)) / 2.0)) if share else 0.0
 
 
@@ -214,6 +222,7 @@ def checked_references(
         return np.asarray((points[i] @ shapes) * participation[j] * peak)
 
     driving, pairs = [], []
+    reciprocal = _pairs(functions)
     for (i, j), function in functions.items():
         if i == j:
             turned = 2j * residues(i, i)
@@ -222,7 +231,7 @@ def checked_references(
             phase = float(np.sum(off * np.abs(turned)) / size) if size > 0.0 else np.nan
             share = positive_share(function)
             driving.append(DrivingPoint(function_between(survey, i, i, points), share, phase))
-        elif i < j and (j, i) in functions:
+        elif (i, j) in reciprocal:
             there, back = residues(i, j), residues(j, i)
             size = float(np.sqrt(np.sum(np.abs(there) ** 2 + np.abs(back) ** 2)))
             apart = float(np.linalg.norm(there - back)) / size if size > 0.0 else np.nan

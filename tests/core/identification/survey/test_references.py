@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trueup.core.data.dofs import Dofs
+from trueup.core.data.frfs import Frfs
 from trueup.core.identification import identify
 from trueup.core.identification.survey.check_survey import checked
 from trueup.core.identification.survey.driving_points import positive_share
+from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 from trueup.core.identification.survey.survey_data import prepare
 
 
@@ -83,3 +86,25 @@ def test_a_reference_that_lacks_the_function_of_another_point_is_no_fault(survey
     values = np.array(frfs.values)
     values[0, 1] = np.nan
     assert checked(prepare(replace(frfs, values=values))).faults == ()
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_symmetry_makes_nil_contradicts_nothing(seed):
+    """Two references, in two directions, of which each moves its own in modes of its own."""
+    rng = np.random.default_rng(seed)
+    f, lines, points = np.linspace(55.0, 285.0, 11), np.linspace(40.0, 300.0, 1041), 30
+    way, moves = np.arange(points) % 2, np.arange(11) % 2
+    shapes = rng.standard_normal((points, 11)) * (way[:, None] == moves)
+    poles = poles_from(f, rng.uniform(0.001, 0.005, 11))
+    part = shapes[[0, points - 1]] / (2j * poles.imag)
+    values = modal_response(lines, poles, shapes, part, "acceleration")
+    e = rng.standard_normal((*values.shape, 2)) @ [1.0, 1.0j]
+    values += 0.005 * (e + np.roll(e, 1, axis=2) + np.roll(e, 2, axis=2))
+    values += 0.2 * rng.standard_normal((points, 2, 1))  # of modes outside the range
+    dofs = Dofs(np.arange(1, points + 1), np.full(points, 3))
+    frfs = Frfs(lines, dofs, dofs.take(np.array([0, points - 1])), values, "acceleration")
+    found = identify(frfs)
+    assert not any("wrong" in fault.kind for fault in found.faults)
+    assert found.reciprocity == ()
+    assert not any("reciprocal" in w for w in found.warnings)
+    assert found.modes.frequencies_hz == pytest.approx(f, rel=1e-3)
