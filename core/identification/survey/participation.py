@@ -98,7 +98,7 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
         own, part = functions[..., lines] * scale, directions[lines, :, -1].T
         away = np.maximum(_not_along(own, part), SURVEY.signs_follow)
         weight = 1.0 / np.maximum(np.linalg.norm(own, axis=(1, 2)) * np.sqrt(away), 1e-300)
-    noise = noise_levels(raw)[:, :, None] * np.sqrt(1.5) * scale
+    noise = noise_levels(raw)[:, :, None] * np.sqrt(1.0 + 2.0 * 0.5**2) * scale
     return Followed(own, noise, part, peak)
 
 
