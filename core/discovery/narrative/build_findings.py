@@ -73,7 +73,7 @@ def build_discovery(
         word = "undecided"
     elif accused:
         word = "test_fault"
-    elif whole.moved > NARRATIVE.matters:
+    elif whole.moved > NARRATIVE.matters and whole.adequacy > MODEL_ERROR.explained:
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"
