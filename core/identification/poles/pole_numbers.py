@@ -89,6 +89,7 @@ class PoleNumbers:
     frequency_step: float = number(1e-3, "of ω", "that a frequency moves by in one step besides its bandwidth, at most", SURVEYS)
     converged: float = number(1e-3, "of the misfit per number", "decrease that ends the iteration", SURVEYS)
 
+    resolved: float = number(0.65, "-", "part of what scatter of a root leaves that is rough from line to line, below which it tells the error of the survey", SURVEYS)
     error_surely: float = number(6e-4, "of the energy", "left over by stable poles, above which a survey has errors besides noise", SURVEYS)
     error_none: float = number(2e-5, "of the energy", "left over by all modes, below which it has none", SURVEYS)
     error_least: float = number(1e-4, "of the energy", "that is taken for the error when directions of a resonance are counted", SURVEYS)

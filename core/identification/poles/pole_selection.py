@@ -107,7 +107,7 @@ def prune(data: BandData, f: Floats, fit: Fit) -> Fit:
 def _is_missed(data: BandData, f: Floats, fit: Fit, k: int) -> bool:
     """Tell whether the lines around a root are explained worse when its neighbours replace it.
 
-    Poles are refined on every other output, with and without the root, and judged on those that
+    Poles are refined on half of the outputs, with and without the root, and judged on those that
     they have not seen (twofold cross-validation); few outputs are judged by themselves.
     """
     poles, part = fit.poles, fit.participation
@@ -127,11 +127,15 @@ def _is_missed(data: BandData, f: Floats, fit: Fit, k: int) -> bool:
 
 
 def _halves(data: BandData) -> list[tuple[BandData, BandData]]:
-    """Every other output and the rest, in both orders; all of few outputs."""
+    """Two halves of the outputs, in both orders; all of few outputs.
+
+    Pairs of outputs go to either half in turn: of sensors along two axes both halves have both.
+    """
     if len(data.weight) < 2 * POLES.responses_enough:
         return [(data, data)]
-    even, odd = (replace(data, y=data.y[rows::2], weight=data.weight[rows::2]) for rows in (0, 1))
-    return [(even, odd), (odd, even)]
+    second = np.arange(len(data.weight)) // 2 % 2 == 1
+    one, other = (replace(data, y=data.y[k], weight=data.weight[k]) for k in (~second, second))
+    return [(one, other), (other, one)]
 
 
 def residual_of(data: BandData, fit: Fit) -> Floats:

@@ -218,6 +218,15 @@ def memory_of_residual(data: BandData, f: Floats, fit: Fit) -> Memory:
     )
 
 
+def rough_part(f: Floats, fit: Fit, near: Numbers) -> Floats:
+    """Part of what scatter of each pole leaves that differences of lines take for noise."""
+    left = 1.0 / (2j * np.pi * f[:, None] - fit.poles) ** 2
+    white = np.abs(np.diff(left, n=4, axis=0)) ** 2 / 70.0
+    inner = near[2:-2]
+    level = np.sum(np.abs(left) ** 2 * near, axis=0) / near.sum(axis=0)
+    return np.asarray(np.sum(white * inner, axis=0) / inner.sum(axis=0) / level)
+
+
 def residual_is_white(data: BandData, f: Floats, fit: Fit) -> Numbers:
     """Tell for each mode whether the residual around it is about noise without memory."""
     return np.asarray(memory_of_residual(data, f, fit).ratio < POLES.white)

@@ -15,18 +15,30 @@ from ...arrays import Bools, Floats
 from ..quality import phase_collinearity
 from .moments import BandData, basis
 from .pole_numbers import POLES
-from .significance import energy_by_line, memory_of_residual
+from .significance import energy_by_line, memory_of_residual, rough_part
 from .variable_projection import Fit
 
 
 def survey_error(fits: Iterable[tuple[BandData, Floats, Fit]]) -> float:
-    """Median over the roots of the part of the energy around them left over beyond noise."""
-    shares: list[float] = []
+    """Median over the roots of the part of the energy around them left over beyond noise.
+
+    What scatter of a pole leaves over a few lines is as rough as noise; roots that the lines
+    resolve tell, if there are any.
+    """
+    shares: list[Floats] = []
+    rough: list[Floats] = []
     for data, f, fit in (x for x in fits if len(x[2].poles)):
         memory = memory_of_residual(data, f, fit)
         power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
-        shares += list(memory.systematic / np.maximum(power @ memory.near, 1e-300))
-    return float(np.median(shares)) if shares else 0.0
+        shares.append(memory.systematic / np.maximum(power @ memory.near, 1e-300))
+        rough.append(rough_part(f, fit, memory.near))
+    if not shares:
+        return 0.0
+    share, part = np.concatenate(shares), np.concatenate(rough)
+    resolved = part < POLES.resolved
+    if not resolved.any():
+        return float(np.median(share))
+    return float(np.median(share[resolved] / (1.0 - part[resolved])))
 
 
 def sound(data: BandData, f: Floats, fit: Fit) -> Bools:

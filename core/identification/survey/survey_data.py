@@ -301,10 +301,17 @@ def _one_component(
 
 
 def _weights(measured: Numbers, noise: Floats, rms: Floats) -> tuple[Floats, Floats]:
-    """One over the noise of each function, as a product of output and input weights."""
+    """One over the noise of each function, as a product of output and input weights.
+
+    Functions across the planes of a structure, small both for their output and for their input,
+    are no product of the two, and tell nothing of how the planes weigh against each other.
+    """
     with np.errstate(divide="ignore"):
         level = np.log(np.hypot(noise, SURVEY.model_error * rms))
     level[~measured] = np.nan
+    small = level - np.log(SURVEY.across)
+    across = (small < np.nanmax(level, axis=1, keepdims=True)) & (small < np.nanmax(level, axis=0))
+    level[across] = np.nan
     of_input = np.zeros(level.shape[1])
     of_output = np.zeros(level.shape[0])
     for _ in range(SURVEY.level_rounds):

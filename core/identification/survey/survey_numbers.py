@@ -14,6 +14,7 @@ class SurveyNumbers:
     coherence_most: float = number(1e-6, "-", "by which a coherence exceeds 1", ROUNDING)
     copies: int = number(3, "functions", "that are equal to the last digit, at least, to be copies; two may be by symmetry", SURVEYS)
     line_without: float = number(0.5, "of the functions", "without a value at a line, above which the line and not the functions are left out", SURVEYS)
+    across: float = number(0.05, "of the largest of its output and of its input", "below which a function tells nothing of their weights", SURVEYS)
     level_rounds: int = number(5, "rounds", "in which levels of inputs and outputs settle", "they settle in few")
     named: int = number(5, "names", "that a message lists", "what a reader takes in")
 

@@ -13,14 +13,14 @@ from trueup.core.identification import identify
 PLATE = [27.9, 59.4, 80.2, 111.68, 111.86, 164.1, 167.4, 197.0]
 
 
-def plate(noise, gain, beta):
+def plate(noise, gain, beta, *, alpha=0.15, spacing=0.125):
     """48 points, 2 references, frequencies that scatter by 0.03 % from point to point."""
     rng = np.random.default_rng(0)
     hz = np.array(PLATE) * (1.0 + 3e-4 * rng.standard_normal((48, 1)))
     shapes = rng.standard_normal((48, len(PLATE)))
-    f = np.arange(10.0, 200.0, 0.125)
+    f = np.arange(10.0, 200.0, spacing)
     omega, own = 2.0 * np.pi * f, 2.0 * np.pi * hz[:, :, None]
-    zeta = 0.15 / own + beta * own
+    zeta = alpha / own + beta * own
     peaks = -(omega**2) / (own**2 - omega**2 + 2j * zeta * own * omega)
     values = np.einsum("ok,ik,okn->oin", shapes, shapes[[9, 31]], peaks)
     e = rng.standard_normal(values.shape) + 1j * rng.standard_normal(values.shape)
@@ -47,3 +47,14 @@ def test_what_was_not_measured_doubles_no_resonance(seed):
     found = identify(replace(frfs, values=values, references=frfs.references.take(np.arange(2))))
     assert found.modes.frequencies_hz == pytest.approx(truth, rel=1e-3)
     assert any("lacks 20 of 80 combinations" in w for w in found.warnings)
+
+
+@pytest.mark.parametrize("left_out", [None, 3, 30])
+def test_modes_that_few_lines_resolve_do_not_hide_the_scatter(left_out):
+    """What scatter leaves of narrow modes is as rough as noise; one point more or less decides
+    nothing."""
+    frfs = plate(1e-3, 0.01, 1.2e-6, alpha=0.6, spacing=0.25)
+    keep = np.array([o for o in range(48) if o != left_out])
+    frfs = replace(frfs, values=frfs.values[keep], responses=frfs.responses.take(keep))
+    found = identify(frfs, fmin=10.0, fmax=180.0).modes.frequencies_hz
+    assert found == pytest.approx(PLATE[:-1], rel=1e-3)
