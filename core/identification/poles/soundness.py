@@ -103,7 +103,7 @@ def directions(data: BandData, f: Floats, fit: Fit, group: list[int], strict: bo
     Parameters
     ----------
     strict : bool
-        No direction counts that outputs or inputs alone tell.
+        No direction counts that outputs or inputs alone tell, but for a single one of them.
     """
     error, told, strong = data.error, [], []
     poles, omega = fit.poles[group], 2.0 * np.pi * f
@@ -119,7 +119,8 @@ def directions(data: BandData, f: Floats, fit: Fit, group: list[int], strict: bo
             energy = np.linalg.svd(matrix.reshape(len(matrix), -1), compute_uv=False) ** 2
             limit = POLES.direction * max(error, POLES.error_least) * energy[0]
             both.append(int(np.count_nonzero(energy > limit)))
-            if both[-1] == len(matrix) and error == 0.0 and not strict:
+            single = len(matrix) == 1
+            if both[-1] == len(matrix) and error == 0.0 and (single or not strict):
                 return len(group)
             strong.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
         told.append(min(both))

@@ -217,7 +217,7 @@ def test_two_hundred_sound_tests_accuse_next_to_nobody():
 def test_chances_that_are_told_are_kept():
     """Of faults told with a chance of p about a share p is there, of gains too that hardly show."""
     told, true = [], []
-    for seed in range(60):
+    for seed in range(120):
         rng = np.random.default_rng([seed, 2])
         y = read(vibrating(seed), radial(), seed=seed)
         sensor, factor = int(rng.integers(40)), float(np.exp(rng.normal(0.0, 0.25)))
