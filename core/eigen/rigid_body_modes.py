@@ -160,7 +160,9 @@ def _geometric(model: Model) -> tuple[Floats, Numbers]:
     T = sp.csr_matrix(model.expansion)
     normal = (T.T @ T).tocsr()
     idle = normal.diagonal() == 0.0
-    U = factorise(normal + sp.diags(idle.astype(float))).solve(T.T @ R)
+    least_squares = factorise(normal + sp.diags(idle.astype(float)))
+    U = least_squares.solve(T.T @ R)
+    U += least_squares.solve(T.T @ (R - T @ U))  # the normal equations alone lose half the digits
     touches_grid = np.asarray(abs(T[~is_scalar]).sum(axis=0)).ravel() > 0.0
     return U, ~touches_grid
 

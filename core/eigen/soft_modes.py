@@ -50,8 +50,9 @@ def refined(
     Z, W, rigid, force = Z @ turn, W @ turn, rigid @ turn, force @ turn
     own = np.einsum("ij,ij,i->j", W, W, np.abs(pencil.k_diagonal))
     held = np.where(force != 0.0, np.abs(rigid) * (magnitudes(pencil.K) @ np.abs(rigid)), 0.0)
-    noise = EIGEN.strain * (own + held.sum(axis=0))
-    below = lambda_ < -max(EIGEN.singular, rounding) * own
+    whole = own + held.sum(axis=0)
+    noise = EIGEN.strain * whole
+    below = lambda_ < -max(EIGEN.singular, rounding) * whole
     if below.any():
         raise InputError(NEGATIVE.format(where(None, pencil, Z[:, below])))
     zero = np.zeros(len(values), bool)
