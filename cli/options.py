@@ -110,6 +110,9 @@ UPDATE: dict[str, Any] = {
         list[int], "Use only these test modes (repeatable, from 1).", "--test-mode"
     ),
     "max_iterations": _option(int, "Per stage. [default: 10]"),
+    "write_undetermined": _option(
+        bool, "Move what the test does not determine, too.", "--write-undetermined"
+    ),
 }  # fmt: skip
 
 DISCOVER: dict[str, Any] = {

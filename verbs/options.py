@@ -57,7 +57,7 @@ class UpdateOptions(CompareOptions, total=False):
     ``residuals`` ("frequencies", "shapes", others with commas; None: "both"); ``test_modes`` that
     take part, from 1 (None: all); ``max_iterations`` of a stage; ``frequency_sigma``,
     ``shape_sigma`` and ``regularisation`` weigh the residuals and the parameters; ``stages`` of a
-    strategy.
+    strategy; ``write_undetermined`` (False): parameters that the test does not determine move, too.
     """
 
     residuals: str | None
@@ -67,6 +67,7 @@ class UpdateOptions(CompareOptions, total=False):
     shape_sigma: float | None
     regularisation: float | None
     stages: Sequence[StageRequest | Mapping[str, object]] | None
+    write_undetermined: bool | None
 
 
 class DiscoverOptions(CorrelateOptions, total=False):

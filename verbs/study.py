@@ -60,6 +60,7 @@ class Study:
     shape_scatter: float | None = None
     adopt: str = "significant"
     regularisation: float = 1e-2
+    write_undetermined: bool = False
     stages: tuple[StageRequest, ...] = ()
     fmin: float | None = None
     fmax: float | None = None
@@ -260,7 +261,9 @@ def study_toml(study: Study) -> str:
 def _toml(value: Any) -> str:
     if isinstance(value, tuple | list):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
-    if isinstance(value, int | float) and not isinstance(value, bool):
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
         return repr(value)
     text = str(value).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{text}"'
@@ -307,7 +310,7 @@ def converted(name: str, value: object, kind: Any, who: Place) -> Any:
         items = value if isinstance(value, list | tuple) else [value]
         return tuple(converted(name, v, of[0], who) for v in items)
     makes = [k for k in of or (kind,) if isinstance(value, _MADE_FROM.get(k, ()))]
-    if isinstance(value, bool) or not makes:
+    if isinstance(value, bool) != (kind is bool) or not makes:
         raise wrong
     make = makes[0]
     if make is float and not abs(cast(float, value)) <= sys.float_info.max:
@@ -320,6 +323,7 @@ _MADE_FROM: dict[Any, tuple[type, ...]] = {
     str: (str,),
     int: (numbers.Integral,),
     float: (numbers.Real,),
+    bool: (bool,),
 }
 """What a value of each type may be made from."""
 

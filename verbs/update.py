@@ -18,6 +18,7 @@ from ..core.results.correlation import compared
 from ..core.results.plain import Table
 from ..core.results.update import parameter_rows, weights_table
 from ..core.updating import update as core
+from ..core.updating.determined import update_determined
 from .analysis import Analysis, both_given, correlated, named, read_analysis
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
@@ -136,7 +137,8 @@ def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
         chosen,
         *((None, None) if errors is None else (errors.frequency, errors.length)),
     )
-    return core.update(
+    update = core.update if asked.write_undetermined else update_determined
+    return update(
         analysis.model,
         target,
         _stages(asked, analysis.model.parameters),

@@ -12,6 +12,7 @@ from ..correlation.mode_pairing import Correlation, Criteria, correlate
 from ..data.parameter import Parameter
 from ..reduction.eigenpair_derivatives import Spectral
 from ..reduction.full_or_reduced import Order
+from .identifiability import Identifiability, identifiability
 from .residuals import Linearisation, Residual, Seen, Slopes, Target, Weights
 from .updating_numbers import UPDATING
 
@@ -122,40 +123,20 @@ class Objective:
             np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
         )
 
-    def standard_error(
+    def identified(
         self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
-    ) -> tuple[Floats, tuple[str, ...]]:
-        """Return the standard errors of the factors, NaN where the test says nothing, and that."""
-        error = np.full(len(self.parameters), np.nan)
+    ) -> Identifiability | None:
+        """Return what the test says of the `active` parameters here; None where nothing pairs.
+
+        The scatter of the residuals is that which is left.
+        """
         if not state.seen.pairs:
-            return error, ()
+            return None
         lin = self.linearise(order, state, active, residuals)
-        _, s, vt = np.linalg.svd(lin.gradient, full_matrices=False)
         data = sum(len(r.squared(state.seen)) for r in residuals)
         scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
-        sound = s > UPDATING.unidentifiable * s.max(initial=1.0)
-        said = vt[sound] ** 2 / s[sound, None] ** 2
-        error[list(active)] = np.sqrt(np.sum(said, axis=0) * scatter)
-        factors = np.asarray(state.factors)
-        unsure = np.flatnonzero(error > UPDATING.unsure * factors)
-        lost = np.vstack([vt[~sound], np.zeros((0, len(active)))])
-        names = [self.parameters[k].name for k in active]
-        doubtful = []
-        for direction in lost:
-            of = np.flatnonzero(np.abs(direction) > UPDATING.part)
-            part = [names[i] for i in of]
-            error[[active[i] for i in of]] = np.nan
-            doubtful.append(
-                f"the test does not determine {' and '.join(part)}: "
-                + ("a common change leaves" if len(part) > 1 else "a change leaves")
-                + " every residual the same; fix one of them"
-            )
-        for k in unsure[np.isfinite(error[unsure])]:
-            doubtful.append(
-                f"the test hardly determines {self.parameters[k].name}: its factor "
-                f"{factors[k]:.3g} has a standard error of {error[k]:.2g}"
-            )
-        return error, tuple(doubtful)
+        factors = np.asarray(state.factors)[list(active)]
+        return identifiability(lin.gradient, scatter, UPDATING.unsure * factors)
 
     def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
         """Return the standard deviation of a residual, of each pair where the test has its own."""

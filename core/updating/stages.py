@@ -46,6 +46,7 @@ class Reason(Enum):
     NO_STEP = "no step"
     MOST_ITERATIONS = "most iterations"
     NO_STAGE = "no stage"
+    NOTHING_DETERMINED = "nothing determined"
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,8 @@ class Updated(Noun):
 
     `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
     `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
-    the iteration ended.
+    the iteration ended; `undetermined` are the positions of parameters that the test does not
+    determine beside the others, `doubts` the warnings that say so.
     """
 
     factors: Floats
@@ -91,3 +93,5 @@ class Updated(Noun):
     eigensolutions: int
     stopped: Stop
     warnings: tuple[str, ...]
+    undetermined: tuple[int, ...] = ()
+    doubts: tuple[str, ...] = ()

@@ -12,6 +12,7 @@ from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
 from ..errors import InputError
 from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
+from .identifiability import doubts
 from .objective import Objective, State
 from .residuals import Target, Weights
 from .stages import Iteration, Reason, Stage, Stop, Updated
@@ -106,13 +107,21 @@ def update(
         near = reduce_around(full, state.factors, state.solution, active)
     last = stages[-1].minimised
     there = objective.at(near, state.factors, last)
-    error, doubtful = objective.standard_error(near, there, active, last)
+    said = objective.identified(near, there, active, last)
+    error = np.full(known, np.nan)
+    doubtful: tuple[str, ...] = ()
+    if said is not None:
+        error[active] = said.standard_error
+        names = [model.parameters[k].name for k in active]
+        doubtful = tuple(doubts(names, np.asarray(state.factors)[active], said))
+    determined = () if said is None else tuple(active[i] for i in said.determined)
     lower, upper = objective.bounds
     bounds = (np.isclose(state.factors, bound, rtol=UPDATING.at_bound) for bound in (lower, upper))
     moved = frozen(state.factors), frozen(error), frozen(np.any([*bounds], axis=0))
     told = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
     after = _without_factor(state)
-    return Updated(*moved, before, after, tuple(history), solves, stopped, told)
+    open_ = tuple(k for k in active if k not in determined)
+    return Updated(*moved, before, after, tuple(history), solves, stopped, told, open_, doubtful)
 
 
 def _work_off(

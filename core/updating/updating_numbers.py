@@ -19,6 +19,7 @@ class UpdatingNumbers:
     unidentifiable: float = number(1e-4, "of the largest singular value, at least of 1", "of a direction that the test does not determine", CHECK)
     unsure: float = number(0.5, "of a factor", "standard error from which on it is said to be hardly determined", CHECK)
     part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
+    alike: float = number(1e-6, "of what a parameter moves", "difference below which the first named is taken", ROUNDING)
     least_gain: float = number(1e-3, "of the objective", "by which the pairs that are kept must be closer", CHECK)
     kept: float = number(0.75, "of the pairs", "that a step must keep to be judged by those alone", CHECK)
     step: tuple[float, float] = number((0.5, 1.0), "of a factor", "largest step down and up", CHECK)

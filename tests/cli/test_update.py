@@ -223,3 +223,21 @@ def test_a_residual_added_from_outside_is_named_in_a_study(
     assert said.status == 0, said.err
     assert json.loads(said.out)["parameters"][0]["factor"] == pytest.approx(1.1, rel=1e-4)
     assert "mass_sigma = 0.0001" in (tmp_path / "run" / "study.toml").read_text()
+
+
+def test_what_the_test_does_not_determine_is_not_written(
+    call: Call, duct: Path, tmp_path: Path
+) -> None:
+    """Of modulus, density and thickness together no frequency tells more than a combination."""
+    three = ("-p", "MAT1 1 E", "-p", "MAT1 1 RHO", "-p", "PSHELL 1 T")
+    asked = ("update", duct / "duct.bdf", duct / "duct_test.unv", *three, "--residuals",
+             "frequencies", "--json", "-")  # fmt: skip
+    kept = call(*asked, "--out", tmp_path / "kept")
+    every = call(*asked, "--out", tmp_path / "all", "--write-undetermined")
+    left = [p for p in json.loads(kept.out)["parameters"] if p["standard_error"] is None]
+    assert len(left) == 2
+    assert all(p["factor"] == 1.0 and p["updated"] == p["initial"] for p in left)
+    assert "stay as in the deck" in kept.err
+    assert all(p["factor"] != 1.0 for p in json.loads(every.out)["parameters"])
+    again = (tmp_path / "all" / "study.toml").read_text()
+    assert "write_undetermined = true" in again

@@ -1,0 +1,79 @@
+"""An update that moves no parameter that the test does not determine."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import frozen
+from ..correlation.mode_pairing import Criteria
+from ..data.parametric_model import Model
+from .residuals import Target, Weights
+from .stages import Reason, Stage, Stop, Updated
+from .update import update
+from .updating_numbers import UPDATING
+
+
+def update_determined(
+    model: Model,
+    target: Target,
+    stages: Sequence[Stage],
+    criteria: Criteria | None = None,
+    weights: Weights | None = None,
+    n_modes: int = UPDATING.modes,
+) -> Updated:
+    """Update as `update` does, and leave at the deck's value what the test does not determine.
+
+    Where an update ends with parameters whose values the test leaves open, it is made again
+    without them: of those that it cannot tell apart the one that moves the residuals most is kept
+    (see `identifiability`).
+
+    Returns
+    -------
+    Updated
+        `undetermined` are those that were left, with factor 1 and no standard error.
+
+    Raises
+    ------
+    InputError, CheckError
+        As `update`.
+    """
+    done = update(model, target, stages, criteria, weights, n_modes)
+    solves, left, told = done.eigensolutions, set[int](), list[str]()
+    while done.undetermined:
+        told += done.doubts
+        left |= {*done.undetermined}
+        moving = _without(stages, left)
+        if not moving:
+            done = _as_it_was(done, tuple(model.deck_point))
+            break
+        done = update(model, target, moving, criteria, weights, n_modes)
+        solves += done.eigensolutions
+    if not left:
+        return done
+    names = " and ".join(model.parameters[k].name for k in sorted(left))
+    stay = f"{names} stay{'s' if len(left) == 1 else ''} as in the deck"
+    warnings = (*dict.fromkeys(told), stay, *done.warnings)
+    at = tuple(sorted(left))
+    return replace(done, eigensolutions=solves, undetermined=at, warnings=warnings)
+
+
+def _without(stages: Sequence[Stage], left: Collection[int]) -> tuple[Stage, ...]:
+    """Return the stages with the parameters that still move, those with none left out."""
+    moving = (tuple(k for k in s.parameters if k not in left) for s in stages)
+    return tuple(replace(s, parameters=p) for s, p in zip(stages, moving, strict=True) if p)
+
+
+def _as_it_was(done: Updated, point: Sequence[float]) -> Updated:
+    """Return an update that moved nothing."""
+    n = len(point)
+    return replace(
+        done,
+        factors=frozen(np.array(point)),
+        standard_error=frozen(np.full(n, np.nan)),
+        at_bound=frozen(np.zeros(n, bool)),
+        after=done.before,
+        history=done.history[:1],
+        stopped=Stop(Reason.NOTHING_DETERMINED, "the test determines none of the parameters"),
+        warnings=(),
+    )

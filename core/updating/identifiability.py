@@ -1,0 +1,130 @@
+"""What a test can say of parameters: from the derivatives of its residuals, before any moves."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats, frozen
+from ..noun import Noun
+from .updating_numbers import UPDATING
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability(Noun):
+    """What residuals with the derivatives G determine.
+
+    Parameters
+    ----------
+    standard_error : (n,) float
+        Of the factors, all moving together; NaN where a combination with the parameter leaves
+        every residual as it is.
+    alone : (n,) float
+        Likewise, each moving alone; infinite where it moves no residual.
+    correlation : (n, n) float
+        Cosines between the columns of G: parameters at 1 or -1 cannot be told apart.
+    singular_values : (m,) float
+        Of G, largest first, m = min(n_residual, n).
+    directions : (m, n) float
+        The combinations of parameters that belong to them.
+    unseen : (k, n) float
+        Combinations that the test does not determine.
+    determined : tuple of int
+        The largest set found of parameters that it does determine together, those that move the
+        residuals most first.
+    """
+
+    standard_error: Floats
+    alone: Floats
+    correlation: Floats
+    singular_values: Floats
+    directions: Floats
+    unseen: Floats
+    determined: tuple[int, ...]
+
+
+def identifiability(gradient: Floats, scatter: float, limit: Floats | float) -> Identifiability:
+    """Say what weighted residuals determine.
+
+    Singular values and subset selection: Friswell and Mottershead (1995), *Finite element model
+    updating in structural dynamics*, chapters 4 and 5; Lallement and Piranda (1990), *Localisation
+    methods for parameter updating of finite element models in elastodynamics*, IMAC 8.
+
+    Parameters
+    ----------
+    gradient : (n_residual, n) float
+        Derivatives of the residuals, each over its standard deviation, by the factors.
+    scatter : float
+        Variance of the weighted residuals, 1 where the standard deviations are right.
+    limit : (n,) float, or float
+        Standard error of a factor from which on it is not determined.
+    """
+    n = gradient.shape[1]
+    _, s, vt = np.linalg.svd(gradient, full_matrices=False)
+    sound = s > UPDATING.unidentifiable * s.max(initial=1.0)
+    error = np.sqrt(np.sum(vt[sound] ** 2 / s[sound, None] ** 2, axis=0) * scatter)
+    unseen = _complement(vt[sound])
+    error[(np.abs(unseen) > UPDATING.part).any(axis=0)] = np.nan
+    size = np.linalg.norm(gradient, axis=0)
+    unit = gradient / np.where(size > 0.0, size, 1.0)
+    with np.errstate(divide="ignore"):
+        alone = np.sqrt(scatter) / size
+    chosen = tuple(_chosen(gradient, scatter, np.broadcast_to(limit, n)))
+    return Identifiability(
+        frozen(error),
+        frozen(alone),
+        frozen(unit.T @ unit),
+        frozen(s),
+        frozen(vt),
+        frozen(unseen),
+        tuple(_chosen(gradient, scatter, np.broadcast_to(limit, n))),
+    )
+
+
+def doubts(names: Sequence[str], factors: Floats, said: Identifiability) -> Iterator[str]:
+    """Say what a test leaves open of parameters that were moved to `factors` (n,)."""
+    for direction in said.unseen:
+        part = [names[i] for i in np.flatnonzero(np.abs(direction) > UPDATING.part)]
+        yield (
+            f"the test does not determine {' and '.join(part)}: "
+            + ("a common change leaves" if len(part) > 1 else "a change leaves")
+            + " every residual the same; fix one of them"
+        )
+    for k in np.flatnonzero(said.standard_error > UPDATING.unsure * factors):
+        yield (
+            f"the test hardly determines {names[k]}: its factor {factors[k]:.3g} has a standard "
+            f"error of {said.standard_error[k]:.2g}"
+        )
+
+
+def _complement(rows: Floats) -> Floats:
+    """Orthonormal rows that span what `rows` (k, n), orthonormal, do not."""
+    whole = np.linalg.svd(rows, full_matrices=True)[2] if len(rows) else np.eye(rows.shape[1])
+    return np.asarray(whole[len(rows) :])
+
+
+def _chosen(gradient: Floats, scatter: float, limit: Floats) -> Iterator[int]:
+    """Choose columns by what they have beside those before, as long as all are determined."""
+    left, free, taken = gradient.copy(), set(range(gradient.shape[1])), list[int]()
+    while free:
+        order = sorted(free)
+        size = np.linalg.norm(left[:, order], axis=0)
+        k = order[int(np.argmax(size >= (1.0 - UPDATING.alike) * size.max()))]
+        free.discard(k)
+        more = [*taken, k]
+        if size.max() == 0.0 or not _all_below(gradient[:, more], scatter, limit[more]):
+            continue
+        taken.append(k)
+        yield k
+        q = left[:, k] / np.linalg.norm(left[:, k])
+        left -= np.outer(q, q @ left)
+
+
+def _all_below(gradient: Floats, scatter: float, limit: Floats) -> bool:
+    """Whether the standard errors of all columns are below their limits."""
+    r: Floats = np.asarray(np.linalg.qr(gradient, mode="r"))
+    least = UPDATING.unidentifiable * max(np.abs(r).max(), 1.0)
+    if r.shape[0] < r.shape[1] or np.abs(np.diag(r)).min() <= least:
+        return False
+    inverse = np.linalg.inv(r)
+    return bool((np.sqrt(scatter * np.sum(inverse**2, axis=1)) <= limit).all())

@@ -1,0 +1,72 @@
+"""What a test does not determine stays as it is, and what it can say is known before a step."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from tests.core.updating.test_update import HALVES, N, chain, measured
+
+from trueup.core.updating.determined import update_determined
+from trueup.core.updating.identifiability import identifiability
+from trueup.core.updating.stages import Reason
+from trueup.core.updating.update import Stage
+
+
+def test_of_stiffness_and_mass_in_common_one_moves():
+    """Frequencies know the ratio alone: 1.2 by the stiffness or 1/1.2 by the mass."""
+    model = chain([range(N), range(N)], ["k", "m"])
+    done = update_determined(model, measured(model, [1.2, 1.0]), [Stage((0, 1))], n_modes=8)
+    moved = [k for k in (0, 1) if done.factors[k] != 1.0]
+    assert len(moved) == 1
+    assert done.undetermined == (1 - moved[0],)
+    assert done.factors[0] / done.factors[1] == pytest.approx(1.2, rel=1e-3)
+    assert np.isfinite(done.standard_error[moved]).all()
+    assert any("stays as in the deck" in w for w in done.warnings)
+
+
+def test_what_is_determined_moves_as_ever():
+    model = chain(HALVES)
+    done = update_determined(model, measured(model, [1.2, 0.9]), [Stage((0, 1))], n_modes=8)
+    assert done.undetermined == ()
+    assert done.factors == pytest.approx([1.2, 0.9], rel=1e-3)
+
+
+def test_where_nothing_is_determined_nothing_moves():
+    model = chain([[], []])
+    done = update_determined(model, measured(model, [1.0, 1.0]), [Stage((0, 1))], n_modes=8)
+    assert done.factors.tolist() == [1.0, 1.0]
+    assert done.undetermined == (0, 1)
+    assert done.stopped.reason is Reason.NOTHING_DETERMINED
+
+
+def test_orthogonal_parameters_have_the_errors_they_have_alone():
+    G = np.diag([4.0, 10.0, 0.5])
+    said = identifiability(G, 1.0, 0.5)
+    np.testing.assert_allclose(said.standard_error, [0.25, 0.1, 2.0])
+    np.testing.assert_allclose(said.standard_error, said.alone)
+    assert said.determined == (1, 0)
+    np.testing.assert_allclose(said.correlation, np.eye(3))
+
+
+def test_standard_errors_are_those_of_least_squares():
+    G = np.random.default_rng(1).standard_normal((12, 4))
+    said = identifiability(G, 0.3, 1.0)
+    np.testing.assert_allclose(said.standard_error**2, 0.3 * np.linalg.inv(G.T @ G).diagonal())
+    assert sorted(said.determined) == [0, 1, 2, 3]
+
+
+@given(st.integers(0, 10_000), st.floats(0.2, 5.0))
+def test_of_two_that_do_the_same_one_is_determined(seed, ratio):
+    g = np.random.default_rng(seed).standard_normal((9, 3))
+    said = identifiability(np.column_stack([g, ratio * g[:, 1]]), 1e-6, 0.5)
+    assert len({1, 3} & {*said.determined}) == 1
+    assert {0, 2} < {*said.determined}
+    assert np.isnan(said.standard_error[[1, 3]]).all()
+    assert said.correlation[1, 3] == pytest.approx(1.0)
+
+
+def test_fewer_residuals_than_parameters_determine_as_many():
+    said = identifiability(np.random.default_rng(2).standard_normal((2, 5)), 1e-6, 0.5)
+    assert len(said.determined) == 2
+    assert said.unseen.shape == (3, 5)
