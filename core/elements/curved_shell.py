@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from ..arrays import Floats, skew
-from ..data.shapes import QUAD, TRIA, Shape
+from ..data.shapes import QUAD, TRIA
 from .batch import arms, congruent, symmetric, translations, transpose, unit
 from .element import Element
-from .middle_nodes import quadratic, serendipity, to_middle_nodes
+from .middle_nodes import lumped, quadratic, serendipity
 from .quad4 import quad4_sound
 from .quadrature import gauss_tria
 from .section import ShellSection, finite_shear, shell_stiffness
@@ -58,28 +58,20 @@ def _axes(rule: _Rule, xyz: Floats) -> Floats:
 
 def _mass(
     rule: _Rule,
-    shape: Shape,
     points: Floats,
     weights: Floats,
     xyz: Floats,
     areal_density: Floats,
     coupled: bool,
+    there: Floats | None = None,
 ) -> Floats:
-    """Mass of second-order shells, (n, 6 k, 6 k), translations only.
-
-    Consistent where `coupled`; otherwise all of it at the middle nodes, as MSC does (see
-    `to_middle_nodes`).
-    """
+    """Mass of second-order shells, (n, 6 k, 6 k), translations only; see `middle_nodes.lumped`."""
     N, dN = rule.shape(points)
     J = dN @ xyz[:, None]
     area = np.linalg.norm(np.cross(J[:, :, 0], J[:, :, 1]), axis=2)
     weight = area * weights * areal_density[:, None]
-    if coupled:
-        m = transpose(N * weight[..., None]) @ N
-    else:
-        share = to_middle_nodes(weight @ N, xyz, shape.corners)
-        m = share[:, :, None] * np.eye(N.shape[1])
-    return translations(m, 6)
+    m = transpose(N * weight[..., None]) @ N
+    return translations(lumped(m, xyz, there, coupled), 6)
 
 
 def _frame(xyz: Floats, dN: Floats) -> Floats:
@@ -252,7 +244,7 @@ QUAD8 = Element(
     freedoms=6,
     edges=_SIDES,
     stiffness=shell_stiffness(partial(_offset, _QUAD, _quad8), _CHUNK),
-    mass=partial(_mass, _QUAD, QUAD, _NINE, np.outer(_W, _W).ravel()),
+    mass=partial(_mass, _QUAD, _NINE, np.outer(_W, _W).ravel()),
     axes=partial(_axes, _QUAD),
     sound=quad4_sound,
 )
@@ -262,7 +254,7 @@ TRIA6 = Element(
     freedoms=6,
     edges=np.array(TRIA.sides),
     stiffness=shell_stiffness(partial(_offset, _TRIA, _tria6), _CHUNK),
-    mass=partial(_mass, _TRIA, TRIA, *gauss_tria(7)),
+    mass=partial(_mass, _TRIA, *gauss_tria(7)),
     axes=partial(_axes, _TRIA),
     sound=tria3_sound,
 )

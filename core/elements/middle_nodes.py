@@ -56,47 +56,71 @@ def spread(edges: Ints, kept: Bools) -> Floats | None:
     return T
 
 
-def to_middle_nodes(share: Floats, xyz: Floats, corners: int) -> Floats:
-    """Move the mass of the corners to the middle nodes; mass and centre of gravity stay.
+_EMPTY = 1e-9
+"""Of the mass of the element: less than that is a share of nothing, found by rounding."""
 
-    Row sums of the consistent mass are negative at the corners of second-order elements. MSC
-    Nastran leaves no mass there: each middle node takes ``r**2 (c + d . r)`` of it, r being its
-    place seen from the centre of gravity, with c and d such that the element keeps its mass and
-    its centre of gravity. (Identified from the ten modes of a pair of ten-node tetrahedra, one of
-    them curved, which it makes to the last digit printed.)
+
+def to_middle_nodes(share: Floats, xyz: Floats) -> Floats:
+    """Move negative masses, those of the corners, to the other nodes; mass and centre stay.
+
+    Row sums of the consistent mass are negative at the corners of second-order elements. Nastran
+    leaves no mass there: each of the others takes ``r**2 (c + d . r)`` of it, r being its place
+    seen from the centre of gravity, with c and d such that the element keeps its mass and its
+    centre of gravity. (Identified from the ten modes of a pair of ten-node tetrahedra, one of them
+    curved, of MSC, and the twenty of NX of a patch with middle nodes left out, whose share goes
+    to the ends of their edges first: both to the last digit printed.)
 
     Parameters
     ----------
     share : (n, k) float
         Row sums of the consistent mass.
     xyz : (n, k, 3) float
-        Corners, then middle nodes.
-    corners : int
-        Number of corners.
+        Nodes.
 
     Returns
     -------
     (n, k) float
-        Zero at the corners; nothing of elements without mass.
+        None is negative; nothing of elements without mass.
     """
+    if (share > 0.0).all():
+        return share
     total = share.sum(axis=1)
     heavy = total > 0.0
     if not heavy.all():
         out = np.zeros_like(share)
-        out[heavy] = to_middle_nodes(share[heavy], xyz[heavy], corners) if heavy.any() else 0.0
+        out[heavy] = to_middle_nodes(share[heavy], xyz[heavy]) if heavy.any() else 0.0
         return out
     centre = np.einsum("nk,nkd->nd", share, xyz) / total[:, None]
     r = xyz - centre[:, None]
-    size = np.sqrt((r**2).sum(axis=2).max(axis=1))
-    r = r / size[:, None, None]
-    at, moved = r[:, corners:], share[:, :corners]
-    A = np.concatenate([np.ones((*at.shape[:2], 1)), at], axis=2)
-    weighted = A * (at**2).sum(axis=2)[..., None]
-    wanted = np.concatenate(
-        [moved.sum(axis=1)[:, None], np.einsum("nk,nkd->nd", moved, r[:, :corners])], axis=1
-    )
+    r = r / np.sqrt((r**2).sum(axis=2).max(axis=1))[:, None, None]
+    takes = share > _EMPTY * total[:, None]
+    moved = np.where(takes, 0.0, share)
+    A = np.concatenate([np.ones((*r.shape[:2], 1)), r], axis=2)
+    weighted = A * ((r**2).sum(axis=2) * takes)[..., None]
+    wanted = np.einsum("nk,nkd->nd", moved, A)
     normal = np.linalg.pinv(transpose(A) @ weighted, rcond=1e-10, hermitian=True)
     taken = (weighted @ (normal @ wanted[..., None]))[..., 0]
-    out = np.zeros_like(share)
-    out[:, corners:] = np.maximum(share[:, corners:] + taken, 0.0)
+    out = np.maximum(share - moved + taken, 0.0)
     return np.asarray(out * (total / out.sum(axis=1))[:, None])
+
+
+def lumped(m: Floats, xyz: Floats, there: Floats | None, coupled: bool) -> Floats:
+    """Mass of the nodes that are there from the consistent mass of all, (n, k, k).
+
+    Parameters
+    ----------
+    m : (n, nodes, nodes) float
+        Consistent mass.
+    xyz : (n, nodes, 3) float
+        Nodes.
+    there : (nodes, k) float or None
+        All nodes from those that are there (`spread`).
+    coupled : bool
+        Left consistent; otherwise lumped, see `to_middle_nodes`.
+    """
+    if there is not None:
+        m = there.T @ m @ there
+        xyz = xyz[:, there.max(axis=1) == 1.0]
+    if coupled:
+        return m
+    return to_middle_nodes(m.sum(axis=2), xyz)[:, :, None] * np.eye(m.shape[1])

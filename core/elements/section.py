@@ -34,30 +34,29 @@ class ShellSection:
         Q dz, Q z dz and Q z**2 dz). Zero A or D: no membrane, or no bending and shear.
     S : (n, 2, 2) float
         Transverse shear stiffness; infinite on the diagonal: rigid in shear.
-    drilling : (n,) float
-        Reference stiffness G t for the rotation about the normal.
     """
 
     A: Floats
     B: Floats
     D: Floats
     S: Floats
-    drilling: Floats
 
     def __post_init__(self) -> None:
-        n = len(np.asarray(self.drilling))
+        n = len(np.asarray(self.A))
         for name, shape in (("A", (3, 3)), ("B", (3, 3)), ("D", (3, 3)), ("S", (2, 2))):
             hold(self, name, np.float64, (n, *shape), f"shell stiffness {name}")
-        hold(self, "drilling", np.float64, (n,), "drilling stiffness")
 
     def __len__(self) -> int:
-        return len(self.drilling)
+        return len(self.A)
+
+    @property
+    def drilling(self) -> Floats:
+        """Reference stiffness for the rotation about the normal: shear in element axes, (n,)."""
+        return self.A[:, 2, 2]
 
     def take(self, rows: slice | Numbers) -> ShellSection:
         """Return the sections of the given elements (slice, indices or mask)."""
-        return ShellSection(
-            self.A[rows], self.B[rows], self.D[rows], self.S[rows], self.drilling[rows]
-        )
+        return ShellSection(self.A[rows], self.B[rows], self.D[rows], self.S[rows])
 
 
 def rotate_section(section: ShellSection, angle: Floats) -> ShellSection:
@@ -70,7 +69,7 @@ def rotate_section(section: ShellSection, angle: Floats) -> ShellSection:
     angle : (n,) float
         Angle [rad] of the material x axis from the element x axis, positive about the normal.
     """
-    angle = np.broadcast_to(np.asarray(angle, float), section.drilling.shape)
+    angle = np.broadcast_to(np.asarray(angle, float), (len(section),))
     c, s = np.cos(angle), np.sin(angle)
     # strains along the material axes from those along the element axes
     T = np.empty((len(section), 3, 3))
@@ -89,7 +88,6 @@ def rotate_section(section: ShellSection, angle: Floats) -> ShellSection:
         B=symmetric(transpose(T) @ section.B @ T),
         D=symmetric(transpose(T) @ section.D @ T),
         S=S,
-        drilling=section.drilling,
     )
 
 

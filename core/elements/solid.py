@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Bools, Floats, Ints
 from .batch import condense, in_chunks, symmetric, translations, transpose
 from .element import Element
-from .middle_nodes import to_middle_nodes
+from .middle_nodes import lumped
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 _CHUNK = 128
@@ -118,7 +118,9 @@ def solid_stiffness(solid: Solid, xyz: Floats, C: Floats, integration: str | Non
     return in_chunks(len(xyz), 3 * solid.nodes, matrices, _CHUNK // (1 + (solid.nodes > 10)))
 
 
-def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Floats:
+def solid_mass(
+    solid: Solid, xyz: Floats, density: Floats, coupled: bool, there: Floats | None = None
+) -> Floats:
     """Mass of solids, (n, 3 k, 3 k).
 
     Parameters
@@ -129,10 +131,11 @@ def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Flo
         Node positions, basic frame.
     density : (n,) float
     coupled : bool
-        Consistent mass; otherwise lumped by row sums, where there are middle nodes all of it at
-        these (see `lumping.to_middle_nodes`).
+        Consistent mass; otherwise lumped by row sums, none of it negative.
+    there : (nodes, k) float, optional
+        All nodes from those that are there; see `middle_nodes.lumped`.
     """
-    k = solid.nodes
+    k = solid.nodes if there is None else there.shape[1]
 
     def matrices(part: slice) -> Floats:
         points, weights = solid.mass_rule
@@ -140,12 +143,7 @@ def solid_mass(solid: Solid, xyz: Floats, density: Floats, coupled: bool) -> Flo
         detJ = np.linalg.det(derivatives @ xyz[part][:, None])
         weight = detJ * weights * density[part, None]
         m = transpose(N[None] * weight[..., None]) @ N
-        if not coupled:
-            share = m.sum(axis=2)
-            if len(solid.edges):
-                share = to_middle_nodes(share, xyz[part], solid.corners)
-            m = share[:, :, None] * np.eye(k)
-        return translations(m, 3)
+        return translations(lumped(m, xyz[part], there, coupled), 3)
 
     return in_chunks(len(xyz), 3 * k, matrices, _CHUNK)
 

@@ -39,9 +39,18 @@ class Placed:
     keys: list[Key]
     of: Ints
 
-    def whole(self) -> Floats | None:
-        """Motions of all nodes from those of the nodes that are there; None where all are."""
-        return None if self.spread is None else np.kron(self.spread, np.eye(self.element.freedoms))
+    def of_nodes_there(self, K: Floats) -> Floats:
+        """Stiffness of the nodes that are there from that of all nodes."""
+        if self.spread is None:
+            return K
+        T = np.kron(self.spread, np.eye(self.element.freedoms))
+        return np.asarray(T.T @ K @ T)
+
+    def mass(self, rows: Ints, density: Floats, coupled: bool) -> Floats:
+        """Mass of some elements on the nodes that are there."""
+        assert self.element.mass is not None
+        there = () if self.spread is None else (self.spread,)
+        return self.element.mass(self.xyz[rows], density, coupled, *there)
 
 
 def placed(context: Context, may_have: str) -> Iterator[Placed]:

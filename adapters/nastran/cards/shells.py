@@ -95,7 +95,6 @@ def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
         for key, section in zip(keys, any_thickness, strict=True)
     ]
     sources, source_of = element_sources(context, ids, of_property, shell.of)
-    T = shell.whole()
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         section, density = _sections_of(shell, facts, values, rows)
@@ -106,11 +105,10 @@ def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
             K = element.stiffness(
                 shell.xyz[rows], section, settings.k6rot, offset[rows], at_corners
             )
-        if wanted[1] and element.mass:
+            K = shell.of_nodes_there(K)
+        if wanted[1]:
             density = density + context.extra_mass(values, ids[rows])
-            M = element.mass(shell.xyz[rows], density, context.settings.coupled)
-        if T is not None:
-            K, M = (None if X is None else T.T @ X @ T for X in (K, M))
+            M = shell.mass(rows, density, context.settings.coupled)
         return K, M
 
     return Group(shell.name, ids, element, shell.nodes, matrices, sources, source_of)
@@ -133,7 +131,7 @@ def _sections_of(
     section = ShellSection(
         **{
             name: np.array([getattr(part, name) for part in layups])
-            for name in ("A", "B", "D", "S", "drilling")
+            for name in ("A", "B", "D", "S")
         }
     ).take(position)
     if facts.angle[rows].any():

@@ -58,17 +58,15 @@ def _group(context: Context, solid: Placed) -> Group:
     element, keys, of, xyz = solid.element, solid.keys, solid.of, solid.xyz
     schemes = [_scheme(context, solid.name, element, key) for key in keys]
     centre = xyz[:, : element.corners].mean(axis=1)
-    full = solid.whole()
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         C, rho = _materials(context, values, keys, of[rows], centre[rows])
         K = M = None
         if wanted[0]:
             K = _stiffness(element, xyz[rows], C, [schemes[k] for k in of[rows]])
-        if wanted[1] and element.mass:
-            M = element.mass(xyz[rows], rho, context.settings.coupled)
-        if full is not None:
-            K, M = (None if X is None else full.T @ X @ full for X in (K, M))
+            K = solid.of_nodes_there(K)
+        if wanted[1]:
+            M = solid.mass(rows, rho, context.settings.coupled)
         return K, M
 
     sources = tuple(with_material(context.bulk, key) for key in keys)

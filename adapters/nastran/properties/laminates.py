@@ -57,8 +57,6 @@ class Layup:
         See `core.elements.section.ShellSection`.
     S : (2, 2) float
         Transverse shear stiffness.
-    drilling : float
-        G t.
     density : float
         Mass per area, NSM included.
     isotropic : bool
@@ -71,7 +69,6 @@ class Layup:
     B: Floats
     D: Floats
     S: Floats
-    drilling: float
     density: float
     isotropic: bool
     materials: tuple[tuple[str, int], ...]
@@ -125,12 +122,11 @@ def _pshell(bulk: Bulk, card: Values, place: Place, own: float, share: float) ->
     S = np.diag([np.inf, np.inf])
     if mid3 is not None and mid2 is not None:
         S = used[mid3].shear * (card.shear * t)
-    drilling = float(A[2, 2])  # none without a membrane
     first = used[mids[0]]
     density = first.rho * t + card.nsm
     keys = tuple(_key(bulk, mid) for mid in used)
     same = all(m.isotropic for m in used.values())
-    return Layup(A, B, D, S, drilling, density, same, keys)
+    return Layup(A, B, D, S, density, same, keys)
 
 
 def _key(bulk: Bulk, mid: int) -> tuple[str, int]:
@@ -181,7 +177,7 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     density = float(rho @ t) + card.nsm
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
-    return Layup(A, B, D, S, float(A[2, 2]), density, same, keys)
+    return Layup(A, B, D, S, density, same, keys)
 
 
 def _plies(card: Values, place: Place) -> tuple[Floats, Floats, list[int]]:

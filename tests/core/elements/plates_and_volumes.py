@@ -36,7 +36,6 @@ def isotropic_section(E, nu, G, t, bending_ratio=1.0, shear_ratio=0.833333):
         B=np.zeros((n, 3, 3)),
         D=Q * (ratio * t**3 / 12.0)[:, None, None],
         S=S,
-        drilling=Q[:, 2, 2] * t,
     )
 
 

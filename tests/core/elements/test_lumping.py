@@ -67,5 +67,5 @@ def test_an_element_without_mass_gets_none_and_leaves_the_others_theirs():
     square = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
     xyz = np.concatenate([square, 0.5 * (square + np.roll(square, -1, axis=0))])
     share = np.array([[-1.0 / 12.0] * 4 + [1.0 / 3.0] * 4])
-    both = to_middle_nodes(np.vstack([share, 0.0 * share]), np.stack([xyz, xyz]), 4)
+    both = to_middle_nodes(np.vstack([share, 0.0 * share]), np.stack([xyz, xyz]))
     np.testing.assert_allclose(both, [[0.0] * 4 + [0.25] * 4, [0.0] * 8], atol=1e-12)

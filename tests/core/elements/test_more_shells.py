@@ -287,7 +287,7 @@ def test_coupling_of_a_laminate_in_all_shells():
     """A plate about a plane beside it: pure curvature costs D + h**2 A there."""
     h = 0.3
     plate = sections(1)
-    moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S, plate.drilling)
+    moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S)
     for stiffness, nodes in CASES:
         xyz = nodes(SQUARE)
         area = 1.0 if len(xyz) in (4, 8) else 0.5

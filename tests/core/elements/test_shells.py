@@ -283,7 +283,7 @@ def test_offset_equals_coupling_of_the_laminate():
     """A plate moved along its normal: by rigid arms, or by A, B, D about the grids' plane."""
     xyz = np.array([QUADS[0]], dtype=float)
     h, plate = 0.3, sections(1)
-    moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S, plate.drilling)
+    moved = ShellSection(plate.A, h * plate.A, plate.D + h**2 * plate.A, plate.S)
     by_arms = QUAD4.stiffness(xyz, plate, 0.0, offset=h)[0]
     by_laminate = QUAD4.stiffness(xyz, moved, 0.0)[0]
     curvature = np.zeros((4, 6))
@@ -297,8 +297,8 @@ def test_membrane_only_and_bending_only():
     xyz = np.array([QUADS[1]], dtype=float)
     zero = np.zeros((1, 3, 3))
     full = sections(1)
-    membrane = ShellSection(full.A, zero, zero, full.S, full.drilling)
-    bending = ShellSection(zero, zero, full.D, full.S, 0 * full.drilling)
+    membrane = ShellSection(full.A, zero, zero, full.S)
+    bending = ShellSection(zero, zero, full.D, full.S)
     for nodes, function in ((4, QUAD4.stiffness), (3, TRIA3.stiffness)):
         corners = xyz[:, :nodes]
         total = function(corners, membrane) + function(corners, bending)
@@ -308,7 +308,7 @@ def test_membrane_only_and_bending_only():
 def test_rotated_section_turns_the_material_not_the_energy():
     A = np.array([[[10.0, 2.0, 0.5], [2.0, 4.0, 0.3], [0.5, 0.3, 3.0]]])
     S = np.array([[[2.0, 0.2], [0.2, 1.0]]])
-    section = ShellSection(A, 0 * A, A / 12, S, np.ones(1))
+    section = ShellSection(A, 0 * A, A / 12, S)
     angle = 0.4
     turned = rotate_section(section, np.array([angle]))
     c, s = np.cos(angle), np.sin(angle)

@@ -63,3 +63,17 @@ def test_component_modes_of_a_fixed_boundary(data):
     path = data / "nastran/cantilever/dynamicReduction.dat"
     msc = [349.7303, 2168.717, 6015.472, 11974.12, 29336.18]
     np.testing.assert_allclose(elastic(path, 5), msc, rtol=1e-6)
+
+
+def test_membranes_of_anisotropic_shells_with_and_without_middle_nodes(data):
+    """NX: CQUADR, CTRIAR, CQUAD8 and CTRIA6 of plies, nodes left out; behind nine modes that bend.
+
+    The mass of nodes that are left out goes to the ends of their edges before the corners lose
+    theirs, and rotations about the normal are held by the shear stiffness in element axes.
+    """
+    found = solve(build_model(read_deck(data / "nastran/mixed_shells/trncomp12.bdf")), 29)
+    square = [23.376093, 62.008167, 164.75215, 286.12778, 332.41791, 786.60229, 971.40106]
+    square += [1101.5419, 1175.8164, 1659.0892, 1832.5781, 2029.4102, 2152.9370, 2658.0791]
+    square += [3139.2825, 3669.9431, 3725.5938, 4078.3342, 7461.1851, 8890.8848]
+    hertz = np.sqrt(square) / (2.0 * np.pi)
+    np.testing.assert_allclose(found.frequencies_hz[9:], hertz, rtol=1e-6)
