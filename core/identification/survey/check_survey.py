@@ -10,6 +10,7 @@ from .contradictions import contradictions_mended
 from .double_hits import second_hits
 from .driving_points import driving_points
 from .function_faults import noise_ratio
+from .gain_steps import gain_steps_mended
 from .neighbours import neighbours_of, points_mended, points_of_wrong_gain_left_out
 from .references import references_mended
 from .survey_data import Survey, named_and_left_out, noise_levels, weighed
@@ -30,7 +31,7 @@ def checked(
         Of the functions that the survey was made of.
     """
     given = survey
-    survey = _second_hits_left_out(_noisy_left_out(survey))
+    survey = gain_steps_mended(_second_hits_left_out(_noisy_left_out(survey)))
     points = driving_points(survey.outputs, survey.inputs, geometry)
     survey = contradictions_mended(survey, points, neighbours_of(survey, geometry))
     survey = points_of_wrong_gain_left_out(survey, geometry)

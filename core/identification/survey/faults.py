@@ -22,7 +22,7 @@ class Fault:
         Response and reference of each as the file has them, such as ``40:Z/12:Z``.
     sentence : str
     done : str
-        ``left out``, ``turned``, ``exchanged``, or empty: nothing was done.
+        ``left out``, ``turned``, ``exchanged``, ``scaled``, or empty: nothing was done.
     """
 
     kind: str

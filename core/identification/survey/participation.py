@@ -46,6 +46,11 @@ class Followed:
         total, along = (x.sum(axis=1, keepdims=True) - x @ without for x in (total, along))
         return np.asarray(1.0 - along / np.maximum(total, 1e-300))
 
+    @property
+    def unlike(self) -> float:
+        """Sum over the outputs of the shares that do not follow."""
+        return float(np.sum(self.left(self.functions)[:, 0]))
+
     def factors(self, k: int) -> Floats:
         """Real factor that makes function `k` of each output follow as the output's others do.
 
