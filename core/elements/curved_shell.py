@@ -240,6 +240,7 @@ _NINE = np.stack(np.meshgrid(_X, _X, indexing="ij"), axis=-1).reshape(-1, 2)
 
 QUAD8 = Element(
     name="quad8",
+    unknown="transverse shear",
     shape=QUAD,
     freedoms=6,
     edges=_SIDES,
@@ -250,6 +251,7 @@ QUAD8 = Element(
 )
 TRIA6 = Element(
     name="tria6",
+    unknown="transverse shear",
     shape=TRIA,
     freedoms=6,
     edges=np.array(TRIA.sides),

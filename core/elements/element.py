@@ -46,6 +46,8 @@ class Element:
     exact : bool
         Whether the stiffness is exact between the nodes, so that lumping the mass of a straight
         bar (`bar.bar_mass`) is all that a coarse mesh gets wrong.
+    unknown : str
+        What of its stiffness in Nastran is not known, in words, where another law stands for it.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Element:
     integrations: tuple[str, ...] = ()
     linear_mass: Floats | None = None
     exact: bool = False
+    unknown: str = ""
 
     @property
     def corners(self) -> int:

@@ -125,6 +125,7 @@ HEXA8 = Solid(
 )
 HEXA20 = Solid(
     name="hexa20",
+    unknown="reduced shear",
     shape=HEXA,
     edges=_EDGES,
     interpolation=hexa20,

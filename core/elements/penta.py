@@ -142,6 +142,7 @@ PENTA6 = Solid(
 )
 PENTA15 = Solid(
     name="penta15",
+    unknown="reduced shear",
     shape=PENTA,
     edges=stacked_edges(3),
     interpolation=penta15,

@@ -67,6 +67,7 @@ def _pyramid13_coefficients() -> Floats:
 
 PYRAMID5 = Solid(
     name="pyramid5",
+    unknown="interpolation",
     shape=PYRAMID,
     interpolation=pyramid5,
     rules={"full": gauss_pyramid(2)},
@@ -74,6 +75,7 @@ PYRAMID5 = Solid(
 )
 PYRAMID13 = Solid(
     name="pyramid13",
+    unknown="interpolation",
     shape=PYRAMID,
     edges=pointed_edges(4),
     interpolation=pyramid13,

@@ -213,4 +213,9 @@ def _add_tria_shear(K: Floats, section: ShellSection, edge: Floats, area: Floats
 
 
 QUADR = replace(QUAD4, name="quadr", stiffness=shell_stiffness(_quadr))
-TRIAR = replace(TRIA3, name="triar", stiffness=shell_stiffness(_triar))
+TRIAR = replace(
+    TRIA3,
+    name="triar",
+    stiffness=shell_stiffness(_triar),
+    unknown="unequal rotations about the normal",
+)

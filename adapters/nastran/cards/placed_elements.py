@@ -68,6 +68,12 @@ def placed(context: Context, may_have: str) -> Iterator[Placed]:
             for card in context.bulk.table(name).values():
                 there = tuple(bool(n) for n in card.nodes[kinds[0].corners :])
                 patterns.setdefault(there if any(there) else (), []).append(card)
+        for kind in {kinds[-1] if present else kinds[0]: 0 for present in patterns}:
+            if kind.unknown:
+                context.notes.append(
+                    f"{name} with {kind.nodes} nodes: Nastran's law of {kind.unknown} is not "
+                    "known; another stands for it, off by some per cent on a coarse mesh"
+                )
         for present, cards in patterns.items():
             yield _placed(context, name, kinds[-1] if present else kinds[0], cards, present)
 
