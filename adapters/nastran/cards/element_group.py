@@ -205,11 +205,12 @@ def property_groups(context: Context, name: str, constants: Constants) -> list[G
 
 
 def with_material(bulk: Bulk, key: Key) -> frozenset[Key]:
-    """Return a property and the material that it names, whose values enter."""
+    """Return a property and the materials that it names, whose values enter."""
     mid = getattr(bulk.table(key[0])[key[1]], "mid", None)
-    named = (n for n, c in bulk.definitions.items() if c.space == "material")
-    found = None if mid is None else bulk.find(named, int(mid))
-    return frozenset([key] if mid is None or found is None else [key, (found[0], int(mid))])
+    named = [n for n, c in bulk.definitions.items() if c.space == "material"]
+    mids = mid if isinstance(mid, tuple) else (mid,)
+    found = {m: bulk.find(named, int(m)) for m in mids if m is not None}
+    return frozenset([key, *((card[0], int(m)) for m, card in found.items() if card)])
 
 
 def check_shape(context: Context, name: str, element: Element, ids: Ints, xyz: Floats) -> None:

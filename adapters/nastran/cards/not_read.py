@@ -32,7 +32,7 @@ _IGNORED = {
     "NASTRAN",
     "no card refers to it in what is read": "PBEND PLPLANE PSEAM PBMSECT "
     "PBRSECT PBARN1 PBEMN1 PSHLN1 PSHLN2 PSLDN1 PBCOMP PBEAM3 PRAC2D PRAC3D PAXSYM PPLANE "
-    "MAT3 MAT10 MAT11 MATT3 MATT11 MATG PBUSH2D",
+    "MAT3 MAT10 MATT3 MATT11 MATG PBUSH2D",
 }  # fmt: skip
 """Cards that carry neither stiffness nor mass nor constraint by themselves: why, the names."""
 
@@ -64,8 +64,6 @@ _LAYOUTS = {
     "MAT3": "MID:i EX:r ETH:r EZ:r NUXTH:r NUTHZ:r NUZX:r RHO:r / - - GZX:r AX:r ATH:r AZ:r TREF:r "
     "GE:r",
     "MAT10": "MID:i BULK:r RHO:r C:r GE:r",
-    "MAT11": "MID:i E1:r E2:r E3:r NU12:r NU13:r NU23:r G12:r G13:r G23:r RHO:r A1:r A2:r A3:r "
-    "TREF:r GE:r",
     "PBEND": "PID:i MID:i A:r I1:r I2:r J:r RB:r THETAB:r C1:r C2:r D1:r D2:r E1:r E2:r F1:r F2:r "
     "K1:r K2:r NSM:r RC:r ZC:r DELTAN:r",
 }

@@ -1,10 +1,13 @@
 """Solids: CHEXA, CPENTA, CTETRA, CPYRAM, without and with middle nodes."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements import Element
 from ....core.elements.solid import rotate_material
+from ....core.errors import Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card
 from ..properties.materials import elastic
@@ -19,15 +22,17 @@ def _card(name: str, corners: int, nodes: int, elements: str) -> Card:
     return Card(name, layout, "eid", elements=elements, properties="PSOLID PCOMPS PLSOLID")
 
 
-_REFUSED = {"PCOMPS": "solid laminates", "PLSOLID": "hyperelastic solids"}
-"""Properties that are known and not supported: of what."""
-
 CARDS = (
     _card("CTETRA", 4, 10, "tetra4 tetra10"),
     _card("CPYRAM", 5, 13, "pyramid5 pyramid13"),
     _card("CPENTA", 6, 15, "penta6 penta15"),
     _card("CHEXA", 8, 20, "hexa8 hexa20"),
-    Card("PCOMPS", "PID:i! ...", "pid"),
+    Card(
+        "PCOMPS",
+        "PID:i! CORDM:i=0 PSDIR:i=13 SB:r NB:r TREF:r=0. GE:r=0. / "
+        "[GPLYID:i MID:i! T:r THETA:r=0. FT:w ILMT:iw SOUT:w TFLG:w]",
+        "pid",
+    ),
     Card("PLSOLID", "PID:i! MID:i! ...", "pid"),
     Card(
         "PSOLID", "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH", "pid"
@@ -88,8 +93,14 @@ def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
     """Return the element's word for the integration that PSOLID asks for."""
     card = context.bulk.table(key[0])[key[1]]
     place = context.bulk.place(*key)
-    if key[0] in _REFUSED:
-        raise place.error(f"{_REFUSED[key[0]]} are not supported: give {name} a PSOLID")
+    if key[0] == "PLSOLID":
+        raise place.error(f"hyperelastic solids are not supported: give {name} a PSOLID")
+    if key[0] == "PCOMPS":
+        context.notes.append(
+            f"{place}: Nastran's law of {name} with solid laminates is not known; that with PSOLID "
+            "stands for it"
+        )
+        return element.integrations[0]
     if card.fctn != "SMECH":
         raise place.error(f"FCTN {card.fctn} (fluid elements) is not supported")
     if len(element.integrations) < 2:
@@ -112,20 +123,58 @@ def _materials(
 ) -> tuple[Floats, Floats]:
     """Elastic matrices in the basic frame, (n, 6, 6), and densities, (n,)."""
     used, position = np.unique(of, return_inverse=True)
-    cards = [bulk.table(keys[k][0])[keys[k][1]] for k in used]
     places = [context.bulk.place(*keys[k]) for k in used]
-    found = [elastic(bulk, card.mid, place) for card, place in zip(cards, places, strict=True)]
+    filled = [_fill(bulk, keys[k], place) for k, place in zip(used, places, strict=True)]
+    found = [elastic(bulk, fill.mid, place) for fill, place in zip(filled, places, strict=True)]
     C = np.array([m.C for m in found])[position]
     rho = np.array([m.rho for m in found])[position]
-    for number, (card, place) in enumerate(zip(cards, places, strict=True)):
+    for number, (fill, place) in enumerate(zip(filled, places, strict=True)):
         if found[number].isotropic:
             continue
-        if card.cordm < 0:
+        if fill.cordm < 0:
             raise place.error(
-                "CORDM = -1 (element coordinates) is not supported with MAT9: name a "
+                "CORDM = -1 (element coordinates) is not supported with MAT9 and MAT11: name a "
                 "coordinate system"
             )
         rows = np.flatnonzero(position == number)
-        frame = context.points.frames.get(card.cordm, place)
-        C[rows] = rotate_material(C[rows], frame.directions(centre[rows]))
+        frame = context.points.frames.get(fill.cordm, place)
+        C[rows] = rotate_material(C[rows], fill.axes @ frame.directions(centre[rows]))
     return C, rho
+
+
+class _Fill(NamedTuple):
+    """What a property fills elements with: material axes are rows in the system CORDM."""
+
+    mid: int
+    cordm: int
+    axes: Floats
+
+
+def _fill(bulk: Bulk, key: Key, place: Place) -> _Fill:
+    """Return the material of a PSOLID, or of a PCOMPS whose plies are all alike.
+
+    PSDIR names the directions of the plies and of their stack among those of CORDM, THETA turns
+    the first about the second.
+
+    Raises
+    ------
+    InputError
+        Plies of different materials or angles, whose law is not known.
+    """
+    card = bulk.table(key[0])[key[1]]
+    if key[0] != "PCOMPS":
+        return _Fill(card.mid, card.cordm, np.eye(3))
+    if len(set(zip(card.mid, card.theta, strict=True))) != 1:
+        raise place.error(
+            "solid laminates of no plies, or of plies of several materials or angles, are not "
+            "supported: give the elements a PSOLID, or one element to a ply"
+        )
+    first, last = divmod(card.psdir, 10)
+    if not {first, last} <= {1, 2, 3} or first == last:
+        raise place.error(f"PSDIR {card.psdir} is not one of 12, 13, 21, 23, 31, 32")
+    ply, stack = np.eye(3)[first - 1], np.eye(3)[last - 1]
+    across = np.cross(stack, ply)
+    c, s = np.cos(np.radians(card.theta[0])), np.sin(np.radians(card.theta[0]))
+    return _Fill(
+        card.mid[0], card.cordm, np.stack([c * ply + s * across, c * across - s * ply, stack])
+    )

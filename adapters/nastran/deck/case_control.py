@@ -14,6 +14,10 @@ _COMMAND = re.compile(
 )
 _SETS = {"SPC": "spc", "MPC": "mpc", "NSM": "nsm", "SUPORT1": "suport1"}
 _MATRICES = {"K2GG": "k2gg", "M2GG": "m2gg", "K2PP": "k2pp", "M2PP": "m2pp"}
+_LOADED = (
+    "the deck asks for modes of the structure under loads (STATSUB, or steps before them); those "
+    "of the unloaded structure are found: without stress stiffness, large motions and damage",
+)
 _WEIGHTED = re.compile(r"(?:\(?\s*(?P<factor>[-+.\dEeDd]+)\s*\)?\s*\*\s*)?(?P<name>[A-Za-z]\w*)")
 
 
@@ -29,6 +33,8 @@ class CaseControl:
         Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (BOTH) or (MATERIAL).
     k2gg, m2gg, k2pp, m2pp : tuple of (name, factor)
         Names of DMIG matrices; those of the p-set (PP) are for response analyses.
+    analysis, loaded
+        What the subcase is for, and whether loads stiffen its structure (STATSUB).
     """
 
     subcase: int = 0
@@ -43,6 +49,7 @@ class CaseControl:
     k2pp: tuple[tuple[str, float], ...] = ()
     m2pp: tuple[tuple[str, float], ...] = ()
     analysis: str = field(default="", compare=False)
+    loaded: bool = field(default=False, compare=False)
 
 
 def read_case_control(
@@ -77,13 +84,17 @@ def read_case_control(
         else:
             above = case
     if not subcases:
-        return above, ()
+        return above, _LOADED * above.loaded
     modal = [c for c in subcases if c.method is not None and c.analysis in ("", "MODES")]
     chosen = modal[0] if modal else subcases[0]
     others = [c.subcase for c in modal[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
+    before = subcases[: subcases.index(chosen)]
+    steps = chosen.analysis == "MODES" and any(c.analysis == "STATICS" for c in before)
+    loaded = _LOADED * (chosen.loaded or steps)
     if not others:
-        return chosen, ()
+        return chosen, loaded
     return chosen, (
+        *loaded,
         f"subcase {chosen.subcase} is used; subcases {', '.join(map(str, others))} select other "
         "constraints and are left out",
     )
@@ -100,6 +111,8 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         if option[:4] in ("BOTH", "MATE", "") and case.temperature is not None:
             return case
         return replace(case, temperature=number) if option else case
+    if key.startswith("STATS"):
+        return replace(case, loaded=True)
     if key.startswith("ANAL"):
         return replace(case, analysis=value.upper())
     if key in _MATRICES:

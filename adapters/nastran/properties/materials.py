@@ -1,4 +1,4 @@
-"""Material constants from MAT1, MAT2, MAT8 and MAT9, as elements need them."""
+"""Material constants from MAT1, MAT2, MAT8, MAT9 and MAT11, as elements need them."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -52,6 +52,14 @@ CARDS = (
         "MAT9",
         "MID:i! G11,G12,G13,G14,G15,G16,G22,G23,G24,G25,G26,G33,G34,G35,G36,G44,G45,G46,G55,G56,"
         f"G66>g:r=0. {_RHO} A1,A2,A3,A4,A5,A6>a:r=0. TREF:r=0. GE:r=0.",
+        "mid",
+        space="material",
+        moves=Moves(linear=("RHO",)),
+    ),
+    Card(
+        "MAT11",
+        "MID:i! E1,E2,E3>e:r! NU12,NU13,NU23>nu:r! G12,G13,G23>g:r! "
+        f"{_RHO} A1,A2,A3>a:r=0. TREF:r=0. GE:r=0.",
         "mid",
         space="material",
         moves=Moves(linear=("RHO",)),
@@ -163,23 +171,38 @@ def _derived(card: Values, place: Place) -> tuple[float, float, float]:
 
 
 def elastic(bulk: Bulk, mid: int, asked_by: Place) -> Elastic:
-    """Return a MAT1 or MAT9 in three dimensions, in its own axes.
+    """Return a MAT1, MAT9 or MAT11 in three dimensions, in its own axes.
 
     Raises
     ------
     InputError
         No such material, or one that is not physical.
     """
-    name, card = _found(bulk, ("MAT1", "MAT9"), mid, asked_by)
+    name, card = _found(bulk, ("MAT1", "MAT9", "MAT11"), mid, asked_by)
     if name == "MAT1":
         E, _, nu, rho = _constants(bulk, card)
         if not nu < 0.5:
             raise bulk.place(name, int(mid)).error("solids need NU below 0.5")
         return Elastic(isotropic_solid(np.array([E]), np.array([nu]))[0], rho, True)
+    if name == "MAT11":
+        return Elastic(_orthotropic(card, bulk.place(name, int(mid))), card.rho, False)
     C = np.zeros((6, 6))
     rows, columns = np.triu_indices(6)
     C[rows, columns] = C[columns, rows] = card.g
     return Elastic(C, card.rho, False)
+
+
+def _orthotropic(card: Values, place: Place) -> Floats:
+    """Stresses from strains of a MAT11: the inverse of its compliances."""
+    (E1, E2, E3), (nu12, nu13, nu23), (G12, G13, G23) = card.e, card.nu, card.g
+    if not min(*card.e, *card.g) > 0.0:
+        raise place.error("every modulus must be positive")
+    S = np.diag([1.0 / E1, 1.0 / E2, 1.0 / E3, 1.0 / G12, 1.0 / G23, 1.0 / G13])
+    for i, j, value in ((0, 1, nu12 / E1), (0, 2, nu13 / E1), (1, 2, nu23 / E2)):
+        S[i, j] = S[j, i] = -value
+    if not np.linalg.eigvalsh(S[:3, :3])[0] > 0.0:
+        raise place.error("NU12, NU13 and NU23 are not possible with E1, E2 and E3")
+    return np.asarray(np.linalg.inv(S))
 
 
 def plane(bulk: Bulk, mid: int, asked_by: Place) -> Plane:

@@ -72,7 +72,42 @@ def test_a_solid_that_is_none_either_way_is_refused(solve):
         solve("CHEXA,7,1,1,3,2,4,9,11\n,10,12\n")
 
 
-@pytest.mark.parametrize("name", ["PCOMPS", "PLSOLID"])
-def test_properties_that_are_not_supported_are_named(solve, name):
-    with pytest.raises(InputError, match=rf"{name} 1 \(.*line 11\): .*not supported: give CPENTA"):
-        solve("CPENTA,7,1,1,2,3,9,10,11\n", properties=f"{name},1,1\n" + MATERIAL)
+def test_properties_that_are_not_supported_are_named(solve):
+    with pytest.raises(InputError, match=r"PLSOLID 1 \(.*line 11\): .*not supported: give CPENTA"):
+        solve("CPENTA,7,1,1,2,3,9,10,11\n", properties="PLSOLID,1,1\n" + MATERIAL)
+
+
+ORTHOTROPIC = "MAT11,1,9.E4,4.E4,2.E4,.3,.25,.2,1.E4\n,8.E3,6.E3,2.7-9\n"
+BRICK = "CHEXA,7,1,1,2,3,4,9,10\n,11,12\n"
+
+
+def test_orthotropic_material_that_is_the_same_in_all_directions_is_isotropic(solve):
+    G = 7e4 / 2.6
+    same = f"MAT11,1,7.E4,7.E4,7.E4,.3,.3,.3,{G:.10g}\n,{G:.10g},{G:.10g},2.7-9\n"
+    K, M, _ = solve(BRICK, properties=PROPERTY + same)
+    expected, mass, _ = solve(BRICK)
+    np.testing.assert_allclose(K, expected, atol=1e-9 * expected.max())
+    np.testing.assert_allclose(M, mass)
+
+
+def test_plies_of_a_solid_laminate_lie_as_psdir_and_theta_say(solve):
+    """Plies along y turned by 30 degrees about z, which the stack follows: x at 120 degrees."""
+    plies = "PCOMPS,1,0,23\n,1,1,.5,30.,,,YES,ABS\n,2,1,.5,30.,,,YES,ABS\n"
+    K, M, said = solve(BRICK, properties=plies + ORTHOTROPIC)
+    c, s = np.cos(np.pi / 1.5), np.sin(np.pi / 1.5)
+    turned = f"PSOLID,1,1,5\nCORD2R,5,,0.,0.,0.,0.,0.,1.\n,{c:.9f},{s:.9f},0.\n"
+    expected, mass, _ = solve(BRICK, properties=turned + ORTHOTROPIC)
+    np.testing.assert_allclose(K, expected, atol=1e-7 * expected.max())
+    np.testing.assert_allclose(M, mass)
+    assert any("PCOMPS 1" in w and "is not known" in w for w in said)
+
+
+def test_plies_of_several_kinds_are_refused(solve):
+    plies = "PCOMPS,1,0,13\n,1,1,.5,0.\n,2,1,.5,90.\n"
+    with pytest.raises(InputError, match=r"PCOMPS 1 .*several materials or angles"):
+        solve(BRICK, properties=plies + ORTHOTROPIC)
+
+
+def test_orthotropic_material_that_cannot_be_is_refused(solve):
+    with pytest.raises(InputError, match=r"MAT11 1 .*NU12, NU13 and NU23 are not possible"):
+        solve(BRICK, properties=PROPERTY + ORTHOTROPIC.replace(",.3,", ",2.,"))

@@ -10,7 +10,12 @@ from trueup.core.errors import InputError
 
 
 def read(text: str):
-    return read_case_control([Line("SUBCASE 1", 0, 4), Line(text, 0, 5)], [Path("a.bdf")])[0]
+    return read_all(f"SUBCASE 1\n{text}")[0]
+
+
+def read_all(text: str):
+    lines = [Line(line, 0, 4 + k) for k, line in enumerate(text.splitlines())]
+    return read_case_control(lines, [Path("a.bdf")])
 
 
 def test_matrices_have_factors_as_nastran_writes_them():
@@ -24,3 +29,18 @@ def test_a_factor_that_is_no_number_is_refused_with_its_line(factor):
     with pytest.raises(InputError, match=r"a\.bdf line 5: K2GG: .* is not a number") as caught:
         read(f"K2GG = {factor}*STIF")
     assert caught.value.line == 5
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "METHOD = 1\nSTATSUB(PRELOAD) = 1",
+        "SUBCASE 1\nLOAD = 2\nSUBCASE 2\nMETHOD = 1\nSTATSUB = 1",
+        "METHOD = 1\nSUBCASE 1\nANALYSIS = STATICS\nSUBCASE 2\nANALYSIS = MODES",
+    ],
+)
+def test_loads_that_would_stiffen_the_structure_are_said(text):
+    _, warnings = read_all(text)
+    assert any("unloaded structure" in w for w in warnings)
+    _, quiet = read_all("SUBCASE 1\nANALYSIS = MODES\nMETHOD = 1\nSUBCASE 2\nANALYSIS = STATICS")
+    assert not quiet
