@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 class Analysis:
     """The analysis side: the deck (None where a model was given), its model and its modes.
 
-    `specs` are what the parameters of the model stand for in the deck.
+    `specs` are what the parameters of the model stand for in the deck; `given` is the deck as it
+    came, before properties were split for parameters of some elements.
     """
 
     deck: Deck | None
@@ -33,6 +34,7 @@ class Analysis:
     modes: Modes
     rigid_body_modes: int
     warnings: tuple[str, ...]
+    given: Deck | None = None
 
     @property
     def geometry(self) -> Geometry:
@@ -56,13 +58,18 @@ def read_analysis(
         Analysis modes of the user's own Nastran run.
     """
     from ..adapters.nastran import build_model, drawn_model, parse_parameter
+    from ..adapters.nastran.assembly.wide_parameters import parameters_of
     from ..core.eigen import normal_modes
 
     deck = None if isinstance(source, Model) else read_deck(source)
     name = None if deck is None else deck.path
-    specs = tuple(parse_parameter(p) for p in study.parameters)
+    given = deck
     unknown: tuple[str, ...] = ()
     with naming(name):
+        if deck is None:
+            specs = tuple(map(parse_parameter, study.parameters))
+        else:
+            deck, specs = parameters_of(deck, study.parameters)
         try:
             model = source if deck is None else build_model(deck, specs)
         except InputError as error:
@@ -73,8 +80,8 @@ def read_analysis(
     assert isinstance(model, Model)
     warnings = (*(deck.warnings if deck else ()), *model.warnings, *unknown)
     if modes is not None:
-        given = analysis_modes(modes, deck)
-        return Analysis(deck, specs, model, given, _rigid(given), warnings)
+        known = analysis_modes(modes, deck)
+        return Analysis(deck, specs, model, known, _rigid(known), warnings, given)
     asked = deck.eigen.nd if deck and deck.eigen and deck.eigen.nd else 0
     with naming(name):
         solution = normal_modes.solve(model, fmax=fmax)
@@ -82,7 +89,7 @@ def read_analysis(
             solution = normal_modes.solve(model, n_modes=asked)
     found = normal_modes.modes_of(model, solution)
     said = (*warnings, *solution.warnings)
-    return Analysis(deck, specs, model, found, solution.rigid_body_modes, said)
+    return Analysis(deck, specs, model, found, solution.rigid_body_modes, said, given)
 
 
 def analysis_modes(source: Source, deck: Deck | None) -> Modes:

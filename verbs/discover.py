@@ -76,11 +76,12 @@ def discover(
     CheckError
         An eigensolution does not meet its own check.
     """
-    from ..adapters.nastran import parse_parameter
+    from ..adapters.nastran.assembly.wide_parameters import parameters_of
     from ..adapters.nastran.discovery.build_structure import build_structure
     from ..adapters.nastran.discovery.complete_deck import CompletedDeck, complete
     from ..adapters.nastran.discovery.doubted_parameters import doubted, settled
     from ..adapters.nastran.discovery.writers import writer_of
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
 
     start = time.perf_counter()
     accepted = {**DiscoverOptions.__annotations__, "modes": None}
@@ -96,8 +97,9 @@ def discover(
     progress("reading and placing")
     side = measured(test, asked)
     top = side.highest(asked.frequency_tolerance)
-    deck = read_deck(deck)
-    every = doubted(deck, [parse_parameter(p) for p in asked.parameters])
+    given = read_deck(deck)
+    deck, named_ones = parameters_of(given, asked.parameters)
+    every = doubted(deck, named_ones)
     structure = build_structure(deck, every.specs)
     solution = reference_modes(structure.model, top)
     before = _compared(deck, structure, solution, side, asked)
@@ -157,7 +159,7 @@ def discover(
         ),
         content=content_of(before, final, after),
         study=named(asked, deck, side, None),
-        deck=done.deck,
+        deck=done.deck if deck is given else ChangedDeck.of(given.text, done.deck.text),
     )
 
 

@@ -164,9 +164,10 @@ def _written(
     from ..adapters.nastran.fields.parameter_references import moved
 
     assert analysis.deck is not None
-    original = analysis.deck.text
+    assert analysis.given is not None
     wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
-    changed = ChangedDeck.of(original, set_values(original, wanted))
+    text, given = set_values(analysis.deck.text, wanted), analysis.given.text
+    changed = ChangedDeck.of(given, text if wanted else given)
     target = done.after.solution.eigenvalues
     again = read_back(changed, len(target)).solution
     elastic = slice(again.rigid_body_modes, None)
@@ -176,7 +177,7 @@ def _written(
             f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
             "updated model's; nothing was written"
         )
-    return changed, [[read_value(changed.text, r) for r in s.fields] for s in analysis.specs]
+    return changed, [[read_value(text, r) for r in s.fields] for s in analysis.specs]
 
 
 def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, ...]:

@@ -69,7 +69,6 @@ def identifiability(gradient: Floats, scatter: float, limit: Floats | float) -> 
     unit = gradient / np.where(size > 0.0, size, 1.0)
     with np.errstate(divide="ignore"):
         alone = np.sqrt(scatter) / size
-    chosen = tuple(_chosen(gradient, scatter, np.broadcast_to(limit, n)))
     return Identifiability(
         frozen(error),
         frozen(alone),

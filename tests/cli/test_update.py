@@ -241,3 +241,22 @@ def test_what_the_test_does_not_determine_is_not_written(
     assert all(p["factor"] != 1.0 for p in json.loads(every.out)["parameters"])
     again = (tmp_path / "all" / "study.toml").read_text()
     assert "write_undetermined = true" in again
+
+
+def test_a_property_of_some_elements_moves(call: Call, duct: Path, tmp_path: Path) -> None:
+    """Half of the front flange's bars get a card of their own; the input deck stays as it is."""
+    asked = ("update", duct / "duct.bdf", duct / "duct_test.unv", "--residuals", "frequencies",
+             "-p", "PBAR 11 I1 @elements 1:1860", "-p", "rear = PBAR 12:12 I1", "--json", "-",
+             "--write-undetermined", "--out", tmp_path / "run")  # fmt: skip
+    before = (duct / "duct.bdf").read_bytes()
+    said = call(*asked)
+    assert said.status == 0, said.err
+    first = json.loads(said.out)["parameters"][0]
+    number = int(first["cards"][0].split()[1])
+    assert number != 11
+    assert first["updated"] != first["initial"]
+    deck = read_deck(next((tmp_path / "run" / "deck").glob("*.bdf")))
+    pids = {e: c.pid for e, c in deck.bulk.table("CBAR").items() if c.pid in (11, number)}
+    assert {p for e, p in pids.items() if e <= 1860} == {number}
+    assert {p for e, p in pids.items() if e > 1860} == {11}
+    assert (duct / "duct.bdf").read_bytes() == before
