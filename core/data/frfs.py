@@ -48,13 +48,18 @@ class Frfs(Noun):
         require_finite(self.frequencies_hz, "the frequency axis")
 
     @property
+    def order(self) -> int:
+        """How often displacement is differentiated by time to give the quantity."""
+        return QUANTITIES.index(self.quantity)
+
+    @property
     def as_acceleration(self) -> Frfs:
         """The same functions as accelerations per unit force."""
-        order = len(QUANTITIES) - 1 - QUANTITIES.index(self.quantity)
-        if not order:
+        more = len(QUANTITIES) - 1 - self.order
+        if not more:
             return self
         with np.errstate(over="ignore", invalid="ignore"):
-            values = self.values * (2j * np.pi * self.frequencies_hz) ** order
+            values = self.values * (2j * np.pi * self.frequencies_hz) ** more
         return replace(self, values=values, quantity=QUANTITIES[-1])
 
     def at(self, rows: Ints, columns: Ints | None = None) -> Frfs:

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from ..arrays import Bools, Floats
 from ..correlation.mac import realised
 from ..errors import TrueupError
+from ..reduction.reduced_sum import ReducedSum, reduced_sum
 from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
 from .effects import KINDS
@@ -27,7 +28,7 @@ from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
-from .reduction.discretisation_error import lumping, with_consistent_bars
+from .reduction.discretisation_error import consistent_bars, lumping
 from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
 from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
@@ -120,7 +121,10 @@ class _Trial:
         placed, structure = self.request.placed, request.structure
         motion = placed.observation.matrix @ structure.model.expansion
         observation = sp.csr_matrix(placed.weighted(motion))
-        self.own = Ground(structure, ground.plain, ground.compliance, observation, sensors)
+        self.own = Ground(
+            structure, ground.plain, ground.mesh, ground.bars, ground.compliance, observation,
+            sensors,
+        )  # fmt: skip
         self._judged: dict[Fit, Judged | None] = {}
 
     def judged(self, problem: Problem, f: Fit) -> Judged | None:
@@ -196,13 +200,15 @@ def _score(searcher: Searcher, found: Found) -> float:
 class _Deck:
     """What does not depend on the sensors.
 
-    The basis with the deck's masses and with consistent bars, the error of the mesh on it, how many
-    modes may match, what loads do to the deck as it is, and every effect that may be missing.
+    The basis with the deck's masses and with consistent bars, the error of the mesh and what those
+    bars add on it, how many modes may match, what loads do to the deck as it is, and every effect
+    that may be missing.
     """
 
     plain: Basis
     basis: Basis
-    mesh: Floats
+    mesh: ReducedSum
+    bars: ReducedSum
     columns: int
     compliance: Compliance
     catalogue: list[Candidates]
@@ -212,11 +218,13 @@ def _ground(request: Request, modes: Bools) -> _Deck:
     top = float(request.placed.test.frequencies_hz.max())
     targets = _below(request.solution.eigenvalues, top)
     plain = build_basis(request.structure.model, request.solution, targets)
-    basis = with_consistent_bars(request.structure, plain)
+    mesh = reduced_sum((lumping(request.structure),), plain.vectors)
+    bars = reduced_sum(consistent_bars(request.structure), plain.vectors)
     return _Deck(
         plain,
-        basis,
-        lumping(request.structure, basis.vectors),
+        replace(plain, mass=plain.mass.and_also(bars)),
+        mesh,
+        bars,
         targets + DISCOVERY.band_more,
         Compliance(request.structure.model, request.solution),
         _catalogue(request, request.placed.test.frequencies_hz[modes]),
@@ -249,7 +257,7 @@ def _prepared(
         np.append(np.log([q.lower for q in model.parameters]), DISCOVERY.mesh_bounds[0]),
         np.append(np.log([q.upper for q in model.parameters]), DISCOVERY.mesh_bounds[1]),
     )
-    mesh, size = ground.mesh, min(basis.size, DISCOVERY.modes)
+    mesh, size = ground.mesh.matrices[0], min(basis.size, DISCOVERY.modes)
     problem = Problem(
         e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
     )

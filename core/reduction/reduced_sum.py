@@ -63,14 +63,24 @@ class ReducedSum:
         return replace(self, turn=T if self.turn is None else self.turn @ T)
 
     def widened(self, V: Floats, W: Floats) -> ReducedSum:
-        """Return the sum on the vectors V, on which it is made, and W (n_free, s)."""
-        n, most = V.shape[1], V.shape[1] + W.shape[1]
-        whole = np.zeros((len(self.terms), most, most))
-        for wide, known, term in zip(whole, self.whole, self.terms, strict=True):
-            response = term.matrix @ W
-            wide[:n, :n], wide[:n, n:], wide[n:, n:] = known, V.T @ response, W.T @ response
-            wide[n:, :n] = wide[:n, n:].T
+        """Return the sum on the vectors V, on which it is made, and W (n_free, s).
+
+        As many terms at once as together have no more responses than there are vectors.
+        """
+        (n, s), t = (V.shape[1], W.shape[1]), len(self.terms)
+        whole = np.zeros((t, n + s, n + s))
+        whole[:, :n, :n] = self.whole
+        for some in np.array_split(np.arange(t), max(1, -(-t * s // n))):
+            if len(some):
+                X = np.hstack([self.terms[k].matrix @ W for k in some])
+                across = (V.T @ X).reshape(n, len(some), s).swapaxes(0, 1)
+                whole[some, :n, n:], whole[some, n:, :n] = across, across.swapaxes(1, 2)
+                whole[some, n:, n:] = (W.T @ X).reshape(s, len(some), s).swapaxes(0, 1)
         return ReducedSum(self.terms, whole)
+
+    def and_also(self, other: ReducedSum) -> ReducedSum:
+        """Return the sum with the terms of another, both on the basis as it was made."""
+        return ReducedSum(self.terms + other.terms, np.concatenate([self.whole, other.whole]))
 
     def plus(self, change: Floats, parameter: int | None = None) -> ReducedSum:
         """Return the sum with a matrix (r, r) on the basis more, times p - 1 of a `parameter`."""

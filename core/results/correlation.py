@@ -12,7 +12,6 @@ import numpy as np
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.mode_pairing import Correlation, Criteria
-from ..identification.quality import phase_collinearity
 from ..noun import Noun, key
 from . import export
 from .plain import Table, Tables, finite
@@ -234,7 +233,11 @@ def compared(c: Comparison) -> Compared:
 def _collinearity(c: Comparison) -> Floats:
     if c.placed.mpc is not None:
         return c.placed.mpc
-    return phase_collinearity(c.test.shapes) if c.test.is_complex else np.full(len(c.test), np.nan)
+    if not c.test.is_complex:
+        return np.full(len(c.test), np.nan)
+    from ..identification.quality import phase_collinearity
+
+    return phase_collinearity(c.test.shapes)
 
 
 def _pair_rows(

@@ -22,7 +22,6 @@ import scipy.sparse as sp
 
 from ...arrays import Floats, Ints, Numbers
 from ...data.frfs import Frfs
-from ...identification.survey.modal_synthesis import derivative_order
 from ...numerics.factorisation import Factorisation, factorise
 from .likelihood_numbers import LIKELIHOOD
 
@@ -91,7 +90,7 @@ def synthesised(
     gain = 1.0 / (jw**2 + 2.0 * s.ratios[:, None] * s.omega[:, None] * jw + (s.omega**2)[:, None])
     residues = (a[:, None, :] * b[None]).reshape(-1, len(s.omega))
     H = (residues @ gain).reshape(len(a), len(b), len(jw)) + rest[rows][:, :, None]
-    return np.asarray(H * jw ** derivative_order(r.frfs.quantity))
+    return np.asarray(H * jw**r.frfs.order)
 
 
 def frac(measured: Numbers, model: Numbers) -> Floats:

@@ -81,7 +81,7 @@ def with_drift(problem: Problem, state: Fit, fields: Callable[[], Fields]) -> Ju
     start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
     for size in MODEL_ERROR.drifts:
         moved = with_fields(problem, known, size)
-        tried = judged(moved, start, everything(moved))
+        tried = judged(moved, start, everything(moved), best.diffuse)
         if tried.evidence < best.evidence:
             break
         best, start = tried, tried.fit
@@ -139,13 +139,16 @@ def seen(problem: Problem, state: Fit) -> Seen:
     return Seen(e.frequencies_hz, e.shapes, scatter, state.eigenvalues, shapes, columns, e.reading)
 
 
-def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
+def judged(
+    problem: Problem, state: Fit, active: Sequence[int], near: Diffuse | None = None
+) -> Judged:
     """Return a hypothesis fitted by the diffuse error; the problem's evidence is all that counts.
 
     The entries of ``state.nuisance``, of which the `active` move, are ln p of the parameters, then
-    of the fields, then the mesh. A step to where a mass is negative is too long.
+    of the fields, then the mesh; the error is looked for from that of `near` on, if there is one. A
+    step to where a mass is negative is too long.
     """
-    now, best = state, diffuse(seen(problem, state))
+    now, best = state, diffuse(seen(problem, state), near)
     height = best.log - 0.5 * surprise(problem, now.nuisance, now.suspects)
     damping = 0.0
     for _ in range(MODEL_ERROR.steps):
@@ -153,7 +156,10 @@ def judged(problem: Problem, state: Fit, active: Sequence[int]) -> Judged:
         better = None
         for _ in range(MODEL_ERROR.dampings):
             with suppress(np.linalg.LinAlgError):
-                trial = stepped(problem, now, active, _step(H, g, damping))
+                step = _step(H, g, damping)
+                if -float(g @ step) < MODEL_ERROR.tolerance:
+                    break
+                trial = stepped(problem, now, active, step)
                 d = diffuse(seen(problem, trial), best)
                 new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
                 if new > height:

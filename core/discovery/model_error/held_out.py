@@ -32,7 +32,7 @@ def foretold(hypothesis: Judged) -> Floats:
         away = np.zeros(n, bool)
         away[first :: MODEL_ERROR.folds] = True
         part = replace(problem, evidence=problem.evidence.take(~away, sensors))
-        rest = judged(part, state, everything(part))
+        rest = judged(part, state, everything(part), hypothesis.diffuse)
         out[away] = likelihood_of(seen(problem, rest.fit), rest.diffuse)[away]
     return out
 

@@ -28,7 +28,7 @@ class ModelErrorNumbers:
     adequate: float = number(0.05, "-", "adequacy below which something else is missing")
     explained: float = number(0.2, "-", "adequacy below which known parameters are not said to explain the gap")
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
-    tolerance: float = number(0.1, "ln L", "gain of such a step that counts")
+    tolerance: float = number(0.1, "ln L", "gain of such a step that counts, and that is looked for")
     dampings: int = number(4, "trials", "of Levenberg's damping a step")
 
 

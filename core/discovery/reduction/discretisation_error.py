@@ -11,42 +11,36 @@ wave. What lumping does to them is therefore known, and taken out before anythin
 the free end of a cantilever of four lumped bars it is 2.8 % of the first frequency.
 """
 
-from dataclasses import replace
-
 import numpy as np
+import scipy.sparse as sp
 
-from ...arrays import Bools, Floats
+from ...arrays import Bools, Floats, Ints
+from ...data.parametric_model import Term
 from ...elements.bar import bar_mass
 from .elements_and_supports import Members, Structure
 from .reduction_numbers import REDUCTION
-from .search_basis import Basis
 
 
-def lumping(structure: Structure, vectors: Floats) -> Floats:
-    """Return lumped minus consistent mass of all shells on the basis `vectors` (n_free, r)."""
-    motion = np.asarray(structure.model.expansion @ vectors)
-    total = np.zeros((vectors.shape[1],) * 2)
+def lumping(structure: Structure) -> Term:
+    """Return lumped minus consistent mass of all shells, (n_free, n_free)."""
+    total = _none(structure)
     for m in structure.members:
         share = m.element.linear_mass
         if share is None:
             continue
         mass = _lumped(structure, m)
-        values, R = np.linalg.eigh(np.eye(len(share)) / len(share) - share)
-        S = np.sqrt(np.maximum(values, 0.0))[:, None] * R.T
+        apart = np.kron(np.eye(len(share)) / len(share) - share, np.eye(3))
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
-        u = np.einsum("ab,ebcr->eacr", S, motion[at]) * np.sqrt(mass)[:, None, None, None]
-        x = u.reshape(-1, vectors.shape[1])
-        total += x.T @ x
-    return total
+        total += _placed(total.shape[0], at.reshape(len(m.ids), -1), mass[:, None, None] * apart)
+    return _on_free(structure, total)
 
 
-def with_consistent_bars(structure: Structure, basis: Basis) -> Basis:
-    """Return the basis with the mass of lumped bars as Hermite cubics have it.
+def consistent_bars(structure: Structure) -> tuple[Term, ...]:
+    """Return consistent minus lumped mass of bars, (n_free, n_free), none where it is nil.
 
     Bars that are pinned stay as they are: what turns at their ends is not the grid.
     """
-    motion = np.asarray(structure.model.expansion @ basis.vectors)
-    change = np.zeros((basis.size,) * 2)
+    total = _none(structure)
     for m in structure.members:
         if not m.element.exact:
             continue
@@ -59,11 +53,25 @@ def with_consistent_bars(structure: Structure, basis: Basis) -> Basis:
             a, b = ends[rows, 0], ends[rows, 1]
             across = np.eye(3)[np.argmin(np.abs(b - a), axis=1)]
             D = bar_mass(a, b, across, per_length, True) - bar_mass(a, b, across, per_length, False)
-            u = motion[m.coordinates(rows)]
-            change += np.tensordot(u, D @ u, ((0, 1), (0, 1)))
-    if not change.any():
-        return basis
-    return replace(basis, mass=basis.mass.plus(change))
+            total += _placed(total.shape[0], m.coordinates(rows), D)
+    return (_on_free(structure, total),) if total.nnz else ()
+
+
+def _none(structure: Structure) -> sp.csr_matrix:
+    return sp.csr_matrix((structure.model.expansion.shape[0],) * 2)
+
+
+def _placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
+    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
+    m = at.shape[1]
+    rows, columns = np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel()
+    return sp.csr_matrix((matrices.ravel(), (rows, columns)), (n, n))
+
+
+def _on_free(structure: Structure, A: sp.csr_matrix) -> Term:
+    X = structure.model.expansion
+    A.eliminate_zeros()
+    return Term((X.T @ A @ X).tocsr())
 
 
 def _pinned(structure: Structure, m: Members) -> Bools:

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from ...arrays import Bools, Floats
 from ...errors import CheckError
+from ...reduction.reduced_sum import ReducedSum
 from ..effects import support_flexibility
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.elimination import InDeck, in_deck
@@ -23,7 +24,6 @@ from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
 from ..likelihood.mode_likelihood import targets
 from ..model_error.diffuse_fit import Judged, everything, judged, with_drift
 from ..model_error.smooth_fields import Fields, smooth_fields, suspended
-from ..reduction.discretisation_error import lumping, with_consistent_bars
 from ..reduction.elements_and_supports import Structure
 from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.residual_flexibility import Compliance
@@ -58,6 +58,8 @@ class Ground:
     structure : Structure
     basis : Basis
         Modes of the deck and its responses to the known parameters, masses as the deck has them.
+    mesh, bars : ReducedSum
+        What lumping does to shells, and what consistent masses add to bars, on it.
     compliance : Compliance
     observation : (n_sensor, n_free) sparse
         Of all sensors, weighted.
@@ -69,6 +71,8 @@ class Ground:
 
     structure: Structure
     basis: Basis
+    mesh: ReducedSum
+    bars: ReducedSum
     compliance: Compliance
     observation: sp.csr_matrix
     seen: Bools
@@ -184,22 +188,24 @@ def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tupl
 
 def _own(ground: Ground, places: Places, columns: int) -> Own:
     """Return the basis with the static responses to effects."""
-    basis, V = ground.basis, ground.basis.vectors
+    V = ground.basis.vectors
+    sums = ground.basis.stiffness, ground.basis.mass, ground.mesh, ground.bars
     loads = [
         _root(c, row).T.toarray() if c.rows_each else c.full(row) @ V[:, :columns]
         for c, row in places
     ]
+    stiffness, mass, mesh, bars = sums
     if loads:
         X = ground.compliance.responses(np.hstack(loads))
         W = beside(X, V, ground.mass, REDUCTION.dependent)
-        stiffness, mass = (s.widened(V, W) for s in (basis.stiffness, basis.mass))
+        stiffness, mass, mesh, bars = (s.widened(V, W) for s in sums)
         V = np.hstack([V, W])
-        basis = Basis(V, np.zeros((0, V.shape[1])), stiffness, mass)
+    none = V[:0]
     return Own(
-        basis.bare(),
-        with_consistent_bars(ground.structure, basis).bare(),
+        Basis(none, none, stiffness, mass),
+        Basis(none, none, stiffness, mass.and_also(bars)),
         np.asarray(ground.observation @ V),
-        lumping(ground.structure, V),
+        mesh.matrices[0],
         tuple(_factor(c, row, V)[None] for c, row in places),
     )
 

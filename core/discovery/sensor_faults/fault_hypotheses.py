@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.special import logsumexp
-from scipy.stats import norm, t as student
+from scipy.special import gammaln, logsumexp
 
 from ...arrays import Floats
 from ..faults import AXIS, GAIN, POLARITY, SWAP
@@ -106,11 +105,11 @@ def _scaled(
     size = max(float(np.sqrt(np.mean(node.mean[:, list(rows)] ** 2))), SENSORS.least_motion)
     step = _LOG_GAIN[1] - _LOG_GAIN[0]
     scale = np.hypot(SENSORS.gain_scatter, before.proportion / size)
-    sound = norm.logpdf(_LOG_GAIN, scale=scale) + np.log(step)
+    sound = -0.5 * (_LOG_GAIN / scale) ** 2 - np.log(scale * np.sqrt(2.0 * np.pi)) + np.log(step)
     chance, centre, scale = before.in_proportion.T[..., None]
     off = ((gains - 1.0) * size - centre) / scale
     each = chance * gains * size / scale * step
-    model = logsumexp(student.logpdf(off, SENSORS.tail), axis=0, b=each)
+    model = logsumexp(_student(off, SENSORS.tail), axis=0, b=each)
     wide = np.exp(-0.5 * (_LOG_GAIN / SENSORS.gain_spread) ** 2)
     wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = SENSORS.never
     as_fault = log + np.log(wide / wide.sum())
@@ -129,6 +128,13 @@ def _scaled(
         told(GAIN.name, as_fault, sure * SENSORS.gain, factor, np.sqrt(spread)),
         told("model", log + model, share, 1.0),
     ]
+
+
+def _student(x: Floats, freedom: float) -> Floats:
+    """Return ln of Student's density."""
+    half = 0.5 * (freedom + 1.0)
+    unit = gammaln(half) - gammaln(0.5 * freedom) - 0.5 * np.log(np.pi * freedom)
+    return np.asarray(unit - half * np.log1p(x**2 / freedom))
 
 
 def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alternative]:
