@@ -33,13 +33,14 @@ def _root(
 
 
 def _register() -> None:
-    from .options import DISCOVER, UPDATE, comparing
+    from .options import DISCOVER, PARAMETERS, UPDATE, comparing
     from .verbs.comparing import correlate, discover, update
     from .verbs.convert import convert
     from .verbs.demo import demo
     from .verbs.export_runs import export_runs
     from .verbs.identify import identify
     from .verbs.inspect import inspect
+    from .verbs.parameters import parameters
     from .verbs.report import report
     from .verbs.solve import solve
 
@@ -51,6 +52,7 @@ def _register() -> None:
     app.command()(comparing(correlate))
     app.command()(comparing(update, UPDATE, changes_deck=True))
     app.command()(comparing(discover, DISCOVER, changes_deck=True))
+    app.command()(comparing(parameters, PARAMETERS, needs_test=False))
     app.command()(report)
     app.command()(demo)
 

@@ -115,6 +115,8 @@ UPDATE: dict[str, Any] = {
     ),
 }  # fmt: skip
 
+PARAMETERS: dict[str, Any] = {key: UPDATE[key] for key in ("residuals", "test_modes")}
+
 DISCOVER: dict[str, Any] = {
     "adopt": _option(
         str, "Which known parameters that moved are written. [default: significant]",
@@ -128,12 +130,13 @@ def comparing(
     extra: dict[str, Any] | None = None,
     *,
     changes_deck: bool = False,
+    needs_test: bool = True,
 ) -> Callable[..., None]:
     """Return a typer command for a verb that compares a deck with a test.
 
     The command takes DECK, TEST..., ``--study``, the shared options and `extra` ones (by key of
     `Study`), merges them (command line over study file) and calls `verb`. One that changes the
-    deck takes ``--in-place`` too.
+    deck takes ``--in-place`` too; `needs_test` says whether it can do without TEST.
     """
     shared = {**_STUDY, **(extra or {})}
 
@@ -148,8 +151,9 @@ def comparing(
             study = merge(filed, there, given, "options")
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
-        if study.deck is None or not study.test:
-            raise typer.BadParameter("give DECK and TEST, or a study file (--study) naming both")
+        if study.deck is None or (needs_test and not study.test):
+            what = "DECK and TEST" if needs_test else "DECK"
+            raise typer.BadParameter(f"give {what}, or a study file (--study) naming it")
         verb(study, output)
 
     def keyword(name: str, annotation: Any, default: Any = None) -> inspect.Parameter:

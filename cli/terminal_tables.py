@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..core.results.correlation import Compared, RunTables
     from ..core.results.inspection import FileRow
     from ..core.results.modes import IdentifiedRow, SolveTables
+    from ..core.results.parameters import ParametersTables
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
@@ -168,6 +169,47 @@ def identify_table(modes: Sequence[IdentifiedRow]) -> Table:
             general(mode.quality, 3),
             "; ".join(notes),
         )
+    return table
+
+
+def properties_table(answer: ParametersTables, most: int | None = None) -> Table:
+    """Return the cards with values that may move, the first `most` of them."""
+    table = _titled("Properties", ("card", "number", "elements"))
+    table.add_column("values", overflow="fold")
+    for row in answer.properties[:most]:
+        values = ", ".join(f"{name} {general(v, 5)}" for name, v in row.values.items() if v)
+        table.add_row(row.card, str(row.id), str(row.elements), values)
+    left = len(answer.properties) - (most or len(answer.properties))
+    table.caption = Text(f"{left} more with --verbose", style="dim") if left > 0 else None
+    table.caption_justify = "left"
+    return table
+
+
+def candidates_table(answer: ParametersTables) -> Table:
+    """Return what could be moved, those recommended first, then by sensitivity."""
+    headings = ("value", "%/%", "± alone", "± all", "group", "rank", "explained %")
+    table = _titled("What the modes say of them")
+    table.add_column("parameter", overflow="fold")
+    for heading in headings:
+        table.add_column(heading, justify="right", no_wrap=True)
+    last = len(answer.candidates) + 1
+    for row in sorted(answer.candidates, key=lambda r: (r.recommended or last, -r.sensitivity)):
+        table.add_row(
+            row.name,
+            ", ".join(general(v, 5) for v in row.values),
+            general(row.sensitivity, 2),
+            general(row.error_alone, 2),
+            general(row.error_together, 2),
+            str(row.group),
+            str(row.recommended or ""),
+            "" if row.explained is None else percent(row.explained, 1),
+        )
+    note = (
+        "%/%: largest change of a frequency per per cent of the value. ±: standard error of the "
+        "factor, moved alone or all together. One group: not told apart."
+    )
+    table.caption = Text(note, style="dim")
+    table.caption_justify = "left"
     return table
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from .study import Study
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec
+    from ..core.updating.residuals import Target
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +126,31 @@ def correlated(analysis: Analysis, test: Measured, study: Study) -> Comparison:
         analysis.geometry, analysis.modes, on_model, study.criteria, analysis.rigid_body_modes
     )
     return replace(found, warnings=(*analysis.warnings, *found.warnings))
+
+
+def target_of(model: Model, placed: Placed, test_modes: Sequence[int]) -> Target:
+    """Return what residuals compare the model with; `test_modes`, from 1, take part (none: all).
+
+    Raises
+    ------
+    InputError
+        The test has no such mode.
+    """
+    from ..core.updating.residuals import Target
+
+    chosen = tuple(m - 1 for m in test_modes) or None
+    if chosen and max(chosen) >= len(placed.test):
+        raise InputError(
+            f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
+        )
+    errors = placed.errors
+    return Target(
+        placed.test.frequencies_hz,
+        placed.weighted(placed.test.shapes),
+        placed.weighted(placed.observation.matrix @ model.expansion),
+        chosen,
+        *((None, None) if errors is None else (errors.frequency, errors.length)),
+    )
 
 
 def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[Source, Source]:

@@ -70,6 +70,15 @@ class UpdateOptions(CompareOptions, total=False):
     write_undetermined: bool | None
 
 
+class ParametersOptions(CompareOptions, total=False):
+    """What ``parameters`` can be told besides `CompareOptions`; all of it as for ``update``."""
+
+    residuals: str | None
+    test_modes: int | Sequence[int] | None
+    frequency_sigma: float | None
+    shape_sigma: float | None
+
+
 class DiscoverOptions(CorrelateOptions, total=False):
     """What ``discover`` can be told besides `CompareOptions`.
 

@@ -19,7 +19,7 @@ from ..core.results.plain import Table
 from ..core.results.update import parameter_rows, weights_table
 from ..core.updating import update as core
 from ..core.updating.determined import update_determined
-from .analysis import Analysis, both_given, correlated, named, read_analysis
+from .analysis import Analysis, both_given, correlated, named, read_analysis, target_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
@@ -124,19 +124,7 @@ def update(
 
 
 def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
-    chosen = tuple(m - 1 for m in asked.test_modes) or None
-    if chosen and max(chosen) >= len(placed.test):
-        raise InputError(
-            f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
-        )
-    errors = placed.errors
-    target = core.Target(
-        placed.test.frequencies_hz,
-        placed.weighted(placed.test.shapes),
-        placed.weighted(placed.observation.matrix @ analysis.model.expansion),
-        chosen,
-        *((None, None) if errors is None else (errors.frequency, errors.length)),
-    )
+    target = target_of(analysis.model, placed, asked.test_modes)
     update = core.update if asked.write_undetermined else update_determined
     return update(
         analysis.model,

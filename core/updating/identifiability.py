@@ -111,7 +111,7 @@ def _chosen(gradient: Floats, scatter: float, limit: Floats) -> Iterator[int]:
         k = order[int(np.argmax(size >= (1.0 - UPDATING.alike) * size.max()))]
         free.discard(k)
         more = [*taken, k]
-        if size.max() == 0.0 or not _all_below(gradient[:, more], scatter, limit[more]):
+        if size.max() == 0.0 or not all_below(gradient[:, more], scatter, limit[more]):
             continue
         taken.append(k)
         yield k
@@ -119,7 +119,7 @@ def _chosen(gradient: Floats, scatter: float, limit: Floats) -> Iterator[int]:
         left -= np.outer(q, q @ left)
 
 
-def _all_below(gradient: Floats, scatter: float, limit: Floats) -> bool:
+def all_below(gradient: Floats, scatter: float, limit: Floats) -> bool:
     """Whether the standard errors of all columns are below their limits."""
     r: Floats = np.asarray(np.linalg.qr(gradient, mode="r"))
     least = UPDATING.unidentifiable * max(np.abs(r).max(), 1.0)

@@ -20,6 +20,8 @@ class UpdatingNumbers:
     unsure: float = number(0.5, "of a factor", "standard error from which on it is said to be hardly determined", CHECK)
     part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
     alike: float = number(1e-6, "of what a parameter moves", "difference below which the first named is taken", ROUNDING)
+    indistinct: float = number(0.98, "cosine", "of two columns of derivatives from which on they are not told apart", "angles of 11 degrees")
+    chance: float = number(6.0, "χ²", "that a parameter must explain besides twice the log of their number", CHECK)
     least_gain: float = number(1e-3, "of the objective", "by which the pairs that are kept must be closer", CHECK)
     kept: float = number(0.75, "of the pairs", "that a step must keep to be judged by those alone", CHECK)
     step: tuple[float, float] = number((0.5, 1.0), "of a factor", "largest step down and up", CHECK)

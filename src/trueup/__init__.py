@@ -50,7 +50,12 @@ if TYPE_CHECKING:
         CompareOptions as CompareOptions,
         CorrelateOptions as CorrelateOptions,
         DiscoverOptions as DiscoverOptions,
+        ParametersOptions as ParametersOptions,
         UpdateOptions as UpdateOptions,
+    )
+    from .verbs.parameters import (
+        MovableParameters as MovableParameters,
+        parameters as parameters,
     )
     from .verbs.read import read as read
     from .verbs.report import report as report
@@ -82,7 +87,9 @@ __getattr__, __all__ = lazy_names(
         ".verbs.identify": "Identified identify",
         ".verbs.inspect": "Inspected inspect",
         ".verbs.open_run": "open_run",
-        ".verbs.options": "CompareOptions CorrelateOptions DiscoverOptions UpdateOptions",
+        ".verbs.options": "CompareOptions CorrelateOptions DiscoverOptions ParametersOptions "
+        "UpdateOptions",
+        ".verbs.parameters": "MovableParameters parameters",
         ".verbs.read": "read",
         ".verbs.report": "report",
         ".verbs.run": "Correlated Discovered Updated",

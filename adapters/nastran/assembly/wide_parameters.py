@@ -1,12 +1,12 @@
 """Parameters that name many cards, some elements, or bounds in units: what they are in a deck."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ....core.errors import InputError
-from ..cards import definitions, holders
+from ..cards import holders
 from ..deck.bulk import Bulk
 from ..deck.read_deck import Deck
 from ..deck_reader import read_deck
@@ -20,6 +20,7 @@ from ..fields.parameter_references import (
     parse_request,
 )
 from ..properties.grids import read_points
+from .candidate_parameters import referring
 from .variation import value_of
 
 
@@ -114,7 +115,8 @@ def _split(
     out: list[FieldRef] = []
     for ref in refs:
         moved = False
-        for card, number in _properties(deck.bulk, ref):
+        own = [(ref.card, ref.id)] if holders(ref.card) else referring(deck.bulk).get(ref.id, [])
+        for card, number in own:
             every = _members(deck.bulk, card, number)
             chosen = _within(deck, every, region)
             if not chosen:
@@ -135,19 +137,6 @@ def _split(
                 f"parameter {named.text!r}: none of these elements has {ref.card} {ref.id}"
             )
     return deck, out
-
-
-def _properties(bulk: Bulk, ref: FieldRef) -> Iterator[tuple[str, int]]:
-    """Yield the property a value belongs to, or those that refer to its material."""
-    if holders(ref.card):
-        yield ref.card, ref.id
-        return
-    for name, card in definitions().items():
-        mids = [f.lower() for f in card.others if f.startswith("MID")]
-        if mids and holders(name):
-            for number, values in sorted(bulk.table(name).items()):
-                if ref.id in [getattr(values, mid, None) for mid in mids]:
-                    yield name, number
 
 
 def _members(bulk: Bulk, card: str, number: int) -> dict[int, tuple[int, ...]]:
