@@ -88,8 +88,10 @@ def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
     root, coupling = s.root, s.coupling
     for m in structure.members:
         rows = np.flatnonzero(np.isin(m.coordinates(np.arange(len(m.ids))), held).any(axis=1))
+        if not len(rows):
+            continue
         (K, _), (deck, _) = (m.matrices(rows, x) for x in (p, structure.model.deck_point))
-        if K is None or deck is None or not len(rows):
+        if K is None or deck is None:
             continue
         at = m.coordinates(rows)
         i = np.broadcast_to(at[:, :, None], K.shape).ravel()

@@ -13,13 +13,12 @@ import numpy as np
 
 from ...arrays import Floats
 from ...errors import CheckError
-from ..discovery_numbers import DISCOVERY
 from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
 from .beam_search import Found
-from .model_selection import Judgement, by_such_a_test, contenders, cost, needed, scored
+from .model_selection import Judgement, Scored, by_such_a_test, contenders, needed, scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -110,7 +109,7 @@ def completeness(
     """Return the best of what was found, the number of its suspects, and how well it explains.
 
     The levels up to the accepted one compete, one suspect where the known parameters alone leave
-    something, then what is found with the nearest rivals. `deck` is how likely the test is by the
+    something; of each the likeliest, rivals among them. `deck` is how likely the test is by the
     deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
@@ -118,34 +117,43 @@ def completeness(
     if alone is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
     most = max(verdict.accepted, 0 if _lacks_nothing(alone) else 1)
-    levels += [scored(searcher, f) for f in found.levels[1 : most + 1]]
+    fields: list[list[Scored]] = [[]]
+    for k in range(1, most + 1):
+        tried = (scored(searcher, f) for f in _near(searcher, found, k))
+        fields.append(sorted(tried, key=lambda s: -s.score))
+        levels.append(fields[k][0])
+        found = _led(found, levels[k].fit)
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
         least = needed(level.judged) if kept and level.judged else SEARCH.suspect
         if level.score - levels[kept].score > least:
             kept = k
-
-    def behind(f: Fit) -> float:
-        pair = (cost(searcher, g, verdict.scale) for g in (f, found.levels[kept]))
-        return next(pair) - next(pair)
-
-    tried = sorted(contenders(searcher, found, kept), key=behind)
-    tried = [f for f in tried if len(f.suspects) == kept and behind(f) < DISCOVERY.contested]
-    tried = tried[: SEARCH.rivals_judged if kept else 0]
-    others = (scored(searcher, f) for f in tried)
-    field = sorted([levels[kept], *others], key=lambda s: -s.score)
-    best = field[0]
-    ahead = best.score - field[1].score if len(field) > 1 else np.inf
-    if best is not levels[kept]:
-        rest = tuple(f for f in found.rivals[kept] if f is not best.fit)
-        rivals = (*found.rivals[:kept], (levels[kept].fit, *rest), *found.rivals[kept + 1 :])
-        found = Found((*found.levels[:kept], best.fit, *found.levels[kept + 1 :]), rivals)
+    best, others = levels[kept], contenders(searcher, found, kept)
+    elsewhere = [s.score for s in fields[kept] if any(s.fit is f for f in others)]
+    ahead = best.score - max(elsewhere, default=-np.inf)
     assert best.judged is not None
     fewer = max((level.score for level in levels[:kept]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
     whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), agree)
     return found, kept, whole
+
+
+def _near(searcher: Searcher, found: Found, k: int) -> list[Fit]:
+    """Return the best with so many suspects and the rivals that gain nearly as much."""
+    best = found.levels[k]
+    far = SEARCH.rival_gain * (found.levels[0].objective - best.objective)
+    rivals = sorted(contenders(searcher, found, k), key=lambda f: f.objective)
+    near = [f for f in rivals if f.objective - best.objective < far]
+    return [best, *near[: SEARCH.rivals_judged]]
+
+
+def _led(found: Found, best: Fit) -> Found:
+    """Return what was found led by one of the rivals of as many suspects."""
+    k = len(best.suspects)
+    rest = tuple(f for f in (found.levels[k], *found.rivals[k]) if f is not best)
+    rivals = (*found.rivals[:k], rest, *found.rivals[k + 1 :])
+    return Found(found.with_level(best).levels, rivals)
 
 
 def _lacks_nothing(judged: Judged) -> bool:

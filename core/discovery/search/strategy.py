@@ -92,7 +92,9 @@ def _better(searcher: Searcher, found: Found, other: Found) -> Found:
     """Return the likelier of two outcomes with the levels of the other among its rivals."""
     if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
         found, other = other, found
-    return found.with_rivals(other.levels[1 : len(found.rivals)])
+    levels = len(found.rivals)
+    others = (f for level in other.rivals[:levels] for f in level)
+    return found.with_rivals((*other.levels[1:levels], *others))
 
 
 def simplified(searcher: Searcher, found: Found) -> Found:

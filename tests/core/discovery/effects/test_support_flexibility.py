@@ -1,4 +1,4 @@
-"""Supports that give, where the known parameters are no longer the deck's."""
+"""Supports that give, where the known parameters are no longer the deck's; a bar is off them."""
 
 import numpy as np
 import pytest
@@ -12,6 +12,9 @@ from trueup.core.discovery.effects.support_flexibility import KIND, at_parameter
 DECK = """CEND
 BEGIN BULK
 {grids}{shells}PSHELL,1,1,{thickness},1,,1
+GRID,13,,60.,50.,30.
+CBAR,99,2,12,13,1.,0.,0.
+PBAR,2,1,20.,30.,30.,60.
 MAT1,1,70000.,,0.3,2.7-9
 ENDDATA
 """

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trueup.core.discovery.search import completeness as room
+from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness, completeness
 
 
@@ -71,24 +72,41 @@ def gaining(evidence):
     return judged(np.full(10, evidence), evidence=evidence)
 
 
-def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
+def hypothesis(objective, *rows):
+    return Some(objective=objective, suspects=tuple(Some(kind=0, row=r) for r in rows))
+
+
+def weighed(monkeypatch, found, evidence):
+    """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows."""
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
-    one = Some(kind=0)
-    levels = [Some(suspects=()), Some(suspects=(one,)), Some(suspects=(one, one))]
-    kind = Some(kind="mass", tunings=1)
-    evidence = {0: 0.0, 1: 30.0, 2: 39.0}
+    xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
+    kind = Some(kind="mass", tunings=1, xyz=xyz, many=lambda row: 1)
     searcher = Some(
         problem=Some(catalogue=[kind]),
         coarse=[np.arange(100)],
-        judged=lambda _, f: gaining(evidence[len(f.suspects)]),
+        size=1.0,
+        effort=Some(apart=0.1),
+        judged=lambda _, f: gaining(evidence[tuple(s.row for s in f.suspects)]),
     )
-    none = judged(np.zeros(10))
-    _, kept, said = completeness(
-        searcher,
-        Some(levels=levels, rivals=((), (), ())),
-        Some(accepted=2, scale=1.0),
-        none,
-    )
+    accepted = len(found.levels) - 1
+    return completeness(searcher, found, Some(accepted=accepted, scale=1.0), judged(np.zeros(10)))
+
+
+def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
+    levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
+    evidence = {(): 0.0, (3,): 30.0, (3, 7): 39.0}
+    _, kept, said = weighed(monkeypatch, Found(levels, ((), (), ())), evidence)
     assert kept == 1
     assert said.gain == pytest.approx(30.0 - np.log(100))
     assert said.agree > 2.5
+
+
+@pytest.mark.parametrize(("objective", "leads"), [(50.0, 9), (90.0, 3)])
+def test_a_rival_that_the_error_of_the_model_makes_likelier_leads(monkeypatch, objective, leads):
+    rival = hypothesis(objective, 9)
+    levels = hypothesis(100.0), hypothesis(40.0, 3)
+    evidence = {(): 0.0, (3,): 30.0, (9,): 80.0}
+    found, kept, said = weighed(monkeypatch, Found(levels, ((), (rival,))), evidence)
+    assert kept == 1
+    assert found.levels[1].suspects[0].row == leads
+    assert said.ahead == pytest.approx(50.0 if leads == 9 else np.inf)
