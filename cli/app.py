@@ -68,7 +68,9 @@ def run() -> int:
     TRUEUP_TRACEBACK set, its traceback comes before.
     """
     from ..core.errors import CheckError, TrueupError
+    from .console import spell_what_cannot_be_shown
 
+    spell_what_cannot_be_shown()
     try:
         app()
     except SystemExit as stop:

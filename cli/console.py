@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
+import codecs
+import io
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.ascii import in_ascii
+
 if TYPE_CHECKING:
     from rich.console import Console
 
     from .options import Output
+
+
+def spell_what_cannot_be_shown() -> None:
+    """Let standard output and error spell the signs that their encoding does not have."""
+
+    def spelled(error: UnicodeError) -> tuple[str, int]:
+        assert isinstance(error, UnicodeEncodeError)
+        return in_ascii(error.object[error.start : error.end]), error.end
+
+    codecs.register_error("trueup.spelled", spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="trueup.spelled")
 
 
 def stdout() -> Console:
@@ -29,8 +46,8 @@ def stderr() -> Console:
 
 
 def tell(output: Output, word: str, sentences: Iterable[str], wrap: bool = True) -> None:
-    """Tell warnings and the like on standard error, one a line, unless all is to be quiet."""
-    for sentence in () if output.quiet else sentences:
+    """Tell warnings and the like on standard error, one a line; `quiet` leaves the warnings."""
+    for sentence in sentences if word == "warning" or not output.quiet else ():
         stderr().print(f"{word}: {sentence}", markup=False, soft_wrap=not wrap)
 
 

@@ -79,6 +79,8 @@ def update(
     full = FullOrder(model, target.sensors, n_modes)
     objective = Objective(model.parameters, target, criteria, weights)
     before = objective.at(full, np.array(model.deck_point), stages[0].minimised)
+    if before.correlation.pairs and not before.seen.pairs:
+        raise InputError("none of the test modes that take part pairs with the model")
     if not before.correlation.pairs:
         raise InputError(
             "no test mode pairs with the model within the MAC limit "

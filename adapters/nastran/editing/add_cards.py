@@ -3,6 +3,7 @@
 import textwrap
 from collections.abc import Sequence
 
+from ....core.ascii import in_ascii
 from ....core.errors import Place
 from ..text.deck_text import DeckText, Segment
 from .find_cards import find_card
@@ -48,7 +49,7 @@ def add_lines(
     """Return the deck with lines of bulk data added in the place that `add_cards` describes."""
     segment = _segment_for(deck, near)
     file = deck.files[segment.file]
-    block = [*_comment_lines(comment, file.encoding), *lines]
+    block = [*_comment_lines(comment), *lines]
     at = int(file.lines.starts[segment.stop]) if segment.stop < len(file.lines) else len(file.data)
     text = file.newline.join(block)
     ended = file.terminator(segment.stop - 1) != b""
@@ -70,10 +71,10 @@ def _segment_for(deck: DeckText, near: tuple[str, int] | None) -> Segment:
     return (same or list(deck.segments))[-1]
 
 
-def _comment_lines(comment: str, encoding: str) -> list[bytes]:
+def _comment_lines(comment: str) -> list[bytes]:
     lines = [
         line
-        for paragraph in comment.splitlines()
+        for paragraph in in_ascii(comment).splitlines()
         for line in textwrap.wrap(paragraph, _COMMENT_WIDTH) or [""]
     ]
-    return [f"$ {line}".rstrip().encode(encoding, "replace") for line in lines]
+    return [f"$ {line}".rstrip().encode("ascii") for line in lines]

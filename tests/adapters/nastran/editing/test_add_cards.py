@@ -75,11 +75,12 @@ def test_two_additions_follow_each_other(tmp_path):
     assert texts(twice) == ["GRID,1\n$ a\nSPOINT  7\n$ b\nSPOINT  8\n"]
 
 
-def test_long_comments_are_broken_and_kept_in_the_files_encoding(tmp_path):
+def test_long_comments_are_broken_and_the_rest_stays_in_the_files_encoding(tmp_path):
     before = deck(tmp_path, "$ f\xfcr\nGRID,1\n")
     after = add_cards(before, [["SPOINT", 7]], "M\xfcller: " + "mass " * 40, ("GRID", 1))
     comment = [line for line in texts(after)[0].splitlines() if line.startswith("$")]
-    assert comment[1].startswith("$ M\xfcller: mass")
+    assert comment[0] == "$ f\xfcr"
+    assert comment[1].startswith("$ Muller: mass")
     assert max(len(line) for line in comment) <= 80
     assert " ".join(comment).count("mass") == 40
 
@@ -124,3 +125,12 @@ def test_reals_that_eight_columns_round_make_the_card_large(tmp_path):
     assert [line.data for line in card.lines] == [
         b"CONM2*  5               1" + b" " * 31 + b"0.6213456789"
     ]
+
+
+def test_comments_are_ascii(tmp_path):
+    path = tmp_path / "a.bdf"
+    path.write_text("BEGIN BULK\nGRID,1,,0.,0.,0.\nENDDATA\n")
+    added = add_cards(read_deck_text(path), [("CONM2", 7, 1, 0, 2.5)], "x1.2 ± 0.1 at θ = 30°")
+    data = added.files[0].data
+    assert data.isascii()
+    assert b"$ x1.2 +/- 0.1 at theta = 30 deg" in data
