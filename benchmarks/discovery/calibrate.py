@@ -1,8 +1,8 @@
 """``python -m benchmarks.discovery.calibrate FOLDER``: what share of findings is right.
 
-Fits the two figures of `trueup.core.discovery.narrative.build_findings` that turn a posterior
-into a confidence, by maximum likelihood over findings whose truth is known (Platt 1999 with the
-posterior and the noise that is left as features), from a folder of cases with ``truth.json`` and
+The figures of `trueup.core.discovery.narrative.build_findings` that turn a posterior into a
+confidence: by how much less than their posterior findings are right, of those that are claimed,
+those that are proposed and the others, from a folder of cases with ``truth.json`` and
 ``result.json``.
 """
 
@@ -15,44 +15,42 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from scipy.optimize import minimize
-
 from .score import score
 
 _FAULT = "sensor_"
 
 
-def findings(places: Iterable[Path]) -> list[tuple[float, float, bool]]:
-    """Return posterior, noise scale and whether it is right of every finding of the model side."""
+def findings(places: Iterable[Path]) -> list[tuple[str, float, bool]]:
+    """Return of every finding of the model side how it is told, its posterior, if it is right."""
     out = []
     for place in places:
         result: dict[str, Any] = json.loads((place / "result.json").read_text())
         if result is None or "judgement" not in result:
             continue
-        s = score(json.loads((place / "truth.json").read_text()), result)
-        posterior, scale = result["judgement"]["posterior"], result["noise_scale"]
+        told = result["verdict"] if result["verdict"] == "effect" else "other"
+        if result["judgement"]["proposal"]:
+            told = "proposal"
+        as_claimed = {**result, "verdict": "effect"}
+        s = score(json.loads((place / "truth.json").read_text()), as_claimed)
+        posterior = result["judgement"]["posterior"]
         named = [n for n in s.named if n.found and not n.found.startswith(_FAULT)]
-        out += [(posterior, scale, n.found == n.kind and n.placed) for n in named]
-        out += [(posterior, scale, False) for k, _ in s.false_alarms if not k.startswith(_FAULT)]
+        out += [(told, posterior, n.found == n.kind and n.placed) for n in named]
+        out += [(told, posterior, False) for k, _ in s.false_alarms if not k.startswith(_FAULT)]
     return out
 
 
-def fitted(known: list[tuple[float, float, bool]]) -> tuple[float, float]:
-    """Return (a, b) of ``posterior a / (1 + b (scale − 1))`` that make the outcomes likeliest."""
-    posterior, scale, right = (np.array(column, dtype=float) for column in zip(*known, strict=True))
-
-    def unlikely(x: np.ndarray[Any, Any]) -> float:
-        a, b = 1.0 / (1.0 + np.exp(-x[0])), np.exp(x[1])
-        p = np.clip(posterior * a / (1.0 + b * (scale - 1.0)), 1e-3, 1.0 - 1e-3)
-        return float(-np.sum(right * np.log(p) + (1.0 - right) * np.log(1.0 - p)))
-
-    best = minimize(unlikely, np.array([2.0, -3.0]), method="Nelder-Mead").x
-    return float(1.0 / (1.0 + np.exp(-best[0]))), float(np.exp(best[1]))
+def shares(known: list[tuple[str, float, bool]]) -> dict[str, tuple[int, int, float]]:
+    """Return how many findings of each way of telling there are, are right, and the share."""
+    out = {}
+    for way in sorted({told for told, _, _ in known}):
+        own = [(posterior, right) for told, posterior, right in known if told == way]
+        right = sum(r for _, r in own)
+        out[way] = len(own), right, round(min(right / sum(p for p, _ in own), 1.0), 3)
+    return out
 
 
 def main() -> int:
-    """Print the two figures and how many findings they come of."""
+    """Print the figures and how many findings they come of."""
     a = argparse.ArgumentParser(
         prog="python -m benchmarks.discovery.calibrate", description=__doc__
     )
@@ -65,18 +63,7 @@ def main() -> int:
     if not known:
         sys.stderr.write("no folder holds a truth.json beside a result.json with a judgement\n")
         return 1
-    share, fall = fitted(known)
-    sys.stdout.write(
-        json.dumps(
-            {
-                "findings": len(known),
-                "right": sum(r for _, _, r in known),
-                "share": round(share, 3),
-                "fall_with_noise": round(fall, 4),
-            }
-        )
-        + "\n"
-    )
+    sys.stdout.write(json.dumps(shares(known)) + "\n")
     return 0
 
 

@@ -64,7 +64,7 @@ def build_discovery(
     decide = frame_needed(request.placed.alignment) if findings else ()
     clear = whole.clear and bool(findings) and not decide and not any(map(_says_nothing, findings))
     adequate = whole.adequacy > MODEL_ERROR.adequate
-    if clear and adequate:
+    if clear and whole.true:
         word = "effect"
     elif findings:
         word = "undecided"
@@ -98,7 +98,7 @@ def build_discovery(
         gain=whole.gain,
         adequacy=whole.adequacy,
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
-        proposal=clear and not adequate,
+        proposal=clear and not whole.true,
     )
 
 
@@ -201,10 +201,11 @@ def _confidence(o: _Outcome) -> float:
     """Chance that a finding is right.
 
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
-    sure, the less so the more misfit even the best one leaves.
+    sure, the less so where the best one is not clear or leaves more than right models do.
     """
-    left = 1.0 + NARRATIVE.left_over * (o.verdict.scale - 1.0)
-    return o.whole.posterior * NARRATIVE.in_catalogue / left
+    claim, proposal, other = NARRATIVE.right
+    share = other if not o.whole.clear else claim if o.whole.true else proposal
+    return o.whole.posterior * share
 
 
 def _moved(best: Fit, scale: float) -> tuple[MovedParameter, ...]:

@@ -17,6 +17,7 @@ from ..likelihood.hypothesis import Fit
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
+from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
 from .model_selection import Judgement, Scored, by_such_a_test, contenders, needed, scored
 from .moves import Searcher
@@ -76,13 +77,26 @@ class Completeness:
         there gains on modes that it is fitted to, not on others) or to leave a small part of the
         error that the known parameters alone leave: what is not there hardly lessens it.
         """
-        left = self.best.diffuse.error / self.alone.diffuse.error
         return bool(
             self.gain > needed(self.best)
             and self.ahead > SEARCH.ahead
-            and (self.agree > SEARCH.agree or left < SEARCH.small_part)
+            and (self.agree > SEARCH.agree or self.left < SEARCH.small_part)
             and len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
         )
+
+    @property
+    def left(self) -> float:
+        """Part of the error that the known parameters alone leave."""
+        return self.best.diffuse.error / self.alone.diffuse.error
+
+    @property
+    def true(self) -> bool:
+        """Whether what is left is usual enough for what was found to be claimed.
+
+        The larger a part of the error before it is, the more usual it has to be: two causes that
+        look alike take away much of the error, the right one nearly all of it.
+        """
+        return self.adequacy > max(MODEL_ERROR.adequate, SEARCH.usual_left * self.left)
 
     @property
     def adequacy(self) -> float:

@@ -70,6 +70,7 @@ class SearchNumbers:
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields from which on an effect is clear whatever is left", "fresh cases with causes that no list has")
     agree: float = number(1.28, "standard deviations", "by which modes held out agree that it is there", "one in ten by chance")
     small_part: float = number(0.25, "of the error before", "what true effects left, and false ones never", "twelve cases by another program")
+    usual_left: float = number(0.6, "of the part of the error that is left", "adequacy above which an effect is claimed", "true and false claims among 115 cases made for development")
     ahead: float = number(2.0, "ln L", "by which it must be ahead of its nearest rival elsewhere")
     rivals_judged: int = number(6, "rivals", "of as many suspects that are judged by the diffuse error, at most", "time")
     rival_gain: float = number(0.35, GAIN, "rivals that gain less than all but this are not")

@@ -48,6 +48,12 @@ def test_five_nats_a_mode_are_clear_whatever_is_left():
     assert not found(error=0.3, gain=40.0).clear
 
 
+def test_what_takes_only_a_part_of_the_error_away_has_to_leave_what_is_usual():
+    assert found(error=0.008, before=0.1).true
+    assert not found(error=0.008, before=0.012).true
+    assert not found(error=0.05, before=3.0).true
+
+
 def test_a_poor_test_excuses_an_error_of_the_model():
     assert not found(error=0.01, gain=20.0).clear
     assert found(error=0.01, noise=0.2, gain=20.0).clear
