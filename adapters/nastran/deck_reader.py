@@ -8,6 +8,7 @@ from .cards import definitions
 from .deck import read_deck as by_definitions
 from .deck.pynastran_bridge import file_of
 from .deck.read_deck import Deck
+from .properties.superelements import join_superelements
 from .text.deck_text import DeckText
 
 
@@ -26,6 +27,7 @@ def read_deck(path: str | Path | DeckText | Any) -> Deck:
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
     if isinstance(path, DeckText):
-        return by_definitions.read_deck(path, definitions())
+        return join_superelements(by_definitions.read_deck(path, definitions()))
     file = file_of(path)
-    return replace(by_definitions.read_deck(file, definitions()), on_disk=file is path)
+    deck = join_superelements(by_definitions.read_deck(file, definitions()))
+    return replace(deck, on_disk=file is path)

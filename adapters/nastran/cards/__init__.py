@@ -22,6 +22,7 @@ from ..properties import (
     materials,
     nonstructural,
     rigid_elements,
+    superelements,
     thermal,
 )
 from . import (
@@ -86,6 +87,7 @@ FAMILIES: list[Family] = [
     Family("rigid elements", rigid_elements.CARDS),
     Family("analysis set", analysis_set.CARDS),
     Family("direct matrices", dmig_input.CARDS),
+    Family("superelements", superelements.CARDS),
     Family("cards that are not read", not_read.CARDS),
 ]
 """Everything that is read and assembled, in this order."""

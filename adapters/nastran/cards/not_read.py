@@ -28,8 +28,11 @@ _IGNORED = {
     "it is for drawing, output or control only": "PLOTEL PLOTEL3 PLOTEL4 PLOTEL6 PLOTEL8 PLOTHEX "
     "PLOTPEN PLOTPYR PLOTTET SET1 SET2 SET3 MDLPRM ECHOON ECHOOFF SEQGP CBARAO USET USET1 PANEL "
     "CYSYM GMCURV GMSURF FEEDGE FEFACE OUTRCV TEMPG DMI DMIJ DMIJI DMIK SKIPON "
-    "SKIPOFF ENDDATA POINT SWLDPRM BSURF BSURFS BCPROP BCPROPS BLSEG NXSTRAT ITER CONTRLT "
+    "SKIPOFF ENDDATA SWLDPRM BSURF BSURFS BCPROP BCPROPS BLSEG NXSTRAT ITER CONTRLT "
     "NASTRAN",
+    "superelements are solved whole, not condensed to their boundaries": "SESET SEELT SETREE "
+    "SELABEL SELOAD SESUP SEMPLN SENQSET SEQSET SEQSET1 SECSET SECSET1 SEBSET SEBSET1 SEUSET "
+    "SEUSET1",
     "no card refers to it in what is read": "PBEND PLPLANE PSEAM PBMSECT "
     "PBRSECT PBARN1 PBEMN1 PSHLN1 PSHLN2 PSLDN1 PBCOMP PBEAM3 PRAC2D PRAC3D PAXSYM PPLANE "
     "MAT3 MAT10 MATT3 MATT11 MATG PBUSH2D",
@@ -47,10 +50,9 @@ _REFUSED = {
     "RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT",
     "glue and contact are not supported":
     "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP BOLT",
-    "this reduction is not supported: give the model without it": "DYNRED SENQSET",
-    "superelements are not supported: give the assembled deck":
-    "CSUPER CSUPEXT SEELT SESET SECONCT SEBULK SELOC SETREE RELEASE SEBNDRY SECSET SEBSET SEQSET "
-    "SEUSET EXTRN",
+    "this reduction is not supported: give the model without it": "DYNRED",
+    "external, copied and released superelements are not supported: give the assembled deck":
+    "CSUPER CSUPEXT RELEASE EXTRN",
     "it defines or constrains points in a way that is not supported":
     "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1 RGYRO "
     "CYJOIN CYAX ACMODL MFLUID",
@@ -59,6 +61,9 @@ _REFUSED = {
 
 _SAID = ("CHBDY", "CONV", "CAERO", "CDAMP", "CVISC")
 """Those that connect grids: elements, and leaving them out is said in a warning too."""
+
+_CONDENSED = ("SESET", "SEELT", "SENQSET", "SEQSET")
+"""Those without which frequencies are others than Nastran's, which is said too."""
 
 _LAYOUTS = {
     "MAT3": "MID:i EX:r ETH:r EZ:r NUXTH:r NUTHZ:r NUZX:r RHO:r / - - GZX:r AX:r ATH:r AZ:r TREF:r "
@@ -75,7 +80,7 @@ CARDS = (
             name,
             _LAYOUTS.get(name, "EID:i" if name.startswith(_SAID) else ""),
             ignored=why,
-            warned=name.startswith(_SAID),
+            warned=name.startswith((*_SAID, *_CONDENSED)),
             moves=Moves() if name in _LAYOUTS else None,
         )
         for why, names in _IGNORED.items()

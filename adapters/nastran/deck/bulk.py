@@ -36,6 +36,8 @@ class Bulk(Noun):
         By card name, the raw cards in the order of `tables` or `lists`.
     numbered : mapping
         By card name, then by number: the raw cards of `tables`.
+    renumbered : frozenset of (name, number)
+        Cards of superelements whose numbers are not those on the raw card.
     """
 
     reader: CardReader
@@ -43,6 +45,7 @@ class Bulk(Noun):
     lists: Mapping[str, list[Values]]
     raw: Mapping[str, list[Raw]]
     numbered: Mapping[str, Mapping[int, Raw]]
+    renumbered: frozenset[tuple[str, int]] = frozenset()
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -71,7 +74,18 @@ class Bulk(Noun):
         return None
 
     def replaced(self, fields: Mapping[tuple[str, int], Fields]) -> Bulk:
-        """Return the deck with other fields on some numbered cards."""
+        """Return the deck with other fields on some numbered cards.
+
+        Raises
+        ------
+        InputError
+            A field that does not hold what it should; a card that has another number than in its
+            superelement.
+        """
+        if apart := sorted(self.renumbered & fields.keys()):
+            raise self.place(*apart[0]).fault(
+                "has a number that several superelements use, and cannot vary: give it its own"
+            )
         tables = dict(self.tables)
         for name in {name for name, _ in fields}:
             changed = {

@@ -35,6 +35,10 @@ class CaseControl:
         Names of DMIG matrices; those of the p-set (PP) are for response analyses.
     analysis, loaded
         What the subcase is for, and whether loads stiffen its structure (STATSUB).
+    superelement : int
+        The one that the subcase is for, 0 for the residual structure or all.
+    of_parts : tuple of (superelement, (spc, mpc))
+        Constraint sets that subcases of their own select for superelements.
     """
 
     subcase: int = 0
@@ -50,6 +54,8 @@ class CaseControl:
     m2pp: tuple[tuple[str, float], ...] = ()
     analysis: str = field(default="", compare=False)
     loaded: bool = field(default=False, compare=False)
+    superelement: int = field(default=0, compare=False)
+    of_parts: tuple[tuple[int, tuple[int | None, int | None]], ...] = ()
 
 
 def read_case_control(
@@ -85,10 +91,12 @@ def read_case_control(
             above = case
     if not subcases:
         return above, _LOADED * above.loaded
-    modal = [c for c in subcases if c.method is not None and c.analysis in ("", "MODES")]
-    chosen = modal[0] if modal else subcases[0]
+    parts = tuple((c.superelement, (c.spc, c.mpc)) for c in subcases if c.superelement)
+    whole = [c for c in subcases if not c.superelement] or subcases
+    modal = [c for c in whole if c.method is not None and c.analysis in ("", "MODES")]
+    chosen = replace(modal[0] if modal else whole[0], of_parts=parts)
     others = [c.subcase for c in modal[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
-    before = subcases[: subcases.index(chosen)]
+    before = [c for c in subcases if c.subcase < chosen.subcase]
     steps = chosen.analysis == "MODES" and any(c.analysis == "STATICS" for c in before)
     loaded = _LOADED * (chosen.loaded or steps)
     if not others:
@@ -111,6 +119,8 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         if option[:4] in ("BOTH", "MATE", "") and case.temperature is not None:
             return case
         return replace(case, temperature=number) if option else case
+    if key == "SUPER":
+        return replace(case, superelement=number or 0)
     if key.startswith("STATS"):
         return replace(case, loaded=True)
     if key.startswith("ANAL"):

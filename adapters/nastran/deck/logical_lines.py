@@ -9,6 +9,8 @@ from typing import NamedTuple
 from ....core.errors import Place
 from ..text.deck_text import DeckText, read_deck_text
 
+_PART = re.compile(r"BEGIN (?:BULK )?SUPER ?=? ?(\d+)")
+
 
 class Line(NamedTuple):
     """One line of the deck: its text without the line end, file index, line number from 1."""
@@ -28,12 +30,15 @@ class Sections:
         The main deck first, then the included files in the order met.
     executive, case, bulk : tuple of Line
         Lines of each section, without CEND, BEGIN BULK, ENDDATA and what follows it.
+    parts : dict
+        Lines of the superelements (BEGIN SUPER) by their numbers.
     """
 
     files: tuple[Path, ...]
     executive: tuple[Line, ...]
     case: tuple[Line, ...]
     bulk: tuple[Line, ...]
+    parts: dict[int, tuple[Line, ...]]
 
 
 def read_sections(source: Path | DeckText) -> Sections:
@@ -51,6 +56,7 @@ def read_sections(source: Path | DeckText) -> Sections:
     lines = list(_lines(deck))
     files = [f.path for f in deck.files]
     marks = {"CEND": -1, "BEGIN": -1}
+    starts: list[tuple[int, int]] = []
     for k, line in enumerate(lines):
         if line.text.lstrip()[:4].upper() not in ("CEND", "BEGI"):
             continue
@@ -59,16 +65,23 @@ def read_sections(source: Path | DeckText) -> Sections:
             marks["CEND"] = k
         elif head and head[0] == "BEGIN" and marks["BEGIN"] < 0:
             marks["BEGIN"] = k
-        if head[:1] == ["BEGIN"] and head[1:] and not (head[1][:4] == "BULK" and not head[2:]):
+        if part := _PART.match(" ".join(head)):
+            starts.append((k, int(part[1])))
+        elif head[:1] == ["BEGIN"] and head[1:] and not (head[1][:4] == "BULK" and not head[2:]):
             raise Place(files[line.file], line.number).error(
                 f"{line.text.strip()!r} starts a part of the deck that trueup does not read "
-                "(superelement or similar): give the assembled deck"
+                "(an auxiliary model or similar)"
             )
     cend, begin = marks["CEND"], marks["BEGIN"]
     if cend >= 0 > begin:
         raise Place(path).error("there is CEND but no BEGIN BULK: the deck is not complete")
     executive, case = lines[: max(cend, 0)], lines[cend + 1 : max(begin, 0)]
-    return Sections(tuple(files), tuple(executive), tuple(case), tuple(lines[begin + 1 :]))
+    ends = [*(k for k, _ in starts), len(lines)]
+    parts = {
+        number: tuple(lines[k + 1 : end]) for (k, number), end in zip(starts, ends[1:], strict=True)
+    }
+    bulk = lines[begin + 1 : ends[0]]
+    return Sections(tuple(files), tuple(executive), tuple(case), tuple(bulk), parts)
 
 
 def _lines(deck: DeckText) -> Iterator[Line]:

@@ -61,6 +61,8 @@ class Deck(Noun):
         ``what``, ``line``, ``why`` of every kind of card that is not used.
     warnings : tuple of str
         What was assumed.
+    parts : mapping of int to Bulk
+        Superelements (BEGIN SUPER) as they stand; `bulk` holds them too, joined.
     """
 
     path: Path
@@ -73,6 +75,7 @@ class Deck(Noun):
     counts: dict[str, int]
     skipped: tuple[dict[str, Any], ...] = ()
     warnings: tuple[str, ...] = ()
+    parts: Mapping[int, Bulk] = field(default_factory=dict, repr=False)
     refused: tuple[InputError, ...] = field(default=(), repr=False)
     changed: DeckText | None = field(default=None, repr=False)
     on_disk: bool = True
@@ -148,16 +151,22 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     path = source.files[0].path if isinstance(source, DeckText) else Path(source)
     sections = read_sections(changed or path)
     bulk, others, bulk_warnings = read_bulk(sections.bulk, sections.files, definitions)
-    if not bulk.raw:
+    parts = {}
+    for number, lines in sections.parts.items():
+        parts[number], more, told = read_bulk(lines, sections.files, definitions)
+        bulk_warnings += told
+        for name, raws in more.items():
+            others.setdefault(name, []).extend(raws)
+    if not (bulk.raw or parts):
         raise Place(path).error("no bulk data card was found: is this a Nastran deck?")
     case, case_warnings = read_case_control(sections.case, sections.files)
     every_line = (*sections.executive, *sections.case, *sections.bulk)
+    every_bulk = (bulk, *parts.values())
     unit, unit_warnings = find_length_unit(every_line, bulk)
     skipped, refused, skip_warnings = _skipped(bulk, others)
-    counts = {
-        name: sum(raw.part == 0 for raw in raws)
-        for name, raws in (*bulk.raw.items(), *others.items())
-    }
+    counts: dict[str, int] = {}
+    for name, raws in (*(item for b in every_bulk for item in b.raw.items()), *others.items()):
+        counts[name] = counts.get(name, 0) + sum(raw.part == 0 for raw in raws)
     eigen = _eigen(bulk, case)
     warnings = [
         *case_warnings,
@@ -188,6 +197,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         counts=counts,
         skipped=skipped,
         warnings=tuple(warnings),
+        parts=parts,
         refused=refused,
         changed=changed,
         on_disk=changed is None,

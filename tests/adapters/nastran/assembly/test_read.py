@@ -55,7 +55,7 @@ class TestFiles:
                 r"main.bdf line 2: GRID 1 is defined twice, first in .* line 1",
             ),
             ("$ nothing\n", r"no bulk data card was found"),
-            ("BEGIN SUPER=1\nGRID,1\n", r"line 1: 'BEGIN SUPER=1' .*does not read"),
+            ("BEGIN AFPM=1\nGRID,1\n", r"line 1: 'BEGIN AFPM=1' .*does not read"),
         ],
     )
     def test_what_cannot_be_read_is_said_with_file_and_line(self, tmp_path, text, message):

@@ -1,0 +1,321 @@
+"""Superelements that stand in the deck (BEGIN SUPER), joined to one structure.
+
+The parts keep all their degrees of freedom: component modes and static condensation, by which
+Nastran makes them smaller, are left out, and what they leave out with them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ....core.arrays import Floats
+from ....core.data.coordinate_systems import frame_of_points
+from ....core.errors import InputError, Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Values
+from ..deck.field_values import Fields
+from ..deck.merged_bulk import (
+    MANY,
+    SHARED,
+    Numbers,
+    clash,
+    every_one,
+    highest_number,
+    merged,
+    scalar_points,
+)
+from ..deck.read_deck import Deck
+from .deck_coordinate_systems import Frames
+from .grids import read_points
+
+_TOLERANCE = 1e-5
+
+
+def _connections(fields: Fields, _: Any) -> tuple[Any]:
+    """Pairs of SECONCT: ``GA GB GA GB ...``, or ``GA1 THRU GA2 GB1 THRU GB2`` on a line."""
+    pairs: list[tuple[int, int]] = []
+    for first in range(9, len(fields), 8):
+        row = [*fields[first : first + 8], *[None] * 8][:8]
+        if (row[1] or "").upper() == "THRU":
+            a, b = (range(int(row[k] or 0), int(row[k + 2] or 0) + 1) for k in (0, 3))
+            pairs += zip(a, b, strict=False)
+        else:
+            pairs += [(int(a), int(b)) for a, b in zip(row[::2], row[1::2], strict=True) if a and b]
+    return (tuple(pairs),)
+
+
+CARDS = (
+    Card(
+        "SEBULK",
+        "SEID:i! TYPE:w=PRIMARY RSEID:i METHOD:w=AUTO TOL:r=1.E-5 LOC:w=YES UNITNO:i",
+        "seid",
+    ),
+    Card(
+        "SECONCT",
+        "SEIDA:i! SEIDB:i=0 TOL:r=1.E-5 LOC:w=YES ...",
+        more=_connections,
+        extra="pairs",
+    ),
+    Card("SEBNDRY", "SEIDA:i! SEIDB:iw=0 GIDA>own:*"),
+    Card("SEEXCLD", "SEIDA:i! SEIDB:iw=0 GIDA>own:*"),
+    Card("SELOC", "SEID:i! GIDS1,GIDS2,GIDS3>own:i! GIDB1,GIDB2,GIDB3>others:i!", "seid"),
+    Card("POINT", "ID:i! CP:i=0 X1,X2,X3>xyz:r=0.", "id"),
+)
+
+_LEFT_OUT = (
+    *("ASET", "ASET1", "OMIT", "OMIT1", "BSET", "BSET1", "BNDFIX", "BNDFIX1", "CSET", "CSET1"),
+    *("BNDFREE", "BNDFRE1", "BNDFREE1", "QSET", "QSET1", "SUPORT", "SUPORT1", "EIGRL", "EIGR"),
+    *("PARAM", "DTI", "GRDSET", "BAROR", "BEAMOR"),
+)
+"""Cards of a part that say how it is reduced, or say nothing of the whole."""
+
+_OWN = ("CWELD", "CFAST", "NSM", "NSML", "NSM1", "NSML1")
+"""Cards whose numbers mean what another of their fields says."""
+
+_DIRECTED = ("components", "cm", "cn", "ps")
+"""Attributes that hold components of displacement systems."""
+
+
+def join_superelements(deck: Deck) -> Deck:
+    """Put the parts of a deck into its main bulk; what cannot be joined is refused later.
+
+    Parts are joined where grids coincide (SEBULK's METHOD AUTO; SEBNDRY and SEEXCLD limit the
+    search) or SECONCT says so. A part may share the numbers of its cards with others: those that
+    do not mean the same get others, which is said.
+    """
+    if not deck.parts:
+        return deck
+    notes = [
+        f"superelements ({', '.join(map(str, sorted(deck.parts)))}) are joined and solved whole: "
+        "Nastran condenses their insides, statically or to component modes, and finds frequencies "
+        "higher by what that leaves out"
+    ]
+    joined = _Joined(deck.bulk, {(0, g): g for g in deck.bulk.table("GRID")})
+    try:
+        for seid, part in _parts(deck):
+            joined = _add(deck, joined, seid, part, notes)
+    except InputError as error:
+        return replace(deck, refused=(*deck.refused, error))
+    return replace(deck, bulk=joined.bulk, warnings=(*deck.warnings, *notes))
+
+
+@dataclass(frozen=True, eq=False)
+class _Joined:
+    """What is joined so far: where each grid of each part (0: the main bulk) went."""
+
+    bulk: Bulk
+    at: Mapping[tuple[int, int], int]
+
+
+def _parts(deck: Deck) -> Iterator[tuple[int, Bulk]]:
+    """Yield the parts by number, those that repeat another with its cards."""
+    kinds = deck.bulk.table("SEBULK")
+    for seid in sorted({*deck.parts, *(k for k, c in kinds.items() if c.type == "REPEAT")}):
+        card = kinds.get(seid)
+        kind = card.type if card else "PRIMARY"
+        place = deck.bulk.place("SEBULK", seid)
+        if kind not in ("PRIMARY", "REPEAT"):
+            raise place.error(f"superelements of TYPE {kind} are not supported")
+        source = card.rseid if card and kind == "REPEAT" else seid
+        if source not in deck.parts:
+            raise place.fault(f"repeats superelement {source}, which the deck does not have")
+        part = deck.parts[source]
+        if own := set(part.definitions) & set(_OWN) & set(part.raw):
+            raise Place(deck.path).error(
+                f"superelement {seid} holds {min(own)}, which is not supported in superelements"
+            )
+        yield seid, part
+
+
+def _add(deck: Deck, joined: _Joined, seid: int, part: Bulk, notes: list[str]) -> _Joined:
+    main = joined.bulk
+    q_set = {k for name in ("QSET", "QSET1") for c in part.listed(name) for k in every_one(c.nodes)}
+    for name, value in _params(part).items():
+        if name in ("WTMASS", "K6ROT", "COUPMASS", "SNORM") and deck.params.get(name) != value:
+            notes.append(
+                f"PARAM {name} {value} of superelement {seid} is not that of the main bulk, which "
+                "is taken for all"
+            )
+    part = _without(part, q_set)
+    xyz, system = _positions(part), None
+    highest = max(highest_number(main), highest_number(part))
+    if selected := deck.bulk.table("SELOC").get(seid):
+        turn, origin = _placement(main, xyz, selected, seid)
+        xyz = {grid: origin + turn @ x for grid, x in xyz.items()}
+        system = _system(part, highest + 1, turn, origin)
+    joints = _joints(joined, seid, xyz, part)
+    more = 10 ** len(str(highest + 1))
+    apart = bool(system) or any(clash(space, main, part, {}) for space in SHARED)
+    shared = more * apart
+    numbers = {space: Numbers({}, shared) for space in SHARED}
+    numbers["grid"] = Numbers(joints, more * clash("grid", main, part, joints))
+    numbers["element"] = Numbers({}, more * clash("element", main, part, {}))
+    if system:
+        numbers["coordinate"] = Numbers({0: system.cid}, shared)
+    changed = sorted(MANY[space] for space in numbers if numbers[space].more)
+    if changed:
+        notes.append(
+            f"superelement {seid} shares numbers with others: {more} is added to those of its "
+            f"{', '.join(changed)}"
+        )
+    sets = dict(deck.case.of_parts).get(seid, (None, None))
+    pairs = zip(sets, (deck.case.spc, deck.case.mpc), strict=True)
+    bulk = merged(main, part, numbers, {own: all_ for own, all_ in pairs if own and all_})
+    _check_directions(bulk, part, joints, numbers)
+    if system:
+        systems = {**bulk.table("CORD2R"), system.cid: system}
+        bulk = replace(bulk, tables={**bulk.tables, "CORD2R": systems})
+    grids = (*part.table("GRID"), *scalar_points(part))
+    return _Joined(bulk, {**joined.at, **{(seid, g): numbers["grid"](g) for g in grids}})
+
+
+def _params(part: Bulk) -> dict[str, str]:
+    return {c.n: c.v1 for c in part.listed("PARAM") if c.v1 is not None}
+
+
+def _without(part: Bulk, q_set: set[int]) -> Bulk:
+    """Leave out cards that say how the part is reduced, and points of component modes."""
+    lists = {n: cards for n, cards in part.lists.items() if n not in _LEFT_OUT}
+    if "SPOINT" in lists:
+        of = [tuple(k for k in every_one(c.nodes) if k not in q_set) for c in lists["SPOINT"]]
+        lists["SPOINT"] = [c._replace(nodes=k) for c, k in zip(lists["SPOINT"], of, strict=True)]
+    return replace(
+        part, lists=lists, tables={n: t for n, t in part.tables.items() if n not in _LEFT_OUT}
+    )
+
+
+def _positions(bulk: Bulk) -> dict[int, Floats]:
+    if not bulk.table("GRID"):
+        return {}
+    points = read_points(bulk)
+    return dict(zip((int(i) for i in points.ids), points.xyz, strict=True))
+
+
+def _placement(
+    main: Bulk, xyz: Mapping[int, Floats], card: Values, seid: int
+) -> tuple[Floats, Floats]:
+    """Rotation and shift by which SELOC moves three grids of a part to three points."""
+    place = main.place("SELOC", seid)
+    frames, there = Frames(main, lambda _: None), _positions(main)
+    for c in main.table("POINT").values():
+        there[c.id] = frames.get(c.cp, place).positions(np.array([c.xyz]))[0]
+    for known, wanted in ((xyz, card.own), (there, card.others)):
+        if missing := [g for g in wanted if g not in known]:
+            raise place.fault(f"refers to grid {missing[0]}, which does not exist")
+    try:
+        before, after = (
+            frame_of_points("rectangular", *(known[g] for g in wanted))
+            for known, wanted in ((xyz, card.own), (there, card.others))
+        )
+    except InputError as error:
+        raise place.error(str(error)) from None
+    turn = after.axes.T @ before.axes
+    return turn, after.origin - turn @ before.origin
+
+
+def _system(part: Bulk, number: int, turn: Floats, origin: Floats) -> Values:
+    """Return the coordinate system that a part which was moved has for its basic one."""
+    points = np.concatenate([origin, origin + turn[:, 2], origin + turn[:, 0]])
+    return part.definitions["CORD2R"].type(number, 0, tuple(points.tolist()))
+
+
+def _joints(joined: _Joined, seid: int, xyz: Mapping[int, Floats], part: Bulk) -> dict[int, int]:
+    """Grids of a part, and the grids joined before that they are."""
+    main = joined.bulk
+    card = main.table("SEBULK").get(seid)
+    joints: dict[int, int] = {}
+    if card is None or card.method != "MANUAL":
+        joints = _coincident(joined, seid, xyz, card.tol if card else _TOLERANCE)
+    for connection, place in main.placed("SECONCT"):
+        sides = (connection.seida, connection.seidb)
+        if seid not in sides:
+            continue
+        for pair in connection.pairs:
+            (own,) = (g for s, g in zip(sides, pair, strict=True) if s == seid)
+            (other,) = ((s, g) for s, g in zip(sides, pair, strict=True) if s != seid)
+            if own not in xyz and own not in scalar_points(part):
+                raise place.fault(f"joins grid {own} of superelement {seid}, which has none")
+            if other in joined.at:
+                joints[own] = joined.at[other]
+            elif other[0] in {s for s, _ in joined.at}:
+                raise place.fault(f"joins grid {other[1]} of superelement {other[0]}, not there")
+    return joints
+
+
+def _coincident(
+    joined: _Joined, seid: int, xyz: Mapping[int, Floats], tolerance: float
+) -> dict[int, int]:
+    there = _positions(joined.bulk)
+    if not there or not xyz:
+        return {}
+    allowed = _candidates(joined, seid, set(xyz))
+    ids = np.array(list(there))
+    tree = cKDTree(np.array(list(there.values())))
+    joints = {}
+    for grid, x in xyz.items():
+        near = ids[tree.query_ball_point(x, tolerance)]
+        found = sorted(
+            (int(n) for n in near if allowed(grid, int(n))), key=lambda n: (n != grid, n)
+        )
+        if found:
+            joints[grid] = found[0]
+    return joints
+
+
+def _candidates(joined: _Joined, seid: int, own: set[int]) -> Callable[[int, int], bool]:
+    """Whether a grid of a part may be searched for among those joined before."""
+    part_of: dict[int, set[int]] = {}
+    for (part, _), grid in joined.at.items():
+        part_of.setdefault(grid, set()).add(part)
+    limits: dict[tuple[int | str, int | str], set[int]] = {}
+    barred: dict[tuple[int | str, int | str], set[int]] = {}
+    for name, kept in (("SEBNDRY", limits), ("SEEXCLD", barred)):
+        for card in joined.bulk.listed(name):
+            kept.setdefault((card.seida, card.seidb), set()).update(every_one(card.own))
+
+    def allowed(grid: int, other: int) -> bool:
+        for part in part_of.get(other, ()):
+            for a, b, g in ((seid, part, grid), (part, seid, joined_name(part, other))):
+                listed = [limits[k] for k in ((a, b), (a, "ALL")) if k in limits]
+                if listed and not any(g in grids for grids in listed):
+                    return False
+                if any(g in barred.get(k, ()) for k in ((a, b), (a, "ALL"))):
+                    return False
+        return True
+
+    names = {(part, new): old for (part, old), new in joined.at.items()}
+
+    def joined_name(part: int, grid: int) -> int:
+        return names.get((part, grid), grid)
+
+    return allowed
+
+
+def _check_directions(
+    bulk: Bulk, part: Bulk, joints: Mapping[int, int], numbers: Mapping[str, Numbers]
+) -> None:
+    """Refuse components of a part that stand on a grid with another displacement system."""
+    system = numbers["coordinate"]
+    other = {
+        g
+        for g, new in joints.items()
+        if g in part.table("GRID")
+        and system(part.table("GRID")[g].cd) != bulk.table("GRID")[new].cd
+    }
+    if not other:
+        return
+    for name in part.raw:
+        cards = part.table(name).values() or part.listed(name)
+        definition = part.definitions[name]
+        for card in cards:
+            directed = any(getattr(card, a, None) for a in _DIRECTED)
+            named = {card.id} if name == "GRID" else set(definition.grids_of(card))
+            if directed and named & other:
+                grid = min(named & other)
+                raise Place(bulk.files[0]).error(
+                    f"{name} names components of grid {grid}, whose displacement system (CD) is "
+                    f"not that of grid {joints[grid]}, which it is joined to: give both the same"
+                )
