@@ -125,15 +125,16 @@ class _Trial:
             structure, ground.plain, ground.mesh, ground.bars, ground.compliance, observation,
             sensors,
         )  # fmt: skip
-        self._judged: dict[Fit, Judged | None] = {}
+        self._judged: dict[object, Judged | None] = {}
 
     def judged(self, problem: Problem, f: Fit) -> Judged | None:
         """Return a hypothesis as the error of the model judges it, None where it does not solve."""
-        if f not in self._judged:
-            self._judged[f] = None
+        same = problem, f.suspects, f.nuisance.tobytes()
+        if same not in self._judged:
+            self._judged[same] = None
             with suppress(TrueupError):
-                self._judged[f] = by_model_error(self.own, problem, f)
-        return self._judged[f]
+                self._judged[same] = by_model_error(self.own, problem, f)
+        return self._judged[same]
 
 
 def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:

@@ -88,11 +88,12 @@ class Problem:
         c, U = self.catalogue[kind], self.factors[kind][rows]
         known = self.missing[kind] if self.missing else None
         missing = None if known is None else known[rows]
-        held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
-        if self.rest is not None and c.rows_each and not held.all():
+        if self.rest is not None and c.rows_each:
+            held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
             lost = _flexibility(U @ self.rest, c.law.shared)
             lost[held] = 0.0
-            missing = lost if missing is None else missing + lost
+            if not held.all():
+                missing = lost if missing is None else missing + lost
         top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
         law = c.law.on_basis(rows, missing, log_p, top)
         U = U if law.turn is None else np.matmul(law.turn, U)

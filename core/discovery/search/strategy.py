@@ -110,15 +110,15 @@ def simplified(searcher: Searcher, found: Found) -> Found:
         for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
             others = f.suspects[:q] + f.suspects[q + 1 :]
             left = searcher.fitted(f, others, SEARCH.steps_instead)
-            fits = (left, levels[k], *_limits(searcher, levels[k], q))
-            without, own, *simple = (cost(searcher, t, scale) for t in fits)
-            if not simple:
+            limits = _limits(searcher, levels[k], q)
+            if not limits:
                 continue
-            best = int(np.argmin(simple))
-            if simple[best] < own:
+            plain = searcher.refined(min(limits, key=lambda t: cost(searcher, t, scale)))
+            without, own, simple = (cost(searcher, t, scale) for t in (left, levels[k], plain))
+            if simple < own:
                 beaten.append(levels[k])
-            if simple[best] < own or without - own < SEARCH.clearly * (without - simple[best]):
-                levels[k] = fits[2 + best]
+            if simple < own or without - own < SEARCH.clearly * (without - simple):
+                levels[k] = plain
     return Found(tuple(levels), found.rivals).with_rivals(beaten)
 
 
@@ -132,7 +132,7 @@ def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
         if c.kind in sizes and c.rows_each:
             plain = Suspect(kind, _same_place(own, s.row, c), (float(np.log(sizes[c.kind])),))
             suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
-            out.append(searcher.refined(searcher.fitted(f, suspects, SEARCH.steps_instead)))
+            out.append(searcher.fitted(f, suspects, SEARCH.steps_instead))
     return out
 
 
