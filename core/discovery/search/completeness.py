@@ -8,6 +8,7 @@ more than it could have been anywhere.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -105,8 +106,8 @@ class Completeness:
 
     @property
     def lacks_nothing(self) -> bool:
-        """Whether what is left is usual for a good model before a good test."""
-        return _lacks_nothing(self.best)
+        """Whether what the deck leaves is usual for a good model before a good test."""
+        return _lacks_nothing(self.deck)
 
     @property
     def unexplained(self) -> tuple[int, ...]:
@@ -158,8 +159,8 @@ def _near(searcher: Searcher, found: Found, k: int) -> list[Fit]:
     best = found.levels[k]
     far = SEARCH.rival_gain * (found.levels[0].objective - best.objective)
     rivals = sorted(contenders(searcher, found, k), key=lambda f: f.objective)
-    near = [f for f in rivals if f.objective - best.objective < far]
-    return [best, *near[: SEARCH.rivals_judged]]
+    near = (f for f in rivals if len(f.suspects) == k and f.objective - best.objective < far)
+    return [best, *islice(near, SEARCH.rivals_judged)]
 
 
 def _led(found: Found, best: Fit) -> Found:

@@ -59,9 +59,9 @@ def test_a_poor_test_excuses_an_error_of_the_model():
     assert found(error=0.01, noise=0.2, gain=20.0).clear
 
 
-def test_a_poor_test_does_not_show_that_nothing_is_missing():
-    assert found(error=0.001).lacks_nothing
-    assert not found(error=0.01, noise=0.2).lacks_nothing
+def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing():
+    assert found(before=0.001).lacks_nothing
+    assert not found(before=0.01).lacks_nothing
 
 
 def test_two_places_that_are_as_good_are_not_clear():
@@ -109,10 +109,10 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
 
 @pytest.mark.parametrize(("objective", "leads"), [(50.0, 9), (90.0, 3)])
 def test_a_rival_that_the_error_of_the_model_makes_likelier_leads(monkeypatch, objective, leads):
-    rival = hypothesis(objective, 9)
+    rival, other = hypothesis(objective, 9), hypothesis(45.0, 9, 11)
     levels = hypothesis(100.0), hypothesis(40.0, 3)
     evidence = {(): 0.0, (3,): 30.0, (9,): 80.0}
-    found, kept, said = weighed(monkeypatch, Found(levels, ((), (rival,))), evidence)
+    found, kept, said = weighed(monkeypatch, Found(levels, ((), (rival, other))), evidence)
     assert kept == 1
     assert found.levels[1].suspects[0].row == leads
     assert said.ahead == pytest.approx(50.0 if leads == 9 else np.inf)
