@@ -10,7 +10,7 @@ from pathlib import Path
 from ..core.errors import InputError, Place, path_of
 from ..core.results.inspection import ConvertTables
 from .delivery import is_empty, losses, target_of
-from .exchange import KINDS, Cargo, cargo_of, load
+from .exchange import KINDS, Boundary, Cargo, cargo_of, load
 from .options import Files, Say, checked_call, unheard
 from .sources import Source, existing
 from .study import converted
@@ -31,6 +31,9 @@ def convert(
     from_: str | None = None,
     to: str | None = None,
     subcase: int | None = None,
+    boundary: str | None = None,
+    modes: int = 20,
+    fmax: float | None = None,
     lossy: bool = False,
     force: bool = False,
     progress: Say = unheard,
@@ -51,6 +54,11 @@ def convert(
         the suffix.
     subcase : int, optional
         Whose modes are meant.
+    boundary : str, optional
+        Reduce a deck (Craig-Bampton) to these grids, ``"11, 20-25, 31:123"``, and component modes;
+        a note says how far the reduced model's frequencies are off.
+    modes, fmax : int, float, optional
+        How many component modes, and up to which frequency [Hz].
     lossy : bool
         Leave out what the destination cannot hold.
     force : bool
@@ -72,10 +80,13 @@ def convert(
     to = converted("to", to, str | None, Place(shown="convert"))
     subcase = converted("subcase", subcase, int | None, Place(shown="convert"))
     target = target_of(path, to)
+    reduced = _boundary(boundary, modes, fmax)
     files = _files(sources)
     _check(files, path, from_, force)
     progress("reading")
-    cargo = load(files, from_, subcase) if files else cargo_of(sources)
+    cargo = load(files, from_, subcase, reduced) if files else cargo_of(sources, reduced)
+    if reduced and not cargo.from_deck:
+        raise InputError("boundary= reduces a deck alone; there is none among the sources")
     names = ", ".join(p.name for p in files) or type(sources).__name__
     if is_empty(cargo, target):
         nothing = f"{names}: nothing that a {target.name} can hold ({_told(cargo)})"
@@ -98,6 +109,15 @@ def convert(
         lost=tuple(lost),
         warnings=tuple(dict.fromkeys(cargo.notes)),
     )
+
+
+def _boundary(grids: str | None, modes: int, fmax: float | None) -> Boundary | None:
+    who = Place(shown="convert")
+    grids = converted("boundary", grids, str | None, who)
+    modes, fmax = converted("modes", modes, int, who), converted("fmax", fmax, float | None, who)
+    if modes < 1:
+        raise InputError(f"modes={modes}: give 1 or more")
+    return Boundary(grids, modes, fmax) if grids is not None else None
 
 
 def _files(sources: Source) -> list[Path]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +67,21 @@ class Cargo:
         named[free] = noun
 
 
-def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Cargo:
+@dataclass(frozen=True)
+class Boundary:
+    """To what a deck is reduced: grids as text, number of component modes, their highest [Hz]."""
+
+    grids: str
+    modes: int = 20
+    fmax: float | None = None
+
+
+def load(
+    sources: Sequence[Path],
+    kind: str | None,
+    subcase: int | None,
+    boundary: Boundary | None = None,
+) -> Cargo:
     """Read all sources.
 
     A deck beside results or matrices gives them geometry and axes; alone, it is assembled.
@@ -82,7 +96,7 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
     if len(decks) > 1:
         raise Place(decks[1]).error("give one deck only; it names its own INCLUDE files")
     cargo = Cargo()
-    deck = _deck(decks[0], len(kinds) == 1, cargo) if decks else None
+    deck = _deck(decks[0], len(kinds) == 1, cargo, boundary) if decks else None
     universal = [path for path, k in kinds if k == UNIVERSAL]
     if universal:
         _universal(universal, cargo)
@@ -107,7 +121,7 @@ def load(sources: Sequence[Path], kind: str | None, subcase: int | None) -> Carg
     return cargo
 
 
-def cargo_of(source: object) -> Cargo:
+def cargo_of(source: object, boundary: Boundary | None = None) -> Cargo:
     """Return the content of nouns: a deck, a test, modes, a geometry, what a store holds.
 
     Raises
@@ -122,7 +136,7 @@ def cargo_of(source: object) -> Cargo:
     for noun in every:
         held = getattr(noun, "content", noun)
         if isinstance(noun, Deck) or is_changed(noun):
-            _deck(noun, len(every) == 1, cargo)
+            _deck(noun, len(every) == 1, cargo, boundary)
         elif isinstance(noun, Measurement):
             _set_geometry(cargo, noun.geometry, Path("test"))
             cargo.add("modes", "test", noun.modes)
@@ -151,13 +165,19 @@ def _set_geometry(cargo: Cargo, geometry: Geometry | None, path: Path) -> None:
     cargo.geometry = geometry
 
 
-def _deck(source: object, alone: bool, cargo: Cargo) -> Any:
-    from ..adapters.nastran import build_model, deck_geometry, model_matrices
+def _deck(source: object, alone: bool, cargo: Cargo, boundary: Boundary | None) -> Any:
+    from ..adapters.nastran import build_model, craig_bampton, deck_geometry, model_matrices
 
     deck = read_deck(source)
     cargo.notes += deck.warnings
     cargo.from_deck = True
-    if alone:
+    if alone and boundary:
+        model = craig_bampton(deck, boundary.grids, boundary.modes, boundary.fmax)
+        cargo.notes += [w for w in model.warnings if w not in cargo.notes]
+        for m in model_matrices(model):
+            named = replace(m, name=f"{m.name[0]}AA")
+            cargo.add("matrices", named.name, named)
+    elif alone:
         try:
             model = build_model(deck)
         except InputError as error:

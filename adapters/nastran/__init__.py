@@ -8,6 +8,7 @@ from ...core.late_imports import lazy_names
 
 if TYPE_CHECKING:
     from .assembly.build_model import build_model as build_model
+    from .assembly.craig_bampton import craig_bampton as craig_bampton
     from .assembly.drawn_model import drawn_model as drawn_model
     from .assembly.grid_point_weight import Weight as Weight, weight as weight
     from .deck.read_deck import Deck as Deck, EigenRequest as EigenRequest
@@ -53,6 +54,7 @@ __getattr__, __all__ = lazy_names(
     __name__,
     {
         ".assembly.build_model": "build_model",
+        ".assembly.craig_bampton": "craig_bampton",
         ".assembly.drawn_model": "drawn_model",
         ".assembly.grid_point_weight": "Weight weight",
         ".deck.read_deck": "Deck EigenRequest",

@@ -27,6 +27,17 @@ def convert(
     subcase: Annotated[
         int | None, typer.Option("--subcase", help="Subcase whose modes are meant.")
     ] = None,
+    boundary: Annotated[
+        str | None,
+        typer.Option("--boundary", metavar="GRIDS", help="Reduce a deck to these grids (11, 20-25, "
+                     "31:123) and component modes (Craig-Bampton)."),
+    ] = None,
+    modes: Annotated[
+        int, typer.Option("--modes", "-n", help="Number of component modes.")
+    ] = 20,
+    fmax: Annotated[
+        float | None, typer.Option("--fmax", help="Highest frequency of component modes [Hz].")
+    ] = None,
     lossy: Annotated[
         bool, typer.Option("--lossy", help="Leave out what DST cannot hold.")
     ] = False,
@@ -49,7 +60,7 @@ def convert(
     with working("reading", output) as say:
         done = write(
             sources, destination, from_=source_format, to=target_format, subcase=subcase,
-            lossy=lossy, force=force, progress=say,
+            boundary=boundary, modes=modes, fmax=fmax, lossy=lossy, force=force, progress=say,
         )  # fmt: skip
     emit_json(done.to_dict(), output)
     if speaks(output):
