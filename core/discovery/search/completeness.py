@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import Floats
 from ...errors import CheckError
 from ..likelihood.hypothesis import Fit
+from ..likelihood.map_fit import evaluate
 from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
@@ -95,9 +96,12 @@ class Completeness:
         """Whether what is left is usual enough for what was found to be claimed.
 
         The larger a part of the error before it is, the more usual it has to be: two causes that
-        look alike take away much of the error, the right one nearly all of it.
+        look alike take away much of the error, the right one nearly all of it. Of modes that
+        the known parameters do not explain at all their error says nothing.
         """
-        return self.adequacy > max(MODEL_ERROR.adequate, SEARCH.usual_left * self.left)
+        whole = np.count_nonzero(self.alone.diffuse.stray > 0.5) <= len(self.unexplained)
+        least = SEARCH.usual_left * self.left if whole else 0.0
+        return bool(self.adequacy > max(MODEL_ERROR.adequate, least))
 
     @property
     def adequacy(self) -> float:
@@ -124,20 +128,22 @@ def completeness(
     """Return the best of what was found, the number of its suspects, and how well it explains.
 
     The levels up to the accepted one compete, one suspect where the known parameters alone leave
-    something; of each the likeliest, rivals among them. `deck` is how likely the test is by the
-    deck as it is.
+    something; of each the likeliest, its rivals and the richer one less a suspect among them.
+    `deck` is how likely the test is by the deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
     alone = levels[0].judged
     if alone is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
     most = max(verdict.accepted, 0 if _lacks_nothing(alone) else 1)
-    fields: list[list[Scored]] = [[]]
-    for k in range(1, most + 1):
-        tried = (scored(searcher, f) for f in _near(searcher, found, k))
-        fields.append(sorted(tried, key=lambda s: -s.score))
-        levels.append(fields[k][0])
-        found = _led(found, levels[k].fit)
+    fields: list[list[Scored]] = [[] for _ in range(most + 1)]
+    poorer: list[Fit] = []
+    for k in range(most, 0, -1):
+        tried = (scored(searcher, f) for f in (*_near(searcher, found, k), *poorer))
+        fields[k] = sorted(tried, key=lambda s: -s.score)
+        found = _led(found.with_rivals(poorer), fields[k][0].fit)
+        poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
+    levels += [field[0] for field in fields[1:]]
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
         least = needed(level.judged) if kept and level.judged else SEARCH.suspect
@@ -161,6 +167,12 @@ def _near(searcher: Searcher, found: Found, k: int) -> list[Fit]:
     rivals = sorted(contenders(searcher, found, k), key=lambda f: f.objective)
     near = (f for f in rivals if len(f.suspects) == k and f.objective - best.objective < far)
     return [best, *islice(near, SEARCH.rivals_judged)]
+
+
+def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:
+    """Return a hypothesis without one of its suspects, each in turn, nothing else moved."""
+    parts = (f.suspects[:q] + f.suspects[q + 1 :] for q in range(len(f.suspects)))
+    return [evaluate(searcher.problem, f.nuisance, suspects) for suspects in parts]
 
 
 def _led(found: Found, best: Fit) -> Found:

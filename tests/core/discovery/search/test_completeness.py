@@ -16,8 +16,8 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, **more):
-    none = judged(np.zeros(10), error=before)
+def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
+    none = judged(np.zeros(10), error=before, stray=lost)
     return Completeness(none, none, judged(np.zeros(10), **more), gain, gain, ahead, agree)
 
 
@@ -52,6 +52,7 @@ def test_what_takes_only_a_part_of_the_error_away_has_to_leave_what_is_usual():
     assert found(error=0.008, before=0.1).true
     assert not found(error=0.008, before=0.012).true
     assert not found(error=0.05, before=3.0).true
+    assert found(error=0.008, before=0.008, lost=(2, 3)).true
 
 
 def test_a_poor_test_excuses_an_error_of_the_model():
@@ -79,12 +80,16 @@ def gaining(evidence):
 
 
 def hypothesis(objective, *rows):
-    return Some(objective=objective, suspects=tuple(Some(kind=0, row=r) for r in rows))
+    suspects = tuple(Some(kind=0, row=r) for r in rows)
+    return Some(objective=objective, suspects=suspects, nuisance=None)
 
 
 def weighed(monkeypatch, found, evidence):
     """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows."""
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
+    monkeypatch.setattr(
+        room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
+    )
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
     kind = Some(kind="mass", tunings=1, xyz=xyz, many=lambda row: 1)
     searcher = Some(
@@ -92,7 +97,7 @@ def weighed(monkeypatch, found, evidence):
         coarse=[np.arange(100)],
         size=1.0,
         effort=Some(apart=0.1),
-        judged=lambda _, f: gaining(evidence[tuple(s.row for s in f.suspects)]),
+        judged=lambda _, f: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1
     return completeness(searcher, found, Some(accepted=accepted, scale=1.0), judged(np.zeros(10)))
@@ -116,3 +121,12 @@ def test_a_rival_that_the_error_of_the_model_makes_likelier_leads(monkeypatch, o
     assert kept == 1
     assert found.levels[1].suspects[0].row == leads
     assert said.ahead == pytest.approx(50.0 if leads == 9 else np.inf)
+
+
+def test_the_richer_hypothesis_without_a_suspect_is_one_of_the_poorer(monkeypatch):
+    levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 9, 7)
+    evidence = {(): 0.0, (3,): 20.0, (9,): 40.0, (9, 7): 46.0}
+    found, kept, said = weighed(monkeypatch, Found(levels, ((), (), ())), evidence)
+    assert kept == 1
+    assert [s.row for s in found.levels[1].suspects] == [9]
+    assert said.ahead == pytest.approx(20.0)
