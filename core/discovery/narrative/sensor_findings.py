@@ -31,14 +31,17 @@ def remarks(seen: Observation, tested: Verdicts) -> tuple[str, ...]:
 
 def _accusation(seen: Observation, f: Fault) -> Finding:
     nodes, labels = seen.sensors.node, seen.sensors.labels
-    sensors = list(dict.fromkeys(int(nodes[i]) for i in f.sensors))
+    kind, own = FAULTS[f.kind], f.sensors
+    if kind.exchanges:
+        pair = own[: len(own) // 2], own[len(own) // 2 :]
+        own = sum(sorted(pair, key=lambda rows: [int(nodes[i]) for i in rows]), ())
+    sensors = list(dict.fromkeys(int(nodes[i]) for i in own))
     rows = np.count_nonzero(np.isin(nodes, sensors))
     spot = f"sensor{'s' if len(sensors) > 1 else ''} {' and '.join(map(str, sensors))}"
-    where = Where.of({"sensors": sensors}, seen.xyz[f.sensors[0]], region=spot)
+    where = Where.of({"sensors": sensors}, seen.xyz[own[0]], region=spot)
     names = list(map(str, sensors))
-    kind = FAULTS[f.kind]
-    if len(f.sensors) < rows or (kind.exchanges and len(sensors) == 1):
-        names = [labels[i] for i in f.sensors]
+    if len(own) < rows or (kind.exchanges and len(sensors) == 1):
+        names = [labels[i] for i in own]
         where = replace(where, directions=tuple(names))
     half = len(names) // 2 if kind.exchanges else len(names)
     first, other = ", ".join(names[:half]), ", ".join(names[half:])
