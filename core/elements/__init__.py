@@ -5,6 +5,7 @@ An element is one file that declares its facts in an `Element`, and one line her
 """
 
 from ..errors import InputError, require_kind
+from .axisymmetric import QUADX4, QUADX8, TRIAX3, TRIAX6
 from .bar import BAR, ROD
 from .beam import BEAM
 from .curved_shell import QUAD8, TRIA6

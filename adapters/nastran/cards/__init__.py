@@ -26,6 +26,7 @@ from ..properties import (
     thermal,
 )
 from . import (
+    axisymmetric,
     bars,
     beams,
     bushes,
@@ -68,6 +69,7 @@ FAMILIES: list[Family] = [
     Family("shells", shells.CARDS, shells.shells),
     Family("panels", panels.CARDS, panels.panels),
     Family("solids", solids.CARDS, solids.solids),
+    Family("bodies of revolution", axisymmetric.CARDS, axisymmetric.axisymmetric),
     Family("bars", bars.CARDS, bars.bars),
     Family("beams", beams.CARDS, beams.beams),
     Family("rods", rods.CARDS, rods.rods),

@@ -55,8 +55,8 @@ _QUADRATIC = {
 
 
 def solids(context: Context) -> list[Group]:
-    """Make the groups of every card that may have a PSOLID, by which middle nodes are there."""
-    return [_group(context, solid) for solid in placed(context, "PSOLID")]
+    """Make the groups of every card that may have a PCOMPS, by which middle nodes are there."""
+    return [_group(context, solid) for solid in placed(context, "PCOMPS")]
 
 
 def _group(context: Context, solid: Placed) -> Group:
