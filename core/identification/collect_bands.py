@@ -18,7 +18,7 @@ from .poles.pole_candidates import Proposal
 from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .rejected import rejected
-from .remarks import of_leakage, of_modes, of_window, pair_possible
+from .remarks import of_leakage, of_modes, of_own_poles, of_window, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
 from .survey.driving_points import driving_points, scale
 from .survey.modal_synthesis import derivative_order, modal_response
@@ -64,6 +64,7 @@ def assemble(
     mpc = phase_collinearity(sure)
     warnings = [*survey.warnings, *(scaling.warnings if len(t.hz) else ())]
     pair = pair_possible(t, warnings)
+    warnings += of_own_poles(fits)
     warnings += of_leakage(t.hz, t.blurred)
     if not len(t.hz):
         warnings.append("no mode stands out of the noise")

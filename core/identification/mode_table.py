@@ -53,10 +53,11 @@ def collect(fits: tuple[BandFit, ...]) -> ModeTable:
     for b in fits:
         if b.core.any():
             e = errors(b.data, b.fit)
-            of_model, blurred = pole_errors(b.data, b.frequencies_hz, b.fit)
+            of_poles = e.poles if b.measured is b.data else errors(b.measured, b.fit).poles
+            of_model, blurred = pole_errors(b.measured, b.frequencies_hz, b.fit)
             f, c = b.fit, b.core
             parts.append(
-                (f.poles[c], f.participation[:, c], f.shapes[:, c], (e.poles + of_model)[c],
+                (f.poles[c], f.participation[:, c], f.shapes[:, c], (of_poles + of_model)[c],
                  e.shapes[:, c], significance(b.data, b.frequencies_hz, f)[c], blurred[c])
             )  # fmt: skip
     n_output, n_input = fits[0].data.weight.shape

@@ -8,6 +8,7 @@ from ..arrays import Floats, Numbers
 from ..errors import InputError
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, Physical
+from .poles.band_sweeps import BandFit
 from .survey.survey_data import Survey
 from .survey.survey_numbers import SURVEY
 
@@ -44,6 +45,16 @@ def of_leakage(hz: Floats, blurred: Numbers) -> list[str]:
         f"{np.count_nonzero(blurred)} mode(s) ({which} Hz) are narrow for the lines and leave a "
         "residual that is not noise (leakage): their damping may be too high, as its standard "
         "error says"
+    ]
+
+
+def of_own_poles(fits: tuple[BandFit, ...]) -> list[str]:
+    """Say that functions were brought to one set of poles."""
+    if all(b.measured is b.data for b in fits):
+        return []
+    return [
+        "the frequencies of the modes differ from response to response (mass of a roving sensor, "
+        "temperature, force): the functions were brought to their means before shapes were fitted"
     ]
 
 

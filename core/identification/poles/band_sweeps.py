@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ...arrays import Bools, Floats, Numbers
 from ..survey.modal_synthesis import modal_response
 from ..survey.mode_indicator import Band
 from ..survey.survey_data import Survey
+from .aligned_functions import aligned, distinct
 from .moments import BandData, band_data
 from .pole_candidates import Proposal
 from .pole_numbers import POLES
@@ -51,7 +52,9 @@ class BandFit:
     band : Band
     frequencies_hz : (n_line,) float
     data : BandData
-        With the modes beyond the band taken away.
+        With the modes beyond the band taken away, brought to one set of poles if need be.
+    measured : BandData
+        The same as measured, to judge errors by.
     fit : Fit
     core : (n_mode,) bool
         The modes that this band answers for.
@@ -62,6 +65,7 @@ class BandFit:
     band: Band
     frequencies_hz: Floats
     data: BandData
+    measured: BandData
     fit: Fit
     core: Numbers
     background: Numbers
@@ -75,7 +79,8 @@ def fit_range(
     Unless the stable poles leave far more than noise, the survey is first believed to hold one
     set of poles and noise. Where that leaves more than noise in the end, or not only because roots
     that scatter of the poles makes explain it, modes are searched for anew in the knowledge of the
-    error, see `BandData`.
+    error, see `BandData`, and with functions brought to one set of poles where each output having
+    its own explains that error.
     """
     of_outputs, of_inputs = survey.measured.shape
     none = Roots(*(np.empty(s, complex) for s in (0, (of_inputs, 0), (of_outputs, 0))))
@@ -84,14 +89,10 @@ def fit_range(
         start = start_from(data, proposals[n].firm)
         return refine(data, start.poles, start.participation)
 
-    def refined(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
-        return refine(data, start.poles, start.participation)
-
     found = _Found([none] * len(bands), [none] * len(bands))
     for _ in _sweep(survey, bands, found, 0.0, proposed):
         pass
-    error = survey_error((b.data, b.frequencies_hz, b.fit) for b in
-                         _sweep(survey, bands, found, 0.0, refined))  # fmt: skip
+    error = _error(survey, bands, found)
     if error < POLES.error_surely:
         fits = _searched(survey, bands, proposals, found.copy(), 0.0)
         left = survey_error(_singly(b) for b in fits)
@@ -99,7 +100,53 @@ def fit_range(
             return fits
         error = max(error, left)
         del fits
-    return _searched(survey, bands, proposals, found, error)
+    if of_inputs == 1:
+        return _searched(survey, bands, proposals, found, error)
+    of_one_set, found, error = _of_one_set_of_poles(survey, bands, found, error)
+    fits = _searched(of_one_set, bands, proposals, found, error)
+    return fits if of_one_set is survey else tuple(_as_measured(b, survey, fits) for b in fits)
+
+
+def _error(survey: Survey, bands: tuple[Band, ...], found: _Found) -> float:
+    """Refine all bands; return what is left over beyond noise."""
+
+    def refined(n: int, data: BandData, f: Floats, start: Fit) -> Fit:
+        return refine(data, start.poles, start.participation)
+
+    swept = _sweep(survey, bands, found, 0.0, refined)
+    return survey_error((b.measured, b.frequencies_hz, b.fit) for b in swept)
+
+
+def _of_one_set_of_poles(
+    survey: Survey, bands: tuple[Band, ...], found: _Found, error: float
+) -> tuple[Survey, _Found, float]:
+    """Bring the functions to one set of poles, where poles of each output explain the error.
+
+    They are fitted to the same functions, so what they leave is less than the error that remains:
+    the geometric mean with that before is taken for it.
+    """
+    best, least = (survey, found, error), POLES.align_better * error
+    then = found
+    for _ in range(POLES.align_times):
+        roots = _joined(then.owned)
+        fit = Fit(roots.poles, roots.participation, roots.shapes, np.inf)
+        one = _take(roots, distinct(roots.poles, roots.participation, strength(fit)))
+        own = [_take(r, np.isin(r.poles, one.poles)) for r in then.owned]
+        then = _Found(own, list(then.beside))
+        functions = survey.frequencies_hz, survey.values, survey.measured
+        values = aligned(*functions, one.poles, one.participation, one.shapes)
+        brought = replace(survey, values=values)
+        left = _error(brought, bands, then)
+        if left < least:
+            remains = float(np.sqrt(error * max(left, POLES.error_none)))
+            best, least = (brought, then.copy(), remains), left
+    return best
+
+
+def _as_measured(b: BandFit, survey: Survey, fits: tuple[BandFit, ...]) -> BandFit:
+    modes = [_take(_roots(x.fit), x.core) for x in fits]
+    _, far = _near_and_far(_joined(modes), b.band)
+    return replace(b, measured=_data(survey, b.band, far, b.data.error)[1])
 
 
 def _singly(b: BandFit) -> tuple[BandData, Floats, Fit]:
@@ -160,7 +207,7 @@ def _sweep(
         found.beside[n] = _take(_roots(fit), ~modes)
         found.owned[:] = _without_doubles(found.owned)
         mine = np.isin(fit.poles, found.owned[n].poles)
-        yield BandFit(band, f, data, fit, mine, ~modes)
+        yield BandFit(band, f, data, data, fit, mine, ~modes)
 
 
 def _data(survey: Survey, band: Band, far: Roots, error: float) -> tuple[Floats, BandData]:

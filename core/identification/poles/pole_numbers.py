@@ -100,6 +100,18 @@ class PoleNumbers:
     scatter: float = number(25.0, "-", "the same where outputs or inputs alone tell it", SURVEYS)
     sure: float = number(3.0, "standard deviations", "of noise, beyond which what is left over is not noise", SURVEYS)
 
+    align_times: int = number(2, "times", "that functions are brought to one set of poles, each from what the last one told", SURVEYS)
+    align_rounds: int = number(2, "rounds", "in which poles of outputs settle beside each other", SURVEYS)
+    align_reach: float = number(6.0, WIDTHS, "to either side that the pole of an output is fitted over", SURVEYS)
+    align_lines: float = number(12.0, "lines", "likewise, at least", SURVEYS)
+    align_alone: float = number(0.1, "of the square of a participation", "that modes close by do not have, from which it is looked at alone", SURVEYS)
+    align_shift: float = number(4.0, WIDTHS, "that the pole of an output is off the common one, at most", SURVEYS)
+    align_step: float = number(0.25, WIDTHS, "from one pole that is tried to the next", SURVEYS)
+    align_decays: tuple[float, ...] = number((0.4, 0.5, 0.7, 1.0, 1.3, 1.8, 2.5, 3.3), "of the common one", "decay rates that are tried", SURVEYS)
+    align_steps: int = number(4, "steps", "of its refinement", "they settle in few")
+    align_told: float = number(0.8, "of the square of what is there", "that the pole of an output explains, at least, for it to be told", SURVEYS)
+    align_better: float = number(0.05, "of the error of the survey", "that poles of each output leave, at most, for them to be believed; 0.05 to 0.2 with noise that all points share, 1 for the aeroplane", SURVEYS)
+
     error_most: float = number(0.15, "of a root's energy", "that its error is, at most", SURVEYS)
 
 
