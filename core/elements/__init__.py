@@ -14,11 +14,10 @@ from .hexa import HEXA8, HEXA20
 from .lumped import BUSH, GENERAL, GROUNDED_BUSH, MASS, SPRING
 from .patches import PATCH_CONNECTOR
 from .penta import PENTA6, PENTA15
-from .pyramid import PYRAMID5, PYRAMID13
+from .pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
 from .quad4 import QUAD4
 from .quadr import QUADR, TRIAR
 from .shear import SHEAR_PANEL
-from .tetra import TETRA4, TETRA10
 from .tria3 import TRIA3
 
 __all__ = ["ELEMENTS", "Element", "register_element"]

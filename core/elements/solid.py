@@ -163,11 +163,6 @@ def stacked_edges(k: int) -> Ints:
     return np.array([*ring, *upright, *((i + k, j + k) for i, j in ring)])
 
 
-def pointed_edges(k: int) -> Ints:
-    """Edges of a face of `k` corners below an apex."""
-    return np.array([(i, (i + 1) % k) for i in range(k)] + [(i, k) for i in range(k)])
-
-
 def area_coordinates(p: Floats) -> tuple[Floats, Floats]:
     """Linear shape functions of the triangle, (m, 3), and derivatives by the first two, third."""
     L = np.column_stack([1.0 - p[:, 0] - p[:, 1], p[:, 0], p[:, 1]])

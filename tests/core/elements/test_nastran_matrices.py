@@ -7,9 +7,9 @@ from tests.core.elements.plates_and_volumes import isotropic_section
 from trueup.core.elements.bar import bar_mass, bar_stiffness, rod_mass, rod_stiffness
 from trueup.core.elements.hexa import HEXA8
 from trueup.core.elements.penta import PENTA6
+from trueup.core.elements.pointed import TETRA4
 from trueup.core.elements.quad4 import QUAD4
 from trueup.core.elements.solid import isotropic_solid
-from trueup.core.elements.tetra import TETRA4
 from trueup.core.elements.tria3 import TRIA3
 
 E, NU, G, RHO = 2.9e7, 0.32, 1.1e7, 0.283

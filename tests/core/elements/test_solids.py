@@ -8,9 +8,8 @@ from tests.core.elements.plates_and_volumes import volume
 
 from trueup.core.elements.hexa import HEXA8, HEXA20
 from trueup.core.elements.penta import PENTA6, PENTA15
-from trueup.core.elements.pyramid import PYRAMID5, PYRAMID13
+from trueup.core.elements.pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
 from trueup.core.elements.solid import isotropic_solid, rotate_material, solid_mass
-from trueup.core.elements.tetra import TETRA4, TETRA10
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 TRIANGLE = SQUARE[[0, 1, 3]]

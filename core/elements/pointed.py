@@ -1,12 +1,51 @@
-"""Pyramids as Nastran's CPYRAM, five and thirteen nodes."""
+"""Tetrahedra and pyramids as Nastran's CTETRA and CPYRAM, without and with middle nodes.
+
+Tetrahedra of ten nodes: five points, exact for straight edges; with a curved one this is MSC
+Nastran's matrix to seven digits.
+"""
 
 import numpy as np
 
-from ..arrays import Floats
-from ..data.shapes import PYRAMID, QUAD
+from ..arrays import Floats, Ints
+from ..data.shapes import PYRAMID, QUAD, TETRA
 from .hexa import SQUARE
-from .quadrature import gauss_pyramid
-from .solid import Solid, pointed_edges
+from .middle_nodes import quadratic
+from .quadrature import gauss_pyramid, gauss_tetra
+from .solid import Solid
+
+
+def pointed_edges(k: int) -> Ints:
+    """Edges of a face of `k` corners below an apex."""
+    return np.array([(i, (i + 1) % k) for i in range(k)] + [(i, k) for i in range(k)])
+
+
+def tetra4(p: Floats) -> tuple[Floats, Floats]:
+    """Volume coordinates."""
+    N = np.column_stack([1.0 - p.sum(axis=1), p])
+    d = np.column_stack([-np.ones(3), np.eye(3)])
+    return N, np.broadcast_to(d, (len(p), 3, 4))
+
+
+def tetra10(p: Floats) -> tuple[Floats, Floats]:
+    """Quadratic shape functions of the tetrahedron."""
+    return quadratic(*tetra4(p), pointed_edges(3))
+
+
+TETRA4 = Solid(
+    name="tetra4",
+    shape=TETRA,
+    interpolation=tetra4,
+    rules={"full": gauss_tetra(1)},
+    mass_rule=gauss_tetra(4),
+)
+TETRA10 = Solid(
+    name="tetra10",
+    shape=TETRA,
+    edges=pointed_edges(3),
+    interpolation=tetra10,
+    rules={"full": gauss_tetra(5)},
+    mass_rule=gauss_tetra(15),
+)
 
 
 def pyramid5(p: Floats) -> tuple[Floats, Floats]:
