@@ -25,11 +25,6 @@ if TYPE_CHECKING:
         ParameterSpec as ParameterSpec,
         parse_parameter as parse_parameter,
     )
-    from .matrices.exported_matrix import (
-        DofMap as DofMap,
-        NastranMatrix as NastranMatrix,
-        is_runs as is_runs,
-    )
     from .matrices.exported_runs import read_runs as read_runs, write_runs as write_runs
     from .matrices.matrix_model import (
         matrix_of as matrix_of,
@@ -37,7 +32,6 @@ if TYPE_CHECKING:
         model_of_matrices as model_of_matrices,
         stiffness_and_mass as stiffness_and_mass,
     )
-    from .matrices.op4 import is_op4 as is_op4, read_op4 as read_op4
     from .matrices.read_matrices import (
         describe_matrices as describe_matrices,
         matrix_file_kind as matrix_file_kind,
@@ -45,6 +39,12 @@ if TYPE_CHECKING:
     )
     from .matrices.run_terms import describe_runs as describe_runs, terms_of_runs as terms_of_runs
     from .matrices.write_matrices import write_dmig as write_dmig, write_op4 as write_op4
+    from .op4.exported_matrix import (
+        DofMap as DofMap,
+        NastranMatrix as NastranMatrix,
+        is_runs as is_runs,
+    )
+    from .op4.op4 import is_op4 as is_op4, read_op4 as read_op4
     from .results.read_modes import read_modes as read_modes
     from .results_contents import describe_results as describe_results
     from .text.deck_text import DeckText as DeckText, read_deck_text as read_deck_text
@@ -67,10 +67,10 @@ __getattr__, __all__ = lazy_names(
         ".editing.split_property": "Split split_property",
         ".editing.write_deck": "write_deck write_in_place",
         ".fields.parameter_references": "FieldRef ParameterSpec parse_parameter",
-        ".matrices.exported_matrix": "DofMap NastranMatrix is_runs",
+        ".op4.exported_matrix": "DofMap NastranMatrix is_runs",
         ".matrices.exported_runs": "read_runs write_runs",
         ".matrices.matrix_model": "matrix_of model_matrices model_of_matrices stiffness_and_mass",
-        ".matrices.op4": "is_op4 read_op4",
+        ".op4.op4": "is_op4 read_op4",
         ".matrices.read_matrices": "describe_matrices matrix_file_kind read_matrices",
         ".matrices.run_terms": "describe_runs terms_of_runs",
         ".matrices.write_matrices": "write_dmig write_op4",

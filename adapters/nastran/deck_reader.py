@@ -8,6 +8,7 @@ from .cards import definitions
 from .deck import read_deck as by_definitions
 from .deck.pynastran_bridge import file_of
 from .deck.read_deck import Deck
+from .op4.op4 import read_op4
 from .properties.superelements import join_superelements
 from .text.deck_text import DeckText
 
@@ -27,7 +28,14 @@ def read_deck(path: str | Path | DeckText | Any) -> Deck:
         A file that cannot be read or is not a deck, a card that cannot be read: file and line.
     """
     if isinstance(path, DeckText):
-        return join_superelements(by_definitions.read_deck(path, definitions()))
+        return _joined(by_definitions.read_deck(path, definitions()))
     file = file_of(path)
-    deck = join_superelements(by_definitions.read_deck(file, definitions()))
+    deck = _joined(by_definitions.read_deck(file, definitions()))
     return replace(deck, on_disk=file is path)
+
+
+def _joined(deck: Deck) -> Deck:
+    def matrices(path: Path) -> dict[str, Any]:
+        return {m.name: m.matrix for m in read_op4(path)}
+
+    return join_superelements(deck, matrices)

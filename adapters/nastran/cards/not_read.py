@@ -51,8 +51,8 @@ _REFUSED = {
     "glue and contact are not supported":
     "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP BOLT",
     "this reduction is not supported: give the model without it": "DYNRED",
-    "external, copied and released superelements are not supported: give the assembled deck":
-    "CSUPER CSUPEXT RELEASE EXTRN",
+    "copied and released superelements are not supported: give the assembled deck":
+    "CSUPER CSUPEXT RELEASE",
     "it defines or constrains points in a way that is not supported":
     "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1 RGYRO "
     "CYJOIN CYAX ACMODL MFLUID",

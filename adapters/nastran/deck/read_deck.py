@@ -26,6 +26,20 @@ _NOT_KNOWN = "this card is not known"
 _MODAL = ("3", "103", "SEMODES", "MODES", "SEMFREQ", "111", "112", "SEMTRAN", "200")
 
 
+_ASSIGN = re.compile(
+    r"ASSIGN\s+INPUTT4\s*=\s*'(?P<file>[^']+)'[^']*?UNIT\s*=\s*(?P<unit>\d+)", re.IGNORECASE
+)
+
+
+@dataclass(frozen=True, eq=False)
+class External:
+    """Stiffness and mass (m, m) of an external superelement on (grid, component), 0: scalar."""
+
+    points: tuple[tuple[int, int], ...]
+    stiffness: Any
+    mass: Any
+
+
 @dataclass(frozen=True)
 class EigenRequest:
     """What EIGRL or EIGR asks for: a frequency range [Hz] and a number of modes; None: no limit."""
@@ -63,6 +77,10 @@ class Deck(Noun):
         What was assumed.
     parts : mapping of int to Bulk
         Superelements (BEGIN SUPER) as they stand; `bulk` holds them too, joined.
+    assigned : mapping of int to Path
+        Files of matrices (ASSIGN INPUTT4) by their units.
+    external : tuple of External
+        Matrices of external superelements.
     """
 
     path: Path
@@ -76,6 +94,8 @@ class Deck(Noun):
     skipped: tuple[dict[str, Any], ...] = ()
     warnings: tuple[str, ...] = ()
     parts: Mapping[int, Bulk] = field(default_factory=dict, repr=False)
+    assigned: Mapping[int, Path] = field(default_factory=dict, repr=False)
+    external: tuple[External, ...] = field(default=(), repr=False)
     refused: tuple[InputError, ...] = field(default=(), repr=False)
     changed: DeckText | None = field(default=None, repr=False)
     on_disk: bool = True
@@ -198,6 +218,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         skipped=skipped,
         warnings=tuple(warnings),
         parts=parts,
+        assigned=_assigned(sections, path),
         refused=refused,
         changed=changed,
         on_disk=changed is None,
@@ -229,6 +250,11 @@ def _eigen(bulk: Bulk, case: CaseControl) -> EigenRequest | None:
         return EigenRequest(card.v1, card.v2, card.nd)
     nd = 3 * card.ne if card.nd is None and card.ne and card.method == "INV" else card.nd
     return EigenRequest(card.f1, card.f2, nd)
+
+
+def _assigned(sections: Any, path: Path) -> dict[int, Path]:
+    text = " ".join(line.text.split("$", 1)[0] for line in sections.executive)
+    return {int(m["unit"]): path.parent / m["file"].strip() for m in _ASSIGN.finditer(text)}
 
 
 def _solution(sections: Any) -> tuple[str, ...]:

@@ -12,9 +12,9 @@ from ....core.files import reading
 from ..deck.field_values import Fields
 from ..deck.logical_lines import Line
 from ..deck.raw_cards import cut, fields_of
+from ..op4.exported_matrix import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
 from ..text.real_numbers import parse_real
 from .dmig_punched import parts, punched_columns
-from .exported_matrix import RECTANGULAR, SYMMETRIC, DofMap, NastranMatrix, symmetrised
 
 
 class Entries:

@@ -11,8 +11,8 @@ from ..deck.field_values import Fields
 from ..deck.logical_lines import Line
 from ..deck.raw_cards import cut, fields_of
 from ..deck.read_deck import Deck
+from ..op4.exported_matrix import DofMap
 from ..properties.grids import read_points
-from .exported_matrix import DofMap
 
 _SETS = ("ASET", "ASET1", "BSET", "BSET1", "CSET", "CSET1", "QSET", "QSET1", "SUPORT")
 

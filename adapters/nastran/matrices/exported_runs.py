@@ -17,14 +17,14 @@ from ..editing.add_cards import add_cards
 from ..editing.set_values import set_values
 from ..editing.write_deck import write_deck
 from ..fields.parameter_references import ParameterSpec, moved, parse_parameter
+from ..op4.exported_matrix import RUNS_SCHEMA, DofMap, NastranMatrix
+from ..op4.op4 import list_op4
 from ..text.deck_text import read_deck_text
 from ..text.real_numbers import writable
 from .dmig import read_dmig
-from .exported_matrix import RUNS_SCHEMA, DofMap, NastranMatrix
 from .hdf5_matrices import list_hdf5_matrices
 from .matrix_model import model_of_matrices, stiffness_and_mass
 from .op2_matrices import list_op2_matrices
-from .op4 import list_op4
 from .read_matrices import matrix_file_kind, read_matrices
 from .sample_design import Design, design_of
 

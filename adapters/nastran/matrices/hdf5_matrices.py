@@ -14,8 +14,8 @@ import scipy.sparse as sp
 
 from ....core.arrays import Numbers
 from ....core.errors import Place
+from ..op4.exported_matrix import DofMap, NastranMatrix, guessed_form
 from ..results.hdf5_modes import opened
-from .exported_matrix import DofMap, NastranMatrix, guessed_form
 
 _MATRICES = "NASTRAN/RESULT/MATRIX/GENERAL"
 _GRIDS = "NASTRAN/INPUT/NODE/GRID"

@@ -11,8 +11,8 @@ from ....core.data.geometry import Geometry
 from ....core.data.parametric_model import Model, Term
 from ....core.errors import InputError
 from ..deck.read_deck import Deck
+from ..op4.exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form
 from ..properties.grids import Points, point_dofs, read_points
-from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix, guessed_form
 
 _NOT_FOUND = np.zeros((0, 3))
 

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....core.arrays import Ints
+from ..op4.exported_matrix import NastranMatrix
 from ..results.op2_records import Op2Block, Op2File, Op2Record
 from .dmig import Entries, matrix_of_entries
-from .exported_matrix import NastranMatrix
 
 _DMIG = (114, 1, 120)
 _HEAD = 9

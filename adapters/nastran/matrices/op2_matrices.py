@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..op4.exported_matrix import DofMap, NastranMatrix
+from ..op4.packed_columns import Filler, Strings, gather
 from ..results.op2_records import Op2Block, Op2File
-from .exported_matrix import DofMap, NastranMatrix
 from .op2_matpool import is_pool, pool_matrices
-from .packed_columns import Filler, Strings, gather
 
 _GRID = 1
 _RUNS = 1 << 14

@@ -7,8 +7,8 @@ import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
 from ....core.errors import InputError
-from .exported_matrix import NastranMatrix
-from .packed_columns import expand, runs_of
+from ..op4.exported_matrix import NastranMatrix
+from ..op4.packed_columns import expand, runs_of
 
 _REAL, _COMPLEX = 2, 4
 _WORD = 4

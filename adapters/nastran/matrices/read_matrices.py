@@ -9,13 +9,13 @@ import numpy as np
 
 from ....core.errors import Place
 from ..deck.read_deck import Deck
+from ..op4.exported_matrix import DofMap, NastranMatrix
+from ..op4.op4 import is_op4, kind_of, list_op4, read_op4
+from ..op4.op4_binary import Header
 from .dmig import read_dmig
 from .dof_maps import deck_maps, map_of_size, read_extrn
-from .exported_matrix import DofMap, NastranMatrix
 from .hdf5_matrices import read_hdf5_matrices
 from .op2_matrices import read_op2_matrices
-from .op4 import is_op4, kind_of, list_op4, read_op4
-from .op4_binary import Header
 from .write_matrices import MAP, USE
 
 _PUNCH_SUFFIXES = (".pch", ".asm")

@@ -7,7 +7,7 @@ from typing import Any
 from ....core.data.parameter import Parameter
 from ....core.data.parametric_model import Factor, Model, Term
 from ....core.errors import InputError
-from .exported_matrix import SYMMETRIC, DofMap, NastranMatrix
+from ..op4.exported_matrix import SYMMETRIC, DofMap, NastranMatrix
 from .exported_runs import matrices_beside, read_index, read_runs
 
 

@@ -8,8 +8,8 @@ import scipy.sparse as sp
 
 from ....core.errors import InputError
 from ....core.files import replacing
+from ..op4.exported_matrix import RECTANGULAR, SQUARE, SYMMETRIC, DofMap, NastranMatrix
 from ..text.real_numbers import format_real
-from .exported_matrix import RECTANGULAR, SQUARE, SYMMETRIC, DofMap, NastranMatrix
 from .op4_write import op4_binary, op4_formatted
 
 MAP = "DOFMAP"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ....core.errors import Place
 from ..deck.card_definition import Card
 from ..deck.read_deck import Deck
@@ -21,7 +23,7 @@ _SYMMETRIC = 6
 
 
 def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Sum the matrices named by K2GG, and by M2GG, over the g-set.
+    """Sum the matrices named by K2GG, by M2GG and of external superelements, over the g-set.
 
     PARAM CK2 and CM2 scale them; WTMASS does not. K2PP and M2PP are for response analyses and do
     not enter normal modes.
@@ -41,6 +43,12 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
             matrix = _read(deck, points, name, names.upper())
             total = total + factor * deck.param(scale, 1.0) * matrix
         totals.append(total.tocsr())
+    for part in deck.external:
+        place = Place(deck.path)
+        at = [points.dof(grid, component, place) for grid, component in part.points]
+        T = sp.coo_matrix((np.ones(len(at)), (at, range(len(at)))), shape=(n, len(at))).tocsr()
+        for k, matrix in enumerate((part.stiffness, part.mass)):
+            totals[k] = (totals[k] + T @ matrix @ T.T).tocsr()
     return totals[0], totals[1]
 
 

@@ -1,11 +1,13 @@
 """Superelements that stand in the deck (BEGIN SUPER), joined to one structure.
 
 The parts keep all their degrees of freedom: component modes and static condensation, by which
-Nastran makes them smaller, are left out, and what they leave out with them.
+Nastran makes them smaller, are left out, and what they leave out with them. External ones come
+with matrices (EXTSEOUT's assembly punch and OP4).
 """
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,11 +29,12 @@ from ..deck.merged_bulk import (
     merged,
     scalar_points,
 )
-from ..deck.read_deck import Deck
+from ..deck.read_deck import Deck, External
 from .deck_coordinate_systems import Frames
 from .grids import read_points
 
 _TOLERANCE = 1e-5
+_EXTERNAL = "EXTOP4"
 
 
 def _connections(fields: Fields, _: Any) -> tuple[Any]:
@@ -59,6 +62,7 @@ CARDS = (
         more=_connections,
         extra="pairs",
     ),
+    Card("EXTRN", "[G>nodes:i! C>components:c=0]"),
     Card("SEBNDRY", "SEIDA:i! SEIDB:iw=0 GIDA>own:*"),
     Card("SEEXCLD", "SEIDA:i! SEIDB:iw=0 GIDA>own:*"),
     Card("SELOC", "SEID:i! GIDS1,GIDS2,GIDS3>own:i! GIDB1,GIDB2,GIDB3>others:i!", "seid"),
@@ -79,7 +83,19 @@ _DIRECTED = ("components", "cm", "cn", "ps")
 """Attributes that hold components of displacement systems."""
 
 
-def join_superelements(deck: Deck) -> Deck:
+@dataclass(frozen=True, eq=False)
+class _Joined:
+    """What is joined so far: where each grid of each part (0: the main bulk) went."""
+
+    bulk: Bulk
+    at: Mapping[tuple[int, int], int]
+
+
+Matrices = Callable[[Path], Mapping[str, Any]]
+"""Reads a file of matrices: by their names."""
+
+
+def join_superelements(deck: Deck, matrices: Matrices) -> Deck:
     """Put the parts of a deck into its main bulk; what cannot be joined is refused later.
 
     Parts are joined where grids coincide (SEBULK's METHOD AUTO; SEBNDRY and SEEXCLD limit the
@@ -88,26 +104,50 @@ def join_superelements(deck: Deck) -> Deck:
     """
     if not deck.parts:
         return deck
-    notes = [
-        f"superelements ({', '.join(map(str, sorted(deck.parts)))}) are joined and solved whole: "
-        "Nastran condenses their insides, statically or to component modes, and finds frequencies "
-        "higher by what that leaves out"
-    ]
-    joined = _Joined(deck.bulk, {(0, g): g for g in deck.bulk.table("GRID")})
+    external = _external_ones(deck)
+    notes = []
+    if whole := sorted(set(deck.parts) - set(external)):
+        notes.append(
+            f"superelements ({', '.join(map(str, whole))}) are joined and solved whole: Nastran "
+            "condenses their insides, statically or to component modes, and finds frequencies "
+            "higher by what that leaves out"
+        )
+    main = (*deck.bulk.table("GRID"), *scalar_points(deck.bulk))
+    joined = _Joined(deck.bulk, {(0, g): g for g in main})
     try:
         for seid, part in _parts(deck):
             joined = _add(deck, joined, seid, part, notes)
+        found = tuple(_external(deck, joined, seid, matrices) for seid in external)
     except InputError as error:
         return replace(deck, refused=(*deck.refused, error))
-    return replace(deck, bulk=joined.bulk, warnings=(*deck.warnings, *notes))
+    return replace(deck, bulk=joined.bulk, external=found, warnings=(*deck.warnings, *notes))
 
 
-@dataclass(frozen=True, eq=False)
-class _Joined:
-    """What is joined so far: where each grid of each part (0: the main bulk) went."""
+def _external_ones(deck: Deck) -> list[int]:
+    return [k for k, c in deck.bulk.table("SEBULK").items() if c.type == _EXTERNAL]
 
-    bulk: Bulk
-    at: Mapping[tuple[int, int], int]
+
+def _external(deck: Deck, joined: _Joined, seid: int, matrices: Matrices) -> External:
+    """Read the matrices of an external superelement: on what its EXTRN cards name, in turn."""
+    place = deck.bulk.place("SEBULK", seid)
+    path = deck.assigned.get(deck.bulk.table("SEBULK")[seid].unitno)
+    if path is None:
+        raise place.error("its UNITNO is no unit of an ASSIGN INPUTT4 statement of the deck")
+    named = (
+        pair
+        for c in deck.parts[seid].listed("EXTRN")
+        for pair in zip(c.nodes, c.components, strict=True)
+    )
+    points = tuple(
+        (joined.at[seid, grid], int(digit)) for grid, digits in named for digit in digits
+    )
+    held = {n: m for n, m in matrices(path).items() if m.shape == (len(points), len(points))}
+    for K, M in (("KXX", "MXX"), ("KAA", "MAA"), ("KAAX", "MAAX")):
+        if K in held and M in held:
+            return External(points, held[K], held[M])
+    raise place.error(
+        f"{path} holds no KXX and MXX (KAA and MAA) of {len(points)} rows, as many as EXTRN names"
+    )
 
 
 def _parts(deck: Deck) -> Iterator[tuple[int, Bulk]]:
@@ -117,7 +157,7 @@ def _parts(deck: Deck) -> Iterator[tuple[int, Bulk]]:
         card = kinds.get(seid)
         kind = card.type if card else "PRIMARY"
         place = deck.bulk.place("SEBULK", seid)
-        if kind not in ("PRIMARY", "REPEAT"):
+        if kind not in ("PRIMARY", "REPEAT", _EXTERNAL):
             raise place.error(f"superelements of TYPE {kind} are not supported")
         source = card.rseid if card and kind == "REPEAT" else seid
         if source not in deck.parts:

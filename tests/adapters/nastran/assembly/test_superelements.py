@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.adapters.nastran import build_model, read_deck
+from trueup.adapters.nastran import build_model, read_deck, read_op4
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 
@@ -138,3 +138,44 @@ def test_cards_that_got_another_number_do_not_vary(frequencies):
     assert deck.bulk.replaced({("PSHELL", 1): fields})
     with pytest.raises(InputError, match="give it its own"):
         deck.bulk.replaced({("PSHELL", number): fields})
+
+
+EXTERNAL = """ASSIGN INPUTT4='{0}/outboard.op4',UNIT=101
+ASSIGN INPUTT4='{0}/inboard.op4',UNIT=102
+SOL SEMFREQ
+CEND
+METHOD = 1
+SUBCASE 1
+ANALYSIS = MODES
+SUPER = 0
+BEGIN BULK
+EIGR,1,AHOU,,,,100000
+INCLUDE '{0}/outboard.asm'
+INCLUDE '{0}/inboard.asm'
+INCLUDE '{0}/outboard.pch'
+INCLUDE '{0}/inboard.pch'
+ENDDATA
+"""
+
+
+def test_external_superelements_are_those_of_nx(data, tmp_path):
+    """Two components by EXTSEOUT, joined by their assembly punches: NX's 54 eigenvalues."""
+    folder, path = data / "matrices/superelements", tmp_path / "assemble.dat"
+    path.write_text(EXTERNAL.format(folder))
+    found = solve(build_model(read_deck(path)), 54)
+    (nx,) = (m for m in read_op4(folder / "nas2cam.op4") if m.name == "LAMBDA")
+    hertz = np.sqrt(np.maximum(nx.matrix.toarray().ravel(), 0.0)) / (2.0 * np.pi)
+    assert found.rigid_body_modes == 6
+    np.testing.assert_allclose(found.frequencies_hz[6:], hertz[6:], rtol=1e-6)
+
+
+def test_external_superelement_without_its_matrices_is_refused(data, tmp_path):
+    folder, path = data / "matrices/superelements", tmp_path / "assemble.dat"
+    text = EXTERNAL.format(folder)
+    for old, new, sentence in (
+        ("UNIT=102", "UNIT=103", "SEBULK 102 .*no unit of an ASSIGN INPUTT4"),
+        ("inboard.op4", "outboard.op4", "outboard.op4 holds no KXX and MXX .* of 32 rows"),
+    ):
+        path.write_text(text.replace(old, new))
+        with pytest.raises(InputError, match=sentence):
+            build_model(read_deck(path))

@@ -18,7 +18,18 @@ from trueup.adapters.nastran.deck.raw_cards import fields_of
 
 bdf = pytest.importorskip("pyNastran.bdf.bdf", reason="the peer is not installed")
 
-APART_AS_A_WHOLE = ("BND", "GENEL", "CWELD", "PWELD", "PCOMPS", "SE", "POINT", "CTRIAX6", "MAT3")
+APART_AS_A_WHOLE = (
+    "BND",
+    "GENEL",
+    "CWELD",
+    "PWELD",
+    "PCOMPS",
+    "SE",
+    "POINT",
+    "EXTRN",
+    "CTRIAX6",
+    "MAT3",
+)
 READ = {
     n: c
     for n, c in definitions().items()

@@ -1,0 +1,1 @@
+"""OUTPUT4 files, and what a matrix of Nastran is."""
