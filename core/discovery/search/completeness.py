@@ -83,7 +83,6 @@ class Completeness:
             self.gain > needed(self.best)
             and self.ahead > SEARCH.ahead
             and (self.agree > SEARCH.agree or self.left < SEARCH.small_part)
-            and len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
         )
 
     @property
@@ -93,7 +92,7 @@ class Completeness:
 
     @property
     def true(self) -> bool:
-        """Whether what is left is usual enough for what was found to be claimed.
+        """Whether hardly a mode is left and an error usual enough for what was found to be claimed.
 
         The larger a part of the error before it is, the more usual it has to be: two causes that
         look alike take away much of the error, the right one nearly all of it. Of modes that
@@ -101,7 +100,8 @@ class Completeness:
         """
         whole = np.count_nonzero(self.alone.diffuse.stray > 0.5) <= len(self.unexplained)
         least = SEARCH.usual_left * self.left if whole else 0.0
-        return bool(self.adequacy > max(MODEL_ERROR.adequate, least))
+        few = len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
+        return bool(few and self.adequacy > max(MODEL_ERROR.adequate, least))
 
     @property
     def adequacy(self) -> float:
