@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Unpack
 
 from ..core.errors import InputError, Place, path_of
-from ..core.results.inspection import ConvertTables
 from .delivery import is_empty, losses, target_of
 from .exchange import KINDS, Boundary, Cargo, cargo_of, load
-from .options import Files, Say, checked_call, unheard
+from .options import Files, PlantOptions, Say, checked_call, unheard
 from .sources import Source, existing
 from .study import converted
+from .write_fmu import PLANTS, Converted, write_fmu
 
-_MOST, _LONGEST = 4, 200
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Converted(ConvertTables):
-    """What `convert` wrote, and what it had to leave out."""
+_MOST, _LONGEST, _MODES = 4, 200, 20
 
 
 @checked_call
@@ -32,17 +27,19 @@ def convert(
     to: str | None = None,
     subcase: int | None = None,
     boundary: str | None = None,
-    modes: int = 20,
+    modes: int | None = None,
     fmax: float | None = None,
     lossy: bool = False,
     force: bool = False,
     progress: Say = unheard,
+    **plant: Unpack[PlantOptions],
 ) -> Converted:
     """Write what one or several sources hold in another format.
 
     Results, matrices, universal files and stores go into universal files (.unv, .uff), stores
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
-    gives them geometry and axes.
+    gives them geometry and axes. A unit for simulators (.fmu), and the same state space as arrays
+    (.npz, .mat), is made of modes: see `write_fmu`.
 
     Parameters
     ----------
@@ -58,13 +55,16 @@ def convert(
         Reduce a deck (Craig-Bampton) to these grids, ``"11, 20-25, 31:123"``, and component modes;
         a note says how far the reduced model's frequencies are off.
     modes, fmax : int, float, optional
-        How many component modes, and up to which frequency [Hz].
+        How many component modes (default 20), and up to which frequency [Hz]; of a plant as for
+        `write_fmu`.
     lossy : bool
         Leave out what the destination cannot hold.
     force : bool
         Replace a destination that exists.
     progress : callable
         Told what is done, a few words at a time.
+    **plant
+        `PlantOptions`, of a .fmu, .npz or .mat alone.
 
     Returns
     -------
@@ -79,6 +79,15 @@ def convert(
     path = path_of(destination, "the destination")
     to = converted("to", to, str | None, Place(shown="convert"))
     subcase = converted("subcase", subcase, int | None, Place(shown="convert"))
+    if path.suffix.lower() in PLANTS and to is None:
+        if boundary is not None:
+            raise InputError("a plant has no boundary; what it has are inputs and outputs")
+        return write_fmu(
+            sources, path, modes=modes, fmax=fmax, from_=from_, subcase=subcase, force=force,
+            progress=progress, **plant,
+        )  # fmt: skip
+    if plant:
+        raise InputError(f"convert: '{next(iter(plant))}' is of {', '.join(PLANTS)} alone")
     target = target_of(path, to)
     reduced = _boundary(boundary, modes, fmax)
     files = _files(sources)
@@ -111,10 +120,11 @@ def convert(
     )
 
 
-def _boundary(grids: str | None, modes: int, fmax: float | None) -> Boundary | None:
+def _boundary(grids: str | None, modes: int | None, fmax: float | None) -> Boundary | None:
     who = Place(shown="convert")
     grids = converted("boundary", grids, str | None, who)
-    modes, fmax = converted("modes", modes, int, who), converted("fmax", fmax, float | None, who)
+    modes = converted("modes", _MODES if modes is None else modes, int, who)
+    fmax = converted("fmax", fmax, float | None, who)
     if modes < 1:
         raise InputError(f"modes={modes}: give 1 or more")
     return Boundary(grids, modes, fmax) if grids is not None else None

@@ -9,6 +9,7 @@ from inspect import signature
 from typing import ParamSpec, TypedDict, TypeVar
 
 from ..core.errors import InputError, path_of
+from ..core.statespace.damping_choice import Asked
 from .study import StageRequest, Study, merge, read_study, unknown
 
 Files = str | os.PathLike[str]
@@ -93,6 +94,27 @@ class DiscoverOptions(CorrelateOptions, total=False):
     adopt: str | None
 
 
+class PlantOptions(TypedDict, total=False):
+    """What a plant can be told.
+
+    ``inputs`` and ``outputs`` as in "1187:+Z,tip=1187:RZ" and "1187:+Z:acc,40:+X,@3:+Y:vel" (@ is
+    a sensor of the test of a run); ``fmi``, 2 or 3; ``damping``, a ratio, one a mode,
+    "1:0.01,2:0.02,0.015", "test", "deck" (None: what test and deck know, 1 % where they do not);
+    ``residual`` (True), modes for the static contribution of what is left out; ``rigid_body``
+    (True), rigid-body modes; ``units``, "si" or "deck"; ``deck_length_unit`` ("m", "mm", "in",
+    "ft").
+    """
+
+    inputs: str | Sequence[str]
+    outputs: str | Sequence[str]
+    fmi: int
+    damping: Asked
+    residual: bool
+    rigid_body: bool
+    units: str
+    deck_length_unit: str | None
+
+
 def study_of(
     verb: str, study: Study | Files | None, given: Mapping[str, object], known: Mapping[str, object]
 ) -> Study:
@@ -116,9 +138,11 @@ def checked_call(verb: Callable[P, R]) -> Callable[P, R]:
     """Return a verb that refuses a keyword it does not know, as the verbs that compare do.
 
     The verb raises `InputError` that names the keyword and those that are known, and one for a
-    `progress` that cannot be called.
+    `progress` that cannot be called. Those of `PlantOptions` count where the verb takes more.
     """
-    known = list(signature(verb).parameters)
+    taken = signature(verb).parameters.values()
+    known = [p.name for p in taken if p.kind is not p.VAR_KEYWORD]
+    known += PlantOptions.__annotations__ if len(known) < len(taken) else ()
 
     @wraps(verb)
     def call(*args: P.args, **given: P.kwargs) -> R:

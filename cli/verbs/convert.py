@@ -1,7 +1,7 @@
 """``trueup convert SRC... DST``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -33,14 +33,47 @@ def convert(
                      "31:123) and component modes (Craig-Bampton)."),
     ] = None,
     modes: Annotated[
-        int, typer.Option("--modes", "-n", help="Number of component modes.")
-    ] = 20,
+        int | None,
+        typer.Option("--modes", "-n", help="Number of component modes [default: 20], or of a "
+                     "plant [default: 30]."),
+    ] = None,
     fmax: Annotated[
-        float | None, typer.Option("--fmax", help="Highest frequency of component modes [Hz].")
+        float | None, typer.Option("--fmax", help="Highest frequency of component modes, upper "
+                                   "end of the band of a plant [Hz]."),
     ] = None,
     lossy: Annotated[
         bool, typer.Option("--lossy", help="Leave out what DST cannot hold.")
     ] = False,
+    inputs: Annotated[
+        str | None,
+        typer.Option(metavar="GRID:DIR,...", help="Forces and moments into a plant: 1187:+Z,40:RX"),
+    ] = None,
+    outputs: Annotated[
+        str | None,
+        typer.Option(metavar="GRID:DIR[:vel|acc],...", help="Motions out of it: tip=40:+X:acc; "
+                     "@7:+Z is a sensor of the test of a run."),
+    ] = None,
+    fmi: Annotated[
+        int | None, typer.Option(metavar="2|3", help="Version of FMI. [default: 2]")
+    ] = None,
+    damping: Annotated[
+        str | None,
+        typer.Option(metavar="RATIO|test|deck|K:RATIO,...", help="[default: what test and deck "
+                     "know, 0.01 where they do not]"),
+    ] = None,
+    residual: Annotated[
+        bool | None,
+        typer.Option("--residual/--no-residual", help="Residual modes for what is left out."),
+    ] = None,
+    rigid_body: Annotated[
+        bool | None, typer.Option("--rigid-body/--no-rigid-body", help="Rigid-body modes.")
+    ] = None,
+    units: Annotated[
+        str | None, typer.Option(metavar="si|deck", help="Of a plant. [default: si]")
+    ] = None,
+    deck_length_unit: Annotated[
+        str | None, typer.Option(metavar="m|mm|in|ft", help="Where a deck does not say it.")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace DST if it exists.")] = False,
     json: JsonOption = None,
     quiet: QuietOption = False,
@@ -49,7 +82,8 @@ def convert(
 
     Results, matrices, universal files and stores go into universal files (.unv, .uff), stores
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
-    gives them geometry and axes.
+    gives them geometry and axes. A deck, a run folder or modes become a unit for simulators (.fmu)
+    or a state space (.npz, .mat) with --inputs and --outputs.
     """
     from ...verbs.convert import convert as write
 
@@ -57,10 +91,17 @@ def convert(
     if len(files) < 2:
         raise InputError("give at least one source and the destination: convert SRC... DST")
     *sources, destination = files
+    plant = {
+        "inputs": inputs, "outputs": outputs, "fmi": fmi, "damping": damping,
+        "residual": residual, "rigid_body": rigid_body, "units": units,
+        "deck_length_unit": deck_length_unit,
+    }  # fmt: skip
+    given: Any = {name: value for name, value in plant.items() if value is not None}
     with working("reading", output) as say:
         done = write(
             sources, destination, from_=source_format, to=target_format, subcase=subcase,
             boundary=boundary, modes=modes, fmax=fmax, lossy=lossy, force=force, progress=say,
+            **given,
         )  # fmt: skip
     emit_json(done.to_dict(), output)
     if speaks(output):

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         TrueupError as TrueupError,
     )
     from .core.updating.residuals import register_residual as register_residual
-    from .verbs.convert import Converted as Converted, convert as convert
+    from .verbs.convert import convert as convert
     from .verbs.correlate import correlate as correlate
     from .verbs.discover import discover as discover
     from .verbs.identify import Identified as Identified, identify as identify
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         CorrelateOptions as CorrelateOptions,
         DiscoverOptions as DiscoverOptions,
         ParametersOptions as ParametersOptions,
+        PlantOptions as PlantOptions,
         UpdateOptions as UpdateOptions,
     )
     from .verbs.parameters import (
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
     from .verbs.sources import read_deck as read_deck, read_test as read_test
     from .verbs.study import Study as Study
     from .verbs.update import update as update
+    from .verbs.write_fmu import Converted as Converted, write_fmu as write_fmu
 
 __version__ = "0.1.0"
 
@@ -81,14 +83,14 @@ __getattr__, __all__ = lazy_names(
         ".core.data.parametric_model": "Model",
         ".core.errors": "CheckError InputError TrueupError",
         ".core.updating.residuals": "register_residual",
-        ".verbs.convert": "Converted convert",
+        ".verbs.convert": "convert",
         ".verbs.correlate": "correlate",
         ".verbs.discover": "discover",
         ".verbs.identify": "Identified identify",
         ".verbs.inspect": "Inspected inspect",
         ".verbs.open_run": "open_run",
         ".verbs.options": "CompareOptions CorrelateOptions DiscoverOptions ParametersOptions "
-        "UpdateOptions",
+        "PlantOptions UpdateOptions",
         ".verbs.parameters": "MovableParameters parameters",
         ".verbs.read": "read",
         ".verbs.report": "report",
@@ -97,6 +99,7 @@ __getattr__, __all__ = lazy_names(
         ".verbs.sources": "read_deck read_test",
         ".verbs.study": "Study",
         ".verbs.update": "update",
+        ".verbs.write_fmu": "Converted write_fmu",
     },
 )
 

@@ -1,0 +1,80 @@
+"""The kernel compiled by what is at hand: the system's compiler, or the package `ziglang`."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+KERNEL = Path(__file__).parent / "kernel"
+SOURCES = ("plant.c", "fmi2.c", "fmi3.c")
+HEADERS = ("plant.h",)
+
+PLATFORMS = {
+    "linux64": ("x86_64-linux", "x86_64-linux-gnu.2.17", ".so"),
+    "win64": ("x86_64-windows", "x86_64-windows-gnu", ".dll"),
+    "darwin64": ("x86_64-darwin", "x86_64-macos", ".dylib"),
+    "linux-aarch64": ("aarch64-linux", "aarch64-linux-gnu.2.17", ".so"),
+    "darwin-aarch64": ("aarch64-darwin", "aarch64-macos", ".dylib"),
+}
+"""By the folder of FMI 2.0: that of FMI 3.0, the target as `zig` says it, the suffix."""
+_FLAGS = ("-std=c99", "-O2", "-ftree-vectorize", "-fPIC", "-shared", "-fvisibility=hidden", "-s")
+_SECONDS = 120.0
+
+
+def binaries() -> Mapping[str, bytes]:
+    """Return the kernel for each platform of `PLATFORMS` that can be compiled for; maybe none."""
+    return {name: made for name in _reachable() if (made := _compiled(name)) is not None}
+
+
+def _reachable() -> Sequence[str]:
+    own = _own_platform()
+    if find_spec("ziglang") is not None:
+        return tuple(PLATFORMS)
+    return (own,) if own else ()
+
+
+def _own_platform() -> str | None:
+    if sys.platform == "linux":
+        known = {"x86_64": "linux64", "aarch64": "linux-aarch64"}
+        return known.get(platform.machine())
+    if sys.platform == "darwin":
+        return "darwin-aarch64" if platform.machine() == "arm64" else "darwin64"
+    return "win64" if sys.platform == "win32" and sys.maxsize > 2**32 else None
+
+
+def _compilers(name: str) -> list[list[str]]:
+    found = []
+    if name == _own_platform():
+        own = [os.environ.get("CC", ""), "cc", "gcc", "clang"]
+        found += [[path] for c in own if c and (path := shutil.which(c))][:1]
+    if find_spec("ziglang") is not None:
+        found.append([sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[name][1]])
+    return found
+
+
+@cache
+def _compiled(name: str) -> bytes | None:
+    for compiler in _compilers(name):
+        with TemporaryDirectory(prefix="trueup-kernel-") as folder:
+            for source in (*SOURCES, *HEADERS):
+                shutil.copyfile(KERNEL / source, Path(folder) / source)
+            command = [*compiler, *_FLAGS, *SOURCES, "-o", "kernel"]
+            command += [] if name == "win64" else ["-lm"]
+            try:
+                done = subprocess.run(
+                    command, cwd=folder, capture_output=True, timeout=_SECONDS, check=False
+                )
+            except (OSError, subprocess.TimeoutExpired):
+                continue
+            made = Path(folder) / "kernel"
+            if done.returncode == 0 and made.is_file():
+                return made.read_bytes()
+    return None
