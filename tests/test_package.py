@@ -297,4 +297,6 @@ def test_the_wheel_works_on_its_own(tmp_path: Path) -> None:
     ).stdout
     assert "trueup/py.typed" in names
     assert "trueup/adapters/report/page.css" in names
+    for source in ("plant.h", "plant.c", "fmi2.c", "fmi3.c"):
+        assert f"trueup/adapters/fmu/kernel/{source}" in names
     assert "licenses/LICENSE" in names

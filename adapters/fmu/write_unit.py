@@ -76,7 +76,7 @@ def _data(plant: ModalPlant, token: str) -> bytes:
         plant.frequencies_hz,
         plant.damping,
         nominals(plant),
-        plant.drive,
+        plant.drive.T,
         plant.quantity,
         plant.sense.T,
     )

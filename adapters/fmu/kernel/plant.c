@@ -15,27 +15,47 @@ static int fail(Plant *p, const char *sentence) {
 
 /* ---- modes ---------------------------------------------------------------------------- */
 
-static void accelerations(const Plant *p, const double *x, const double *u, double *a) {
-    for (size_t k = 0; k < p->modes; k++) {
-        const double *b = p->B + k * p->inputs, w = TWO_PI * p->f[k];
-        double force = 0.0;
-        for (size_t j = 0; j < p->inputs; j++) force += b[j] * u[j];
-        a[k] = force - 2.0 * p->z[k] * w * x[2 * k + 1] - w * w * x[2 * k];
+static void forces(const Plant *p, const double *u, double *restrict push) {
+    memset(push, 0, p->modes * sizeof *push);
+    for (size_t j = 0; j < p->inputs; j++) {
+        const double *restrict b = p->B + j * p->modes, force = u[j];
+        for (size_t k = 0; k < p->modes; k++) push[k] += b[k] * force;
     }
 }
 
-static void outputs(const Plant *p, const double *x, const double *a, double *y) {
-    memset(y, 0, p->outputs * sizeof *y);
+static void accelerations(const Plant *p, const double *x, const double *push, double *a) {
     for (size_t k = 0; k < p->modes; k++) {
-        const double *row = p->P + k * p->outputs, of[] = {x[2 * k], x[2 * k + 1], a[k]};
-        for (int s = 0; s < QUANTITIES; s++)
-            for (size_t i = p->first[s]; i < p->first[s + 1]; i++) y[i] += row[i] * of[s];
+        const double w = TWO_PI * p->f[k];
+        a[k] = push[k] - 2.0 * p->z[k] * w * x[2 * k + 1] - w * w * x[2 * k];
     }
+}
+
+static void outputs(const Plant *p, const double *x, const double *a, double *restrict y) {
+    memset(y, 0, p->outputs * sizeof *y);
+    for (size_t k = 0; k < p->modes; k += 2) { /* two modes at a time; the last may be alone */
+        const size_t next = k + 1 < p->modes ? k + 1 : k;
+        const double *restrict row = p->P + k * p->outputs;
+        const double *restrict other = p->P + next * p->outputs;
+        const double one[] = {x[2 * k], x[2 * k + 1], a[k]}, pair = next > k;
+        const double two[] = {pair * x[2 * next], pair * x[2 * next + 1], pair * a[next]};
+        for (int s = 0; s < QUANTITIES; s++) {
+            const double of = one[s], and = two[s];
+            for (size_t i = p->first[s]; i < p->first[s + 1]; i++)
+                y[i] += row[i] * of + other[i] * and;
+        }
+    }
+}
+
+static void push(Plant *p) {
+    if (p->pushed) return;
+    forces(p, p->u, p->push);
+    p->pushed = 1;
 }
 
 static void know(Plant *p) {
     if (p->known) return;
-    accelerations(p, p->x, p->u, p->a);
+    push(p);
+    accelerations(p, p->x, p->push, p->a);
     outputs(p, p->x, p->a, p->y);
     p->known = 1;
 }
@@ -88,10 +108,10 @@ int plant_advance(Plant *p, double from, double by) {
             exponential(p->f[k], p->z[k], by, p->step + 5 * k);
         p->held = by;
     }
+    push(p);
     for (size_t k = 0; k < p->modes; k++) {
-        const double *c = p->step + 5 * k, *b = p->B + k * p->inputs;
-        double q = p->x[2 * k], v = p->x[2 * k + 1], force = 0.0;
-        for (size_t j = 0; j < p->inputs; j++) force += b[j] * p->u[j];
+        const double *c = p->step + 5 * k, force = p->push[k];
+        const double q = p->x[2 * k], v = p->x[2 * k + 1];
         p->x[2 * k] = c[0] * q + c[1] * v + c[4] * force;
         p->x[2 * k + 1] = c[2] * q + c[3] * v + c[1] * force;
     }
@@ -153,6 +173,7 @@ int plant_set(Plant *p, const unsigned vr[], size_t n, const double value[]) {
         }
         all[kind][i] = value[j];
         p->known = 0;
+        if (kind == INPUT) p->pushed = 0;
     }
     return OK;
 }
@@ -166,6 +187,7 @@ void plant_set_states(Plant *p, const double x[]) {
 int plant_sensitivity(Plant *p, const unsigned unknown[], size_t n, const unsigned known[],
                       size_t m, const double seed[], double value[]) {
     double *x = p->seed, *u = x + 2 * p->modes, *a = u + p->inputs, *y = a + p->modes;
+    double *force = y + p->outputs;
     size_t i;
     int moved = 0, read = 0;
     memset(x, 0, (2 * p->modes + p->inputs) * sizeof *x);
@@ -179,7 +201,10 @@ int plant_sensitivity(Plant *p, const unsigned unknown[], size_t n, const unsign
         int kind = kind_of(p, unknown[j], &i);
         if (kind != OUTPUT && kind != DERIVATIVE)
             return fail(p, "derivatives are of outputs and of the derivatives of states only");
-        if (!moved++) accelerations(p, x, u, a);
+        if (!moved++) {
+            forces(p, u, force);
+            accelerations(p, x, force, a);
+        }
         if (kind == OUTPUT && !read++) outputs(p, x, a, y);
         value[j] = kind == OUTPUT ? y[p->place[i]] : i % 2 ? a[i / 2] : x[i + 1];
     }
@@ -194,7 +219,7 @@ double *plant_snapshot(const Plant *p) {
 
 void plant_restore(Plant *p, const double snapshot[]) {
     memcpy(p->time, snapshot, p->length * sizeof *snapshot);
-    p->known = 0;
+    p->known = p->pushed = 0;
     p->held = -1.0;
 }
 
@@ -203,7 +228,7 @@ void plant_restore(Plant *p, const double snapshot[]) {
 void plant_reset(Plant *p) {
     memset(p->time, 0, p->length * sizeof *p->time);
     memcpy(p->f, p->file, 2 * p->modes * sizeof *p->f);
-    p->known = 0;
+    p->known = p->pushed = 0;
     p->held = -1.0;
 }
 
@@ -265,7 +290,7 @@ static const char *load(Plant *p, const char *resources, const char *token) {
     size_t ny = p->outputs = (size_t)head[3], all = 4 * n + n * nu + ny + n * ny;
     p->file = malloc((all + 1) * sizeof(double));
     p->length = 1 + 4 * n + nu;
-    p->time = calloc(p->length + n + ny + 3 * n + nu + ny + 5 * n, sizeof(double));
+    p->time = calloc(p->length + 11 * n + nu + 2 * ny, sizeof(double));
     p->place = malloc((ny + 1) * sizeof(size_t));
     size_t got = p->file && p->time && p->place ? fread(p->file, sizeof(double), all, stream) : 0;
     fclose(stream);
@@ -278,10 +303,11 @@ static const char *load(Plant *p, const char *resources, const char *token) {
     p->u = p->x + 2 * n;
     p->f = p->u + nu;
     p->z = p->f + n;
-    p->a = p->z + n;
+    p->push = p->z + n;
+    p->a = p->push + n;
     p->y = p->a + n;
     p->seed = p->y + ny;
-    p->step = p->seed + 3 * n + nu + ny;
+    p->step = p->seed + 4 * n + nu + ny;
     size_t at = 0;
     for (int s = 0; s < QUANTITIES; s++) {
         p->first[s] = at;

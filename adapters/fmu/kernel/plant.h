@@ -1,6 +1,6 @@
 /* A modal state space: what FMI 2.0 (fmi2.c) and FMI 3.0 (fmi3.c) have in common.
 
-   Mode k, of modal mass 1:  q'' + 2 z w q' + w^2 q = sum_j B[k][j] u[j],  w = 2 pi f.
+   Mode k, of modal mass 1:  q'' + 2 z w q' + w^2 q = sum_j B[j][k] u[j],  w = 2 pi f.
    Output i: sum_k P[k][i] times q, q' or q''. Value references, without gaps: inputs, outputs,
    states (q, q' of each mode in turn), their derivatives, frequencies f [Hz], damping ratios z,
    time. */
@@ -22,9 +22,9 @@ struct Plant {
     double *file;                 /* what was read: f, z, nominal, B, quantities, P */
     size_t length;                /* of what a snapshot holds: */
     double *time, *x, *u, *f, *z;
-    double *a, *y, *seed;         /* accelerations, outputs in the order of P, room to work */
+    double *push, *a, *y, *seed;  /* modal forces, accelerations, outputs in the order of P, room */
     double *step, held;           /* five numbers a mode that step by `held` seconds */
-    int known;                    /* a and y belong to the present state */
+    int pushed, known;            /* push belongs to the present inputs, a and y to all */
     Report report;
     void *environment, *logger;
     char *name;
