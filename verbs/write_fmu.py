@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Unpack
@@ -90,12 +90,14 @@ def write_fmu(
     if version not in (2, 3):
         raise InputError(f"fmi={version} is no version of FMI that can be written; give 2 or 3")
     progress("solving")
+    platforms = asked.pop("platforms", None) or ()
+    platforms = platforms.split(",") if isinstance(platforms, str) else platforms
     inputs, outputs = asked.pop("inputs", ""), asked.pop("outputs", "")
     plant, notes = plant_of(
         source, inputs, outputs, modes=modes, fmax=fmax, from_=from_, subcase=subcase, **asked
     )
     progress("writing")
-    name, more = writer(path, plant, version)
+    name, more = writer(path, plant, version, tuple(str(p).strip() for p in platforms))
     every = source if isinstance(source, list | tuple) else [source]
     return Converted(
         sources=tuple(str(s) for s in every if isinstance(s, str | os.PathLike)),
@@ -112,26 +114,31 @@ def write_fmu(
     )
 
 
-def _unit(path: Path, plant: ModalPlant, version: int) -> tuple[str, list[str]]:
+def _unit(
+    path: Path, plant: ModalPlant, version: int, platforms: Sequence[str]
+) -> tuple[str, list[str]]:
     from ..adapters.fmu import write_unit
+    from ..adapters.fmu.build_kernel import PLATFORMS
 
-    compiled = write_unit(path, plant, version)
+    compiled = write_unit(path, plant, version, platforms)
     if compiled:
-        return f"FMI {version}.0 unit for {', '.join(compiled)}", []
+        lost = sorted(set(PLATFORMS if "all" in platforms else platforms) - set(compiled))
+        said = f"no compiler at hand makes a binary for {', '.join(lost)}: pip install ziglang"
+        return f"FMI {version}.0 unit for {', '.join(compiled)}", [said] if lost else []
     return f"FMI {version}.0 source unit", [
         "no C compiler is at hand, so the unit holds its sources only; install one, or "
         "pip install 'trueup[fmu]', or let the simulator compile it"
     ]
 
 
-def _arrays(path: Path, plant: ModalPlant, _: int) -> tuple[str, list[str]]:
+def _arrays(path: Path, plant: ModalPlant, *_: object) -> tuple[str, list[str]]:
     from ..adapters.fmu import write_state_space
 
     write_state_space(path, plant)
     return "state space", []
 
 
-PLANTS: dict[str, Callable[[Path, ModalPlant, int], tuple[str, list[str]]]] = {
+PLANTS: dict[str, Callable[[Path, ModalPlant, int, Sequence[str]], tuple[str, list[str]]]] = {
     ".fmu": _unit,
     ".npz": _arrays,
     ".mat": _arrays,

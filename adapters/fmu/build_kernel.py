@@ -13,6 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from ...core.errors import InputError
+
 KERNEL = Path(__file__).parent / "kernel"
 SOURCES = ("plant.c", "fmi2.c", "fmi3.c")
 HEADERS = ("plant.h",)
@@ -26,19 +28,28 @@ PLATFORMS = {
 }
 """By the folder of FMI 2.0: that of FMI 3.0, the target as `zig` says it, the suffix."""
 _FLAGS = ("-std=c99", "-O2", "-ftree-vectorize", "-fPIC", "-shared", "-fvisibility=hidden", "-s")
-_SECONDS = 120.0
+_SECONDS = 900.0
+"""`zig` compiles the libraries of a platform when it is first asked for it."""
 
 
-def binaries() -> Mapping[str, bytes]:
-    """Return the kernel for each platform of `PLATFORMS` that can be compiled for; maybe none."""
-    return {name: made for name in _reachable() if (made := _compiled(name)) is not None}
+def binaries(platforms: Sequence[str] = ()) -> Mapping[str, bytes]:
+    """Return the kernel for some platforms, the own one unless others are named, or for "all".
 
+    Those that no compiler at hand can make are absent.
 
-def _reachable() -> Sequence[str]:
+    Raises
+    ------
+    InputError
+        A platform that is not in `PLATFORMS`.
+    """
     own = _own_platform()
-    if find_spec("ziglang") is not None:
-        return tuple(PLATFORMS)
-    return (own,) if own else ()
+    wanted = list(platforms) or ([own] if own else [])
+    wanted = list(PLATFORMS) if "all" in wanted else wanted
+    for name in wanted:
+        if name not in PLATFORMS:
+            known = ", ".join(PLATFORMS)
+            raise InputError(f"the platform '{name}' is not known; give all, or some of {known}")
+    return {name: made for name in wanted if (made := _compiled(name)) is not None}
 
 
 def _own_platform() -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import struct
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,9 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 VERSIONS = (2, 3)
 
 
-def write_unit(path: Path, plant: ModalPlant, version: int = 2) -> tuple[str, ...]:
+def write_unit(
+    path: Path, plant: ModalPlant, version: int = 2, platforms: Sequence[str] = ()
+) -> tuple[str, ...]:
     """Write a unit for model exchange and co-simulation.
 
     The same plant, kernel and compiler give the same bytes.
@@ -33,6 +36,8 @@ def write_unit(path: Path, plant: ModalPlant, version: int = 2) -> tuple[str, ..
     plant : ModalPlant
     version : {2, 3}
         FMI 2.0 or 3.0.
+    platforms : sequence of str
+        What to compile for, by the folders of FMI 2.0, or "all"; default: where this runs.
 
     Returns
     -------
@@ -43,13 +48,13 @@ def write_unit(path: Path, plant: ModalPlant, version: int = 2) -> tuple[str, ..
     Raises
     ------
     InputError
-        Another version, or a file that cannot be written.
+        Another version, a platform that is not known, or a file that cannot be written.
     """
     if version not in VERSIONS:
         raise InputError(f"fmi={version!r} is no version of FMI that can be written; give 2 or 3")
     name = path.stem
     token = _token(plant)
-    compiled = binaries()
+    compiled = binaries(platforms)
     files: dict[str, bytes] = {
         "modelDescription.xml": model_description(plant, version, name, token, SOURCES).encode(),
         "resources/plant.bin": _data(plant, token),

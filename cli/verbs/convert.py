@@ -56,6 +56,11 @@ def convert(
     fmi: Annotated[
         int | None, typer.Option(metavar="2|3", help="Version of FMI. [default: 2]")
     ] = None,
+    platforms: Annotated[
+        str | None,
+        typer.Option(metavar="linux64,win64,...|all", help="What a unit has binaries for. "
+                     "[default: where this runs]"),
+    ] = None,
     damping: Annotated[
         str | None,
         typer.Option(metavar="RATIO|test|deck|K:RATIO,...", help="[default: what test and deck "
@@ -92,8 +97,8 @@ def convert(
         raise InputError("give at least one source and the destination: convert SRC... DST")
     *sources, destination = files
     plant = {
-        "inputs": inputs, "outputs": outputs, "fmi": fmi, "damping": damping,
-        "residual": residual, "rigid_body": rigid_body, "units": units,
+        "inputs": inputs, "outputs": outputs, "fmi": fmi, "platforms": platforms,
+        "damping": damping, "residual": residual, "rigid_body": rigid_body, "units": units,
         "deck_length_unit": deck_length_unit,
     }  # fmt: skip
     given: Any = {name: value for name, value in plant.items() if value is not None}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -44,7 +45,7 @@ def run_blocks(path: Path, monkeypatch: pytest.MonkeyPatch, skipped: set[str]) -
             exec(compile(text, str(path), "exec"), space)
         for line in text.splitlines() if language == "sh" else ():
             if line.startswith("trueup "):
-                monkeypatch.setattr("sys.argv", line.split())
+                monkeypatch.setattr("sys.argv", shlex.split(line))
                 assert run() == 0, line
 
 
@@ -69,6 +70,17 @@ def test_a_tutorial_runs_as_it_stands(
 ) -> None:
     with contextlib.redirect_stdout(io.StringIO()):
         run_blocks(prepared(name, folder), monkeypatch, {"slow"})
+
+
+@pytest.mark.slow
+def test_the_unit_in_a_loop_is_the_direct_solution(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("fmpy", reason="FMPy is not installed: pip install FMPy")
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        run_blocks(DOCS / "simulation.md", monkeypatch, set())
+    assert "11598 degrees of freedom directly, and the unit beside" in said.getvalue()
+    assert (folder / "plant.fmu").is_file()
 
 
 @pytest.mark.slow

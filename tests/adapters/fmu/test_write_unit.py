@@ -92,3 +92,9 @@ def test_arrays_hold_the_state_space_with_names_and_units(tmp_path: Path) -> Non
         assert np.array_equal(matlab[key], matrix)
     assert arrays["output_units"].tolist() == ["m", "rad/s", "m/s2", "m", "m/s2"]
     assert [str(n[0]) for n in matlab["input_names"].ravel()][2] == "push"
+
+
+def test_platforms_that_are_not_known_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the platform 'amiga' is not known; give all, or some of"):
+        write_unit(tmp_path / "plant.fmu", plant(), 2, ["amiga"])
+    assert not list(tmp_path.iterdir())
