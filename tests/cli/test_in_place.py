@@ -42,7 +42,7 @@ def test_update_in_place(call: Call, nested: Path, tmp_path: Path, option: str) 
     before = files_of(nested)
     run = tmp_path / "run"
     said = call(
-        "update", nested / "duct.bdf", nested / "duct_test.unv", "-p", "PBAR 11 I1",
+        "update", nested / "duct.bdf", nested / "duct_test.unv", "-p", "PBAR 11 I2",
         "--residuals", "frequencies", "--max-iterations", "1", "--out", run, option,
     )  # fmt: skip
     assert said.status == 0, said.err
@@ -62,7 +62,7 @@ def test_update_in_place(call: Call, nested: Path, tmp_path: Path, option: str) 
     deck = read_deck_text(nested / "duct.bdf")
     from trueup.adapters.nastran import FieldRef, read_value
 
-    assert read_value(deck, FieldRef("PBAR", 11, "I1")) == value
+    assert read_value(deck, FieldRef("PBAR", 11, "I2")) == value
     diff = (run / "changes.diff").read_bytes()
     assert b"--- a/rings/front.blk" in diff
     assert b"-PBAR    11" in diff
