@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -174,8 +174,18 @@ def _of_cargo(cargo: Any) -> PlantSource:
         names = ", ".join(cargo.modes)
         raise InputError(f"the source holds several sets of modes ({names}); give one of them")
     unit = cargo.geometry.length_unit if cargo.geometry is not None else None
-    (modes,) = cargo.modes.values()
-    return PlantSource(modes=modes, length_unit=unit, notes=tuple(cargo.notes))
+    ((kind, modes),) = cargo.modes.items()
+    modes, said = _weighed(modes) if kind == "analysis" else (modes, ())
+    return PlantSource(modes=modes, length_unit=unit, notes=(*cargo.notes, *said))
+
+
+def _weighed(modes: Modes) -> tuple[Modes, tuple[str, ...]]:
+    """Take analysis modes of which no mass is told as Nastran normalises them by default."""
+    largest = np.abs(modes.shapes).max(axis=0, initial=0.0)
+    if not np.isnan(modes.generalized_mass).all() or np.allclose(largest, 1.0, atol=_SAME):
+        return modes, ()
+    note = f"{modes.source} says no generalised masses: its modes are taken to be of unit mass"
+    return replace(modes, generalized_mass=np.ones(len(modes))), (note,)
 
 
 def _rows(outputs: Sequence[Channel], found: PlantSource) -> sp.csr_matrix:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -119,6 +120,21 @@ def test_modes_alone_give_the_same_plant_as_their_deck(tmp_path: Path) -> None:
     one, other = arrays(tmp_path / "of_modes.npz"), arrays(tmp_path / "of_deck.npz")
     for hz in (3.0, 40.0):
         assert responses(one, hz) == pytest.approx(responses(other, hz), rel=1e-9)
+
+
+def test_modes_without_masses_are_of_unit_mass_unless_their_largest_motion_is(
+    tmp_path: Path,
+) -> None:
+    solved = trueup.solve(beam(tmp_path, "$ units: m, kg, N, s"), 5).shapes
+    asked = {"inputs": "3:Y", "outputs": "3:Y", "deck_length_unit": "m"}
+    bare = replace(solved, generalized_mass=np.full(5, np.nan))
+    told = trueup.write_fmu(bare, tmp_path / "bare.npz", **asked)
+    assert any("its modes are taken to be of unit mass" in w for w in told.warnings)
+    trueup.write_fmu(solved, tmp_path / "whole.npz", **asked)
+    assert np.array_equal(arrays(tmp_path / "bare.npz")["B"], arrays(tmp_path / "whole.npz")["B"])
+    by_largest = replace(bare, shapes=solved.shapes / np.abs(solved.shapes).max(axis=0))
+    with pytest.raises(trueup.InputError, match=r"mode 1 of .* has no generalised mass"):
+        trueup.write_fmu(by_largest, tmp_path / "largest.npz", **asked)
 
 
 def test_a_run_gives_damping_and_sensors_of_its_test(tmp_path: Path) -> None:
