@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ....core.arrays import Floats
 from ....core.data.coordinate_systems import frame_of_points
@@ -288,6 +287,8 @@ def _joints(joined: _Joined, seid: int, xyz: Mapping[int, Floats], part: Bulk) -
 def _coincident(
     joined: _Joined, seid: int, xyz: Mapping[int, Floats], tolerance: float
 ) -> dict[int, int]:
+    from scipy.spatial import cKDTree
+
     there = _positions(joined.bulk)
     if not there or not xyz:
         return {}

@@ -20,7 +20,7 @@ def test_an_element_is_one_of_the_core_and_finds_its_properties_and_grids(card):
     assert {kind.shape for kind in kinds} == {kinds[0].shape}
     assert card.number == "eid"
     assert all(name in definitions() for name in card.properties.split())
-    assert card.properties or card.moves or card.more
+    assert card.properties or card.moves or card.more or "MID" in card.others
     assert card.grid_fields or "nodes" in card.extra.split()
     if card.element.material:
         assert len(card.grid_fields) >= kinds[-1].nodes
