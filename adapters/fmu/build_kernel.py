@@ -27,7 +27,16 @@ PLATFORMS = {
     "darwin-aarch64": ("aarch64-darwin", "aarch64-macos", ".dylib"),
 }
 """By the folder of FMI 2.0: that of FMI 3.0, the target as `zig` says it, the suffix."""
-_FLAGS = ("-std=c99", "-O2", "-ftree-vectorize", "-fPIC", "-shared", "-fvisibility=hidden", "-s")
+_FLAGS = (
+    "-std=c99",
+    "-DOLD_GLIBC",
+    "-O2",
+    "-ftree-vectorize",
+    "-fPIC",
+    "-shared",
+    "-fvisibility=hidden",
+    "-s",
+)
 _SECONDS = 900.0
 """`zig` compiles the libraries of a platform when it is first asked for it."""
 

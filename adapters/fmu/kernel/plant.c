@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__GLIBC__) && defined(__x86_64__) /* or else a binary made here needs glibc 2.29 */
+#if defined(OLD_GLIBC) && defined(__GLIBC__) && defined(__x86_64__) /* 2.14 is enough, not 2.29 */
 __asm__(".symver exp,exp@GLIBC_2.2.5");
 #endif
 
