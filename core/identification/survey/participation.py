@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,10 +95,15 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
         return None
     functions = _less_beside(raw, survey, tops, level)
     weight = 1.0 / np.maximum(np.linalg.norm(functions, axis=(1, 2)), 1e-300)
+    reach = np.arange(-SURVEY.signs_lines, SURVEY.signs_lines + 1)
+    about = [np.unique(np.clip(t + reach, 0, len(level) - 1)) for t in tops]
+    near = np.unique(np.concatenate(about))
+    functions = functions[..., near]
+    about = [np.searchsorted(near, lines) for lines in about]
     for _ in range(SURVEY.signs_rounds):
         gram = np.einsum("o,oin,ojn->nij", weight, functions, functions.conj(), optimize=True)
         square, directions = np.linalg.eigh(gram)
-        lines, scale, peak = _ruled(np.sqrt(np.maximum(square[:, ::-1], 0.0)), tops)
+        lines, scale, peak = _ruled(np.sqrt(np.maximum(square[:, ::-1], 0.0)), about)
         if not len(lines):
             return None
         own, part = functions[..., lines] * scale, directions[lines, :, -1].T
@@ -126,19 +132,18 @@ def _not_along(functions: Numbers, part: Numbers) -> Floats:
     return np.asarray(1.0 - along / np.maximum(total, 1e-300))
 
 
-def _ruled(size: Floats, tops: Ints) -> tuple[Ints, Floats, Ints]:
+def _ruled(size: Floats, about: Sequence[Ints]) -> tuple[Ints, Floats, Ints]:
     """Return lines at which one mode rules, weights that make peaks equal, the peak of each line.
 
     Parameters
     ----------
     size : (n_line, n_value) float
         Singular values.
-    tops : (n_peak,) int
+    about : sequence of (k,) int
+        The lines about each peak.
     """
     clear = size[:, 0] > SURVEY.signs_clear * np.sum(size[:, 1:2], axis=1)
-    reach = np.arange(-SURVEY.signs_lines, SURVEY.signs_lines + 1)
-    about = [np.clip(t + reach, 0, len(size) - 1) for t in tops]
-    kept = [np.unique(lines[clear[lines]]) for lines in about if clear[lines].any()]
+    kept = [lines[clear[lines]] for lines in about if clear[lines].any()]
     if len(kept) < SURVEY.signs_peaks:
         return np.empty(0, np.int64), np.empty(0), np.empty(0, np.int64)
     weight = [np.full(len(k), 1.0 / np.linalg.norm(size[k, 0])) for k in kept]
