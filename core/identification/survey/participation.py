@@ -9,7 +9,7 @@ import numpy as np
 from scipy.signal import find_peaks, peak_widths
 
 from ...arrays import Floats, Ints, Numbers
-from .survey_data import Survey, noise_levels
+from .survey_data import Survey, few_at_a_time, noise_levels
 from .survey_numbers import SURVEY
 
 
@@ -93,12 +93,11 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
     tops, _ = find_peaks(decibel, prominence=SURVEY.signs_prominence_db)
     if len(tops) < SURVEY.signs_peaks:
         return None
-    functions = _less_beside(raw, survey, tops, level)
-    weight = 1.0 / np.maximum(np.linalg.norm(functions, axis=(1, 2)), 1e-300)
     reach = np.arange(-SURVEY.signs_lines, SURVEY.signs_lines + 1)
     about = [np.unique(np.clip(t + reach, 0, len(level) - 1)) for t in tops]
     near = np.unique(np.concatenate(about))
-    functions = functions[..., near]
+    functions, whole = _less_beside(raw, survey, tops, level, near)
+    weight = 1.0 / np.maximum(whole, 1e-300)
     about = [np.searchsorted(near, lines) for lines in about]
     for _ in range(SURVEY.signs_rounds):
         gram = np.einsum("o,oin,ojn->nij", weight, functions, functions.conj(), optimize=True)
@@ -113,17 +112,26 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
     return Followed(own, noise, part, peak)
 
 
-def _less_beside(functions: Numbers, survey: Survey, tops: Ints, level: Floats) -> Numbers:
-    """Take off the mean of the lines a few typical half-power bandwidths to either side."""
+def _less_beside(
+    functions: Numbers, survey: Survey, tops: Ints, level: Floats, near: Ints
+) -> tuple[Numbers, Floats]:
+    """Take off the mean of the lines a few typical half-power bandwidths to either side.
+
+    Returned are the functions at the lines `near`, and the norm over all lines, (n_output,).
+    """
     width = float(np.median(peak_widths(level**2, tops, rel_height=0.5)[0]))
     reach = max(round(SURVEY.signs_beside * width), SURVEY.signs_lines + 1)
-    result = np.zeros_like(functions)
-    for lines in (survey.lines(*ends) for ends in survey.ranges):
-        own, kept = functions[..., lines], result[..., lines]
-        if own.shape[2] > 2 * reach:
-            beside = own[..., : -2 * reach] + own[..., 2 * reach :]
-            kept[..., reach:-reach] = own[..., reach:-reach] - 0.5 * beside
-    return result
+    result = np.empty((*functions.shape[:2], len(near)), functions.dtype)
+    whole = np.empty(len(functions))
+    for some in few_at_a_time(functions):
+        left = np.zeros_like(functions[some])
+        for lines in (survey.lines(*ends) for ends in survey.ranges):
+            own, kept = functions[some][..., lines], left[..., lines]
+            if own.shape[2] > 2 * reach:
+                beside = own[..., : -2 * reach] + own[..., 2 * reach :]
+                kept[..., reach:-reach] = own[..., reach:-reach] - 0.5 * beside
+        result[some], whole[some] = left[..., near], np.linalg.norm(left, axis=(1, 2))
+    return result, whole
 
 
 def _not_along(functions: Numbers, part: Numbers) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -224,10 +224,17 @@ def noise_levels(values: Numbers) -> Floats:
         scale but for a few lines, which a median does not see.
     """
     levels = np.empty(values.shape[:2])
-    for o, function in enumerate(values):
-        rough = np.abs(np.diff(function, n=4, axis=1))
-        levels[o] = np.median(rough, axis=1) / np.sqrt(70.0 * np.log(2.0))
+    for some in few_at_a_time(values):
+        rough = np.abs(np.diff(values[some], n=4, axis=2))
+        levels[some] = np.median(rough, axis=2) / np.sqrt(70.0 * np.log(2.0))
     return levels
+
+
+def few_at_a_time(values: Numbers) -> Iterator[slice]:
+    """Yield slices of outputs of (n_output, n_input, n_line) values that a cache holds."""
+    step = max(SURVEY.cached // max(values[0].size, 1), 1) if len(values) else 1
+    for first in range(0, len(values), step):
+        yield slice(first, first + step)
 
 
 def _axis(

@@ -7,6 +7,7 @@ from ...number_table import ROUNDING, SURVEYS, number
 
 @dataclass(frozen=True)
 class SurveyNumbers:
+    cached: int = number(100_000, "values", "of functions that are worked on at a time", "time")
     lines_least: int = number(16, "lines", "of a survey", SURVEYS)
     model_error: float = number(0.01, "of a response", "error that it is assumed to have besides its noise", SURVEYS)
     too_smooth: float = number(1e-5, "noise over rms", "below which functions were computed, not measured", SURVEYS)
