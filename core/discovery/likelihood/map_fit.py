@@ -1,6 +1,7 @@
 """Fit known parameters and the magnitudes of suspects together, on the small basis."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -140,7 +141,7 @@ def fit(
 
     `nuisance` (n_parameter + 1,), see `Fit`, of which the `active` entries move, and the
     magnitudes of the suspects are a start; places stay. `tolerance` is the smallest fall of the
-    objective that counts, and that is looked for.
+    objective that counts, and that is looked for. A step to where a mass is negative is too long.
     """
     now = evaluate(problem, np.array(nuisance), suspects)
     damping = 0.0
@@ -154,10 +155,11 @@ def fit(
             step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
-            trial = stepped(problem, now, active, np.clip(step, -reach, reach))
-            if trial.objective < now.objective:
-                better, damping = trial, LIKELIHOOD.damping_down * damping
-                break
+            with suppress(np.linalg.LinAlgError):
+                trial = stepped(problem, now, active, np.clip(step, -reach, reach))
+                if trial.objective < now.objective:
+                    better, damping = trial, LIKELIHOOD.damping_down * damping
+                    break
             damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:
             break
