@@ -16,6 +16,8 @@ class CorrelationNumbers:
     on_model: float = number(0.9, "of the sensors", "on the model that prove a very small test to be a part of it", CHECK)
     reading: float = number(0.05, "of the rms of a shape", "error of a reading besides that of the fit: gain, place, model", "modal tests")
     little: float = number(0.5, "weight", "below which a sensor is named", CHECK)
+    nasa: tuple[float, float, float] = number((5.0, 0.90, 0.10), "%, -, -", "frequency, cross-orthogonality of pairs, and of others, asked by NASA for payloads", "NASA-STD-5002")
+    air_force: tuple[float, float, float] = number((3.0, 0.95, 0.10), "%, -, -", "the same asked by the US Air Force", "SMC-S-004")
     named: int = number(8, "sensors", "that a sentence names", "what a reader takes in")
 
 

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from ..arrays import Floats, Ints, Numbers, frozen, require_shape
 from ..correlation.mac import realised
 from ..correlation.mode_pairing import Correlation
+from ..correlation.sensor_criteria import comac
 from ..errors import InputError
 from ..noun import Noun
 from .localisation_numbers import MAPS
@@ -115,26 +116,6 @@ def misfit(
         frozen(comac(shapes.analysis, shapes.test)),
         frozen(deviation / frequency_sigma),
     )
-
-
-def comac(analysis: Floats, test: Floats) -> Floats:
-    """Coordinate modal assurance criterion of each sensor, (n_sensor,).
-
-    (sum |a t|)^2 / (sum a^2 sum t^2) over paired shapes (n_sensor, n_pair), NaN where a sensor
-    does not move. Each test shape is brought to unit length first, so that every pair counts
-    alike.
-
-    References
-    ----------
-    Lieven, Ewins (1988), Spatial correlation of mode shapes, the coordinate modal assurance
-    criterion (COMAC), IMAC VI.
-    """
-    length = np.linalg.norm(test, axis=0)
-    length = np.where(length > 0, length, 1.0)
-    a, t = analysis / length, test / length
-    top = np.sum(np.abs(a * t), axis=1) ** 2
-    bottom = np.sum(a**2, axis=1) * np.sum(t**2, axis=1)
-    return np.asarray(np.divide(top, bottom, out=np.full(len(a), np.nan), where=bottom > 0))
 
 
 def spread(values: Floats, sensor_xyz: Floats, grid_xyz: Floats) -> Floats:

@@ -6,7 +6,7 @@ import pytest
 from trueup.core.correlation.mac import mac
 from trueup.core.correlation.mode_pairing import Criteria, correlate
 from trueup.core.errors import InputError
-from trueup.core.localisation.shape_misfit import comac, misfit, paired_shapes, spread
+from trueup.core.localisation.shape_misfit import misfit, paired_shapes, spread
 from trueup.core.localisation.shape_noise import given_noise
 
 N, M = 60, 8
@@ -125,20 +125,6 @@ def test_no_pairs_is_refused():
     assert not found.pairs
     with pytest.raises(InputError, match="no pair of modes"):
         misfit(found, paired_shapes(found, analysis(), noise), given_noise(noise, 0.02))
-
-
-def test_comac_by_hand():
-    a = np.array([[1.0, 2.0], [1.0, 1.0], [0.0, 0.0]])
-    t = np.array([[1.0, 2.0], [1.0, 2.0], [0.0, 0.0]])
-    length = np.linalg.norm(t, axis=0)
-    x, y = a / length, t / length
-    by_hand = (abs(x[1] * y[1]).sum()) ** 2 / ((x[1] ** 2).sum() * (y[1] ** 2).sum())
-    np.testing.assert_allclose(comac(a, t), [1.0, by_hand, np.nan])
-    assert by_hand < 1.0
-    np.testing.assert_allclose(comac(a, -t), comac(a, t))
-
-
-# ------------------------------------------------------------------ spreading
 
 
 def test_constant_maps_stay_constant_also_far_away():
