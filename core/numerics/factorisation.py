@@ -1,7 +1,7 @@
 """Sparse symmetric factorisation by the best direct solver present.
 
 MKL PARDISO where the optional ``mkl`` wheel is installed, else scipy's SuperLU without pivoting
-on a minimum degree order of the nodes. Which one is used is an argument, never a global setting.
+on a fill-reducing order of the nodes. Which one is used is an argument, never a global setting.
 """
 
 import warnings

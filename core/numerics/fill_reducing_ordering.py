@@ -6,14 +6,15 @@ import scipy.sparse.linalg as spla
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..arrays import Ints
+from .nested_dissection import dissected
 
 
 def nodal_order(a: sp.csr_matrix, groups: Ints | None = None) -> Ints:
-    """Return an order of minimum degree of a symmetric matrix, (n,): rows as to be eliminated.
+    """Return an order of a symmetric matrix, (n,): rows as to be eliminated.
 
     The rows of a group are ordered as one: that takes a fraction of the time, and the fill is
-    smaller (Ashcraft 1995, *Compressed graphs and the minimum degree algorithm*). Ties are broken
-    by the order given or by that of reverse Cuthill-McKee, whichever fills less.
+    smaller (Ashcraft 1995, *Compressed graphs and the minimum degree algorithm*). What is bulky
+    is dissected, the rest ordered by minimum degree.
 
     Parameters
     ----------
@@ -30,26 +31,30 @@ def nodal_order(a: sp.csr_matrix, groups: Ints | None = None) -> Ints:
     )
     graph = (member @ pattern @ member.T).tocsr()
     weight = np.bincount(group, minlength=count)
-    banded = reverse_cuthill_mckee(graph, symmetric_mode=True)
-    ranks = [_minimum_degree(graph, start, weight) for start in (np.arange(count), banded)]
-    rank = min(ranks, key=lambda found: found[1])[0]
+    rank = np.empty(count, np.int64)
+    rank[dissected(graph, weight, _least_fill)] = np.arange(count)
     return np.argsort(rank[group], kind="stable")
 
 
+def _least_fill(graph: sp.csr_matrix, weight: Ints) -> Ints:
+    """Order nodes by minimum degree, ties broken as given or by reverse Cuthill-McKee."""
+    banded = reverse_cuthill_mckee(graph, symmetric_mode=True)
+    found = [_minimum_degree(graph, start, weight) for start in (np.arange(len(weight)), banded)]
+    return min(found, key=lambda order_and_fill: order_and_fill[1])[0]
+
+
 def _minimum_degree(graph: sp.csr_matrix, start: Ints, weight: Ints) -> tuple[Ints, float]:
-    """Rank of each node, from SuperLU's order of the graph numbered by `start`, and its fill."""
+    """SuperLU's order of the nodes of a graph numbered by `start`, and its fill."""
     dominant = graph[start][:, start].tocsc()
     dominant.data[:] = -1.0
     dominant = (dominant + sp.diags(np.diff(dominant.indptr) + 1.0)).tocsc()
     lu = spla.splu(
         dominant, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
-    rank = np.empty(len(start), np.int64)
-    rank[start] = lu.perm_c
-    size = np.empty(len(start))
-    size[lu.perm_c] = weight[start]
+    order = start[np.argsort(lu.perm_c)]
+    size = weight[order].astype(float)
     columns = np.repeat(size, np.diff(lu.L.indptr))
-    return rank, float(columns @ size[lu.L.indices])
+    return order, float(columns @ size[lu.L.indices])
 
 
 def _alike(pattern: sp.csr_matrix) -> Ints:
