@@ -33,7 +33,7 @@ def _root(
 
 
 def _register() -> None:
-    from .options import DISCOVER, PARAMETERS, UPDATE, comparing
+    from .options import CORRELATE, DISCOVER, PARAMETERS, UPDATE, comparing
     from .verbs.comparing import correlate, discover, update
     from .verbs.convert import convert
     from .verbs.demo import demo
@@ -49,7 +49,7 @@ def _register() -> None:
     app.command("export-runs")(export_runs)
     app.command()(solve)
     app.command()(identify)
-    app.command()(comparing(correlate))
+    app.command()(comparing(correlate, CORRELATE))
     app.command()(comparing(update, UPDATE, changes_deck=True))
     app.command()(comparing(discover, DISCOVER, changes_deck=True))
     app.command()(comparing(parameters, PARAMETERS, needs_test=False))
@@ -105,6 +105,8 @@ _WORDS = {
     " deck_length_unit=": " --deck-length-unit ",
     "with deck_length_unit": "with --deck-length-unit",
     "modes= gives": "--modes gives",
+    "leave modes= out, or reduction=": "leave --modes out, or --reduction",
+    "reduction= needs": "--reduction needs",
     "from_='": "--from '",
     "to='": "--to '",
 }

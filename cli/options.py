@@ -101,6 +101,13 @@ _STUDY: dict[str, Any] = {
     "out": _option(Path, "The run folder to write.", metavar="DIR"),
 }  # fmt: skip
 
+CORRELATE: dict[str, Any] = {
+    "reduction": _option(
+        str, "Orthogonality of the pairs, and test shapes expanded to all grids, by the model "
+        "reduced to the sensors so.", metavar="serep|guyan|irs",
+    ),
+}  # fmt: skip
+
 UPDATE: dict[str, Any] = {
     "residuals": _option(
         str, "What the update minimises; several with commas. [default: both]",

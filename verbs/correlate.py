@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Unpack
 
+from ..core.correlation.pair_expansion import expand_pairs
+from ..core.errors import InputError
 from ..core.results.correlation import compared
+from ..core.results.orthogonality import orthogonality_tables
 from .analysis import both_given, correlated, named, read_analysis
 from .options import CorrelateOptions, Files, study_of
 from .run import Correlated, content_of
@@ -51,12 +54,20 @@ def correlate(
     modes = asked.modes if modes is None else modes
     side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance), modes)
+    if asked.reduction and modes is not None:
+        raise InputError(
+            "reduction= needs the modes of the deck's own matrices; leave modes= out, or reduction="
+        )
     found = correlated(analysis, side, asked)
-    tables = compared(found)
+    tables, told, expanded = compared(found), None, None
+    if asked.reduction:
+        pairs = expand_pairs(found, analysis.model, asked.reduction, analysis.rigid_body_modes)
+        told, expanded = orthogonality_tables(found, pairs), pairs.modes
     return Correlated(
         **vars(tables),
         deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
-        content=content_of(found, tables),
+        orthogonality=told,
+        content=content_of(found, tables, expanded=expanded),
         study=named(asked, analysis.deck, side, modes),
     )

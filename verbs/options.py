@@ -47,9 +47,14 @@ class CompareOptions(TypedDict, total=False):
 
 
 class CorrelateOptions(CompareOptions, total=False):
-    """What ``correlate`` can be told: `CompareOptions`, and ``parameters`` of the model."""
+    """What ``correlate`` can be told besides `CompareOptions`.
+
+    ``parameters`` of the model; ``reduction`` of its mass to the sensors ("serep", "guyan", "irs"),
+    for the orthogonality of the pairs and their test shapes expanded to all grids (None: neither).
+    """
 
     parameters: str | Sequence[str] | None
+    reduction: str | None
 
 
 class UpdateOptions(CompareOptions, total=False):
@@ -80,7 +85,7 @@ class ParametersOptions(CompareOptions, total=False):
     shape_sigma: float | None
 
 
-class DiscoverOptions(CorrelateOptions, total=False):
+class DiscoverOptions(CompareOptions, total=False):
     """What ``discover`` can be told besides `CompareOptions`.
 
     ``parameters`` that may be off besides the usual ones, as on the command line;
@@ -89,6 +94,7 @@ class DiscoverOptions(CorrelateOptions, total=False):
     "none"), which of the known parameters that moved along are written into the deck.
     """
 
+    parameters: str | Sequence[str] | None
     frequency_scatter: float | None
     shape_scatter: float | None
     adopt: str | None

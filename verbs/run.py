@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Self
 from ..adapters.nastran.editing.changed_deck import ChangedDeck
 from ..adapters.store import StoreContent
 from ..core.correlation.comparison import Comparison
+from ..core.data.modes import Modes
 from ..core.noun import BESIDE
 from ..core.results.correlation import Compared, CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
@@ -127,6 +128,7 @@ def content_of(
     final: Compared,
     after: Comparison | None = None,
     history: Sequence[Iteration] = (),
+    expanded: Modes | None = None,
 ) -> StoreContent:
     """Return the neutral model of a run.
 
@@ -140,9 +142,13 @@ def content_of(
         Of the changed deck.
     history : sequence of Iteration
         Of an update.
+    expanded : Modes, optional
+        Test shapes on the dofs of the analysis.
     """
     last = after or before
     modes = {"test": before.test, "analysis": before.analysis}
+    if expanded is not None:
+        modes["test expanded"] = expanded
     return StoreContent(
         geometry=before.geometry,
         test_geometry=before.placed.test_geometry,

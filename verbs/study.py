@@ -59,6 +59,7 @@ class Study:
     frequency_scatter: float | None = None
     shape_scatter: float | None = None
     adopt: str = "significant"
+    reduction: str | None = None
     regularisation: float = 1e-2
     write_undetermined: bool = False
     stages: tuple[StageRequest, ...] = ()
@@ -106,9 +107,12 @@ class Study:
     def _require_accepted(self) -> None:
         """Refuse what the core accepts in no run, before any file is read."""
         from ..core.identification.survey.wanted_ranges import wanted_ranges
+        from ..core.reduction.model_at_sensors import require_method
         from ..core.updating.residuals import residuals_named
 
         _ = self.criteria, self.weights
+        if self.reduction is not None:
+            require_method(self.reduction)
         wanted_ranges(self.fmin, self.fmax, self.bands)
         for key, least in (("identify_modes", 1), ("max_order", 2)):
             value = getattr(self, key)

@@ -82,16 +82,19 @@ def _size(shapes: Floats, mass: Floats) -> Floats:
 def unmet(found: Orthogonality, deviations_percent: Floats, asked: Requirement) -> tuple[str, ...]:
     """Say what of a requirement the pairs do not meet; nothing where they meet all.
 
+    Told are a deviation, a cross-orthogonality of a pair, one beside the pairs, and one of two test
+    modes (own).
+
     `found` is of the pairs alone, in their order, whose deviations (n_pair,) are given.
     """
     off = ~np.eye(len(found.own), dtype=bool)
     deviation, diagonal = _most(np.abs(deviations_percent)), _least(np.diag(found.cross))
     cross, own = _most(found.cross[off]), _most(found.own[off])
     checks = (
-        (deviation <= asked.deviation_percent, "frequency", f"{deviation:.1f} %"),
-        (diagonal >= asked.diagonal, "cross-orthogonality of a pair", f"{diagonal:.2f}"),
-        (cross <= asked.off_diagonal, "cross-orthogonality beside the pairs", f"{cross:.2f}"),
-        (own <= asked.off_diagonal, "orthogonality of two test modes", f"{own:.2f}"),
+        (deviation <= asked.deviation_percent, "deviation", f"{deviation:.1f} %"),
+        (diagonal >= asked.diagonal, "cross", f"{diagonal:.2f}"),
+        (cross <= asked.off_diagonal, "beside", f"{cross:.2f}"),
+        (own <= asked.off_diagonal, "own", f"{own:.2f}"),
     )
     return tuple(f"{what} {value}" for met, what, value in checks if not met)
 

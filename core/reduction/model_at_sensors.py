@@ -33,6 +33,12 @@ class ModelAtSensors(Noun):
     mass: Floats
 
 
+def require_method(method: str) -> None:
+    """Refuse what is no method of reduction (`InputError`)."""
+    if method not in METHODS:
+        raise InputError(f"reduction is '{method}'; give one of {', '.join(METHODS)}")
+
+
 def reduce_to_sensors(
     method: str,
     K: sp.csr_matrix,
@@ -66,8 +72,7 @@ def reduce_to_sensors(
     InputError
         No such method; SEREP of more modes than the sensors tell apart.
     """
-    if method not in METHODS:
-        raise InputError(f"reduction is '{method}'; give one of {', '.join(METHODS)}")
+    require_method(method)
     if method == "serep":
         T = _by_modes(sensors, modes)
     else:

@@ -12,8 +12,9 @@ import numpy as np
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.mode_pairing import Correlation, Criteria
-from ..noun import Noun, key
+from ..noun import OPTIONAL, Noun, key
 from . import export
+from .orthogonality import OrthogonalityTables
 from .plain import Table, Tables, finite
 
 _SHOWN = 12
@@ -193,6 +194,7 @@ class CorrelateTables(Compared, RunTables):
     verb = "correlate"
     deck_file: str = field(metadata=key("deck"))
     test_files: tuple[str, ...] = field(metadata=key("test"))
+    orthogonality: OrthogonalityTables | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def sources(self) -> tuple[str, tuple[str, ...]]:

@@ -211,3 +211,35 @@ def test_what_is_not_assembled_stands_in_no_ones_way(odd: Path, tmp_path: Path) 
         trueup.convert(odd, tmp_path / "odd.op4")
     changed = trueup.read_deck(odd)
     assert changed.text.files[0].data == odd.read_bytes()
+
+
+def test_orthogonality_is_told_where_it_is_asked_for(
+    found: trueup.Correlated, tmp_path: Path
+) -> None:
+    assert found.orthogonality is None
+    assert "orthogonality" not in found.to_dict()
+    told = trueup.correlate(*FILES, deck_length_unit="mm", reduction="serep")
+    assert told.orthogonality is not None
+    cross, own = told.orthogonality.cross, told.orthogonality.own
+    assert cross.shape == own.shape == (len(told.pairs), len(told.pairs))
+    for n, (row, pair) in enumerate(zip(told.orthogonality.pairs, told.pairs, strict=True)):
+        assert (row.test, row.analysis) == (pair.test, pair.analysis)
+        assert row.cross == cross[n, n] > 0.9
+        assert row.beside == max(np.delete(cross[n], n).max(), np.delete(cross[:, n], n).max())
+        assert row.own == np.delete(own[n], n).max()
+    asked = told.orthogonality.requirements
+    assert [r.name for r in asked] == ["NASA-STD-5002", "SMC-S-004"]
+    assert all(r.met == (not r.unmet) for r in asked)
+    again = trueup.open_run(told.save(tmp_path / "run"))
+    assert again.to_dict() == told.to_dict()
+    expanded = again.content.modes["test expanded"]
+    assert len(expanded) == len(told.pairs)
+    assert "Cross-orthogonality" in (tmp_path / "run" / "report.html").read_text()
+
+
+def test_orthogonality_needs_the_models_own_modes() -> None:
+    modes = trueup.solve(FILES[0], 12)
+    with pytest.raises(trueup.InputError, match="reduction= needs"):
+        trueup.correlate(*FILES, deck_length_unit="mm", modes=modes, reduction="irs")
+    with pytest.raises(trueup.InputError, match="one of serep, guyan, irs"):
+        trueup.correlate(*FILES, reduction="static")

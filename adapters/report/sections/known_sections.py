@@ -13,6 +13,7 @@ from .frequency_responses import FREQUENCY_RESPONSES
 from .gap import GAP
 from .mac_matrices import MAC_MATRICES
 from .moving_shapes import MOVING_SHAPES
+from .orthogonality import ORTHOGONALITY
 from .pairs import PAIRS
 from .parameters import PARAMETERS
 from .section import Section
@@ -28,6 +29,7 @@ SECTIONS: list[Section[Any]] = [
     DISAGREEMENT,
     PAIRS,
     MAC_MATRICES,
+    ORTHOGONALITY,
     MOVING_SHAPES,
     UNPAIRED_MODES,
     PARAMETERS,
