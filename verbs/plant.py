@@ -170,11 +170,12 @@ def _of_cargo(cargo: Any) -> PlantSource:
             "the source holds neither a deck nor modes; give a deck, a run folder, or results with "
             "modes (OP2, HDF5, universal file)"
         )
-    if len(cargo.modes) > 1:
-        names = ", ".join(cargo.modes)
+    normal = {name: m for name, m in cargo.modes.items() if not m.is_complex} or cargo.modes
+    if len(normal) > 1:
+        names = ", ".join(normal)
         raise InputError(f"the source holds several sets of modes ({names}); give one of them")
     unit = cargo.geometry.length_unit if cargo.geometry is not None else None
-    ((kind, modes),) = cargo.modes.items()
+    ((kind, modes),) = normal.items()
     modes, said = _weighed(modes) if kind == "analysis" else (modes, ())
     return PlantSource(modes=modes, length_unit=unit, notes=(*cargo.notes, *said))
 
@@ -217,7 +218,11 @@ def _known(found: PlantSource, basis: ModalBasis) -> dict[str, Floats]:
         first = np.searchsorted(found.modes.frequencies_hz, hz * (1.0 - _SAME))
         known["test"] = np.where(hz > 0.0, ratios[np.minimum(first, len(ratios) - 1)], np.nan)
     if found.deck is not None and found.model is not None and basis.vectors is not None:
-        known["deck"] = _of_deck(found.deck, found.model, basis)
+        from ..adapters.nastran.assembly.deck_damping import modal_ratios
+
+        said = modal_ratios(found.deck, found.model, hz, basis.vectors)
+        if said is not None:
+            known["deck"] = said
     return known
 
 
@@ -228,21 +233,6 @@ def _of_pairs(analysis_hz: Floats, ratios: Floats, hz: Floats, n: int) -> Floats
         if len(free):
             out[free[np.argmin(np.abs(hz[free] - f))]] = ratio
     return out
-
-
-def _of_deck(deck: Deck, model: Model, basis: ModalBasis) -> Floats:
-    """Return half of PARAM G and what the dashpots give each mode by itself."""
-    from ..adapters.nastran.discovery.build_structure import free_damping
-
-    w = 2.0 * np.pi * basis.frequencies_hz
-    structural, D = deck.param("G", 0.0) / 2.0, free_damping(deck, model)
-    if structural == 0.0 and D is None:
-        return np.full(len(w), np.nan)
-    ratios = np.full(len(w), structural)
-    X = basis.vectors
-    if D is not None and X is not None:
-        ratios += np.einsum("ij,ij->j", X, D @ X) / np.where(w > 0.0, 2.0 * w, np.inf)
-    return np.where(w > 0.0, ratios, np.nan)
 
 
 def _units(found: PlantSource, given: str | None) -> tuple[float, float, list[str]]:

@@ -110,6 +110,29 @@ def test_damping_of_the_deck_is_half_of_g_and_what_dashpots_give(tmp_path: Path)
     assert held["damping"][0] > 0.03
 
 
+def test_responses_are_those_of_nx_nastran_with_the_damping_of_its_table(tmp_path: Path) -> None:
+    """Modal frequency response of a free model (SOL 111, TABDMP1, WTMASS): single precision."""
+    op2 = pytest.importorskip("pyNastran.op2.op2")
+    deck = Path(__file__).parents[3] / "shared/data/nastran/seismic_mass/good_sine.dat"
+    if not deck.is_file():
+        pytest.skip("no shared data beside the repository")
+    results = op2.OP2(debug=False, log=None)
+    results.read_op2(str(deck.with_suffix(".op2")), combine=False)
+    outputs = ",".join(f"{g}:{c}" for g in (5, 9) for c in "XYZ")
+    asked = {"outputs": outputs, "fmax": 133.0, "units": "deck", "residual": False}
+    trueup.write_fmu(deck, tmp_path / "p.npz", inputs="1:X,1:Y,1:Z", **asked)
+    held = arrays(tmp_path / "p.npz")
+    for column, found in enumerate(results.displacements.values()):
+        rows = [found.node_gridtype[:, 0].tolist().index(g) for g in (5, 9)]
+        theirs = found.data[:, rows, :3].reshape(-1, 6) / 1e9
+        ours = np.array([responses(held, f)[:, column] for f in found._times.astype(float)])
+        assert np.abs(theirs).max() > 9e-9
+        assert np.abs(ours - theirs).max() < 1e-6 * np.abs(theirs).max()
+        bent = theirs[:, column + 3] - theirs[:, column]  # what is not rigid; none along X
+        ours_bent = ours[:, column + 3] - ours[:, column]
+        assert np.abs(bent - ours_bent).max() < 3e-4 * np.abs(bent).max() + 1e-15
+
+
 def test_modes_alone_give_the_same_plant_as_their_deck(tmp_path: Path) -> None:
     deck = beam(tmp_path, "$ units: m, kg, N, s")
     trueup.solve(deck, 6).write(tmp_path / "modes.h5")

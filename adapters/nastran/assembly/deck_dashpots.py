@@ -1,8 +1,4 @@
-"""Dashpots of a deck.
-
-They do not enter normal modes. Structural damping (GE, PARAM G) sits at no place in particular
-and is left to what a test says.
-"""
+"""Dashpots of a deck, which do not enter normal modes."""
 
 import numpy as np
 import scipy.sparse as sp

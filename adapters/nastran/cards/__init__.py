@@ -15,6 +15,7 @@ from ..deck.card_definition import Card
 from ..deck.movable_values import Moves
 from ..properties import (
     analysis_set,
+    damping_tables,
     deck_constraints,
     deck_coordinate_systems,
     dmig_input,
@@ -84,6 +85,7 @@ FAMILIES: list[Family] = [
     Family("coordinate systems", deck_coordinate_systems.CARDS),
     Family("materials", materials.CARDS),
     Family("temperature", thermal.CARDS),
+    Family("damping tables", damping_tables.CARDS),
     Family("non-structural mass", nonstructural.CARDS),
     Family("constraints", deck_constraints.CARDS),
     Family("rigid elements", rigid_elements.CARDS),

@@ -35,6 +35,8 @@ class CaseControl:
         Names of DMIG matrices; those of the p-set (PP) are for response analyses.
     analysis, loaded
         What the subcase is for, and whether loads stiffen its structure (STATSUB).
+    sdamping : int or None
+        Table of modal damping (TABDMP1).
     superelement : int
         The one that the subcase is for, 0 for the residual structure or all.
     of_parts : tuple of (superelement, (spc, mpc))
@@ -54,6 +56,7 @@ class CaseControl:
     m2pp: tuple[tuple[str, float], ...] = ()
     analysis: str = field(default="", compare=False)
     loaded: bool = field(default=False, compare=False)
+    sdamping: int | None = field(default=None, compare=False)
     superelement: int = field(default=0, compare=False)
     of_parts: tuple[tuple[int, tuple[int | None, int | None]], ...] = ()
 
@@ -119,6 +122,8 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         if option[:4] in ("BOTH", "MATE", "") and case.temperature is not None:
             return case
         return replace(case, temperature=number) if option else case
+    if key.startswith("SDAM") and not option.startswith("FLU"):
+        return replace(case, sdamping=number)
     if key == "SUPER":
         return replace(case, superelement=number or 0)
     if key.startswith("STATS"):

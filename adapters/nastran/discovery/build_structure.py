@@ -6,13 +6,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
-from ....core.data.parametric_model import Model
 from ....core.discovery.reduction.elements_and_supports import Members, Structure, Supports
 from ..assembly.build_model import Assembly, assemble, to_basic
-from ..assembly.deck_dashpots import damping_matrix
+from ..assembly.deck_damping import free_damping
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
-from ..properties.grids import Points, read_points
+from ..properties.grids import Points
 
 
 def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Structure:
@@ -34,15 +33,6 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
     return Structure(
         model, members, displacement, _supports(whole, displacement), free_damping(deck, model)
     )
-
-
-def free_damping(deck: Deck, model: Model) -> sp.csr_matrix | None:
-    """Return D of the deck's dashpots on the free degrees of freedom; None where it has none."""
-    D = damping_matrix(deck)
-    if D is None:
-        return None
-    motion = to_basic(read_points(deck.bulk)).T @ model.expansion
-    return (motion.T @ D @ motion).tocsr()
 
 
 def _supports(whole: Assembly, displacement: sp.csr_matrix) -> Supports | None:

@@ -10,13 +10,13 @@ from ....core.discovery.findings import Discovery
 from ....core.discovery.screening.completed_model import SolvedModel, sound_test
 from ....core.eigen.normal_modes import modes_of
 from ....core.errors import InputError
+from ..assembly.deck_damping import free_damping
 from ..assembly.read_back import read_back
 from ..deck.read_deck import Deck
 from ..editing.changed_deck import ChangedDeck
 from ..editing.set_values import set_values
 from ..fields.parameter_references import ParameterSpec, moved
 from ..text.deck_text import DeckText
-from .build_structure import free_damping
 from .write_effect import adopt
 from .writers.site import plain
 

@@ -25,8 +25,8 @@ _MATERIALS = {
 """Cards that name a table for each field of the material of the same number."""
 
 
-def _points(fields: Fields, _: Known) -> tuple[tuple[float, ...], ...]:
-    """X and y of a table; pairs with SKIP are left out."""
+def read_points(fields: Fields, _: Known) -> tuple[tuple[float, ...], ...]:
+    """Read x and y of a table; pairs with SKIP are left out."""
     pairs = [(k, fields[k : k + 2]) for k in range(9, _end(fields), 2)]
     kept = [k for k, pair in pairs if "SKIP" not in [str(text).upper() for text in pair]]
     x, y = ([take(fields, k + i, f"{name}:r!") for k in kept] for i, name in enumerate("xy"))
@@ -52,9 +52,9 @@ def _table(number: int, layout: str, more: Callable[[Fields, Known], Any], extra
 
 
 _TABLES = (
-    _table(1, "XAXIS:w=LINEAR YAXIS:w=LINEAR", _points, "x y"),
-    _table(2, "X1:r=0. EXTRAP:i=0", _points, "x y"),
-    _table(3, "X1:r! X2:r! EXTRAP:i=0", _points, "x y"),
+    _table(1, "XAXIS:w=LINEAR YAXIS:w=LINEAR", read_points, "x y"),
+    _table(2, "X1:r=0. EXTRAP:i=0", read_points, "x y"),
+    _table(3, "X1:r! X2:r! EXTRAP:i=0", read_points, "x y"),
     _table(4, "X1:r! X2:r! X3:r! X4:r!", _coefficients, "a"),
 )
 
@@ -166,8 +166,8 @@ def _value(bulk: Bulk, table: int, x: float, asked_by: Key) -> tuple[float, bool
     return _EVALUATE[name](card, x), name == "TABLEM1"
 
 
-def _interpolate(card: Values, x: float) -> float:
-    """Linear between points and beyond the ends."""
+def interpolated(card: Values, x: float) -> float:
+    """Return y of a table at x: linear between its points and beyond the ends."""
     xs, ys = np.array(card.x), np.array(card.y)
     if len(xs) == 1:
         return float(ys[0])
@@ -183,8 +183,8 @@ def _polynomial(card: Values, x: float) -> float:
 
 
 _EVALUATE: Mapping[str, Callable[[Values, float], float]] = {
-    "TABLEM1": _interpolate,
-    "TABLEM2": lambda card, x: _interpolate(card, x - card.x1),
-    "TABLEM3": lambda card, x: _interpolate(card, (x - card.x1) / card.x2),
+    "TABLEM1": interpolated,
+    "TABLEM2": lambda card, x: interpolated(card, x - card.x1),
+    "TABLEM3": lambda card, x: interpolated(card, (x - card.x1) / card.x2),
     "TABLEM4": _polynomial,
 }

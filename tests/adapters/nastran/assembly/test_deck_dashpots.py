@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, read_deck_text, write_deck
+from trueup.adapters.nastran.assembly.deck_damping import free_damping
 from trueup.adapters.nastran.assembly.deck_dashpots import damping_matrix
-from trueup.adapters.nastran.discovery.build_structure import free_damping
 from trueup.adapters.nastran.discovery.write_effect import adopt
 from trueup.core.discovery.findings import Finding, Where
 
