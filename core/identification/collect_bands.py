@@ -78,6 +78,8 @@ def assemble(
         return Modes(hz, shapes / size, survey.outputs, damping, mass, survey.source)
 
     indicator = _indicator_at(survey, t.hz)
+    measured = _measured(survey)
+    indicators = cmif(np.where(survey.measured[:, :, None], measured.values, 0.0))
     return Identification(
         modes=modes(p.shapes, p.size),
         real_modes=modes(p.real, p.real_size),
@@ -96,9 +98,9 @@ def assemble(
         remarks=of_modes(survey, t, p, quality, mpc, indicator),
         bands=backgrounds,
         rejected=rejected(fits, proposals, unwanted),
-        measured=_measured(survey),
+        measured=measured,
         chart=_joined_chart(fits, tuple(p.chart for p in proposals)),
-        cmif=_cmif(survey),
+        cmif=Indicator(survey.frequencies_hz, indicators),
         quantity=survey.quantity,
         window_decay=window,
         faults=survey.faults,
@@ -108,18 +110,12 @@ def assemble(
     )
 
 
-def _cmif(survey: Survey) -> Indicator:
-    return Indicator(survey.frequencies_hz, cmif(_as_given(survey)))
-
-
-def _as_given(survey: Survey) -> Numbers:
-    """Values of the quantity and in the units of the file."""
-    order = derivative_order(survey.quantity) - derivative_order("acceleration")
-    return np.asarray(survey.physical * (2j * np.pi * survey.frequencies_hz) ** order)
-
-
 def _measured(survey: Survey) -> Frfs:
-    values = np.where(survey.measured[:, :, None], _as_given(survey), np.nan)
+    """Functions of the quantity and in the units of the file."""
+    values = survey.physical
+    if order := derivative_order(survey.quantity) - derivative_order("acceleration"):
+        values *= (2j * np.pi * survey.frequencies_hz) ** order
+    values[~survey.measured] = np.nan
     places = survey.frequencies_hz, survey.outputs, survey.inputs
     return Frfs(*places, values, survey.quantity, survey.source)
 

@@ -78,17 +78,18 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers, error: 
     width = min(POLES.filter_smoothed, n_line)
     window = np.ones(width)
     smooth = np.convolve(level, window, "same") / np.convolve(np.ones(n_line), window, "same")
-    size = 2 * n_line
+    size = int(scipy.fft.next_fast_len(2 * n_line))
     scale = 1.0 / np.sqrt(np.maximum(smooth, 1e-300))
     offset = np.fft.fftfreq(size, 1.0 / size)
     widths, widest = POLES.filter_widths, POLES.filter_widest * n_line
     decay = np.array([w for w in widths if w <= widest] or [widths[0]])
     kernels = 1.0 / (1j * offset + decay[:, None])
-    filters = scipy.fft.fft(kernels).conj()
+    filters = scipy.fft.fft(kernels).conj().astype(np.complex64)  # enough to find a start
     grams = np.zeros((len(decay), n_line, n_input, n_input), complex)
     step = max(1, POLES.filter_at_once // (n_input * size))
     for first in range(0, n_output, step):
-        spectrum = scipy.fft.fft(residual[first : first + step] * scale, size)
+        functions = (residual[first : first + step] * scale).astype(np.complex64)
+        spectrum = scipy.fft.fft(functions, size)
         for d in range(len(decay)):
             filtered = scipy.fft.ifft(spectrum * filters[d])[..., :n_line]
             by_line = np.ascontiguousarray(filtered.transpose(2, 1, 0))

@@ -62,9 +62,14 @@ class BandData:
     error: float = 0.0
 
     @cached_property
+    def by_line(self) -> Floats:
+        """Sum of squares of what is to be explained at each line, (n_line,)."""
+        return np.asarray(np.einsum("oin,oin->n", self.y, self.y).reshape(2, -1).sum(axis=0))
+
+    @cached_property
     def power(self) -> float:
         """Sum of squares of what is to be explained."""
-        return float(np.sum(np.einsum("oin,oin->oi", self.y, self.y) * self.weight))
+        return float(self.by_line.sum())
 
     @cached_property
     def patterns(self) -> tuple[tuple[Floats, Ints], ...]:

@@ -196,9 +196,10 @@ def _try(data: BandData, f: Floats, fit: Fit, start: Fit) -> Fit | None:
 def _look(data: BandData, f: Floats, fit: Fit) -> tuple[Floats, Traces]:
     """Return the residual of a fit and the traces of roots in it."""
     left = residual_of(data, fit)
-    power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
     functions = without_shared_noise(unstacked(left))
-    return left, traces(f, functions, data.weight > 0.0, POLES.direction * data.error * power)
+    return left, traces(
+        f, functions, data.weight > 0.0, POLES.direction * data.error * data.by_line
+    )
 
 
 def _with_neighbours(

@@ -30,14 +30,13 @@ def is_shared_noise(data: BandData, f: Floats, fit: Fit) -> Bools:
 
     Roots beyond doubt have not: noise that was found to be noise is weaker.
     """
-    doubtful = significance(data, f, fit) < POLES.beyond_doubt
-    if not doubtful.any():
-        return np.asarray(doubtful)
     left = residual_lines(data, fit, basis(data, fit.poles, derivative=False))
     shape = _shared_shape(unstacked(left))
     along = np.abs(shape.conj() @ fit.shapes) ** 2
     alike = along > POLES.shared_shape * np.sum(np.abs(fit.shapes) ** 2, axis=0)
-    return np.asarray(alike & doubtful)
+    if alike.any():
+        alike &= significance(data, f, fit) < POLES.beyond_doubt
+    return np.asarray(alike)
 
 
 def _shared_shape(residual: Numbers) -> Numbers:

@@ -51,16 +51,13 @@ def visibility(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     are no modes. They are taken to reach 3 % of one function; a root on which n functions agree
     may be n times weaker. 1 where a mode is at that limit.
     """
-    n_line = len(f)
-    by_line = np.einsum("oin,oin->n", data.y, data.y)
-    energy = by_line[:n_line] + by_line[n_line:]
     own = energy_by_line(data, fit, F[:, 0])
     hz, half = np.abs(fit.poles) / (2.0 * np.pi), np.abs(fit.poles.real) / (2.0 * np.pi)
     result = np.empty(len(hz))
     for k in range(len(hz)):
         gap = np.abs(f - hz[k])
         near = gap <= max(half[k], float(gap.min()))
-        result[k] = own[near, k].sum() / max(float(energy[near].sum()), 1e-300)
+        result[k] = own[near, k].sum() / max(float(data.by_line[near].sum()), 1e-300)
     return np.asarray(result * (data.weight.sum() / POLES.seen) ** 2)
 
 
@@ -102,8 +99,10 @@ def best_of_noise(data: BandData, f: Floats, n_output: float) -> float:
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:
     """Return what the fit leaves, (n_output, n_input, 2 n_line), stacked."""
     model = parts_of(fit.shapes[:, None, :] * fit.participation[None, :, :])
-    left = data.y - onto(model, F[:, 0].reshape(len(F), 2 * len(fit.poles)).T)
-    return np.asarray(left * data.weight[:, :, None])
+    left = onto(model, F[:, 0].reshape(len(F), 2 * len(fit.poles)).T)
+    np.subtract(data.y, left, out=left)
+    left[data.weight == 0.0] = 0.0
+    return left
 
 
 def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
@@ -115,20 +114,19 @@ def row_variances(data: BandData, f: Floats, fit: Fit, F: Floats) -> Floats:
     left = residual_lines(data, fit, F)
     n_line = len(f)
     inflation = colour(left, f, fit)
-    power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
-    power /= 2.0 * data.weight.sum()
+    power = data.by_line / (2.0 * data.weight.sum())
     hz = np.abs(fit.poles) / (2.0 * np.pi)
     half = np.maximum(2.0 * np.abs(fit.poles.real) / np.pi, 6.0 * np.median(np.diff(f)))
     result = np.empty((len(hz), len(data.weight)))
     for k in range(len(hz)):
         mask = np.abs(f - hz[k]) <= half[k]
         mask[np.argsort(np.abs(f - hz[k]))[: POLES.near_least]] = True
-        near = np.flatnonzero(mask)
+        near = np.flatnonzero(mask)  # one stretch, for the lines rise
         used = np.count_nonzero(np.abs(hz - hz[k]) <= half[k])
         share = used / len(near) / max(1.0, data.weight.sum(axis=1).mean())
         spent = max(1.0 - share, POLES.spent_least)
-        here = left[..., np.concatenate([near, near + n_line])]
-        squares = np.einsum("oin,oin->oi", here, here) / (2.0 * len(near) * spent)
+        here = left.reshape(*data.weight.shape, 2, n_line)[..., near[0] : near[-1] + 1]
+        squares = np.einsum("oicn,oicn->oi", here, here) / (2.0 * len(near) * spent)
         mean = squares.sum() / data.weight.sum()
         squares = (squares * 2.0 * len(near) + POLES.prior * mean) / (2.0 * len(near) + POLES.prior)
         part = data.weight * np.abs(fit.participation[:, k]) ** 2

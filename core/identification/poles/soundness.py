@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...arrays import Bools, Floats
+from ...arrays import Bools, Floats, Numbers
 from ..quality import phase_collinearity
 from .moments import BandData, basis
 from .pole_numbers import POLES
@@ -29,8 +29,7 @@ def survey_error(fits: Iterable[tuple[BandData, Floats, Fit]]) -> float:
     rough: list[Floats] = []
     for data, f, fit in (x for x in fits if len(x[2].poles)):
         memory = memory_of_residual(data, f, fit)
-        power = np.einsum("oin,oin->n", data.y, data.y).reshape(2, -1).sum(axis=0)
-        shares.append(memory.systematic / np.maximum(power @ memory.near, 1e-300))
+        shares.append(memory.systematic / np.maximum(data.by_line @ memory.near, 1e-300))
         rough.append(rough_part(f, fit, memory.near))
     if not shares:
         return 0.0
@@ -109,14 +108,12 @@ def directions(data: BandData, f: Floats, fit: Fit, group: list[int], strict: bo
     poles, omega = fit.poles[group], 2.0 * np.pi * f
     lines = (np.abs(omega[:, None] - poles.imag) < POLES.seen_widths * -poles.real).any(axis=1)
     lines[[int(np.argmin(np.abs(omega - w))) for w in poles.imag]] = True
-    near = 1.0 / (1j * omega[lines] - poles[:, None])
-    functions = np.einsum(
-        "ok,ik,kn->oin", fit.shapes[:, group], fit.participation[:, group], near, optimize=True
-    )
-    for block in data.blocks:
-        own, both = functions[np.ix_(*block)], []
-        for matrix in (own, own.transpose(1, 0, 2)):
-            energy = np.linalg.svd(matrix.reshape(len(matrix), -1), compute_uv=False) ** 2
+    near = 1.0 / (1j * omega[lines, None] - poles)
+    for outputs, inputs in data.blocks:
+        shapes, part = fit.shapes[outputs][:, group], fit.participation[inputs][:, group]
+        both: list[int] = []
+        for matrix, other in ((shapes, part), (part, shapes)):
+            energy = _energies(matrix, other, near)
             limit = POLES.direction * max(error, POLES.error_least) * energy[0]
             both.append(int(np.count_nonzero(energy > limit)))
             single = len(matrix) == 1
@@ -125,6 +122,17 @@ def directions(data: BandData, f: Floats, fit: Fit, group: list[int], strict: bo
             strong.append(int(np.count_nonzero(energy > POLES.scatter * error * energy[0])))
         told.append(min(both))
     return max(*told, *strong) if error > 0.0 and not strict else max(told)
+
+
+def _energies(one: Numbers, other: Numbers, lines: Numbers) -> Floats:
+    """Squared singular values of Σ_k one_k (other_k ⊗ lines_k)ᵀ, from triangular factors."""
+    a, b, c = (_triangle(x) for x in (one, other, lines))
+    beside = _triangle((b[:, None, :] * c).reshape(-1, one.shape[1]))
+    return np.asarray(np.linalg.svd(a @ beside.T, compute_uv=False) ** 2)
+
+
+def _triangle(columns: Numbers) -> Numbers:
+    return np.asarray(np.linalg.qr(columns, mode="r"))
 
 
 def satellites(

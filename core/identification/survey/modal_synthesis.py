@@ -65,9 +65,8 @@ def modal_response(
     d = derivative_order(quantity)
     near = s**d / (s - poles[:, None])
     far = s**d / (s - poles.conj()[:, None])
-    n_mode = len(poles)
-    residues = (shapes[:, None, :] * participation[None, :, :]).reshape(
-        len(shapes) * len(participation), n_mode
-    )
-    values = residues @ near + residues.conj() @ far
-    return np.asarray(values.reshape(len(shapes), len(participation), len(s)))
+    n_function = len(shapes) * len(participation)
+    residues = (shapes[:, None, :] * participation[None, :, :]).reshape(n_function, len(poles))
+    by_part = np.concatenate([near + far, 1j * (near - far)])  # of its real and imaginary part
+    values = np.hstack([residues.real, residues.imag]) @ by_part.view(float)
+    return np.asarray(values.view(complex).reshape(len(shapes), len(participation), len(s)))

@@ -71,9 +71,8 @@ class Survey:
     @property
     def physical(self) -> Numbers:
         """Values without the weights, (n_output, n_input, n_line) complex."""
-        return np.asarray(
-            self.values / self.output_weight[:, None, None] / self.input_weight[None, :, None]
-        )
+        weights = self.output_weight[:, None] * self.input_weight
+        return np.asarray(self.values / weights[:, :, None])
 
     def lines(self, low: float, high: float) -> slice:
         """Lines from `low` to `high` [Hz], both included."""
@@ -112,6 +111,8 @@ def named_and_left_out(
 
 def left_out(survey: Survey, functions: Bools) -> Survey:
     """Take functions (n_output, n_input) out, and outputs or inputs that have no other."""
+    if not functions.any():
+        return survey
     measured = survey.measured & ~functions
     rows, columns = measured.any(axis=1), measured.any(axis=0)
     values = np.where(measured[:, :, None], survey.values, 0.0)
@@ -191,8 +192,7 @@ def prepare(frfs: Frfs, ranges: Sequence[tuple[float, float]] = ((0.0, np.inf),)
         )
     values[~measured] = 0.0
     output_weight, input_weight = _weights(measured, noise, rms)
-    values *= output_weight[:, None, None]
-    values *= input_weight[None, :, None]
+    values *= (output_weight[:, None] * input_weight)[:, :, None]
     return Survey(
         f, values, measured, output_weight, input_weight, responses, references, roving,
         quantity, frfs.source, tuple(said.faults), tuple(said.warnings), ranges,
