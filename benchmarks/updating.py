@@ -20,7 +20,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from shell import SIZES, shell_model
 
-from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.correlation.criteria import Criteria
 from trueup.core.data.parametric_model import Model
 from trueup.core.eigen.normal_modes import Eigensolution, solve
 from trueup.core.updating.update import Stage, Target, update

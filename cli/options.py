@@ -11,6 +11,7 @@ import typer
 
 from ..core.errors import InputError
 from ..verbs.study import Study, merge, read_study
+from ..verbs.taking_part import refuse_idle
 
 JsonOption = Annotated[
     str | None,
@@ -28,14 +29,14 @@ StudyOption = Annotated[
     typer.Option("--study", metavar="FILE", help="Study file (TOML); options win."),
 ]
 FminOption = Annotated[
-    float | None, typer.Option("--fmin", help="Identify modes in lines from here [Hz].")
+    float | None, typer.Option("--fmin", help="Lines and test modes from here [Hz] take part.")
 ]
 FmaxOption = Annotated[
-    float | None, typer.Option("--fmax", help="Identify modes in lines up to here [Hz].")
+    float | None, typer.Option("--fmax", help="Lines and test modes up to here [Hz] take part.")
 ]
 BandsOption = Annotated[
     list[str] | None,
-    typer.Option("--band", metavar="A:B", help="Identify in this band only [Hz] (repeatable)."),
+    typer.Option("--band", metavar="A:B", help="Those in this band only [Hz] (repeatable)."),
 ]
 MaxOrderOption = Annotated[
     int | None, typer.Option("--max-order", help="Highest model order in a band.")
@@ -98,6 +99,27 @@ _STUDY: dict[str, Any] = {
     "refuse": RefuseOption,
     "exponential_window": ExponentialWindowOption,
     "identify_modes": _option(int, "How many modes to identify: the best founded.", metavar="N"),
+    "exclude_test": _option(
+        list[str], "Test modes that take no part (repeatable).", metavar="7,9:12"
+    ),
+    "exclude_analysis": _option(
+        list[str], "Analysis modes that take no part (repeatable).", metavar="3"
+    ),
+    "exclude_sensors": _option(
+        list[str], "A node of the test, or one direction of it (repeatable).",
+        "--exclude-sensor", metavar="1112|40:Z",
+    ),
+    "pairs": _option(
+        list[str], "This pair, whatever its MAC (repeatable).", "--pair", metavar="TEST:ANALYSIS"
+    ),
+    "mode_weights": _option(
+        list[str], "What a test mode counts beside the others (repeatable).",
+        "--weight", metavar="TEST=0.2",
+    ),
+    "node_map": _option(
+        list[str], "A test node is at this grid, wherever it lies (repeatable).",
+        "--node", metavar="TEST=GRID",
+    ),
     "out": _option(Path, "The run folder to write.", metavar="DIR"),
 }  # fmt: skip
 
@@ -156,6 +178,7 @@ def comparing(
         try:
             there = {name: value for name, value in given.items() if value not in (None, [], ())}
             study = merge(filed, there, given, "options")
+            refuse_idle(verb.__name__, there, needs_test or bool(study.test), bool(study.stages))
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
         if study.deck is None or (needs_test and not study.test):

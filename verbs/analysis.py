@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -109,14 +108,21 @@ def analysis_modes(source: Source, deck: Deck | None) -> Modes:
 def placed(model: Model, deck: Deck | None, modes: Modes, test: Measured, study: Study) -> Placed:
     """Return the test laid onto the model."""
     with naming(test.name):
-        return place_test(
+        found = place_test(
             geometry_of(model, deck),
             modes,
             test.measurement,
             study.deck_length_unit,
             motion=model.expansion,
             seed=study.seed,
+            node_map=dict(study.node_map),
         )
+        if not study.mode_weights:
+            return found
+        named, there = max(m for m, _ in study.mode_weights), len(found.test)
+        if named > there:
+            raise InputError(f"mode_weights names test mode {named}; the test has {there}")
+        return replace(found, weights=study.weights.of(range(there)))
 
 
 def correlated(analysis: Analysis, test: Measured, study: Study) -> Comparison:
@@ -128,8 +134,8 @@ def correlated(analysis: Analysis, test: Measured, study: Study) -> Comparison:
     return replace(found, warnings=(*analysis.warnings, *found.warnings))
 
 
-def target_of(model: Model, placed: Placed, test_modes: Sequence[int]) -> Target:
-    """Return what residuals compare the model with; `test_modes`, from 1, take part (none: all).
+def target_of(model: Model, placed: Placed, study: Study) -> Target:
+    """Return what residuals compare the model with; of its modes those that take part.
 
     Raises
     ------
@@ -138,11 +144,14 @@ def target_of(model: Model, placed: Placed, test_modes: Sequence[int]) -> Target
     """
     from ..core.updating.residuals import Target
 
-    chosen = tuple(m - 1 for m in test_modes) or None
-    if chosen and max(chosen) >= len(placed.test):
-        raise InputError(
-            f"test_modes names mode {max(chosen) + 1}; the test has {len(placed.test)} modes"
-        )
+    wanted, count = study.test_modes, len(placed.test)
+    if wanted and max(wanted) > count:
+        raise InputError(f"test_modes names mode {max(wanted)}; the test has {count} modes")
+    part = study.criteria.test_modes(placed.test.frequencies_hz)
+    left = [m - 1 for m in wanted or range(1, count + 1) if part[m - 1]]
+    if not left:
+        raise InputError("all of test_modes are excluded or outside of the bands")
+    chosen = tuple(left) if len(left) < count else None
     errors = placed.errors
     return Target(
         placed.test.frequencies_hz,

@@ -104,6 +104,10 @@ def discover(
     solution = reference_modes(structure.model, top)
     before = _compared(deck, structure, solution, side, asked)
     elastic = vibrating(before.placed, solution, structure.model)
+    part = asked.criteria.test_modes(before.test.frequencies_hz)
+    moving, elastic = elastic, elastic & part
+    if not elastic.any():
+        raise InputError("no mode that takes part is elastic; exclude fewer")
     structure, known = settled(
         deck, structure, solution, before.test.frequencies_hz[elastic], every
     )
@@ -153,7 +157,7 @@ def discover(
             *structure.model.warnings,
             *before.warnings,
             *found.warnings,
-            *said_of_others(np.flatnonzero(~elastic) + 1),
+            *said_of_others(np.flatnonzero(part & ~moving) + 1),
             *unplaced,
             *done.refused,
         ),

@@ -11,6 +11,7 @@ from typing import ParamSpec, TypedDict, TypeVar
 from ..core.errors import InputError, path_of
 from ..core.statespace.damping_choice import Asked
 from .study import StageRequest, Study, merge, read_study, unknown
+from .taking_part import refuse_idle
 
 Files = str | os.PathLike[str]
 P = ParamSpec("P")
@@ -28,6 +29,12 @@ class CompareOptions(TypedDict, total=False):
     ``seed`` of every random number. Where modes are identified in frequency responses on the way,
     what `identify` can be told: ``fmin``, ``fmax``, ``bands``, ``max_order``, ``take``, ``refuse``,
     ``exponential_window``, and its ``modes`` as ``identify_modes``.
+
+    What takes part: ``fmin``, ``fmax`` and ``bands`` of test modes, too; ``exclude_test`` and
+    ``exclude_analysis``, numbers of modes ("7,9:12"); ``exclude_sensors``, nodes of the test or
+    directions of them ("1112, 40:Z"); ``pairs`` by hand, whatever their MAC ("3:5", test before
+    analysis); ``mode_weights`` of test modes beside the others ({3: 0.2}); ``node_map``, test
+    nodes to the grids that they are at ({1112: 40}). What has no effect on a verb is refused.
     """
 
     deck_length_unit: str | None
@@ -44,6 +51,12 @@ class CompareOptions(TypedDict, total=False):
     refuse: float | Sequence[float] | None
     identify_modes: int | None
     exponential_window: float | str | None
+    exclude_test: int | str | Sequence[int | str] | None
+    exclude_analysis: int | str | Sequence[int | str] | None
+    exclude_sensors: int | str | Sequence[int | str] | None
+    pairs: str | Sequence[str | tuple[int, int]] | None
+    mode_weights: str | Sequence[str] | Mapping[int, float] | None
+    node_map: str | Sequence[str] | Mapping[int, int] | None
 
 
 class CorrelateOptions(CompareOptions, total=False):
@@ -139,7 +152,10 @@ def study_of(
         raise InputError(f"{verb}: study is {study!r}; give the path of a study file")
     if "rotate" in given and given["rotate"] is None:
         given = {**given, "rotate": "none"}
-    return merge(study or Study(), given, known, verb)
+    study = study or Study()
+    spoken = [key for key, value in given.items() if value is not None]
+    refuse_idle(verb, spoken, staged=bool(study.stages) and "stages" not in spoken)
+    return merge(study, given, known, verb)
 
 
 def checked_call(verb: Callable[P, R]) -> Callable[P, R]:

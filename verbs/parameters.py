@@ -35,6 +35,7 @@ from .folder import Folder
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
 from .sources import Measured, Source, measured, read_deck
 from .study import Study
+from .taking_part import refuse_idle
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck
@@ -115,6 +116,8 @@ def parameters(
     said_to(progress)
     deck = asked.deck if deck is None else deck
     test = (asked.test or None) if test is None else test
+    spoken = [key for key, value in options.items() if value is not None]
+    refuse_idle("parameters", spoken, test is not None)
     if deck is None:
         raise InputError("give a deck, or a study that names one")
     if isinstance(deck, Model):
@@ -176,7 +179,7 @@ def _of_test(deck: Deck, model: Model, side: Measured, asked: Study) -> _Seen:
         solution = normal_modes.solve(model, fmax=side.highest(asked.frequency_tolerance))
     modes = normal_modes.modes_of(model, solution)
     on_model = placed(model, deck, modes, side, asked)
-    target = target_of(model, on_model, asked.test_modes)
+    target = target_of(model, on_model, asked)
     full = FullOrder(model, target.sensors, len(solution.eigenvalues))
     objective = Objective(model.parameters, target, asked.criteria, asked.weights)
     residuals = residuals_named(asked.residuals)

@@ -183,12 +183,16 @@ class Measured:
 def measured(source: Source, study: Study) -> Measured:
     """Return the test of a verb; modes are identified where it holds responses only."""
     from ..adapters.universal import ModalTest
+    from ..core.data.without_sensors import without_sensors
     from ..core.identification.measured_modes import with_modes
 
     test = read_test(source)
     files = test.files if isinstance(test, ModalTest) else ()
     with naming(files[0] if files else None):
-        return Measured(with_modes(test, **study.identification), files)
+        if test.modes is not None:  # they say which of the modes take part
+            study = replace(study, fmin=None, fmax=None, bands=())
+        kept = without_sensors(test, study.exclude_sensors)
+        return Measured(with_modes(kept, **study.identification), files)
 
 
 def geometry_of(model: Model, deck: Deck | None) -> Geometry:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import numbers
 import os
 import sys
@@ -15,9 +16,10 @@ from types import NoneType
 from typing import TYPE_CHECKING, Any, cast, get_args, get_origin, get_type_hints
 
 from ..core.errors import InputError, Place
+from .taking_part import READERS
 
 if TYPE_CHECKING:
-    from ..core.correlation.mode_pairing import Criteria
+    from ..core.correlation.criteria import Criteria
     from ..core.identification.measured_modes import IdentifyOptions
     from ..core.updating.residuals import Weights
 
@@ -71,6 +73,12 @@ class Study:
     take: tuple[float, ...] = ()
     refuse: tuple[float, ...] = ()
     exponential_window: float | str | None = None
+    exclude_test: tuple[int, ...] = ()
+    exclude_analysis: tuple[int, ...] = ()
+    exclude_sensors: tuple[str, ...] = ()
+    pairs: tuple[tuple[int, int], ...] = ()
+    mode_weights: tuple[tuple[int, float], ...] = ()
+    node_map: tuple[tuple[int, int], ...] = ()
     out: Path | None = None
     seed: int = 0
     sigmas: Mapping[str, float] = field(default_factory=dict, metadata={"file_key": False})
@@ -106,14 +114,12 @@ class Study:
 
     def _require_accepted(self) -> None:
         """Refuse what the core accepts in no run, before any file is read."""
-        from ..core.identification.survey.wanted_ranges import wanted_ranges
         from ..core.reduction.model_at_sensors import require_method
         from ..core.updating.residuals import residuals_named
 
         _ = self.criteria, self.weights
         if self.reduction is not None:
             require_method(self.reduction)
-        wanted_ranges(self.fmin, self.fmax, self.bands)
         for key, least in (("identify_modes", 1), ("max_order", 2)):
             value = getattr(self, key)
             if value is not None and value < least:
@@ -126,9 +132,21 @@ class Study:
     @property
     def criteria(self) -> Criteria:
         """When a test mode and an analysis mode may be a pair."""
-        from ..core.correlation.mode_pairing import Criteria
+        from ..core.correlation.criteria import Criteria
+        from ..core.identification.survey.wanted_ranges import wanted_ranges
 
-        return Criteria(self.mac_min, self.frequency_tolerance, self.cluster_width, self.rotate)
+        parts = wanted_ranges(self.fmin, self.fmax, self.bands)
+        limits = tuple((a, b if math.isfinite(b) else None) for a, b in parts)
+        return Criteria(
+            self.mac_min,
+            self.frequency_tolerance,
+            self.cluster_width,
+            self.rotate,
+            self.exclude_test,
+            self.exclude_analysis,
+            () if limits == ((0.0, None),) else limits,
+            self.pairs,
+        )
 
     @property
     def identification(self) -> IdentifyOptions:
@@ -143,7 +161,7 @@ class Study:
         """What the residuals of an update are weighed by."""
         from ..core.updating.residuals import Weights
 
-        return Weights(self.sigmas, self.regularisation)
+        return Weights(self.sigmas, self.regularisation, dict(self.mode_weights))
 
 
 _HINTS = get_type_hints(Study)
@@ -151,6 +169,11 @@ _FIELDS = {
     f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
 }
 _STAGE_FIELDS = get_type_hints(StageRequest)
+
+
+def study_keys() -> tuple[str, ...]:
+    """Return every key of a study file."""
+    return (*_FIELDS, *_sigma_fields())
 
 
 def _sigma_fields() -> dict[str, Any]:
@@ -296,6 +319,8 @@ def meant(name: str, known: Sequence[str]) -> str:
 def converted(name: str, value: object, kind: Any, who: Place) -> Any:
     """Return a value as of the kind that is wanted; `InputError` where it cannot be."""
     wrong = who.error(f"'{name}' has a value of the wrong type: {value!r}")
+    if name in READERS:
+        return READERS[name](name, value, who)
     of = get_args(kind)
     if value is None and NoneType in of:
         return None

@@ -124,7 +124,7 @@ def update(
 
 
 def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
-    target = target_of(analysis.model, placed, asked.test_modes)
+    target = target_of(analysis.model, placed, asked)
     update = core.update if asked.write_undetermined else update_determined
     return update(
         analysis.model,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,11 +17,13 @@ from ..errors import InputError
 from ..noun import Noun
 from ..registration.alignment import Alignment, align
 from ..registration.length_units import reconcile_units
+from ..registration.nodes_by_hand import aligned_by, put_on_grids
 from ..registration.registration_numbers import ALIGN
 from ..sensors.sensor_map import Observation, observe
 from .correlation_numbers import CORRELATION
+from .criteria import Criteria
 from .mode_errors import ModeErrors, mode_errors, told
-from .mode_pairing import Correlation, Criteria, correlate
+from .mode_pairing import Correlation, correlate
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +47,8 @@ class Placed(Noun):
         Deck length units in one of the test's own; `test` and `test_geometry` have it already.
     mpc : (n_test,) float, optional
         Modal phase collinearity of test modes that were identified here.
+    weights : (n_test,) float, optional
+        What the user says that each test mode counts beside the others; all the same without.
     """
 
     alignment: Alignment
@@ -54,6 +59,7 @@ class Placed(Noun):
     errors: ModeErrors | None = None
     length_factor: float = 1.0
     mpc: Floats | None = None
+    weights: Floats | None = None
 
     def take(self, rows: Numbers) -> Placed:
         """Return the test at some of its sensors (indices or mask)."""
@@ -68,7 +74,8 @@ class Placed(Noun):
         errors = self.errors
         if errors is not None:
             errors = ModeErrors(errors.frequency[modes], errors.shape[:, modes])
-        return replace(self, test=self.test.take(modes), errors=errors)
+        weights = None if self.weights is None else self.weights[modes]
+        return replace(self, test=self.test.take(modes), errors=errors, weights=weights)
 
     def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
         """Multiply rows of sensors with the square roots of their weights."""
@@ -122,6 +129,7 @@ def place_test(
     deck_length_unit: str | None = None,
     motion: Numbers | sp.spmatrix | None = None,
     seed: int = 0,
+    node_map: Mapping[int, int] | None = None,
 ) -> Placed:
     """Convert a test to deck units, align it and find its sensors on the model.
 
@@ -137,6 +145,9 @@ def place_test(
         See `observation.grids_of`.
     seed : int
         Of the alignment's random starts.
+    node_map : mapping of int to int, optional
+        Test nodes to the grids that they are at, whatever their positions; three that are not on
+        a line align the test.
 
     Raises
     ------
@@ -162,7 +173,10 @@ def place_test(
         moved, test = declared, measurement.modes
     if test is None:
         raise InputError("the test holds no modes")
-    alignment = align(own, moved, analysis, test, seed=seed)
+    by_hand = aligned_by(own, moved, node_map) if node_map else None
+    alignment = by_hand or align(own, moved, analysis, test, seed=seed)
+    if node_map:
+        moved = put_on_grids(own, moved, node_map, alignment)
     seen = observe(own, analysis.dofs, moved, test.dofs, alignment, motion=motion)
     if moved.size < ALIGN.possible[0] * own.size and seen.within.mean() < CORRELATION.on_model:
         raise InputError(
@@ -217,6 +231,8 @@ def compare(
     rigid_body_modes: int = 0,
 ) -> Comparison:
     """Correlate analysis modes, the first so many of them rigid-body modes, with a placed test."""
+    criteria = criteria or Criteria()
+    criteria.require(placed.test.frequencies_hz, len(analysis), rigid_body_modes)
     normalised = mass_normalised(analysis)
     found = correlate(
         analysis.frequencies_hz,

@@ -6,48 +6,13 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..arrays import Bools, Floats, Numbers, frozen
-from ..errors import InputError
 from ..noun import Noun
 from .correlation_numbers import CORRELATION
+from .criteria import Criteria
 from .mac import mac, realised
 from .subspace_rotation import ClusterRotation, clusters_by_bandwidth, rotate_cluster, subspace_mac
 
-SIDES = ("analysis", "test", "none")
 Groups = tuple[tuple[int, ...], ...]
-
-
-@dataclass(frozen=True)
-class Criteria:
-    """When a test mode and an analysis mode may be a pair, and what counts as close.
-
-    Parameters
-    ----------
-    mac_min : float
-        Smallest MAC of a pair.
-    frequency_tolerance : float
-        Largest |analysis − test| / test.
-    cluster_width : float
-        Largest relative bandwidth of a cluster.
-    rotate : {"analysis", "test", "none"}
-        Which side's close modes are turned.
-    """
-
-    mac_min: float = CORRELATION.mac
-    frequency_tolerance: float = CORRELATION.frequency
-    cluster_width: float = CORRELATION.cluster
-    rotate: str = "analysis"
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.mac_min <= 1.0:
-            raise InputError(f"mac_min is {self.mac_min}; give a value above 0 and up to 1")
-        if self.frequency_tolerance <= 0.0:
-            raise InputError(
-                f"frequency_tolerance is {self.frequency_tolerance}; give a fraction above 0"
-            )
-        if not 0.0 <= self.cluster_width < 1.0:
-            raise InputError(f"cluster_width is {self.cluster_width}; give a fraction from 0 to 1")
-        if self.rotate not in SIDES:
-            raise InputError(f"rotate is '{self.rotate}'; give one of {', '.join(SIDES)}")
 
 
 @dataclass(frozen=True)
@@ -150,28 +115,33 @@ def correlate(
     """
     criteria = criteria or Criteria()
     measured = mac(test_shapes, analysis_shapes)
-    elastic = np.arange(len(analysis_hz)) >= rigid_body_modes
+    part_test = criteria.test_modes(test_hz)
+    part_analysis = criteria.analysis_modes(len(analysis_hz), rigid_body_modes)
+    by_hand = [(t - 1, a - 1) for t, a in criteria.pairs if a <= len(analysis_hz)]
+    free_test, free_analysis = part_test.copy(), part_analysis.copy()
+    free_test[[t for t, _ in by_hand]] = False
+    free_analysis[[a for _, a in by_hand]] = False
     near = np.abs(analysis_hz[None, :] - test_hz[:, None]) <= (
         criteria.frequency_tolerance * test_hz[:, None]
     )
-    near &= elastic[None, :]
+    near &= free_analysis[None, :] & free_test[:, None]
     real = realised(test_shapes)
     groups: Groups = ()
     if criteria.rotate == "analysis":
-        hz = np.where(elastic, analysis_hz, 0.0)
+        hz = np.where(free_analysis, analysis_hz, 0.0)
         groups = clusters_by_bandwidth(hz, criteria.cluster_width)
         turned = _turn(analysis_shapes, real, groups, near.T, criteria.mac_min)
         matrix = _transformation(len(analysis_hz), groups, turned)
         rotated = mac(test_shapes, analysis_shapes @ matrix)
     elif criteria.rotate == "test":
-        groups = clusters_by_bandwidth(test_hz, criteria.cluster_width)
+        groups = clusters_by_bandwidth(np.where(free_test, test_hz, 0.0), criteria.cluster_width)
         scaled = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
         turned = _turn(scaled, analysis_shapes, groups, near, criteria.mac_min)
         matrix = _transformation(len(test_hz), groups, turned)
         rotated = mac(scaled @ matrix, analysis_shapes)
     else:
         turned, rotated, matrix = [], measured, np.eye(len(analysis_hz))
-    chosen = assign(rotated, (rotated >= criteria.mac_min) & near)
+    chosen = sorted([*by_hand, *assign(rotated, (rotated >= criteria.mac_min) & near)])
     clusters = [(g, r) for g, r in zip(groups, turned, strict=True) if len(g) > 1 and r.test]
 
     def pair(t: int, a: int) -> Pair:
@@ -185,8 +155,8 @@ def correlate(
     pairs = [pair(t, a) for t, a in chosen]
     return Correlation(
         tuple(pairs),
-        tuple(sorted(set(range(len(test_hz))) - {p.test for p in pairs})),
-        tuple(sorted(set(np.flatnonzero(elastic).tolist()) - {p.analysis for p in pairs})),
+        tuple(sorted(set(np.flatnonzero(part_test).tolist()) - {p.test for p in pairs})),
+        tuple(sorted(set(np.flatnonzero(part_analysis).tolist()) - {p.analysis for p in pairs})),
         tuple(
             Cluster(g, r.test) if criteria.rotate == "analysis" else Cluster(r.test, g)
             for g, r in clusters

@@ -249,7 +249,7 @@ def _prepared(
     reading = 0.0
     if placed.errors is not None:
         scatter, reading = placed.errors.frequency, float(np.min(placed.errors.length))
-    whole = Evidence(hz, unit, noise_of(placed.errors, noise), scatter, reading)
+    whole = Evidence(hz, unit, noise_of(placed.errors, noise, placed.weights), scatter, reading)
     e = whole.take(modes, sensors)
     basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))

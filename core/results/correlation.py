@@ -11,7 +11,8 @@ import numpy as np
 
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
-from ..correlation.mode_pairing import Correlation, Criteria
+from ..correlation.criteria import Criteria
+from ..correlation.mode_pairing import Correlation
 from ..noun import OPTIONAL, Noun, key
 from . import export
 from .orthogonality import OrthogonalityTables

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import frozen
-from ..correlation.mode_pairing import Criteria
+from ..correlation.criteria import Criteria
 from ..data.parametric_model import Model
 from .residuals import Target, Weights
 from .stages import Reason, Stage, Stop, Updated

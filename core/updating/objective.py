@@ -7,8 +7,9 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ..arrays import Floats, frozen
+from ..correlation.criteria import Criteria
 from ..correlation.mac import realised
-from ..correlation.mode_pairing import Correlation, Criteria, correlate
+from ..correlation.mode_pairing import Correlation, correlate
 from ..data.parameter import Parameter
 from ..reduction.eigenpair_derivatives import Spectral
 from ..reduction.full_or_reduced import Order
@@ -67,8 +68,9 @@ class Objective:
 
     def value(self, seen: Seen, residuals: Sequence[Residual]) -> float:
         """Equation (2) without W_p."""
-        count = len(self.target.frequencies_hz if self.target.modes is None else self.target.modes)
-        return self._cost(seen, count, residuals)
+        every = range(len(self.target.frequencies_hz))
+        due = set(self.target.modes or every) - {q.test for q in seen.pairs}
+        return self._cost(seen, float(self.weights.of(due).sum()), residuals)
 
     def closer(self, trial: State, state: State, residuals: Sequence[Residual]) -> bool:
         """Whether a step is one: by all test modes, or by most of the pairs, which are kept.
@@ -85,7 +87,7 @@ class Objective:
         if len(common) < UPDATING.kept * len(old):
             return False
         cost = [
-            self._cost(s.seen.take([at[k] for k in common]), len(common), residuals)
+            self._cost(s.seen.take([at[k] for k in common]), 0.0, residuals)
             for s, at in ((trial, new), (state, old))
         ]
         return cost[0] < (1.0 - UPDATING.least_gain) * cost[1]
@@ -140,12 +142,16 @@ class Objective:
 
     def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
         """Return the standard deviation of a residual, of each pair where the test has its own."""
-        stated, own = self.weights.sigma(residual), residual.error(self.target)
-        return stated if own is None else np.hypot(stated, own[[q.test for q in seen.pairs]])
+        stated, modes = self.weights.sigma(residual), [q.test for q in seen.pairs]
+        if residual.error is None:
+            return stated
+        own = residual.error(self.target)
+        whole = stated if own is None else np.hypot(stated, own[modes])
+        return np.asarray(whole / np.sqrt(self.weights.of(modes)))
 
-    def _cost(self, seen: Seen, count: int, residuals: Sequence[Residual]) -> float:
-        """Equation (2) over pairs, with what is due for each of `count` that has none."""
-        missing, total = count - len(seen.pairs), 0.0
+    def _cost(self, seen: Seen, missing: float, residuals: Sequence[Residual]) -> float:
+        """Equation (2) over pairs, with what is due for `missing` modes that have none."""
+        total = 0.0
         for r in residuals:
             total += float(np.sum(r.squared(seen) / self.sigma(r, seen) ** 2))
             total += missing * r.unpaired(self.criteria) / self.weights.sigma(r) ** 2

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..arrays import frozen
-from ..correlation.mode_pairing import Criteria
+from ..correlation.criteria import Criteria
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
 from ..errors import InputError

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from trueup.cli.app import run
-from trueup.verbs.study import read_study
+from trueup.verbs.study import read_study, study_keys
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -47,6 +47,11 @@ def run_blocks(path: Path, monkeypatch: pytest.MonkeyPatch, skipped: set[str]) -
             if line.startswith("trueup "):
                 monkeypatch.setattr("sys.argv", shlex.split(line))
                 assert run() == 0, line
+
+
+def test_every_key_of_a_study_is_documented():
+    text = (DOCS / "how-to.md").read_text(encoding="utf-8")
+    assert [k for k in study_keys() if f"`{k}`" not in text] == []
 
 
 @pytest.fixture

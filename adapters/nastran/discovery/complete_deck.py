@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....core.correlation.comparison import Placed, compare
-from ....core.correlation.mode_pairing import Criteria
+from ....core.correlation.criteria import Criteria
 from ....core.data.parametric_model import Model
 from ....core.discovery.findings import Discovery
 from ....core.discovery.screening.completed_model import SolvedModel, sound_test

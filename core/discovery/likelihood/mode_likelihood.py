@@ -46,15 +46,18 @@ class Noise:
         return replace(self, frequency=f, shape=s)
 
 
-def noise_of(errors: ModeErrors | None, level: float) -> Noise:
+def noise_of(errors: ModeErrors | None, level: float, weights: Floats | None = None) -> Noise:
     """Return the noise of a test: what its errors are, and what a model always leaves.
 
-    `level` is that of a sound sensor besides the standard errors, over the rms of the shape.
+    `level` is that of a sound sensor besides the standard errors, over the rms of the shape;
+    `weights` (n_test,) divide the variances.
     """
     usual = Noise(shape=float(np.hypot(level, LIKELIHOOD.placed)))
-    if errors is None:
-        return usual
-    f, s = np.hypot(usual.frequency, errors.frequency), np.hypot(usual.shape, errors.length)
+    f, s = usual.frequency, usual.shape
+    if errors is not None:
+        f, s = np.hypot(f, errors.frequency), np.hypot(s, errors.length)
+    if weights is not None:
+        f, s = f / np.sqrt(weights), s / np.sqrt(weights)
     return replace(usual, frequency=f, shape=s)
 
 

@@ -9,7 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints, Numbers
-from ...correlation.mode_pairing import Criteria, Pair
+from ...correlation.criteria import Criteria
+from ...correlation.mode_pairing import Pair
 from ...data.parametric_model import Model
 from ...errors import InputError
 
@@ -130,6 +131,7 @@ class Residual:
         The squared length that is due for a test mode without a partner.
     error : callable
         Standard errors of the test itself in units of the value, (n_test,), or None; they add to σ.
+        Where this is given rows are pairs, and the weights of test modes count.
     tells_pairs : bool
         Whether modes are paired by this very residual: a step that loses a pair has then made it
         worse.
@@ -143,7 +145,7 @@ class Residual:
     needs_shapes: bool = False
     size: Callable[[Seen], Floats] | None = None
     unpaired: Callable[[Criteria], float] = lambda _: 0.0
-    error: Callable[[Target], Floats | None] = lambda _: None
+    error: Callable[[Target], Floats | None] | None = None
     tells_pairs: bool = False
 
     def squared(self, seen: Seen) -> Floats:

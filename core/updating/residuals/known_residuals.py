@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from ...arrays import Floats
 from ...errors import InputError, require_kind
 from ..updating_numbers import UPDATING
 from .declaration import Residual
@@ -63,10 +66,14 @@ class Weights:
         is not given is the residual's default.
     regularisation : float
         Standard deviation of a parameter step is 1/√regularisation; 0 leaves W_p out.
+    modes : mapping of int to float
+        What a test mode, by its number from 1, counts beside the others: 0.2 makes its variance
+        five times as large; what is not given is 1.
     """
 
     sigmas: Mapping[str, float] = field(default_factory=dict)
     regularisation: float = UPDATING.regularisation
+    modes: Mapping[int, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         known = [r.weight for r in RESIDUALS]
@@ -77,6 +84,9 @@ class Weights:
                 raise InputError(f"{key} is a standard deviation; it must be above 0")
         if self.regularisation < 0.0:
             raise InputError("the regularisation must not be negative")
+        for mode, weight in self.modes.items():
+            if mode < 1 or not weight > 0.0:
+                raise InputError(f"the weight of test mode {mode} is {weight:g}; give one above 0")
 
     @property
     def all(self) -> dict[str, float]:
@@ -86,3 +96,7 @@ class Weights:
     def sigma(self, residual: Residual) -> float:
         """Return the standard deviation of a residual."""
         return float(self.sigmas.get(residual.weight, residual.sigma))
+
+    def of(self, modes: Iterable[int]) -> Floats:
+        """Return the weights of test modes, (n,), which count from 0 here."""
+        return np.array([self.modes.get(t + 1, 1.0) for t in modes])

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from trueup.core.correlation.mode_pairing import Criteria, correlate
+from trueup.core.correlation.criteria import Criteria
+from trueup.core.correlation.mode_pairing import correlate
 from trueup.core.errors import InputError
 
 ANGLE = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)

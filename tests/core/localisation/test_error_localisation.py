@@ -10,7 +10,7 @@ import pytest
 from trueup.adapters.nastran import build_model, read_deck
 from trueup.adapters.nastran.discovery.build_structure import build_structure
 from trueup.core.correlation.comparison import compare, place_test
-from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.correlation.criteria import Criteria
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.measurement import Measurement

@@ -5,7 +5,8 @@ import pytest
 import scipy.linalg
 import scipy.sparse as sp
 
-from trueup.core.correlation.mode_pairing import Criteria, correlate
+from trueup.core.correlation.criteria import Criteria
+from trueup.core.correlation.mode_pairing import correlate
 from trueup.core.errors import InputError
 from trueup.core.localisation.first_order_maps import (
     linearise,

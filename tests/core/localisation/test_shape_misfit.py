@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from trueup.core.correlation.criteria import Criteria
 from trueup.core.correlation.mac import mac
-from trueup.core.correlation.mode_pairing import Criteria, correlate
+from trueup.core.correlation.mode_pairing import correlate
 from trueup.core.errors import InputError
 from trueup.core.localisation.shape_misfit import misfit, paired_shapes, spread
 from trueup.core.localisation.shape_noise import given_noise

@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trueup.core.correlation.mode_pairing import Criteria, correlate
+from trueup.core.correlation.criteria import Criteria
+from trueup.core.correlation.mode_pairing import correlate
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.modes import Modes
 from trueup.core.data.parameter import Parameter

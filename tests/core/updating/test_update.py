@@ -9,7 +9,7 @@ import pytest
 import scipy.sparse as sp
 from tests.core.chains import proportional
 
-from trueup.core.correlation.mode_pairing import Criteria
+from trueup.core.correlation.criteria import Criteria
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.parameter import Parameter
