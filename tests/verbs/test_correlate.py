@@ -35,7 +35,7 @@ def test_a_run_of_objects_says_what_it_can_be_run_again_with(tmp_path: Path) -> 
     modes = trueup.solve(FILES[0], 12)
     found = trueup.correlate(FILES[0], test, deck_length_unit="mm", modes=modes)
     assert len(found.analysis_hz) == len(modes.shapes)
-    assert "test =" not in (found.save(tmp_path / "run") / "study.toml").read_text()
+    assert "\ntest =" not in (found.save(tmp_path / "run") / "study.toml").read_text()
 
 
 def test_a_run_is_run_again_wherever_it_is_moved_with_its_inputs(
@@ -115,8 +115,7 @@ def test_a_run_folder_is_not_replaced_unless_asked(
         ({"rotate": "both"}, "rotate is 'both'"),
         ({"deck_length_unit": "cm"}, "deck_length_unit is 'cm'"),
         ({"study": 3}, "study is 3"),
-        ({"parameters": "nothing"}, "nothing"),
-        ({"parameters": ["PBAR 999 I1"]}, "PBAR 999"),
+        ({"parameters": ["PBAR 11 I1"]}, "parameters has no effect"),
         ({"modes": 3}, "modes is given as int"),
     ],
 )
