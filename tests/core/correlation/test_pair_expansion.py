@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from trueup.core.correlation.comparison import compare, place_test
+from trueup.core.correlation.criteria import Criteria
 from trueup.core.correlation.mac import mac
-from trueup.core.correlation.mode_pairing import Criteria
 from trueup.core.correlation.pair_expansion import expand_pairs
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
