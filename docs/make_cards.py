@@ -14,6 +14,7 @@ from pathlib import Path
 from trueup.adapters.nastran.cards import FAMILIES
 from trueup.adapters.nastran.deck.card_definition import Card
 from trueup.adapters.nastran.fields.layouts import value_names
+from trueup.core.elements import ELEMENTS
 
 PAGE = Path(__file__).with_name("cards.md")
 SHOWN = 12
@@ -23,6 +24,10 @@ Made from the definitions by `python docs/make_cards.py`: every card that is rea
 of it that may be a parameter (`trueup update -p 'PBAR 11 I1'`). A card with a name that is not on
 this page and looks like an element or a constraint is refused by name; any other is listed as
 skipped by `trueup inspect`.
+"""
+
+LAWS = """Of these elements Nastran's matrices are not known to be met, for want of a reference; the
+law here is held to closed forms, its limits or CalculiX, and solving such a deck says so.
 """
 
 
@@ -39,10 +44,19 @@ def page() -> str:
             ]
             parts += [f"| {c.name} | {values(c)} |" for c in read]
             parts.append("")
+    parts += ["## Laws that stand for Nastran's\n", LAWS, *laws(), ""]
     every = [c for family in FAMILIES for c in family.cards]
     for title, attribute in (("Left out, with the reason", "ignored"), ("Refused", "refused")):
         parts += [f"## {title}\n", *reasons(every, attribute), ""]
     return "\n".join(parts).rstrip() + "\n"
+
+
+def laws() -> Iterator[str]:
+    """Return a line for each element with a law of Nastran's that is not known."""
+    for card in (c for family in FAMILIES for c in family.cards):
+        for kind in map(ELEMENTS.__getitem__, card.elements.split()):
+            if kind.unknown:
+                yield f"- {card.name} with {kind.nodes} nodes: {kind.unknown}"
 
 
 def values(card: Card) -> str:

@@ -8,6 +8,8 @@ from ..errors import InputError, require_kind
 from .axisymmetric import QUADX4, QUADX8, TRIAX3, TRIAX6
 from .bar import BAR, ROD
 from .beam import BEAM
+from .beam3 import BEAM3
+from .bend import BEND
 from .curved_shell import QUAD8, TRIA6
 from .element import Element
 from .hexa import HEXA8, HEXA20

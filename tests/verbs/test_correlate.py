@@ -165,7 +165,7 @@ def test_the_mac_goes_to_pandas(found: trueup.Correlated) -> None:
     assert found.mac.to_pandas().shape == (24, len(found.mac.analysis) + 1)
 
 
-ODD = """CBEND,990001,9901,1,2,1.,0.,0.
+ODD = """CSEAM,990001,9901,1,2,1.,0.,0.
 RSSCON,990003,GRID,1,2
 CQUAD4,990004,99999,1,2,74,73
 CNEWELEM,990005,1,2
@@ -190,14 +190,14 @@ def test_own_modes_need_grids_and_elements_only(found: trueup.Correlated, odd: P
     said = [w for w in same.warnings if "grids and elements only" in w]
     assert len(said) == 1
     assert "duct.bdf line" in said[0]
-    assert "CBEND 990001" in said[0]
-    with pytest.raises(trueup.InputError, match="CBEND 990001"):
+    assert "CSEAM 990001" in said[0]
+    with pytest.raises(trueup.InputError, match="CSEAM 990001"):
         trueup.correlate(odd, FILES[1], deck_length_unit="mm")
 
 
 def test_what_is_not_assembled_stands_in_no_ones_way(odd: Path, tmp_path: Path) -> None:
     told = trueup.inspect(odd).files[0]
-    assert any("CBEND" in row.what for row in told.skipped)
+    assert any("CSEAM" in row.what for row in told.skipped)
     trueup.convert(odd, tmp_path / "odd.unv")
     trueup.convert(FILES[0], tmp_path / "duct.unv", lossy=True)
     ours, theirs = (read_universal([tmp_path / f"{n}.unv"]).geometry for n in ("odd", "duct"))
@@ -206,7 +206,7 @@ def test_what_is_not_assembled_stands_in_no_ones_way(odd: Path, tmp_path: Path) 
     np.testing.assert_array_equal(ours.xyz, theirs.xyz)
     drawn, known = (sum(len(v) for v in g.elements.values()) for g in (ours, theirs))
     assert drawn == known + 1  # the quadrilateral without a property
-    with pytest.raises(trueup.InputError, match=r"nothing that a OP4 can hold.*CBEND 990001"):
+    with pytest.raises(trueup.InputError, match=r"nothing that a OP4 can hold.*CSEAM 990001"):
         trueup.convert(odd, tmp_path / "odd.op4")
     changed = trueup.read_deck(odd)
     assert changed.text.files[0].data == odd.read_bytes()

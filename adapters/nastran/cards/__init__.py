@@ -30,6 +30,7 @@ from . import (
     axisymmetric,
     bars,
     beams,
+    bends,
     bushes,
     dashpots,
     fasteners,
@@ -41,6 +42,7 @@ from . import (
     shells,
     solids,
     springs,
+    three_node_beams,
 )
 from .element_group import Context, Group, Key, Settings, property_groups
 
@@ -73,6 +75,8 @@ FAMILIES: list[Family] = [
     Family("bodies of revolution", axisymmetric.CARDS, axisymmetric.axisymmetric),
     Family("bars", bars.CARDS, bars.bars),
     Family("beams", beams.CARDS, beams.beams),
+    Family("three-node beams", three_node_beams.CARDS, three_node_beams.three_node_beams),
+    Family("bends", bends.CARDS, bends.bends),
     Family("rods", rods.CARDS, rods.rods),
     Family("bushes", bushes.CARDS, bushes.bushes, bushes.bush_dampers),
     Family("springs", springs.CARDS, springs.springs),

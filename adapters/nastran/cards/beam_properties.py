@@ -1,11 +1,17 @@
-"""Properties of beams with stations along them: PBEAM, PBEAML."""
+"""Properties of beams: with stations along them (PBEAM, PBEAML), with lumped areas (PBCOMP)."""
 
 import re
 
-from ..deck.card_definition import Card, Known
+import numpy as np
+
+from ....core.arrays import Floats
+from ....core.errors import Place
+from ..deck.bulk import Bulk
+from ..deck.card_definition import Card, Known, Values
 from ..deck.field_values import FieldError, Fields, take
 from ..deck.movable_values import Moves, Read, Variable, after
 from ..properties.cross_sections import dimension_count, dimensions
+from ..properties.materials import isotropic
 from ..text.real_numbers import parse_real
 
 _SECTION = ("A", "I1", "I2", "I12", "J", "NSM")
@@ -174,4 +180,61 @@ CARDS = (
             )
         ),
     ),
+    Card(
+        "PBCOMP",
+        "PID:i! MID:i! A:r! I1:r=0. I2:r=0. I12:r=0. J:r=0. NSM:r=0. / "
+        "K1:r=1. K2:r=1. M1,M2>m:r=0. N1,N2>n:r=0. SYMOPT:i=0 - / "
+        "[Y:r Z:r C:r=0. MID>mids:i - - - -]",
+        "pid",
+        space="beam property",
+        moves=Moves(linear=("NSM",)),
+    ),
 )
+
+_MIRRORED = {0: ((1, 1),), 5: ((1, 1),), 2: ((1, 1), (1, -1)), 3: ((1, 1), (-1, 1))}
+_MIRRORED[1] = (*_MIRRORED[2], (-1, 1), (-1, -1))
+"""Signs of y and z of the images that SYMOPT adds: symmetric about y and z, y, z."""
+
+
+def lumped_areas(bulk: Bulk, card: Values, place: Place) -> tuple[Floats, float, Floats] | None:
+    """Return A, I1, I2, I12, J of a PBCOMP with lumped areas, mass per length, neutral axis.
+
+    Sums over the areas weighed by their moduli beside those of MID (Quick Reference Guide,
+    PBCOMP); None where every area is zero: the card's own values hold.
+
+    Raises
+    ------
+    InputError
+        SYMOPT is not known, areas are negative or lie on a line.
+    """
+    if not any(card.c):
+        return None
+    if card.symopt not in _MIRRORED:
+        raise place.error(
+            f"SYMOPT {card.symopt} with lumped areas is not supported: list all of them with 5"
+        )
+    E0, G0, *_ = isotropic(bulk, card.mid, place)
+    found = [isotropic(bulk, mid or card.mid, place) for mid in card.mids]
+    images = np.array(_MIRRORED[card.symopt], dtype=float)
+    E, G, rho, c, y, z = (
+        np.repeat(np.asarray(v, dtype=float), len(images))
+        for v in (
+            [m[0] / E0 for m in found],
+            [m[1] / G0 for m in found],
+            [m[3] for m in found],
+            card.c,
+            *([v or 0.0 for v in values] for values in (card.y, card.z)),
+        )
+    )
+    y, z = y * np.tile(images[:, 0], len(card.c)), z * np.tile(images[:, 1], len(card.c))
+    if (c < 0.0).any():
+        raise place.error("a fraction C of the area is negative")
+    share = c * E
+    y0, z0 = (float(share @ v / share.sum()) for v in (y, z))
+    inertias = [share @ v for v in ((y - y0) ** 2, (z - z0) ** 2, (y - y0) * (z - z0))]
+    values = np.array([card.a * share.sum(), *(card.a * v for v in inertias), card.j * (c @ G)])
+    if not card.a > 0.0:
+        raise place.error("its area is not positive")
+    if not inertias[0] * inertias[1] > inertias[2] ** 2 * (1.0 + 1e-9):
+        raise place.error("its lumped areas lie on a straight line")
+    return values, float(card.a * (c @ rho)), np.array([y0, z0])

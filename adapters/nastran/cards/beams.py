@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike
 
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.elements.beam import BeamSections, beam_mass, beam_stiffness
+from ....core.errors import Place
 from ..deck.bulk import Bulk
-from ..deck.card_definition import Card
+from ..deck.card_definition import Card, Values
 from ..properties.cross_sections import section
 from ..properties.materials import isotropic
 from . import beam_properties
+from .beam_properties import lumped_areas
 from .element_group import Context, Group, Key
 from .line_elements import Lines, line_groups
 
@@ -22,7 +24,14 @@ _CBEAM = (
 )
 
 CARDS = (
-    Card("CBEAM", _CBEAM, "eid", blanks_from="BEAMOR", elements="beam", properties="PBEAM PBEAML"),
+    Card(
+        "CBEAM",
+        _CBEAM,
+        "eid",
+        blanks_from="BEAMOR",
+        elements="beam",
+        properties="PBEAM PBEAML PBCOMP",
+    ),
     Card("BEAMOR", "- PID:i - - X1,X2,X3>x:ir OFFT:x"),
     *beam_properties.CARDS,
 )
@@ -99,6 +108,8 @@ def _constants(bulk: Bulk, key: Key) -> _Beam:
     place = bulk.place(*key)
     card = bulk.table(key[0])[key[1]]
     E, G, _, rho = isotropic(bulk, card.mid, place)
+    if key[0] == "PBCOMP":
+        return _composite(bulk, card, place)
     stations, nsm = np.array(card.x), np.array(card.nsm)
     if key[0] == "PBEAM":
         values = np.array([card.a, card.i1, card.i2, card.i12, card.j])
@@ -119,6 +130,35 @@ def _constants(bulk: Bulk, key: Key) -> _Beam:
         stations = np.append(stations, 1.0)
         values = np.column_stack([values, values[:, -1]])
     return _Beam(E, G, rho, stations, values, nsm[[0, -1]], shear, neutral, nsm_at, nsi)
+
+
+def _composite(bulk: Bulk, card: Values, place: Place) -> _Beam:
+    """Constants of a PBCOMP; its lumped areas, where it has any, in place of its inertias."""
+    E, G, _, rho = isotropic(bulk, card.mid, place)
+    neutral = np.array(card.n)
+    lumped = lumped_areas(bulk, card, place)
+    if lumped:
+        values, line, neutral = lumped
+        rho = line / values[0]
+    else:
+        values = np.array([card.a, card.i1, card.i2, card.i12, card.j])
+        A, I1, I2, I12, _ = values
+        if not (min(A, I1, I2) > 0.0 and I12**2 < I1 * I2):
+            raise place.error("its area and inertias are not those of a real section")
+    ends = np.array([0.0, 1.0])
+    nsm, shear = np.full(2, card.nsm), (card.k1, card.k2)
+    return _Beam(
+        E,
+        G,
+        rho,
+        ends,
+        np.stack([values] * 2, axis=1),
+        nsm,
+        shear,
+        [neutral] * 2,
+        [card.m] * 2,
+        np.zeros(2),
+    )
 
 
 def _note_warping(context: Context) -> None:

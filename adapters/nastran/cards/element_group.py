@@ -206,9 +206,10 @@ def property_groups(context: Context, name: str, constants: Constants) -> list[G
 
 def with_material(bulk: Bulk, key: Key) -> frozenset[Key]:
     """Return a property and the materials that it names, whose values enter."""
-    mid = getattr(bulk.table(key[0])[key[1]], "mid", None)
+    card = bulk.table(key[0])[key[1]]
+    mid, others = (getattr(card, name, None) for name in ("mid", "mids"))
     named = [n for n, c in bulk.definitions.items() if c.space == "material"]
-    mids = mid if isinstance(mid, tuple) else (mid,)
+    mids = (*(mid if isinstance(mid, tuple) else (mid,)), *(others or ()))
     found = {m: bulk.find(named, int(m)) for m in mids if m is not None}
     return frozenset([key, *((card[0], int(m)) for m, card in found.items() if card)])
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints, Matrices
+from ....core.arrays import Bools, Floats, Ints, Matrices
 from ....core.elements.bar import BAR, offset_transform
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Values
@@ -101,7 +101,7 @@ def line_axes(context: Context, name: str, cards: Sequence[Values], ids: Ints, e
     points = context.points
     xa, xb = points.xyz[ends[:, 0]], points.xyz[ends[:, 1]]
     offt = np.array([_offt(context, name, c) for c in cards])
-    v = _orientation(context, name, cards, ids, ends, offt)
+    v = orientation(context, name, cards, ids, ends, offt[:, 0] == "G")
     wa, wb = (np.array([getattr(c, w) for c in cards], dtype=np.float64) for w in ("wa", "wb"))
     offset = bool(wa.any() or wb.any())
     if offset:
@@ -122,14 +122,19 @@ def _offt(context: Context, name: str, card: Values) -> tuple[str, str, str]:
     return offt[0], offt[1], offt[2]
 
 
-def _orientation(
-    context: Context, name: str, cards: Sequence[Values], ids: Ints, ends: Ints, offt: Any
+def orientation(
+    context: Context,
+    name: str,
+    cards: Sequence[Values],
+    ids: Ints,
+    ends: Ints,
+    displaced: Bools | bool = True,
 ) -> Floats:
-    """Vector to the plane 1 side: towards G0, or given in the displacement system of end A."""
+    """Vectors towards G0, or X1, X2, X3 in the displacement system of end A where `displaced`."""
     points = context.points
     by_grid = np.flatnonzero([type(c.x[0]) is int for c in cards])
     v = np.array([[x or 0.0 for x in c.x] for c in cards])
-    turned = np.flatnonzero((offt[:, 0] == "G") & points.rotated[ends[:, 0]])
+    turned = np.flatnonzero(displaced & points.rotated[ends[:, 0]])
     v[turned] = np.einsum("nki,nk->ni", points.directions[ends[turned, 0]], v[turned])
     if len(by_grid):
         g0 = points.rows([cards[k].x[0] for k in by_grid], name, ids[by_grid])

@@ -33,15 +33,15 @@ _IGNORED = {
     "superelements are solved whole, not condensed to their boundaries": "SESET SEELT SETREE "
     "SELABEL SELOAD SESUP SEMPLN SENQSET SEQSET SEQSET1 SECSET SECSET1 SEBSET SEBSET1 SEUSET "
     "SEUSET1",
-    "no card refers to it in what is read": "PBEND PLPLANE PSEAM PBMSECT "
-    "PBRSECT PBARN1 PBEMN1 PSHLN1 PSHLN2 PSLDN1 PBCOMP PBEAM3 PRAC2D PRAC3D PAXSYM PPLANE "
+    "no card refers to it in what is read": "PLPLANE PSEAM PBMSECT "
+    "PBRSECT PBARN1 PBEMN1 PSHLN1 PSHLN2 PSLDN1 PRAC2D PRAC3D PAXSYM PPLANE "
     "MAT10 MATT3 MATT11 MATG PBUSH2D",
 }  # fmt: skip
 """Cards that carry neither stiffness nor mass nor constraint by themselves: why, the names."""
 
 _REFUSED = {
     "its stiffness or mass is not supported":
-    "CBEND CBEAM3 CSEAM CINTC CBUSH2D CRAC2D CRAC3D CTRIAX CQUADX "
+    "CSEAM CINTC CBUSH2D CRAC2D CRAC3D CTRIAX CQUADX "
     "CQUAD CPLSTN3 CPLSTN4 CPLSTN6 CPLSTN8 CPLSTS3 CPLSTS4 CPLSTS6 "
     "CPLSTS8 CCONEAX CDUM1 CDUM2 CDUM3 CDUM4 CDUM5 CDUM6 CDUM7 CDUM8 CDUM9 CIFHEX CIFPENT "
     "CIFQUAD CBELL CHEXCZ CPENTCZ CFLUID2 CFLUID3 CFLUID4 CAXIF2 CAXIF3 CAXIF4 CSLOT3 CSLOT4 "
@@ -67,8 +67,6 @@ _CONDENSED = ("SESET", "SEELT", "SENQSET", "SEQSET")
 
 _LAYOUTS = {
     "MAT10": "MID:i BULK:r RHO:r C:r GE:r",
-    "PBEND": "PID:i MID:i A:r I1:r I2:r J:r RB:r THETAB:r C1:r C2:r D1:r D2:r E1:r E2:r F1:r F2:r "
-    "K1:r K2:r NSM:r RC:r ZC:r DELTAN:r",
 }
 """Of those among them whose values may be written all the same."""
 

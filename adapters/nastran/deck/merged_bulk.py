@@ -11,7 +11,7 @@ _SPACES = {
     "grid": "id nodes g gn gm refgrid groups ends gs scalars gj x",
     "element": "eid",
     "property": "pid",
-    "material": "mid mid1 mid2 mid3 mid4",
+    "material": "mid mid1 mid2 mid3 mid4 mids",
     "coordinate": "cp cd cid rid cordm mcid mcsid ocid theta",
     "table": "tid tables",
 }

@@ -101,7 +101,7 @@ def test_magnitudes_are_told_at_first_sight(tmp_path):
 
 def test_slips_are_told_at_first_sight_even_of_what_cannot_be_assembled(tmp_path):
     (tmp_path / "part.bdf").write_text(
-        "GRID,1,,0.,0.,0.\nGRID,2,,500.,0.,0.\nCBEND,1,1,1,2\nMAT1,1,2.1E5,,.3,7850.\n"
+        "GRID,1,,0.,0.,0.\nGRID,2,,500.,0.,0.\nCSEAM,1,1,1,2\nMAT1,1,2.1E5,,.3,7850.\n"
     )
     told = describe_deck(tmp_path / "part.bdf")
     assert set(told["contents"]["magnitudes"]) == {"size", "E", "density"}

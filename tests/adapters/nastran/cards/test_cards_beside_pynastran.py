@@ -24,6 +24,10 @@ APART_AS_A_WHOLE = (
     "CWELD",
     "PWELD",
     "PCOMPS",
+    "PBCOMP",
+    "PBEND",
+    "CBEAM3",
+    "PBEAM3",
     "SE",
     "POINT",
     "EXTRN",
@@ -80,7 +84,7 @@ ISOP REDUCED FULL|TFLAG 0 1|NORM MASS MAX|METHOD LAN AHOU|MSGLVL 0 1 2 3 4|PARAM
 PARAM.V1 0.5 227.25|X3:r -2. 1.5|X4:r 2. 1.5E2|NSM.TYPE PSHELL PBAR PBEAM|NSML.TYPE PSHELL PROD
 NSM1.TYPE PSHELL|NSML1.TYPE ELEMENT|PBARL.TYPE BAR TUBE2|PBEAML.TYPE BAR|components:i 1 2 3
 RBAR.CNA 123456|RROD.CMA 1 2 3|DMIG.NAME MADE|DMIG.CJ 1 2 3|DTI.NAME UNITS|DTI.IREC 1|DTI.MASS KG
-DTI.FORCE N|CFAST.TYPE PROP ELEM|MFLAG 0 1|DTI.LENGTH M MM|DTI.TIME S"""
+DTI.FORCE N|CFAST.TYPE PROP ELEM|GEOM 1 2 3 4|MFLAG 0 1|DTI.LENGTH M MM|DTI.TIME S"""
 BLANK = "EIGR.G EIGR.C PARAM.V2 RBAR.CNB RBAR.CMA RROD.CMB PBAR.I12 RBAR1.TREF RROD.TREF DMIG.B"
 DRAWN = {
     **{w.split()[0]: words(w.partition(" ")[2]) for w in re.split(r"[|\n]", WORDS.strip())},
@@ -132,7 +136,7 @@ RBE3.components comps|RBE3.groups Gijs|DMIG.values Real"""
 THEIRS = {
     **dict(pair.split() for pair in re.split(r"[|\n]", NAMED.strip())),
     **{f"{card}.x": lambda o: o.x if o.g0 is None else [o.g0, None, None]
-       for card in ("CBAR", "CBEAM", "CBUSH", "CGAP", "BAROR", "BEAMOR")},
+       for card in ("CBAR", "CBEAM", "CBUSH", "CGAP", "CBEND", "BAROR", "BEAMOR")},
     **{f"{card}.points": lambda o: [o.e1, o.e2, o.e3] for card in ("CORD2R", "CORD2C", "CORD2S")},
     **dict.fromkeys([f"{n}SET{d}.nodes" for n in "BCQ" for d in ("", "1")], "ids"),
     **{f"DTI.{k}": lambda o, k=k: o.fields[k] for k in ("mass", "force", "length", "time")},
