@@ -139,12 +139,17 @@ UPDATE: dict[str, Any] = {
         list[int], "Use only these test modes (repeatable, from 1).", "--test-mode"
     ),
     "max_iterations": _option(int, "Per stage. [default: 10]"),
+    "measured_mass": _option(
+        float, "What the structure weighed, in the deck's unit, for the residual mass."
+    ),
     "write_undetermined": _option(
         bool, "Move what the test does not determine, too.", "--write-undetermined"
     ),
 }  # fmt: skip
 
-PARAMETERS: dict[str, Any] = {key: UPDATE[key] for key in ("residuals", "test_modes")}
+PARAMETERS: dict[str, Any] = {
+    key: UPDATE[key] for key in ("residuals", "test_modes", "measured_mass")
+}
 
 DISCOVER: dict[str, Any] = {
     "adopt": _option(

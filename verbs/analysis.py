@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy.sparse as sp
 
+from ..core.arrays import Floats
 from ..core.correlation.comparison import Comparison, Placed, compare, place_test
 from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError, naming
 from .sources import Measured, Source, file_or_pynastran, geometry_of, read_deck
-from .study import Study
+from .study import Study, value_at
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec
-    from ..core.updating.residuals import Target
+    from ..core.updating.residuals import Beside, Target
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +143,7 @@ def target_of(model: Model, placed: Placed, study: Study) -> Target:
     Raises
     ------
     InputError
-        The test has no such mode.
+        The test has no mode that takes part; the model has no place of a load or a reading.
     """
     from ..core.updating.residuals import Target
 
@@ -158,8 +161,28 @@ def target_of(model: Model, placed: Placed, study: Study) -> Target:
         placed.weighted(placed.test.shapes),
         placed.weighted(placed.observation.matrix @ model.expansion),
         chosen,
-        *((None, None) if errors is None else (errors.frequency, errors.length)),
+        None if errors is None else errors.frequency,
+        None if errors is None else errors.length,
+        _beside(model, study),
     )
+
+
+def _beside(model: Model, study: Study) -> Beside:
+    from ..core.statespace.channels import read_channels, rows_of
+    from ..core.updating.residuals import Beside, LoadCase
+
+    def rows(told: Sequence[str]) -> tuple[sp.csr_matrix, Floats]:
+        places, values = zip(*(value_at(text) for text in told), strict=True)
+        channels = read_channels(places, "input")
+        at = sp.csr_matrix(rows_of(channels, model.dofs, "the deck")) @ model.expansion
+        return at.tocsr(), np.array(values)
+
+    cases = []
+    for case in study.load_cases:
+        loaded, forces = rows(case.loads)
+        cases.append(LoadCase(np.asarray(loaded.T @ forces), *rows(case.readings)))
+    centre = study.measured_centre_of_gravity
+    return Beside(study.measured_mass, np.array(centre) if centre else None, tuple(cases))
 
 
 def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[Source, Source]:

@@ -10,7 +10,7 @@ from typing import ParamSpec, TypedDict, TypeVar
 
 from ..core.errors import InputError, path_of
 from ..core.statespace.damping_choice import Asked
-from .study import StageRequest, Study, merge, read_study, unknown
+from .study import LoadRequest, StageRequest, Study, merge, read_study, unknown
 from .taking_part import refuse_idle
 
 Files = str | os.PathLike[str]
@@ -77,6 +77,12 @@ class UpdateOptions(CompareOptions, total=False):
     take part, from 1 (None: all); ``max_iterations`` of a stage; ``frequency_sigma``,
     ``shape_sigma`` and ``regularisation`` weigh the residuals and the parameters; ``stages`` of a
     strategy; ``write_undetermined`` (False): parameters that the test does not determine move, too.
+
+    What was measured beside modes, in deck units, each for a residual of its own:
+    ``measured_mass`` ("mass"), ``measured_centre_of_gravity`` (x, y, z: "centre_of_gravity"),
+    ``load_cases`` ("deflections"): each with ``loads`` as "1187:-Z=100" and ``readings`` as
+    "40:+Z=-1.25". ``mass_sigma``, ``centre_of_gravity_sigma`` and ``deflection_sigma`` are their
+    standard deviations, of the mass, of the structure's size, and of the largest reading of a case.
     """
 
     residuals: str | None
@@ -87,6 +93,9 @@ class UpdateOptions(CompareOptions, total=False):
     regularisation: float | None
     stages: Sequence[StageRequest | Mapping[str, object]] | None
     write_undetermined: bool | None
+    measured_mass: float | None
+    measured_centre_of_gravity: Sequence[float] | None
+    load_cases: Sequence[LoadRequest | Mapping[str, object]] | None
 
 
 class ParametersOptions(CompareOptions, total=False):
@@ -96,6 +105,9 @@ class ParametersOptions(CompareOptions, total=False):
     test_modes: int | Sequence[int] | None
     frequency_sigma: float | None
     shape_sigma: float | None
+    measured_mass: float | None
+    measured_centre_of_gravity: Sequence[float] | None
+    load_cases: Sequence[LoadRequest | Mapping[str, object]] | None
 
 
 class DiscoverOptions(CompareOptions, total=False):

@@ -39,6 +39,21 @@ class StageRequest:
 
 
 @dataclass(frozen=True)
+class LoadRequest:
+    """One ``[[load_cases]]`` table: forces as "1187:-Z=100", what was read as "40:+Z=-1.25"."""
+
+    loads: tuple[str, ...] = ()
+    readings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for said in ("loads", "readings"):
+            if not getattr(self, said):
+                raise InputError(f"a load case says no {said}; give some, as in '1187:-Z=100'")
+            for text in getattr(self, said):
+                value_at(text)
+
+
+@dataclass(frozen=True)
 class Study:
     """Everything a verb that compares can be told; each field is a key of ``study.toml``.
 
@@ -65,6 +80,9 @@ class Study:
     regularisation: float = 1e-2
     write_undetermined: bool = False
     stages: tuple[StageRequest, ...] = ()
+    load_cases: tuple[LoadRequest, ...] = ()
+    measured_mass: float | None = None
+    measured_centre_of_gravity: tuple[float, ...] = ()
     fmin: float | None = None
     fmax: float | None = None
     bands: tuple[Hertz, ...] = ()
@@ -126,6 +144,10 @@ class Study:
                 raise InputError(f"{key} is {value}; it must be {least} or more")
         for words in (self.residuals, *(s.residuals for s in self.stages)):
             residuals_named(words)
+        if self.measured_mass is not None and not self.measured_mass > 0.0:
+            raise InputError(f"measured_mass is {self.measured_mass:g}; it must be above 0")
+        if len(self.measured_centre_of_gravity) not in (0, 3):
+            raise InputError("measured_centre_of_gravity is x, y, z; give three numbers")
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
             raise InputError("max_iterations must be at least 1")
 
@@ -168,7 +190,8 @@ _HINTS = get_type_hints(Study)
 _FIELDS = {
     f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
 }
-_STAGE_FIELDS = get_type_hints(StageRequest)
+_TABLES: dict[str, type] = {"stages": StageRequest, "load_cases": LoadRequest}
+"""Keys that hold tables, and what each is."""
 
 
 def study_keys() -> tuple[str, ...]:
@@ -275,13 +298,14 @@ def study_toml(study: Study) -> str:
     lines = ["# trueup study: run it again with  trueup VERB --study study.toml"]
     for name in _FIELDS:
         value = getattr(study, name)
-        if name in {"stages", "out"} or value is None or (name == "test" and not value):
+        if name in {*_TABLES, "out"} or value is None or (name == "test" and not value):
             continue
         lines.append(f"{name} = {_toml(value)}")
     lines += [f"{key} = {sigma!r}" for key, sigma in study.weights.all.items()]
-    for stage in study.stages:
-        lines += ["", "[[stages]]"]
-        lines += [f"{n} = {_toml(getattr(stage, n))}" for n in _STAGE_FIELDS]
+    for name, kind in _TABLES.items():
+        for table in getattr(study, name):
+            lines += ["", f"[[{name}]]"]
+            lines += [f"{n} = {_toml(getattr(table, n))}" for n in get_type_hints(kind)]
     return "\n".join(lines) + "\n"
 
 
@@ -324,10 +348,10 @@ def converted(name: str, value: object, kind: Any, who: Place) -> Any:
     of = get_args(kind)
     if value is None and NoneType in of:
         return None
-    if StageRequest in of:
+    if name in _TABLES:
         if not isinstance(value, list | tuple):
             raise wrong
-        return tuple(_stage(v, who, wrong) for v in value)
+        return tuple(_table(_TABLES[name], v, who, wrong) for v in value)
     if kind == Hertz:
         ends = value.split(":") if isinstance(value, str) else value
         try:
@@ -357,9 +381,24 @@ _MADE_FROM: dict[Any, tuple[type, ...]] = {
 """What a value of each type may be made from."""
 
 
-def _stage(value: object, who: Place, wrong: InputError) -> StageRequest:
-    if isinstance(value, StageRequest):
+def _table(kind: type, value: object, who: Place, wrong: InputError) -> object:
+    if isinstance(value, kind):
         return value
     if not isinstance(value, Mapping):
         raise wrong
-    return StageRequest(**_checked(value, _STAGE_FIELDS, who))
+    return kind(**_checked(value, get_type_hints(kind), who))
+
+
+def value_at(text: str) -> tuple[str, float]:
+    """Return the place and the value of "1187:-Z=100".
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    place, _, value = text.rpartition("=")
+    try:
+        return place, float(value)
+    except ValueError:
+        raise InputError(f"'{text}' cannot be read; write it as in '1187:-Z=100'") from None

@@ -98,6 +98,9 @@ class Model(Noun):
         What the adapter left out or assumed.
     idle : tuple of int
         Nodes of which a translation is fixed for want of stiffness, not by the user.
+    rigid_mass : tuple of (6, 6) float
+        Of each term of `mass` what rigid motions about the origin of the basic frame move, fixed
+        points included. Empty where that is not known.
     """
 
     geometry: Geometry
@@ -109,6 +112,7 @@ class Model(Noun):
     free_labels: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     idle: tuple[int, ...] = ()
+    rigid_mass: tuple[Floats, ...] = ()
 
     def __post_init__(self) -> None:
         require_kind(self.geometry, Geometry, "geometry of Model")

@@ -63,7 +63,7 @@ class Objective:
         T = self._turned(found, [q.analysis for q in pairs])
         test = self._test_shapes(found)[:, [q.test for q in pairs]]
         quotients = solution.eigenvalues @ T**2 / np.sum(T**2, axis=0)
-        seen = Seen(order.model, frozen(p), pairs, quotients, shapes @ T, test)
+        seen = Seen(order.model, frozen(p), pairs, quotients, shapes @ T, test, self.target.beside)
         return State(seen.factors, solution, found, seen, self.value(seen, residuals))
 
     def value(self, seen: Seen, residuals: Sequence[Residual]) -> float:

@@ -11,6 +11,9 @@ CHECK = "pytest tests/core/updating"
 class UpdatingNumbers:
     frequency: float = number(0.01, "of f", "standard deviation of a frequency, unless said otherwise", "modal tests")
     shape: float = number(0.1, "√(1 − MAC)", "standard deviation of a shape, unless said otherwise", "modal tests")
+    mass: float = number(0.005, "of the mass", "standard deviation of what was weighed, unless said otherwise", "scales")
+    centre_of_gravity: float = number(0.002, "of the size of the structure", "standard deviation of a coordinate, unless said otherwise", "scales")
+    deflection: float = number(0.02, "of the largest of its load case", "standard deviation of a static reading, unless said otherwise", "static tests")
     regularisation: float = number(1e-2, "-", "on steps of the factors, unless said otherwise", CHECK)
     iterations: int = number(10, "iterations", "of a stage, unless said otherwise", CHECK)
     modes: int = number(40, "modes", "of an eigensolution, unless said otherwise", "time")
@@ -30,6 +33,7 @@ class UpdatingNumbers:
     reach: float = number(2.0, "times", "or part of, the factors of a reduced model, beyond which it is left", CHECK)
     agree: float = number(0.1, "of the tolerance", "difference of eigenvalues, full and reduced, that ends an update", CHECK)
     agree_least: float = number(1e-9, "of λ", "the same, at least", ROUNDING)
+    balance: float = number(1e-6, "of the load", "unbalanced force at which a static solution holds", ROUNDING)
     same: float = number(1e-6, "of the objective", "reduced ones this close to the full one are not told apart from it", CHECK)
     halvings: int = number(5, "halvings", "of a step, at most", CHECK)
     at_bound: float = number(1e-6, "of a factor", "beside its bound, at which it is", ROUNDING)

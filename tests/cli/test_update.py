@@ -213,7 +213,7 @@ def test_a_residual_added_from_outside_is_named_in_a_study(
     weighing["WEIGHED"] = weighing["moving_along_x"](model, model.M(np.array([1.1])))
     (inputs / "study.toml").write_text(
         "deck = 'duct.bdf'\ntest = ['duct_test.unv']\nparameters = ['MAT1 1 RHO']\n"
-        "deck_length_unit = 'mm'\nresiduals = 'mass'\nmass_sigma = 0.0001\n"
+        "deck_length_unit = 'mm'\nresiduals = 'moved'\nmoved_sigma = 0.0001\n"
     )
     try:
         said = call("update", "--study", inputs / "study.toml", "--out", tmp_path / "run",
@@ -222,7 +222,7 @@ def test_a_residual_added_from_outside_is_named_in_a_study(
         RESIDUALS[:] = before
     assert said.status == 0, said.err
     assert json.loads(said.out)["parameters"][0]["factor"] == pytest.approx(1.1, rel=1e-4)
-    assert "mass_sigma = 0.0001" in (tmp_path / "run" / "study.toml").read_text()
+    assert "moved_sigma = 0.0001" in (tmp_path / "run" / "study.toml").read_text()
 
 
 def test_what_the_test_does_not_determine_is_not_written(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ....core.arrays import Bools, Floats, Ints
+from ....core.arrays import Bools, Floats, Ints, frozen
 from ....core.assembly.affine_terms import parametric_terms
 from ....core.assembly.guyan import condensed, static_condensation, without_strain
 from ....core.assembly.multipoint_constraints import Reduction, reduction, unsupported
@@ -108,6 +108,7 @@ def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
             *more,
         ),
         idle=idle,
+        rigid_mass=_rigid_mass(points, whole[1]),
     )
     return Assembly(model, structure, whole[0], constraints.fixed)
 
@@ -217,6 +218,12 @@ def _rigid_motions(points: Points, dofs: Ints) -> Floats:
         grid, component = np.divmod(dofs[at], 6)
         out[at] = points.motions(grid, points.xyz[grid].mean(axis=0))[np.arange(len(at)), component]
     return out
+
+
+def _rigid_mass(points: Points, mass: tuple[Term, ...]) -> tuple[Floats, ...]:
+    R = np.zeros((points.n_dof, 6))
+    R[: 6 * len(points.ids)] = points.motions(slice(None), np.zeros(3)).reshape(-1, 6)
+    return tuple(frozen(R.T @ (t.matrix @ R)) for t in mass)
 
 
 def _component_modes_wanted(deck: Deck, places: int) -> tuple[int | None, float | None]:

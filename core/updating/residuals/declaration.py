@@ -16,6 +16,43 @@ from ...errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
+class LoadCase:
+    """Displacements under a static load, deck units.
+
+    Parameters
+    ----------
+    load : (n_free,) float
+        Forces and moments.
+    rows : (n_reading, n_free) sparse
+        What was read of the displacements.
+    values : (n_reading,) float
+        The readings.
+    """
+
+    load: Floats
+    rows: sp.csr_matrix
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """What was measured beside modes, deck units.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Of the whole structure, fixed points included.
+    centre_of_gravity : (3,) float, optional
+        Basic frame; NaN a coordinate that is not known.
+    load_cases : tuple of LoadCase
+    """
+
+    mass: float | None = None
+    centre_of_gravity: Floats | None = None
+    load_cases: tuple[LoadCase, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Target:
     """The test at its sensors: what the update aims at.
 
@@ -30,6 +67,7 @@ class Target:
     frequency_std, shape_std : (n_test,) float, optional
         Standard errors of the test's frequencies, relative, and lengths of those of its shapes,
         over the shapes'; they add to the standard deviations of the weights.
+    beside : Beside
     """
 
     frequencies_hz: Floats
@@ -38,6 +76,7 @@ class Target:
     modes: tuple[int, ...] | None = None
     frequency_std: Floats | None = None
     shape_std: Floats | None = None
+    beside: Beside = Beside()
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +93,8 @@ class Seen:
     analysis, test : (n_sensor, n_pair) float
         Shapes at the sensors as they are paired: the analysis' mass-normalised, the test's of
         any scaling.
+    beside : Beside
+        What else was measured.
     """
 
     model: Model
@@ -62,6 +103,7 @@ class Seen:
     eigenvalues: Floats
     analysis: Floats
     test: Floats
+    beside: Beside = Beside()
 
     @property
     def test_eigenvalues(self) -> Floats:

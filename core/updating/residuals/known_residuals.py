@@ -11,12 +11,17 @@ from ...arrays import Floats
 from ...errors import InputError, require_kind
 from ..updating_numbers import UPDATING
 from .declaration import Residual
+from .deflections import DEFLECTIONS
 from .frequencies import FREQUENCIES
 from .shapes import SHAPES
+from .weight import CENTRE_OF_GRAVITY, MASS
 
 RESIDUALS: list[Residual] = [
     FREQUENCIES,
     SHAPES,
+    MASS,
+    CENTRE_OF_GRAVITY,
+    DEFLECTIONS,
 ]
 """What an update may minimise; `register_residual` adds to it."""
 

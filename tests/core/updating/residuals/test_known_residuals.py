@@ -30,8 +30,8 @@ def test_names_are_one_residual_several_or_both():
     assert [r.name for r in residuals_named("both")] == ["frequencies", "shapes"]
     assert [r.name for r in residuals_named("shapes, frequencies")] == ["shapes", "frequencies"]
     assert [r.name for r in residuals_named("both, shapes")] == ["frequencies", "shapes"]
-    with pytest.raises(InputError, match="residuals is 'mass'; give one of frequencies, shapes"):
-        residuals_named("mass")
+    with pytest.raises(InputError, match="residuals is 'weight'; give one of frequencies, shapes"):
+        residuals_named("weight")
 
 
 def test_a_name_or_key_that_is_taken_is_refused_and_so_is_no_residual():
@@ -42,9 +42,10 @@ def test_a_name_or_key_that_is_taken_is_refused_and_so_is_no_residual():
 
 
 def test_each_has_its_own_default_and_key(weighing):
-    assert Weights({"shape_sigma": 0.2}).all == {
-        "frequency_sigma": 0.01, "shape_sigma": 0.2, "mass_sigma": 0.001,
-    }  # fmt: skip
+    known = Weights({"shape_sigma": 0.2}).all
+    assert known["frequency_sigma"] == 0.01
+    assert known["shape_sigma"] == 0.2
+    assert known["moved_sigma"] == 0.001
 
 
 def test_a_mass_that_was_weighed_sets_the_scale_that_frequencies_leave_open(weighing):
@@ -52,7 +53,7 @@ def test_a_mass_that_was_weighed_sets_the_scale_that_frequencies_leave_open(weig
     target = measured(model, TRUTH)
     assert weighing["moving_along_x"](model, model.M(np.array(TRUTH))) == pytest.approx(14.4)
     alone = update(model, target, [Stage((0, 1), "frequencies")], n_modes=8)
-    both = update(model, target, [Stage((0, 1), "frequencies, mass", 20)], n_modes=8,
+    both = update(model, target, [Stage((0, 1), "frequencies, moved", 20)], n_modes=8,
                   weights=Weights(regularisation=0.0), tolerance=1e-7)  # fmt: skip
     assert np.isnan(alone.standard_error).all()
     assert abs(alone.factors - TRUTH).max() > 0.05
@@ -63,8 +64,8 @@ def test_a_mass_that_was_weighed_sets_the_scale_that_frequencies_leave_open(weig
 def test_one_step_of_the_mass_alone_is_that_of_equation_four(weighing):
     """16 p against 14.4: g = 16/(14.4 σ), Δp = −g r/(g² + w) with r = g (p − 0.9)."""
     model = chain(ALL[:1], ["m"])
-    done = update(model, measured(model, [0.9]), [Stage((0,), "mass", 1)], n_modes=8,
-                  weights=Weights({"mass_sigma": 0.1}, 50.0))  # fmt: skip
+    done = update(model, measured(model, [0.9]), [Stage((0,), "moved", 1)], n_modes=8,
+                  weights=Weights({"moved_sigma": 0.1}, 50.0))  # fmt: skip
     g = 16.0 / 14.4 / 0.1
     assert done.factors[0] == pytest.approx(1.0 - 0.1 * g**2 / (g**2 + 50.0), rel=1e-9)
     assert done.history[0].objective == pytest.approx((0.1 * g) ** 2, rel=1e-9)
