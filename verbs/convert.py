@@ -13,7 +13,7 @@ from .exchange import KINDS, Boundary, Cargo, cargo_of, load
 from .options import Files, PlantOptions, Say, checked_call, unheard
 from .sources import Source, existing
 from .study import converted
-from .write_fmu import PLANTS, Converted, write_fmu
+from .write_fmu import OTHERS, PLANTS, Converted, write_fmu
 
 _MOST, _LONGEST, _MODES = 4, 200, 20
 
@@ -38,8 +38,9 @@ def convert(
 
     Results, matrices, universal files and stores go into universal files (.unv, .uff), stores
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
-    gives them geometry and axes. A unit for simulators (.fmu), and the same state space as arrays
-    (.npz, .mat), is made of modes: see `write_fmu`.
+    gives them geometry and axes. A unit for simulators (.fmu), the same state space as arrays
+    (.npz, .mat) and, with ``inputs``, its frequency responses (.unv, .uff) are made of modes: see
+    `write_fmu`.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def convert(
     progress : callable
         Told what is done, a few words at a time.
     **plant
-        `PlantOptions`, of a .fmu, .npz or .mat alone.
+        `PlantOptions`, of a .fmu, .npz or .mat, and of frequency responses, alone.
 
     Returns
     -------
@@ -79,7 +80,8 @@ def convert(
     path = path_of(destination, "the destination")
     to = converted("to", to, str | None, Place(shown="convert"))
     subcase = converted("subcase", subcase, int | None, Place(shown="convert"))
-    if path.suffix.lower() in PLANTS and to is None:
+    suffix = path.suffix.lower()
+    if to is None and suffix in PLANTS and (plant or suffix not in OTHERS):
         if boundary is not None:
             raise InputError("a plant has no boundary; what it has are inputs and outputs")
         return write_fmu(
@@ -137,7 +139,7 @@ def _files(sources: Source) -> list[Path]:
     files = [path_of(s, "a source") for s in every if isinstance(s, str | os.PathLike)]
     if files and len(files) < len(every):
         raise InputError("the sources are files and objects; convert them one by one")
-    return files
+    return [p / "result.h5" if (p / "result.h5").is_file() else p for p in files]
 
 
 def _check(sources: list[Path], destination: Path, kind: str | None, force: bool) -> None:

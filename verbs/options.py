@@ -130,11 +130,11 @@ class PlantOptions(TypedDict, total=False):
 
     ``inputs`` and ``outputs`` as in "1187:+Z,tip=1187:RZ" and "1187:+Z:acc,40:+X,@3:+Y:vel" (@ is
     a sensor of the test of a run); ``fmi``, 2 or 3; ``platforms``, "linux64,win64" or "all"
-    (None: where this runs); ``damping``, a ratio, one a mode,
+    (None: whatever a compiler at hand makes); ``damping``, a ratio, one a mode,
     "1:0.01,2:0.02,0.015", "test", "deck" (None: what test and deck know, 1 % where they do not);
-    ``residual`` (True), modes for the static contribution of what is left out; ``rigid_body``
-    (True), rigid-body modes; ``units``, "si" or "deck"; ``deck_length_unit`` ("m", "mm", "in",
-    "ft").
+    ``lines`` (1600) of frequency responses; ``residual`` (True), modes for the static contribution
+    of what is left out; ``rigid_body`` (True), rigid-body modes; ``units``, "si" or "deck";
+    ``deck_length_unit`` ("m", "mm", "in", "ft").
     """
 
     inputs: str | Sequence[str]
@@ -142,6 +142,7 @@ class PlantOptions(TypedDict, total=False):
     fmi: int
     platforms: str | Sequence[str] | None
     damping: Asked
+    lines: int
     residual: bool
     rigid_body: bool
     units: str

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from ..core.arrays import Floats
 from ..core.data.dofs import Dofs
+from ..core.data.geometry import Geometry
 from ..core.data.length_units import METRES
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
@@ -48,10 +49,20 @@ class PlantSource(Noun):
     model: Model | None = None
     deck: Deck | None = None
     modes: Modes | None = None
+    geometry: Geometry | None = None
     length_unit: str | None = None
     sensors: tuple[Dofs, sp.csr_matrix] | None = None
     test: tuple[Floats, Floats] | None = None
     notes: tuple[str, ...] = field(default=())
+
+    def places(self, channels: Sequence[Channel], metres: float | None) -> Geometry | None:
+        """Return the grids of channels, in metres where it is known how many the unit is."""
+        if self.geometry is None:
+            return None
+        nodes, ids = [c.node for c in channels if not c.sensor], self.geometry.ids
+        at = np.flatnonzero(np.isin(ids, nodes))
+        unit = self.length_unit if metres is None else "m"
+        return Geometry(ids[at], self.geometry.xyz[at] * (metres or 1.0), unit)
 
     @property
     def dofs(self) -> Dofs:
@@ -75,8 +86,8 @@ def plant_of(
     deck_length_unit: str | None = None,
     from_: str | None = None,
     subcase: int | None = None,
-) -> tuple[ModalPlant, tuple[str, ...]]:
-    """Return a plant, and what was assumed; see `write_fmu`."""
+) -> tuple[ModalPlant, Geometry | None, tuple[str, ...]]:
+    """Return a plant, where its grids are, and what was assumed; see `write_fmu`."""
     into, out = read_channels(inputs, "input"), read_channels(outputs, "output")
     check_names((*into, *out))
     choice = read_damping(damping)
@@ -102,7 +113,9 @@ def plant_of(
         plant = basis.plant(ratios, into, out)
     if units == "si":
         plant = plant.in_si(metres, kilograms)
-    return plant, tuple(dict.fromkeys([*found.notes, *basis.notes, *notes, *said, *_error(plant)]))
+    places = found.places((*into, *out), metres if units == "si" else None)
+    assumed = dict.fromkeys([*found.notes, *basis.notes, *notes, *said, *_error(plant)])
+    return plant, places, tuple(assumed)
 
 
 def source_of(
@@ -131,12 +144,13 @@ def _of_object(source: Any) -> PlantSource:
     from ..adapters.nastran import Deck, build_model
 
     if isinstance(source, Model):
-        return PlantSource(model=source, length_unit=source.geometry.length_unit)
+        return PlantSource(source, None, None, source.geometry, source.geometry.length_unit)
     if isinstance(source, Deck) or is_changed(source):
         deck = read_deck(source)
         model = build_model(deck)
         unit = model.geometry.length_unit or deck.length_unit
-        return PlantSource(model, deck, length_unit=unit, notes=(*deck.warnings, *model.warnings))
+        notes = (*deck.warnings, *model.warnings)
+        return PlantSource(model, deck, None, model.geometry, unit, notes=notes)
     if isinstance(source, Run):
         return _of_run(source)
     return _of_cargo(cargo_of(source))
@@ -151,7 +165,7 @@ def _of_run(run: Run) -> PlantSource:
         found = _of_object(read_deck(deck))
     else:
         unit = content.geometry.length_unit if content.geometry else None
-        found = PlantSource(modes=held, length_unit=unit)
+        found = PlantSource(modes=held, geometry=content.geometry, length_unit=unit)
     pairs = [p for p in run.final.pairs if p.test_damping is not None]
     test = (
         np.array([p.analysis_hz for p in pairs]),
@@ -161,7 +175,7 @@ def _of_run(run: Run) -> PlantSource:
     if seen is not None and seen.shape[1] == len(found.dofs):
         sensors = (content.modes["test"].dofs, sp.csr_matrix(seen))
     unit = found.length_unit or run.study.deck_length_unit
-    return PlantSource(found.model, found.deck, found.modes, unit, sensors, test, found.notes)
+    return replace(found, length_unit=unit, sensors=sensors, test=test)
 
 
 def _of_cargo(cargo: Any) -> PlantSource:
@@ -177,7 +191,8 @@ def _of_cargo(cargo: Any) -> PlantSource:
     unit = cargo.geometry.length_unit if cargo.geometry is not None else None
     ((kind, modes),) = normal.items()
     modes, said = _weighed(modes) if kind == "analysis" else (modes, ())
-    return PlantSource(modes=modes, length_unit=unit, notes=(*cargo.notes, *said))
+    notes = (*cargo.notes, *said)
+    return PlantSource(modes=modes, geometry=cargo.geometry, length_unit=unit, notes=notes)
 
 
 def _weighed(modes: Modes) -> tuple[Modes, tuple[str, ...]]:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Unpack
 
+from ..core.data.geometry import Geometry
 from ..core.errors import InputError, Place, path_of
 from ..core.results.inspection import ConvertTables
 from ..core.statespace.modal_plant import ModalPlant
+from ..core.statespace.statespace_numbers import STATESPACE
 from .options import Files, PlantOptions, Say, checked_call, unheard
 from .plant import plant_of
 from .sources import Source
@@ -38,7 +40,8 @@ def write_fmu(
     """Write a structure as a linear component for simulators: forces in, motions out.
 
     A Functional Mock-up Unit (FMI 2.0 or 3.0, model exchange and co-simulation) by the suffix
-    .fmu; the same state space as arrays by .npz or .mat.
+    .fmu; the same state space as arrays by .npz or .mat; its frequency responses as dataset 58 by
+    .unv or .uff.
 
     Parameters
     ----------
@@ -80,11 +83,12 @@ def write_fmu(
     who = Place(shown="write_fmu")
     asked: Any = dict(options)
     version = converted("fmi", asked.pop("fmi", 2), int, who)
+    lines = converted("lines", asked.pop("lines", STATESPACE.written), int, who)
     modes, fmax = (
         converted("modes", modes, int | None, who),
         converted("fmax", fmax, float | None, who),
     )
-    for name, value in (("fmax", fmax), ("modes", modes)):
+    for name, value in (("fmax", fmax), ("modes", modes), ("lines", lines)):
         if value is not None and not value > 0:
             raise InputError(f"{name} is {value!r}; it must be above 0")
     if version not in (2, 3):
@@ -93,11 +97,12 @@ def write_fmu(
     platforms = asked.pop("platforms", None) or ()
     platforms = platforms.split(",") if isinstance(platforms, str) else platforms
     inputs, outputs = asked.pop("inputs", ""), asked.pop("outputs", "")
-    plant, notes = plant_of(
+    plant, places, notes = plant_of(
         source, inputs, outputs, modes=modes, fmax=fmax, from_=from_, subcase=subcase, **asked
     )
-    progress("writing")
-    name, more = writer(path, plant, version, tuple(str(p).strip() for p in platforms))
+    progress("compiling and writing" if path.suffix.lower() == ".fmu" else "writing")
+    way = _Way(version, tuple(str(p).strip() for p in platforms), lines, places)
+    name, more = writer(path, plant, way)
     every = source if isinstance(source, list | tuple) else [source]
     return Converted(
         sources=tuple(str(s) for s in every if isinstance(s, str | os.PathLike)),
@@ -114,12 +119,21 @@ def write_fmu(
     )
 
 
-def _unit(
-    path: Path, plant: ModalPlant, version: int, platforms: Sequence[str]
-) -> tuple[str, list[str]]:
+@dataclass(frozen=True)
+class _Way:
+    """How a plant is written."""
+
+    version: int
+    platforms: tuple[str, ...]
+    lines: int
+    places: Geometry | None
+
+
+def _unit(path: Path, plant: ModalPlant, way: _Way) -> tuple[str, list[str]]:
     from ..adapters.fmu import write_unit
     from ..adapters.fmu.build_kernel import PLATFORMS
 
+    version, platforms = way.version, way.platforms
     compiled = write_unit(path, plant, version, platforms)
     if compiled:
         lost = sorted(set(PLATFORMS if "all" in platforms else platforms) - set(compiled))
@@ -131,16 +145,28 @@ def _unit(
     ]
 
 
-def _arrays(path: Path, plant: ModalPlant, *_: object) -> tuple[str, list[str]]:
+def _arrays(path: Path, plant: ModalPlant, _: _Way) -> tuple[str, list[str]]:
     from ..adapters.fmu import write_state_space
 
     write_state_space(path, plant)
     return "state space", []
 
 
-PLANTS: dict[str, Callable[[Path, ModalPlant, int, Sequence[str]], tuple[str, list[str]]]] = {
+def _functions(path: Path, plant: ModalPlant, way: _Way) -> tuple[str, list[str]]:
+    from ..adapters.universal import write_universal
+
+    units = "m" if plant.si else None
+    write_universal(path, geometry=way.places, frfs=plant.frfs(way.lines), units=units)
+    return "frequency responses", []
+
+
+PLANTS: dict[str, Callable[[Path, ModalPlant, _Way], tuple[str, list[str]]]] = {
     ".fmu": _unit,
     ".npz": _arrays,
     ".mat": _arrays,
+    ".unv": _functions,
+    ".uff": _functions,
 }
 """Writers of a plant by suffix."""
+OTHERS = (".unv", ".uff")
+"""Those that hold other things as well, where no inputs are given."""

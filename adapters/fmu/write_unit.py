@@ -37,7 +37,8 @@ def write_unit(
     version : {2, 3}
         FMI 2.0 or 3.0.
     platforms : sequence of str
-        What to compile for, by the folders of FMI 2.0, or "all"; default: where this runs.
+        What to compile for, by the folders of FMI 2.0, or "all"; default: whatever a
+        compiler at hand makes.
 
     Returns
     -------
@@ -64,7 +65,7 @@ def write_unit(
     if version == VERSIONS[-1]:
         files["sources/buildDescription.xml"] = build_description(name, SOURCES).encode()
     for of, content in compiled.items():
-        folder, _, suffix = PLATFORMS[of]
+        folder, _, suffix, _ = PLATFORMS[of]
         place = of if version == VERSIONS[0] else folder
         files[f"binaries/{place}/{identifier(name)}{suffix}"] = content
     with replacing(path) as fresh, zipfile.ZipFile(fresh, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -59,12 +59,16 @@ def convert(
     platforms: Annotated[
         str | None,
         typer.Option(metavar="linux64,win64,...|all", help="What a unit has binaries for. "
-                     "[default: where this runs]"),
+                     "[default: whatever a compiler at hand makes]"),
     ] = None,
     damping: Annotated[
         str | None,
         typer.Option(metavar="RATIO|test|deck|K:RATIO,...", help="[default: what test and deck "
                      "know, 0.01 where they do not]"),
+    ] = None,
+    lines: Annotated[
+        int | None,
+        typer.Option(help="Of frequency responses (.unv, .uff) up to --fmax. [default: 1600]"),
     ] = None,
     residual: Annotated[
         bool | None,
@@ -87,8 +91,8 @@ def convert(
 
     Results, matrices, universal files and stores go into universal files (.unv, .uff), stores
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
-    gives them geometry and axes. A deck, a run folder or modes become a unit for simulators (.fmu)
-    or a state space (.npz, .mat) with --inputs and --outputs.
+    gives them geometry and axes. A deck, a run folder or modes become a unit for simulators (.fmu),
+    a state space (.npz, .mat) or frequency responses (.unv, .uff) with --inputs and --outputs.
     """
     from ...verbs.convert import convert as write
 
@@ -98,8 +102,8 @@ def convert(
     *sources, destination = files
     plant = {
         "inputs": inputs, "outputs": outputs, "fmi": fmi, "platforms": platforms,
-        "damping": damping, "residual": residual, "rigid_body": rigid_body, "units": units,
-        "deck_length_unit": deck_length_unit,
+        "damping": damping, "lines": lines, "residual": residual, "rigid_body": rigid_body,
+        "units": units, "deck_length_unit": deck_length_unit,
     }  # fmt: skip
     given: Any = {name: value for name, value in plant.items() if value is not None}
     with working("reading", output) as say:

@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Floats, Numbers, hold, require_finite
+from ..data.dofs import Dofs
+from ..data.frfs import QUANTITIES, Frfs
 from ..errors import InputError, require_kind
 from ..noun import Noun
 from .channels import Channel, check_names
+from .statespace_numbers import STATESPACE
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +107,31 @@ class ModalPlant(Noun):
         """Return the frequency responses, (n_output, n_input, n_line) complex."""
         s = 2j * np.pi * np.asarray(hz, dtype=float)
         return np.asarray(self.receptances(hz) * s ** self.quantity[:, None, None])
+
+    def frfs(self, lines: int = STATESPACE.written) -> Frfs:
+        """Return the frequency responses at so many even lines up to the end of the band.
+
+        Raises
+        ------
+        InputError
+            No band, or outputs of several quantities.
+        """
+        kinds = sorted({c.quantity for c in self.outputs})
+        if len(kinds) > 1:
+            mixed = " and ".join(QUANTITIES[k] for k in kinds)
+            raise InputError(f"the outputs are {mixed}; functions of a file are of one quantity")
+        if self.band_hz is None:
+            raise InputError("the upper end of the band is not known; give fmax")
+        hz = self.band_hz / lines * np.arange(1, lines + 1)
+        into, out = (
+            Dofs(
+                np.array([c.node for c in channels]),
+                np.array([c.component for c in channels]),
+                np.array([c.direction for c in channels]),
+            )
+            for channels in (self.inputs, self.outputs)
+        )
+        return Frfs(hz, out, into, self.responses(hz), QUANTITIES[kinds[0]], "modes")
 
     def receptances(self, hz: Floats) -> Numbers:
         """Return displacements per force, whatever the outputs are, (n_output, n_input, n_line)."""

@@ -16,6 +16,7 @@ class StateSpaceNumbers:
     aligned: float = number(1e-6, "-", "what the axes of a node may miss of a direction", ROUNDING)
     silent: float = number(1e-3, "of the largest of its row and column", "receptance below which an error counts as of this much", "three decades, the range of a test")
     lines: int = number(200, "lines", "of the band over which receptances are averaged", "enough for a median")
+    written: int = number(1600, "lines", "of functions that are written, where no number is asked for", "customary of analysers")
     modes: int = number(30, "modes", "kept where neither band nor number is asked for", "convenience")
 
 

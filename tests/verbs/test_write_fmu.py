@@ -191,6 +191,80 @@ def test_a_run_gives_damping_and_sensors_of_its_test(tmp_path: Path) -> None:
         assert own == pytest.approx(read[round(held["frequencies_hz"][k], 3)], rel=1e-5)
 
 
+def mast(folder: Path, name: str, modulus: str) -> Path:
+    """A cantilever of ten bars, 2 % damped."""
+    grids = "".join(f"GRID,{k + 1},,{0.4 * k:.1f},0.,0.\n" for k in range(11))
+    bars = "".join(f"CBAR,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 11))
+    rest = f"PBAR,1,1,1.-3,1.-6,2.-6,1.-6\nMAT1,1,{modulus},,.3,7850.\nSPC1,1,123456,1\n"
+    bulk = f"$ units: m, kg, N, s\nPARAM,G,.04\n{grids}{bars}{rest}"
+    (folder / name).write_text(f"SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n{bulk}ENDDATA\n")
+    return folder / name
+
+
+def test_functions_are_those_of_the_state_space(tmp_path: Path) -> None:
+    deck = mast(tmp_path, "deck.bdf", "2.1+11")
+    asked: dict[str, Any] = {"inputs": "11:Y,5:-RZ", "outputs": "11:Y:vel,7:-Z:vel", "fmax": 60.0}
+    told = trueup.convert(deck, tmp_path / "frf.unv", lines=30, **asked)
+    assert told.format == "frequency responses"
+    trueup.convert(deck, tmp_path / "plant.npz", **asked)
+    content, held = trueup.read(tmp_path / "frf.unv"), arrays(tmp_path / "plant.npz")
+    frfs = content.frfs
+    assert frfs.quantity == "velocity"
+    assert frfs.responses.labels == ["11:Y", "7:Z"]
+    assert frfs.references.labels == ["11:Y", "5:RZ"]
+    assert frfs.frequencies_hz == pytest.approx(2.0 * np.arange(1, 31))
+    signs = frfs.responses.axis[:, [1, 2]].sum(1), frfs.references.axis[:, [1, 2]].sum(1)
+    for k in (0, 4, 29):
+        ours = responses(held, frfs.frequencies_hz[k])
+        assert ours == pytest.approx(frfs.values[:, :, k], rel=1e-9)
+    assert [s.tolist() for s in signs] == [[1.0, -1.0], [1.0, -1.0]]
+    assert content.geometry.ids.tolist() == [5, 7, 11]
+    assert content.geometry.xyz[:, 0] == pytest.approx([1.6, 2.4, 4.0])
+    for wrong, says in (
+        ({"outputs": "11:Y,11:Z:acc"}, "outputs are displacement and acceleration"),
+        ({"lines": 0}, "lines is 0; it must be above 0"),
+    ):
+        with pytest.raises(trueup.InputError, match=says):
+            trueup.convert(deck, tmp_path / "none.unv", **{**asked, **wrong})
+    assert not (tmp_path / "none.unv").exists()
+
+
+@pytest.mark.slow
+def test_runs_of_every_verb_make_plants(tmp_path: Path) -> None:
+    """Functions of a deck, modes identified in them, a deck corrected to those: plants of all."""
+    truth, deck = mast(tmp_path, "truth.bdf", "2.1+11"), mast(tmp_path, "deck.bdf", "1.8+11")
+    asked: dict[str, Any] = {"inputs": "11:Y,11:Z", "fmax": 60.0}
+    every = ",".join(f"{k}:{c}:acc" for k in range(2, 12) for c in "YZ")
+    trueup.convert(truth, tmp_path / "frf.unv", outputs=every, lines=3000, **asked)
+    trueup.identify(tmp_path / "frf.unv").save(tmp_path / "identify")
+    test = [tmp_path / "identify" / "modes.unv", tmp_path / "frf.unv"]
+    trueup.update(deck, test, ["MAT1 1 E"]).save(tmp_path / "update")
+    trueup.discover(truth, test).save(tmp_path / "discover")
+    trueup.correlate(truth, test).save(tmp_path / "correlate")
+    trueup.solve(truth, 6).write(tmp_path / "modes.unv")
+    asked["outputs"] = "11:Y,6:Z:vel"
+    at = np.array([5.69, 8.05, 35.3, 49.9])  # resonances, which modes alone know as well
+
+    def made(name: str, **more: Any) -> np.ndarray:
+        trueup.write_fmu(tmp_path / name, tmp_path / "p.npz", **asked, **more, force=True)
+        return np.array([responses(arrays(tmp_path / "p.npz"), f) for f in at])
+
+    exact, alone = made("truth.bdf"), {"deck_length_unit": "m"}
+    largest = np.abs(exact).max(axis=0)
+    moves = largest > 1e-6 * largest.max()
+    assert moves.tolist() == [[True, False], [False, True]]
+    for name, within, more in (
+        ("identify", 2e-3, alone),
+        ("identify/modes.unv", 2e-3, alone),
+        ("modes.unv", 0.02, {**alone, "damping": 0.02}),
+        ("update", 2e-3, {}),
+        ("discover", 2e-3, {}),
+        ("correlate", 1e-4, {}),
+    ):
+        off = np.abs(made(name, **more) - exact).max(axis=0)[moves] / largest[moves]
+        assert off.max() < within, name
+
+
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
@@ -234,7 +308,7 @@ def test_an_existing_file_is_kept_and_plants_have_their_own_options(tmp_path: Pa
     (tmp_path / "plant.fmu").write_text("mine")
     with pytest.raises(trueup.InputError, match="exists; give force=True"):
         trueup.write_fmu(deck, tmp_path / "plant.fmu", inputs="3:Y", outputs="3:Y")
-    with pytest.raises(trueup.InputError, match=r"'inputs' is of \.fmu, \.npz, \.mat alone"):
+    with pytest.raises(trueup.InputError, match=r"'inputs' is of \.fmu, \.npz, \.mat, \.unv, \.uff alone"):
         trueup.convert(deck, tmp_path / "m.op4", inputs="3:Y")
     with pytest.raises(trueup.InputError, match="a plant has no boundary"):
         trueup.convert(deck, tmp_path / "p.npz", boundary="3", inputs="3:Y", outputs="3:Y")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,12 +20,25 @@ from trueup.core.errors import InputError
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_the_same_plant_gives_the_same_bytes(tmp_path: Path, version: int) -> None:
+def test_the_same_plant_gives_the_same_bytes(
+    tmp_path: Path, version: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also in another process and compiled again."""
     first = tmp_path / "plant.fmu"
-    write_unit(first, plant(), version)
-    build_kernel._compiled.cache_clear()
+    monkeypatch.setattr(build_kernel, "_cache", lambda: tmp_path / "kept")
+    made = write_unit(first, plant(), version, ["linux64"])
+    assert len(list((tmp_path / "kept").iterdir())) == len(made)
+    code = (
+        "import sys; from pathlib import Path; from tests.adapters.fmu.plants import plant\n"
+        "from trueup.adapters.fmu import build_kernel, write_unit\n"
+        "build_kernel._cache = lambda: Path('fresh').absolute()\n"
+        f"write_unit(Path('plant.fmu'), plant(), {version}, ['linux64'])"
+    )
     (tmp_path / "again").mkdir()
-    write_unit(tmp_path / "again" / "plant.fmu", plant(), version)
+    environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": os.pathsep.join(sys.path)}
+    subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path / "again", env=environment, check=True
+    )
     assert (tmp_path / "again" / "plant.fmu").read_bytes() == first.read_bytes()
 
 
@@ -31,14 +47,33 @@ def test_without_a_compiler_the_unit_holds_its_sources(
     tmp_path: Path, version: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(build_kernel, "_compilers", lambda name: [])
-    build_kernel._compiled.cache_clear()
     assert write_unit(tmp_path / "plant.fmu", plant(), version) == ()
-    build_kernel._compiled.cache_clear()
     with zipfile.ZipFile(tmp_path / "plant.fmu") as archive:
         names = archive.namelist()
     assert {"sources/plant.c", "sources/plant.h", "sources/fmi2.c", "sources/fmi3.c"} < set(names)
     assert ("sources/buildDescription.xml" in names) == (version == VERSIONS[1])
     assert not any(n.startswith("binaries/") for n in names)
+
+
+def test_every_platform_that_a_compiler_makes_has_its_binary(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A compiler of a cross-compiler's name stands on the path; what it made is kept."""
+    monkeypatch.setattr(build_kernel, "_cache", lambda: tmp_path / "kept")
+    monkeypatch.setattr(build_kernel, "find_spec", lambda name: None)
+    compiler = tmp_path / "x86_64-w64-mingw32-gcc"
+    compiler.write_text('#!/bin/sh\nwhile [ "$1" != -o ]; do shift; done\necho MZ > "$2"\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    assert "win64" in write_unit(tmp_path / "plant.fmu", plant(), 3)
+    age = compiler.stat().st_mtime_ns
+    compiler.write_text("#!/bin/sh\nexit 1\n")
+    os.utime(compiler, ns=(age, age))
+    assert "win64" in write_unit(tmp_path / "plant.fmu", plant(), 3)
+    os.utime(compiler, ns=(age + 1, age + 1))
+    assert "win64" not in write_unit(tmp_path / "other.fmu", plant(), 3)
+    with zipfile.ZipFile(tmp_path / "plant.fmu") as archive:
+        assert archive.read("binaries/x86_64-windows/plant.dll") == b"MZ\n"
 
 
 @pytest.mark.parametrize("version", VERSIONS)
