@@ -38,7 +38,9 @@ class TrueupError(Exception):
 
     def reworded(self, sentence: str) -> Self:
         """Return the same error in other words."""
-        return type(self)(sentence, file=self.file, line=self.line, card=self.card)
+        same = type(self).__new__(type(self), sentence)
+        vars(same).update(vars(self))
+        return same
 
 
 class InputError(TrueupError):

@@ -6,6 +6,7 @@ import pickle
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import trueup
@@ -14,6 +15,7 @@ from trueup.adapters.nastran import set_values
 from trueup.adapters.nastran.editing.find_cards import find_card
 from trueup.adapters.nastran.matrices.read_matrices import read_matrices
 from trueup.adapters.nastran.text.deck_text import read_deck_text
+from trueup.core.eigen.mechanisms import Massless
 from trueup.core.errors import CheckError, InputError, Place, naming
 from trueup.verbs.study import read_study
 
@@ -94,3 +96,17 @@ def test_an_error_comes_whole_out_of_another_process() -> None:
     error = Place(Path("a.bdf"), 3, "GRID 1").error("lost")
     again = pickle.loads(pickle.dumps(error))
     assert (str(again), vars(again)) == (str(error), vars(error))
+
+
+def test_an_error_in_other_words_keeps_what_it_holds() -> None:
+    found = Massless("two motions", np.eye(2)).reworded("a.bdf: two motions")
+    assert str(found) == "a.bdf: two motions"
+    assert found.motions.shape == (2, 2)
+
+
+def test_a_real_beyond_nastran_s_range_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.bdf"
+    for value in ("1.+39", "-2.E300"):
+        path.write_text(ROD.replace("MAT1,1,1.,", f"MAT1,1,{value},"))
+        with pytest.raises(InputError, match=r"line 5: MAT1 1: E .field 3. holds .*below 1\.E38"):
+            trueup.read_deck(path)

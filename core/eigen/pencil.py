@@ -106,7 +106,8 @@ class Pencil:
         most, typical = int(needed.max()), float(np.median(needed))
         if EIGEN.few_digits[0] <= most == typical <= EIGEN.few_digits[1]:
             return 0.5 * 10.0 ** (1 - most)
-        single = sample.astype(np.float32).astype(np.float64)
+        with np.errstate(over="ignore"):
+            single = sample.astype(np.float32).astype(np.float64)
         same = typical >= EIGEN.single_digits and np.array_equal(single, sample)
         return EIGEN.single if same else 0.0
 

@@ -3,11 +3,20 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import chain
-from math import isfinite
 from typing import Any
 
 from .card_definition import Card, Values
-from .field_values import CONVERT, MISSING, Field, FieldError, Fields, Taken, numbers, value_of
+from .field_values import (
+    CONVERT,
+    MISSING,
+    MOST,
+    Field,
+    FieldError,
+    Fields,
+    Taken,
+    numbers,
+    value_of,
+)
 
 Column = Sequence[str]
 """Texts of one field of many cards; no column stands for blanks."""
@@ -80,7 +89,7 @@ def _column(field: Field, cells: Column, count: int) -> list[Any]:
                 return list(map(int, cells))
             if field.kind == "r" and all("." in cell for cell in cells):
                 values = list(map(float, cells))
-                if all(map(isfinite, values)):
+                if min(values) >= -MOST and max(values) <= MOST:
                     return values
     texts = [cell.strip() for cell in cells]
     if needed and not all(texts):

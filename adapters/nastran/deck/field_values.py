@@ -143,14 +143,15 @@ def integer(text: str) -> int:
 
 def real(text: str) -> float:
     """Return a real: ``1.``, ``1.+3``, ``1D0``; digits alone are an integer (ValueError)."""
-    if text.isdigit():
+    value = parse_real(text)
+    if text.isdigit() or abs(value) > MOST:
         raise ValueError(text)
-    return parse_real(text)
+    return value
 
 
 def integer_or_real(text: str) -> int | float:
     """Return what the text is."""
-    return int(text) if text.lstrip("+-").isdigit() else parse_real(text)
+    return int(text) if text.lstrip("+-").isdigit() else real(text)
 
 
 def word(text: str) -> str:
@@ -179,6 +180,9 @@ def _nothing(_: str) -> None:
     return None
 
 
+MOST = 1e38
+"""Reals beyond it are no numbers of Nastran's (single precision), and their powers none at all."""
+
 CONVERT: Mapping[str, Callable[[str], Any]] = {
     "i": integer,
     "r": real,
@@ -194,7 +198,7 @@ CONVERT: Mapping[str, Callable[[str], Any]] = {
 
 WRONG = {
     "i": "which is not an integer",
-    "r": "which is not a finite real number (with a decimal point)",
+    "r": "which is not a real number (with a decimal point, below 1.E38)",
     "w": "which is not a word",
     "c": "which are not components (digits from 1 to 6, each once)",
     "ir": "which is not a number",
