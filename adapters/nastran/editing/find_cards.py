@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....core.errors import InputError
+from ....core.errors import InputError, Place
 from ..cards import definitions
 from ..deck.movable_values import index_of
 from ..deck.number_spaces import SPACES, space_of
@@ -155,12 +155,10 @@ def free_id(deck: DeckText, kind: str) -> int:
 
 def _used(deck: DeckText, kind: str) -> set[int]:
     used: set[int] = set()
-    for segment in deck.segments:
-        rows = np.flatnonzero(_keys(deck, segment) == REPLICATION)
-        if len(rows):
-            raise deck.place(segment.file, segment.first + int(rows[0])).error(
-                "cards are replicated by '=', so free numbers are not known; write the cards out"
-            )
+    if where := _replicated(deck):
+        raise where.error(
+            "cards are replicated by '=', so free numbers are not known; write the cards out"
+        )
     for name in names_in(deck):
         if space_of(name, definitions()) not in (kind, ""):
             continue
@@ -171,6 +169,15 @@ def _used(deck: DeckText, kind: str) -> set[int]:
             else:
                 used.update(number for _, number in found)
     return {n for n in used if 0 < n <= MOST_DIGITS}
+
+
+def _replicated(deck: DeckText) -> Place | None:
+    """Return where the first line stands that replicates a card."""
+    for segment in deck.segments:
+        rows = np.flatnonzero(_keys(deck, segment) == REPLICATION)
+        if len(rows):
+            return deck.place(segment.file, segment.first + int(rows[0]))
+    return None
 
 
 def _keys(deck: DeckText, segment: Segment) -> Keys:
@@ -212,11 +219,13 @@ def _missing(deck: DeckText, name: str, number: int) -> str:
         for row, first in deck.rows_in(segment, name):
             numbers |= _all_ids(card_at(deck, segment, row, name)) if _stride(name) else {first}
     numbers.discard(-1)
+    where = _replicated(deck)
+    more = f"; those that '=' replicates ({where} first) must be written out" if where else ""
     if not numbers:
-        return f"{top} has no {name} {number}: there is no {name} card in the deck"
+        return f"{top} has no {name} {number}: there is no {name} card in the deck{more}"
     near = sorted(sorted(numbers, key=lambda n: (abs(n - number), n))[:5])
     listed = ", ".join(str(n) for n in near) + (", ..." if len(numbers) > len(near) else "")
-    return f"{top} has no {name} {number}: its {name} cards are {listed}"
+    return f"{top} has no {name} {number}: its {name} cards are {listed}{more}"
 
 
 def _require_matching_tags(

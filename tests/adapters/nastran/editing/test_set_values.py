@@ -298,6 +298,9 @@ FAULTS = {
     "replicated": (
         "PROD,3,1,1.\n=,*(1),==\n", ("PROD", 3, "A"), "line 2: the PROD above is replicated",
     ),
+    "a copy of one replicated": (
+        "PROD,3,1,1.\n=,*(1),==\n", ("PROD", 4, "A"), "those that '=' replicates",
+    ),
     "half a pair": (
         "PSHELL* 3               1               2.\n+       1.\n", ("PSHELL", 3, "T"),
         "second half",
