@@ -197,7 +197,24 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     test = study.test or None if test is None else test
     if deck is None or test is None:
         raise InputError("give a deck and a test, or a study that names both")
+    _require_order(deck, test)
     return deck, test
+
+
+def _require_order(deck: Source, test: Source) -> None:
+    """Refuse a test that was given as the deck and a deck as the test."""
+    from .read import DECK, UNIVERSAL, kind_of_file
+
+    last = test[0] if isinstance(test, list | tuple) and len(test) == 1 else test
+    if isinstance(deck, str | Path) and isinstance(last, str | Path):
+        paths = Path(deck), Path(last)
+        if all(p.is_file() for p in paths):
+            kinds = [kind_of_file(p) for p in paths]
+            if kinds == [UNIVERSAL, DECK]:
+                raise InputError(
+                    f"{deck} is a universal file and {last} a deck: give the deck first, then the "
+                    "test"
+                )
 
 
 def named(study: Study, deck: Deck | None, test: Measured, modes: Source | None) -> Study:

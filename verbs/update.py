@@ -102,7 +102,7 @@ def update(
     progress("writing the updated deck and solving it again")
     changed, values = _written(analysis, done)
     history = Table(done.history)
-    final = replace(compared(after), warnings=())
+    told, final = compared(before), replace(compared(after), warnings=())
     assert analysis.deck is not None
     return Updated(
         deck_file=f"deck/{changed.name}",
@@ -110,13 +110,13 @@ def update(
         test_files=tuple(map(str, side.files)),
         parameters=parameter_rows(analysis.model.parameters, done, values),
         history=history,
-        before=replace(compared(before), warnings=()),
+        before=replace(told, warnings=()),
         after=final,
         weights=weights_table(placed.errors),
         eigensolutions=done.eigensolutions,
         stopped=done.stopped.sentence,
         seconds=time.perf_counter() - start,
-        warnings=(*analysis.warnings, *placed.warnings, *done.warnings),
+        warnings=(*analysis.warnings, *told.warnings, *done.warnings),
         content=content_of(before, final, after, history),
         study=named(asked, analysis.deck, side, None),
         deck=changed,

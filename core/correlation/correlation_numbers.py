@@ -18,6 +18,11 @@ class CorrelationNumbers:
     little: float = number(0.5, "weight", "below which a sensor is named", CHECK)
     nasa: tuple[float, float, float] = number((5.0, 0.90, 0.10), "%, -, -", "frequency, cross-orthogonality of pairs, and of others, asked by NASA for payloads", "NASA-STD-5002")
     air_force: tuple[float, float, float] = number((3.0, 0.95, 0.10), "%, -, -", "the same asked by the US Air Force", "SMC-S-004")
+    crowd: int = number(4, "modes", "of a cluster, at most, that need no doubt: two pairs of an axisymmetric structure", CHECK)
+    identical: float = number(0.999, "MAC", "of two test modes above which they are one shape", CHECK)
+    same_hz: float = number(0.002, "of f", "by which the frequencies of a mode listed twice differ, at most", CHECK)
+    rigid: float = number(0.99, "of a squared shape", "that is a motion of the whole in a mode on a suspension", CHECK)
+    rigid_modes: int = number(3, "modes", "that are, at least, where a test is free: two are the sway of a tower", CHECK)
     named: int = number(8, "sensors", "that a sentence names", "what a reader takes in")
 
 

@@ -16,6 +16,10 @@ class LocalisationNumbers:
     shape_noise: float = number(0.03, "of the rms of a shape", "noise where it cannot", "modal tests")
     rigid: float = number(1e-3, "of the highest frequency", "below which a mode is one of a rigid body", CHECK)
 
+    likely: float = number(0.3, "MAC", "of a test mode that nearly has a partner", CHECK)
+    turned: float = number(0.03, "of what is missing of the MAC", "that a sensor turned round explains, at least, to be suspect", CHECK)
+    few_pairs: int = number(3, "modes", "below which no sensor is suspected", CHECK)
+
     near: float = number(0.1, "of f", "modes no further apart mix too readily to say where", CHECK)
     frequency: float = number(0.005, "of f", "standard deviation of a frequency", "modal tests")
     at_once: int = number(2_000_000, "numbers", "of a map that is made at once", "memory")

@@ -17,7 +17,7 @@ from .pose_score import scorer_of
 from .pose_selection import choose
 from .poses import Poses
 from .registration_numbers import ALIGN
-from .surface_registration import cloud_of, polish, rms_of, search
+from .surface_registration import Cloud, cloud_of, polish, rms_of, search
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def align(
     cloud = cloud_of(surface)
     poses = search(cloud, points, seed)
     if not lies:
-        _require_on_model(surface, points, poses.take(np.array([0])), tolerance)
+        _require_on_model(cloud, points, poses.take(np.array([0])), tolerance, seed)
     choice = choose(cloud, points, scorer, poses)
     best = choice.candidates[0]
     better = ALIGN.good if score is None else max(ALIGN.good, score + ALIGN.ahead)
@@ -142,7 +142,8 @@ def align(
     if share < ALIGN.on_model:
         warnings += (
             f"only {share:.0%} of the test nodes lie on the model in the best position (rms "
-            f"{best.rms:.3g}); check that both are the same structure and not mirrored",
+            f"{best.rms:.3g}); check that both are the same structure"
+            + _said_of_mirrored(cloud, points, share, tolerance, seed),
         )
     candidates = tuple(
         Candidate(Transform(c.pose.rotation[0], c.pose.translation[0], scale), c.rms, c.score)
@@ -197,9 +198,28 @@ def _as_it_is(
     )
 
 
+def _said_of_mirrored(
+    cloud: Cloud, points: Floats, share: float, tolerance: float | None, seed: int
+) -> str:
+    """Say that the mirror image of a test lies on the model, where it does and the test does not.
+
+    Mirroring at any plane will do: the others follow by a rotation.
+    """
+    mirrored = points * np.array([1.0, 1.0, -1.0])
+    best = search(cloud, mirrored, seed).take(np.array([0]))
+    other = _share_on(cloud.surface, mirrored, best, tolerance)
+    if other < ALIGN.on_model or other <= share:
+        return ""
+    return (
+        f"; mirrored, {other:.0%} of the nodes would lie on it: one axis of the test's frame "
+        "points the wrong way, or it is the other hand of the structure"
+    )
+
+
 def _require_on_model(
-    surface: Surface, points: Floats, best: Poses, tolerance: float | None
+    cloud: Cloud, points: Floats, best: Poses, tolerance: float | None, seed: int
 ) -> None:
+    surface = cloud.surface
     share = _share_on(surface, points, best, tolerance)
     if share < ALIGN.fewest:
         raise InputError(
@@ -207,4 +227,5 @@ def _require_on_model(
             f"its {len(points)} nodes lie on it (rms distance {best.rms[0]:.3g}; the model spans "
             f"{surface.size:.4g}, the test {np.linalg.norm(np.ptp(points, axis=0)):.4g}); check "
             "the length units of deck and test, and that both are the same structure"
+            + _said_of_mirrored(cloud, points, share, tolerance, seed)
         )

@@ -74,6 +74,7 @@ def reconcile_units(analysis: Geometry, test: Geometry, deck_unit: str | None = 
         raise InputError(
             f"the {silent} does not state its length unit and none of {', '.join(METRES)} makes "
             f"{sizes} agree; state it{option}, or check that both are the same structure"
+            + _apart(test)
         )
     share = choices[unit] * test.size / surface.size
     warning = (
@@ -101,14 +102,14 @@ def _checked(surface: Surface, test: Geometry, deck: str, measured: str) -> Unit
     if (low <= ratio <= high and not sure) or (
         better is None and low / ALIGN.far_too_small <= ratio < low
     ):
-        return replace(units, warnings=(f"{said}; check the length units of both",))
+        return replace(units, warnings=(f"{said}; check the length units of both{_apart(test)}",))
     advice = (
         f"if the deck is in {better}, say so with deck_length_unit={better}; else the test's "
         f"own unit ({measured}) is wrong"
         if better
         else "check the length units of both, and that they are the same structure"
     )
-    raise InputError(f"{said}, so their length units cannot both be right: {advice}")
+    raise InputError(f"{said}, so their length units cannot both be right: {advice}{_apart(test)}")
 
 
 def _alike(surface: Surface, test: Geometry) -> Units:
@@ -117,9 +118,25 @@ def _alike(surface: Surface, test: Geometry) -> Units:
         raise InputError(
             "neither the deck nor the test states its length unit and their sizes differ "
             f"({_sizes(surface, test, None, None)}); state the deck's with deck_length_unit"
+            + _apart(test)
         )
     said = "neither the deck nor the test states its length unit; taken to be the same"
     return Units(None, None, 1.0, (said,))
+
+
+def _apart(test: Geometry) -> str:
+    """Name the nodes that lie far from all others; empty where there is none."""
+    away = np.linalg.norm(test.xyz - np.median(test.xyz, axis=0), axis=1)
+    usual = float(np.quantile(away, ALIGN.most_nodes))
+    far = np.flatnonzero(away > ALIGN.outlying * usual)
+    if not len(far):
+        return ""
+    near = np.delete(test.xyz, far, axis=0)
+    named = ", ".join(map(str, test.ids[far[: ALIGN.named]])) + ", ..." * (len(far) > ALIGN.named)
+    return (
+        f". Of the test's nodes {named} lie{'s' * (len(far) == 1)} far from the others: without "
+        f"that it spans {np.linalg.norm(np.ptp(near, axis=0)):.4g}"
+    )
 
 
 def _plausible(surface: Surface, test: Geometry, choices: dict[str, float]) -> str | None:

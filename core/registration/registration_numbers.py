@@ -21,6 +21,8 @@ class RegistrationNumbers:
     usual: tuple[float, float] = number((0.5, 1.25), "of the model's size", "a test's that needs no further reason", "modal tests")
     possible: tuple[float, float] = number((0.1, 1.4), "of the model's size", "a smaller test's is suspect, a larger one's impossible", "modal tests")
     far_too_small: float = number(10.0, "times smaller still", "where no unit explains it either: refused", CHECK)
+    outlying: float = number(4.0, "times the ninth decile of the distances from the middle", "at which a test node lies apart", CHECK)
+    most_nodes: float = number(0.9, "of the test nodes", "that set what is far", CHECK)
     unit_near: float = number(0.01, SIZE, "how near a point on it is", CHECK)
     unit_own: float = number(0.1, "of the test's own size", "likewise", CHECK)
     rounded: float = number(999.5, "-", "ratio of sizes from which on it is told in tens", "what a reader takes in")

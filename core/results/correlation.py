@@ -13,8 +13,11 @@ from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.criteria import Criteria
 from ..correlation.mode_pairing import Correlation
+from ..localisation.sensor_agreement import sensor_agreement
 from ..noun import OPTIONAL, Noun, key
 from . import export
+from .agreement import AgreementRow, AutoMacTable, agreement_table
+from .doubts import doubts
 from .orthogonality import OrthogonalityTables
 from .plain import Table, Tables, finite
 
@@ -131,7 +134,8 @@ class Compared(Tables):
     `mac` is as measured, `mac_rotated` after rotation; `test_hz` (n_test,) and `analysis_hz`
     (n_analysis,) are the frequencies of all modes. `test_damping`, `analysis_damping` (fractions
     of critical) and `test_mpc` (modal phase collinearity of the test's complex shapes) likewise,
-    NaN where unknown.
+    NaN where unknown. `agreement` is of the sensors, `auto_mac_test` and `auto_mac_analysis` of
+    the modes of one side among themselves at the sensors.
     """
 
     pairs: Table[PairRow]
@@ -149,6 +153,9 @@ class Compared(Tables):
     test_damping: Floats = field(default_factory=lambda: np.empty(0))
     analysis_damping: Floats = field(default_factory=lambda: np.empty(0))
     test_mpc: Floats = field(default_factory=lambda: np.empty(0))
+    agreement: Table[AgreementRow] = field(default_factory=lambda: Table((), AgreementRow))
+    auto_mac_test: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
+    auto_mac_analysis: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def test_modes(self) -> tuple[int, ...]:
@@ -211,6 +218,8 @@ class CorrelateTables(Compared, RunTables):
 def compared(c: Comparison) -> Compared:
     """Return the tables of a comparison."""
     found, mpc = c.correlation, _collinearity(c)
+    analysis = np.asarray(c.observation.matrix @ c.analysis.shapes)
+    agree = sensor_agreement(found, analysis, c.test.shapes)
     return Compared(
         pairs=_pair_rows(found, c.test.damping, c.analysis.damping, mpc),
         unpaired_test=tuple(t + 1 for t in found.unpaired_test),
@@ -226,10 +235,13 @@ def compared(c: Comparison) -> Compared:
         summary=gap(found),
         criteria=found.criteria,
         alignment=_alignment(c),
-        warnings=c.warnings,
+        warnings=(*c.warnings, *doubts(c, agree)),
         test_damping=c.test.damping,
         analysis_damping=c.analysis.damping,
         test_mpc=mpc,
+        agreement=agreement_table(agree, c.observation.sensors.labels),
+        auto_mac_test=AutoMacTable.of(c.test.shapes),
+        auto_mac_analysis=AutoMacTable.of(analysis),
     )
 
 

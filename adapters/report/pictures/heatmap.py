@@ -23,6 +23,7 @@ def heatmap(
     analysis_hz: Floats,
     pairs: Iterable[tuple[int, int]] = (),
     clusters: Iterable[tuple[Sequence[int], Sequence[int]]] = (),
+    sides: tuple[str, str] = ("test", "analysis"),
     width: int = 1040,
 ) -> str:
     """Return a figure of one MAC matrix.
@@ -38,6 +39,8 @@ def heatmap(
         Cells to be ringed.
     clusters : iterable of (test modes, analysis modes)
         Blocks to be framed.
+    sides : (str, str)
+        Whose modes stand down and across.
     width : int
         Width to fill, pixels.
     """
@@ -57,7 +60,7 @@ def heatmap(
         tag("g", _numbers(matrix.values, cell), class_="values") if cell >= 17 else "",
         tag("g", frames, class_="clusters") if frames else "",
         tag("g", rings, class_="rings") if rings else "",
-        *_labels(matrix, test_hz, analysis_hz, cell),
+        *_labels(matrix, test_hz, analysis_hz, cell, sides),
         tag("rect", class_="cursor", width=cell, height=cell, hidden=True),
     ]
     labels = [
@@ -67,7 +70,7 @@ def heatmap(
     picture = svg(
         "heat",
         (w + _LEFT + _PAD, h + _BOTTOM + _PAD),
-        _description(matrix, title),
+        _description(matrix, title, sides),
         tag("g", *body, transform=f"translate({_LEFT} {_PAD})"),
         tabindex="0",
         data_cell=cell,
@@ -76,7 +79,7 @@ def heatmap(
         data_v=_packed(matrix.values),
     )
     caption = tag("figcaption", tag("b", esc(title)))
-    return tag("figure", caption, picture, _values_table(matrix), class_="mac")
+    return tag("figure", caption, picture, _values_table(matrix, sides), class_="mac")
 
 
 def legend(what: str = "MAC %") -> str:
@@ -136,7 +139,9 @@ def _numbers(values: Floats, cell: int) -> str:
     return "".join(tag("g", text, class_=name) for name, text in drawn.items() if text)
 
 
-def _labels(matrix: MacTable, test_hz: Floats, analysis_hz: Floats, cell: int) -> list[str]:
+def _labels(
+    matrix: MacTable, test_hz: Floats, analysis_hz: Floats, cell: int, sides: tuple[str, str]
+) -> list[str]:
     rows, cols = len(matrix.test), len(matrix.analysis)
     every = 1 if cell >= 11 else 2
     left = "".join(
@@ -152,8 +157,8 @@ def _labels(matrix: MacTable, test_hz: Floats, analysis_hz: Floats, cell: int) -
     turned = f"translate(-73 {short(middle)}) rotate(-90)"
     return [
         tag("g", left, below, class_="ticks"),
-        centred(0, 0, "test mode, Hz", "axis", transform=turned),
-        centred(cols * cell / 2, rows * cell + 82, "analysis mode, Hz", "axis"),
+        centred(0, 0, f"{sides[0]} mode, Hz", "axis", transform=turned),
+        centred(cols * cell / 2, rows * cell + 82, f"{sides[1]} mode, Hz", "axis"),
     ]
 
 
@@ -185,16 +190,17 @@ def _packed(values: Floats) -> str:
     )
 
 
-def _description(matrix: MacTable, title: str) -> str:
+def _description(matrix: MacTable, title: str, sides: tuple[str, str]) -> str:
     high = int(np.count_nonzero(np.nan_to_num(matrix.values) >= 0.7))
     return (
-        f"{title}: MAC of {len(matrix.test)} test modes with {len(matrix.analysis)} analysis"
-        f" modes, {high} of them at or above 70 percent. Arrow keys move through the values."
+        f"{title}: MAC of {len(matrix.test)} {sides[0]} modes with {len(matrix.analysis)} "
+        f"{sides[1]} modes, {high} of them at or above 70 percent. "
+        "Arrow keys move through the values."
     )
 
 
-def _values_table(matrix: MacTable) -> str:
-    head = "<th>test \\ analysis</th>" + "".join(f"<th>{n}</th>" for n in matrix.analysis)
+def _values_table(matrix: MacTable, sides: tuple[str, str]) -> str:
+    head = f"<th>{sides[0]} \\ {sides[1]}</th>" + "".join(f"<th>{n}</th>" for n in matrix.analysis)
     rows = "".join(
         f"<tr><th>{n}</th>{_row(values.tolist())}</tr>"
         for n, values in zip(matrix.test, matrix.values, strict=True)

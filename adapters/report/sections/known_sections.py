@@ -17,6 +17,7 @@ from .orthogonality import ORTHOGONALITY
 from .pairs import PAIRS
 from .parameters import PARAMETERS
 from .section import Section
+from .sensors import SENSORS
 from .unpaired_modes import UNPAIRED_MODES
 from .would_decide import WOULD_DECIDE
 
@@ -32,6 +33,7 @@ SECTIONS: list[Section[Any]] = [
     ORTHOGONALITY,
     MOVING_SHAPES,
     UNPAIRED_MODES,
+    SENSORS,
     PARAMETERS,
     ALTERNATIVES,
     ALIGNMENT,

@@ -1,6 +1,6 @@
 """The MAC as measured, after rotation, after updating."""
 
-from ....core.results.correlation import RunTables
+from ....core.results.correlation import MacTable, RunTables
 from ....core.results.discovery import DiscoverTables
 from ..html.markup import key, tag
 from ..pictures import heatmap
@@ -32,6 +32,21 @@ def _render(run: ReportedRun[RunTables]) -> str:
             width=500 if narrow else 1050,
         )
         for c, matrix, title in shown
+    ]
+    figures += [
+        heatmap.heatmap(
+            MacTable(table.modes, table.modes, table.values),
+            f"AutoMAC of the {side} modes at the sensors",
+            test_hz=hz,
+            analysis_hz=hz,
+            sides=(side, side),
+            width=500,
+        )
+        for side, table, hz in (
+            ("test", first.auto_mac_test, first.test_hz),
+            ("analysis", first.auto_mac_analysis, first.analysis_hz),
+        )
+        if table is not None
     ]
     keys = key("pair", "ring") + key("cluster of close modes", "frame")
     top = tag("div", heatmap.legend(), tag("span", keys, class_="note"), class_="row")

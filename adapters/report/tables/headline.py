@@ -25,6 +25,8 @@ _VERDICT_SENTENCES = {
     "test_fault": "The gap comes from the test, not from the model.",
     "effect": "The model lacks something that the test has.",
 }
+_FAR = 3.0
+"""Deviation in % from which on a correlation points to discover."""
 _MOVED = 3
 """So many parameters are named where they explain the gap."""
 
@@ -55,11 +57,13 @@ def _correlate(found: Compared) -> list[str]:
     text += f"; frequencies are {mean} % off on average"
     if len(found.pairs) > 1:
         text += f", {fixed(abs(worst.deviation_percent), 1)} % at worst (test mode {worst.test})"
-    alone = found.unpaired_test
-    if not alone:
-        return [text + "."]
-    noun, has = ("mode", "has") if len(alone) == 1 else ("modes", "have")
-    return [text + ".", f"Test {noun} {listed(alone)} {has} no partner."]
+    alone, told = found.unpaired_test, [text + "."]
+    if alone:
+        noun, has = ("mode", "has") if len(alone) == 1 else ("modes", "have")
+        told.append(f"Test {noun} {listed(alone)} {has} no partner.")
+    if alone or abs(worst.deviation_percent) > _FAR:
+        told.append("trueup discover, given the same, looks for what explains the difference.")
+    return told
 
 
 def _update(answer: UpdateTables) -> list[str]:

@@ -115,7 +115,7 @@ def test_mirror_image_is_not_a_fit():
     found = align(geo, measured(xyz * [1, 1, -1]))
     assert np.linalg.det(found.rotation) == pytest.approx(1.0)
     assert found.rms > 5.0
-    assert any("not mirrored" in w for w in found.warnings)
+    assert any("mirrored, 100% of the nodes would lie on it" in w for w in found.warnings)
 
 
 def test_different_structure_is_refused():

@@ -150,3 +150,10 @@ def test_both_silent_are_taken_alike_or_refused():
 def test_nothing_plausible_is_refused():
     with pytest.raises(InputError, match="state it with deck_length_unit"):
         reconcile_units(plate(None), sensors(1e-6, "m"))
+
+
+def test_nodes_far_from_the_others_are_named():
+    test = sensors(1e-3, "m")
+    far = Geometry([*test.ids, 99], np.vstack([test.xyz, [[30.0, 0.0, 0.0]]]), "m")
+    with pytest.raises(InputError, match="nodes 99 lies far from the others: without that it"):
+        reconcile_units(plate("mm"), far)

@@ -37,13 +37,16 @@ def found():
 
 
 def correlation_tables(c, test, analysis):
-    nobody = SimpleNamespace(node=[], directions=[], axis=[])
-    seen = SimpleNamespace(sensors=nobody, xyz=[], nearest_grid=[], distance=[])
+    seen = SimpleNamespace(
+        sensors=test.dofs, xyz=np.zeros((24, 3)), nearest_grid=np.arange(24),
+        distance=np.zeros(24), matrix=np.eye(24),
+    )  # fmt: skip
+    placed = SimpleNamespace(length_factor=1000.0, mpc=None, test_geometry=None)
     move = SimpleNamespace(rotation=np.eye(3), translation=np.zeros(3), rms=0.1)
     tables = compared(
         SimpleNamespace(
             correlation=c, test=test, analysis=analysis, warnings=("one",), alignment=move,
-            observation=seen, placed=SimpleNamespace(length_factor=1000.0, mpc=None),
+            observation=seen, placed=placed,
         )
     )  # fmt: skip
     return CorrelateTables(**vars(tables), deck_file="a.bdf", test_files=("a.unv",)).to_dict()

@@ -16,7 +16,8 @@ def test_correlation_counts_pairs_and_names_the_worst_and_the_lonely(
 ) -> None:
     assert headline(answer_of(correlation)) == (
         "2 of 3 test modes pair with the model; frequencies are 6.2 % off on average, 10.0 % at"
-        " worst (test mode 1). Test mode 3 has no partner."
+        " worst (test mode 1). Test mode 3 has no partner. trueup discover, given the same, looks"
+        " for what explains the difference."
     )
 
 
