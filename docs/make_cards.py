@@ -27,7 +27,8 @@ skipped by `trueup inspect`.
 """
 
 LAWS = """Of these elements Nastran's matrices are not known to be met, for want of a reference; the
-law here is held to closed forms, its limits or CalculiX, and solving such a deck says so.
+law here is held to closed forms, its limits or CalculiX, and solving such a deck says so. So is
+that of CHEXA and CPENTA with a PCOMPS.
 """
 
 

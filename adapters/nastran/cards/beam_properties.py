@@ -214,6 +214,8 @@ def lumped_areas(bulk: Bulk, card: Values, place: Place) -> tuple[Floats, float,
             f"SYMOPT {card.symopt} with lumped areas is not supported: list all of them with 5"
         )
     E0, G0, *_ = isotropic(bulk, card.mid, place)
+    if not min(E0, G0) > 0.0:
+        raise place.error("E and G of its material, to which those of the areas relate, are zero")
     found = [isotropic(bulk, mid or card.mid, place) for mid in card.mids]
     images = np.array(_MIRRORED[card.symopt], dtype=float)
     E, G, rho, c, y, z = (

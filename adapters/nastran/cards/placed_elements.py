@@ -1,11 +1,13 @@
 """Shells and solids of a deck: which middle nodes they have, where they stand."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints
+from ....core.arrays import Bools, Floats, Ints
 from ....core.data.shapes import HEXA, PENTA
 from ....core.elements import ELEMENTS, Element
 from ....core.elements.middle_nodes import spread
@@ -38,6 +40,12 @@ class Placed:
     spread: Floats | None
     keys: list[Key]
     of: Ints
+
+    def take(self, rows: Bools) -> Placed:
+        """Return some of them."""
+        cards = [card for card, there in zip(self.cards, rows, strict=True) if there]
+        kept = {name: getattr(self, name)[rows] for name in ("ids", "nodes", "xyz", "of")}
+        return replace(self, cards=cards, **kept)
 
     def of_nodes_there(self, K: Floats) -> Floats:
         """Stiffness of the nodes that are there from that of all nodes."""

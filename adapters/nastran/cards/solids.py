@@ -11,7 +11,9 @@ from ....core.errors import Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card
 from ..properties.materials import elastic
+from . import laminated_solids
 from .element_group import Context, Group, Key, with_material
+from .laminated_solids import UNKNOWN, laminated, of_several, ply_axes
 from .placed_elements import Placed, placed
 
 
@@ -27,12 +29,7 @@ CARDS = (
     _card("CPYRAM", 5, 13, "pyramid5 pyramid13"),
     _card("CPENTA", 6, 15, "penta6 penta15"),
     _card("CHEXA", 8, 20, "hexa8 hexa20"),
-    Card(
-        "PCOMPS",
-        "PID:i! CORDM:i=0 PSDIR:i=13 SB:r NB:r TREF:r=0. GE:r=0. / "
-        "[GPLYID:i MID:i! T:r THETA:r=0. FT:w ILMT:iw SOUT:w TFLG:w]",
-        "pid",
-    ),
+    laminated_solids.CARD,
     Card("PLSOLID", "PID:i! MID:i! ...", "pid"),
     Card(
         "PSOLID", "PID:i! MID:i! CORDM:i=0 IN>integration:iw STRESS:iw ISOP:iw FCTN:w=SMECH", "pid"
@@ -56,7 +53,13 @@ _QUADRATIC = {
 
 def solids(context: Context) -> list[Group]:
     """Make the groups of every card that may have a PCOMPS, by which middle nodes are there."""
-    return [_group(context, solid) for solid in placed(context, "PCOMPS")]
+    groups: list[Group] = []
+    for solid in placed(context, "PCOMPS"):
+        several = np.array([of_several(context.bulk, key) for key in solid.keys])[solid.of]
+        groups += [_group(context, solid.take(~several))] * (not several.all())
+        if several.any():
+            groups.append(laminated(context, solid.take(several)))
+    return groups
 
 
 def _group(context: Context, solid: Placed) -> Group:
@@ -96,10 +99,7 @@ def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
     if key[0] == "PLSOLID":
         raise place.error(f"hyperelastic solids are not supported: give {name} a PSOLID")
     if key[0] == "PCOMPS":
-        context.notes.append(
-            f"{place}: Nastran's law of {name} with solid laminates is not known; that with PSOLID "
-            "stands for it"
-        )
+        context.notes.append(f"{place}: {UNKNOWN.format(name)}; that with PSOLID stands for it")
         return element.integrations[0]
     if card.fctn != "SMECH":
         raise place.error(f"FCTN {card.fctn} (fluid elements) is not supported")
@@ -151,30 +151,8 @@ class _Fill(NamedTuple):
 
 
 def _fill(bulk: Bulk, key: Key, place: Place) -> _Fill:
-    """Return the material of a PSOLID, or of a PCOMPS whose plies are all alike.
-
-    PSDIR names the directions of the plies and of their stack among those of CORDM, THETA turns
-    the first about the second.
-
-    Raises
-    ------
-    InputError
-        Plies of different materials or angles, whose law is not known.
-    """
+    """Return the material of a PSOLID, or of a PCOMPS whose plies are all alike."""
     card = bulk.table(key[0])[key[1]]
     if key[0] != "PCOMPS":
         return _Fill(card.mid, card.cordm, np.eye(3))
-    if len(set(zip(card.mid, card.theta, strict=True))) != 1:
-        raise place.error(
-            "solid laminates of no plies, or of plies of several materials or angles, are not "
-            "supported: give the elements a PSOLID, or one element to a ply"
-        )
-    first, last = divmod(card.psdir, 10)
-    if not {first, last} <= {1, 2, 3} or first == last:
-        raise place.error(f"PSDIR {card.psdir} is not one of 12, 13, 21, 23, 31, 32")
-    ply, stack = np.eye(3)[first - 1], np.eye(3)[last - 1]
-    across = np.cross(stack, ply)
-    c, s = np.cos(np.radians(card.theta[0])), np.sin(np.radians(card.theta[0]))
-    return _Fill(
-        card.mid[0], card.cordm, np.stack([c * ply + s * across, c * across - s * ply, stack])
-    )
+    return _Fill(card.mid[0], card.cordm, ply_axes(card, place)[0])

@@ -17,7 +17,7 @@ from ....core.data.coordinate_systems import frame_of_points
 from ....core.errors import InputError, Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values
-from ..deck.field_values import Fields
+from ..deck.field_values import Fields, take
 from ..deck.merged_bulk import (
     MANY,
     SHARED,
@@ -42,10 +42,11 @@ def _connections(fields: Fields, _: Any) -> tuple[Any]:
     for first in range(9, len(fields), 8):
         row = [*fields[first : first + 8], *[None] * 8][:8]
         if (row[1] or "").upper() == "THRU":
-            a, b = (range(int(row[k] or 0), int(row[k + 2] or 0) + 1) for k in (0, 3))
-            pairs += zip(a, b, strict=False)
+            ends = [take(fields, first + k, "GRID:i!") for k in (0, 2, 3, 5)]
+            pairs += zip(range(ends[0], ends[1] + 1), range(ends[2], ends[3] + 1), strict=False)
         else:
-            pairs += [(int(a), int(b)) for a, b in zip(row[::2], row[1::2], strict=True) if a and b]
+            found = [take(fields, first + k, "GRID:i") for k in range(8)]
+            pairs += [(a, b) for a, b in zip(found[::2], found[1::2], strict=True) if a and b]
     return (tuple(pairs),)
 
 

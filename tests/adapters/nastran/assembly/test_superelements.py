@@ -113,6 +113,8 @@ def test_superelements_of_the_main_bulk_are_solved_whole_and_said(frequencies, w
         ("SEBULK,2,REPEAT,3\n", "SEBULK 2 .* superelement 3, which the deck does not have"),
         ("SELOC,1,101,105,999,3,6,9\n", "SELOC 1 .* grid 999, which does not exist"),
         ("SECONCT,1,0\n,999,3\n", "SECONCT .* grid 999 of superelement 1, which has none"),
+        ("SECONCT,1,0\n,--1,3\n", r"SECONCT 1: GRID \(field 10\) holds '--1'"),
+        ("SECONCT,1,0\n,101,THRU,105,3\n", r"SECONCT 1: GRID \(field 15\) must be given"),
         ("CSUPER,1,0,3,6\n", "CSUPER 1.* are not supported"),
     ],
 )

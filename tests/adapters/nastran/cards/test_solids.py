@@ -102,12 +102,6 @@ def test_plies_of_a_solid_laminate_lie_as_psdir_and_theta_say(solve):
     assert any("PCOMPS 1" in w and "is not known" in w for w in said)
 
 
-def test_plies_of_several_kinds_are_refused(solve):
-    plies = "PCOMPS,1,0,13\n,1,1,.5,0.\n,2,1,.5,90.\n"
-    with pytest.raises(InputError, match=r"PCOMPS 1 .*several materials or angles"):
-        solve(BRICK, properties=plies + ORTHOTROPIC)
-
-
 def test_orthotropic_material_that_cannot_be_is_refused(solve):
     with pytest.raises(InputError, match=r"MAT11 1 .*NU12, NU13 and NU23 are not possible"):
         solve(BRICK, properties=PROPERTY + ORTHOTROPIC.replace(",.3,", ",2.,"))
