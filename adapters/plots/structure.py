@@ -50,7 +50,8 @@ def shapes(
         _frame(axes, np.vstack([drawn.mesh.xyz, deformed, ends, model]))
         axes.set_title(
             f"test {pair.test}: {pair.test_hz:.4g} Hz\nanalysis {pair.analysis}: "
-            f"{pair.analysis_hz:.4g} Hz, MAC {100 * pair.mac:.0f} %",
+            f"{pair.analysis_hz:.4g} Hz, MAC {100 * pair.mac:.0f} %"
+            f"{chr(10) * bool(pair.waves)}{pair.waves}",
             fontsize=8, color=INK, pad=0,
         )  # fmt: skip
     lost = f"\ntest modes without a partner: {', '.join(map(str, left_out))}" if left_out else ""

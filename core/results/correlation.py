@@ -12,7 +12,9 @@ import numpy as np
 from ..arrays import Floats
 from ..correlation.comparison import Comparison
 from ..correlation.criteria import Criteria
+from ..correlation.harmonics import Harmonic
 from ..correlation.mode_pairing import Correlation
+from ..correlation.revolution import Revolution, revolution
 from ..localisation.sensor_agreement import sensor_agreement
 from ..noun import OPTIONAL, Noun, key
 from . import export
@@ -30,6 +32,8 @@ class PairRow:
     """One test mode with one analysis mode; `deviation_percent` is 100·(analysis − test)/test.
 
     Damping is a fraction of critical, `test_mpc` the modal phase collinearity, 0..1; None unknown.
+    Of a body of revolution: the harmonic, its number of waves round the axis, and where a crest of
+    radial motion is, from 0 up to half a wave, from the basic axis that follows the axis in turn.
     """
 
     test: int
@@ -43,15 +47,49 @@ class PairRow:
     test_damping: float | None = None
     analysis_damping: float | None = None
     test_mpc: float | None = None
+    test_harmonic: int | None = None
+    test_orientation_deg: float | None = None
+    analysis_harmonic: int | None = None
+    analysis_orientation_deg: float | None = None
+
+    @property
+    def waves(self) -> str:
+        """The harmonics in words, the test's first: ``n = 3, 17.4° / 17.9°``; empty without any."""
+        both = (self.test_harmonic, self.analysis_harmonic)
+        if self.test_harmonic is None:
+            return ""
+        number = both[:1] if both[0] == both[1] else both
+        at = (self.test_orientation_deg, self.analysis_orientation_deg)
+        said = [f"n = {' / '.join('?' if n is None else str(n) for n in number)}"]
+        said += [" / ".join(f"{x:.1f}°" for x in at if x is not None)] * any(
+            x is not None for x in at
+        )
+        return ", ".join(said)
 
 
 @dataclass(frozen=True)
 class ClusterRow:
-    """Close modes of both sides that are treated as one subspace."""
+    """Close modes of both sides that are treated as one subspace.
+
+    `harmonic` is the number of waves that all of its test modes have round the axis.
+    """
 
     id: int
     analysis: tuple[int, ...]
     test: tuple[int, ...]
+    harmonic: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class AxisRow:
+    """The axis that the sensors stand round, in the analysis frame, deck length unit.
+
+    `highest` harmonic that the sensors tell from lower ones.
+    """
+
+    origin: Floats
+    direction: Floats
+    highest: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +194,7 @@ class Compared(Tables):
     agreement: Table[AgreementRow] = field(default_factory=lambda: Table((), AgreementRow))
     auto_mac_test: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
     auto_mac_analysis: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
+    axis_of_revolution: AxisRow | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def test_modes(self) -> tuple[int, ...]:
@@ -217,15 +256,20 @@ class CorrelateTables(Compared, RunTables):
 
 def compared(c: Comparison) -> Compared:
     """Return the tables of a comparison."""
-    found, mpc = c.correlation, _collinearity(c)
+    found, mpc, round_axis = c.correlation, _collinearity(c), revolution(c)
     analysis = np.asarray(c.observation.matrix @ c.analysis.shapes)
     agree = sensor_agreement(found, analysis, c.test.shapes)
     return Compared(
-        pairs=_pair_rows(found, c.test.damping, c.analysis.damping, mpc),
+        pairs=_pair_rows(found, c.test.damping, c.analysis.damping, mpc, round_axis),
         unpaired_test=tuple(t + 1 for t in found.unpaired_test),
         unpaired_analysis=tuple(a + 1 for a in found.unpaired_analysis),
         clusters=Table(
-            ClusterRow(k, tuple(a + 1 for a in g.analysis), tuple(t + 1 for t in g.test))
+            ClusterRow(
+                k,
+                tuple(a + 1 for a in g.analysis),
+                tuple(t + 1 for t in g.test),
+                _common_harmonic(round_axis, g.test),
+            )
             for k, g in enumerate(found.clusters, 1)
         ),
         mac=_mac(found.mac),
@@ -242,7 +286,24 @@ def compared(c: Comparison) -> Compared:
         agreement=agreement_table(agree, c.observation.sensors.labels),
         auto_mac_test=AutoMacTable.of(c.test.shapes),
         auto_mac_analysis=AutoMacTable.of(analysis),
+        axis_of_revolution=_axis(round_axis),
     )
+
+
+def _axis(found: Revolution | None) -> AxisRow | None:
+    if found is None:
+        return None
+    known = [h.highest for h in (*found.test, *found.analysis) if h is not None]
+    return AxisRow(found.origin, found.direction, max(known, default=0))
+
+
+def _common_harmonic(found: Revolution | None, test: Collection[int]) -> int | None:
+    of = {h.number if h else None for h in (found.test[t] for t in test)} if found else set()
+    return of.pop() if len(of) == 1 else None
+
+
+def _waves(found: Harmonic | None) -> tuple[int | None, float | None]:
+    return (None, None) if found is None else (found.number, found.orientation_deg)
 
 
 def _collinearity(c: Comparison) -> Floats:
@@ -256,7 +317,11 @@ def _collinearity(c: Comparison) -> Floats:
 
 
 def _pair_rows(
-    found: Correlation, damping: Floats, of_analysis: Floats, mpc: Floats
+    found: Correlation,
+    damping: Floats,
+    of_analysis: Floats,
+    mpc: Floats,
+    round_axis: Revolution | None,
 ) -> Table[PairRow]:
     return Table(
         PairRow(
@@ -271,6 +336,8 @@ def _pair_rows(
             finite(damping[p.test]),
             finite(of_analysis[p.analysis]),
             finite(mpc[p.test]),
+            *_waves(round_axis.test[p.test] if round_axis else None),
+            *_waves(round_axis.analysis[p.analysis] if round_axis else None),
         )
         for p in found.pairs
     )

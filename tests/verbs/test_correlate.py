@@ -242,3 +242,19 @@ def test_orthogonality_needs_the_models_own_modes() -> None:
         trueup.correlate(*FILES, deck_length_unit="mm", modes=modes, reduction="irs")
     with pytest.raises(trueup.InputError, match="one of serep, guyan, irs"):
         trueup.correlate(*FILES, reduction="static")
+
+
+def test_modes_of_a_duct_are_named_by_their_waves(found: trueup.Correlated) -> None:
+    """Nine sensors a ring, at random: the duct is off round, so its modes lie where they must."""
+    axis = found.axis_of_revolution
+    assert axis is not None
+    np.testing.assert_allclose(axis.direction, [0.0, 0.0, 1.0], atol=1e-12)
+    first, second = (p for p in found.pairs if p.test in (1, 2))
+    assert first.test_harmonic == second.test_harmonic == first.analysis_harmonic == 2
+    apart = first.test_orientation_deg - second.test_orientation_deg
+    assert abs(apart) == pytest.approx(45.0, abs=1.0)
+    for p in (first, second):
+        assert p.analysis_orientation_deg == pytest.approx(p.test_orientation_deg, abs=1.0)
+    assert first.waves.startswith("n = 2, 6")
+    cluster = next(c for c in found.clusters if 1 in c.test)
+    assert cluster.harmonic == 2

@@ -308,7 +308,9 @@ def test_an_existing_file_is_kept_and_plants_have_their_own_options(tmp_path: Pa
     (tmp_path / "plant.fmu").write_text("mine")
     with pytest.raises(trueup.InputError, match="exists; give force=True"):
         trueup.write_fmu(deck, tmp_path / "plant.fmu", inputs="3:Y", outputs="3:Y")
-    with pytest.raises(trueup.InputError, match=r"'inputs' is of \.fmu, \.npz, \.mat, \.unv, \.uff alone"):
+    with pytest.raises(
+        trueup.InputError, match=r"'inputs' is of \.fmu, \.npz, \.mat, \.unv, \.uff alone"
+    ):
         trueup.convert(deck, tmp_path / "m.op4", inputs="3:Y")
     with pytest.raises(trueup.InputError, match="a plant has no boundary"):
         trueup.convert(deck, tmp_path / "p.npz", boundary="3", inputs="3:Y", outputs="3:Y")

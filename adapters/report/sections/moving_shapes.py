@@ -22,7 +22,7 @@ def _label(pair: PairRow) -> str:
     return (
         f"test {pair.test} ({hz(pair.test_hz)} Hz) and analysis {pair.analysis} "
         f"({hz(pair.analysis_hz)} Hz), {fixed(pair.deviation_percent, 1)} %, "
-        f"MAC {percent(pair.mac)} %"
+        f"MAC {percent(pair.mac)} %{', ' * bool(pair.waves)}{pair.waves}"
     )
 
 

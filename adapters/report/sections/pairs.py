@@ -12,7 +12,16 @@ from ..tables.number_formats import fixed, hz, percent, signed
 from ..tables.table import Cell, Column, Heading, Table
 from .section import ReportedRun, Section
 
-_PAIR = ("analysis mode", "Hz", "damping %", "deviation %", "MAC %", "rotation °", "cluster")
+_PAIR = (
+    "analysis mode",
+    "Hz",
+    "damping %",
+    "deviation %",
+    "MAC %",
+    "rotation °",
+    "cluster",
+    "waves",
+)
 
 
 def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
@@ -25,6 +34,7 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
     keep = [0, 1] + [2] * any(p.analysis_damping is not None for p in every) + [3, 4]
     keep += [5] * any(p.rotation_deg is not None for p in every)
     keep += [6] * any(p.cluster is not None for p in every)
+    keep += [7] * any(p.test_harmonic is not None for p in every)
     known = {
         heading: (of_test, digits)
         for heading, of_test, digits in (
@@ -48,12 +58,17 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
         note += (
             " Rotation is how far the analysis mode was turned within its cluster of close modes."
         )
+    if 7 in keep:
+        note += (
+            " Waves: the harmonic round the axis and where a crest is, of the test mode and of the "
+            "analysis mode."
+        )
     return Table.of("Test modes and their partners", columns, rows, note)
 
 
 def _cells(pair: PairRow | None) -> list[Cell | str]:
     if pair is None:
-        return [Cell("none", "muted"), *[""] * 6]
+        return [Cell("none", "muted"), *[""] * 7]
     return [
         str(pair.analysis),
         hz(pair.analysis_hz),
@@ -62,6 +77,7 @@ def _cells(pair: PairRow | None) -> list[Cell | str]:
         Cell(percent(pair.mac, 1), bar=pair.mac),
         "" if pair.rotation_deg is None else fixed(pair.rotation_deg, 1),
         "" if pair.cluster is None else str(pair.cluster),
+        pair.waves,
     ]
 
 

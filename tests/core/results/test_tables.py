@@ -46,7 +46,7 @@ def correlation_tables(c, test, analysis):
     tables = compared(
         SimpleNamespace(
             correlation=c, test=test, analysis=analysis, warnings=("one",), alignment=move,
-            observation=seen, placed=placed,
+            geometry=SimpleNamespace(xyz=np.zeros((0, 3))), observation=seen, placed=placed,
         )
     )  # fmt: skip
     return CorrelateTables(**vars(tables), deck_file="a.bdf", test_files=("a.unv",)).to_dict()
@@ -62,7 +62,7 @@ def test_modes_count_from_one(found):
     assert tables["mac"]["test"] == [1, 2, 3, 4, 5]
     assert tables["mac"]["analysis"] == [1, 2, 3, 4]
     ids = {k["id"]: k for k in tables["clusters"]}
-    assert ids[1] == {"id": 1, "analysis": [1, 2], "test": [1, 2]}
+    assert ids[1] == {"id": 1, "analysis": [1, 2], "test": [1, 2], "harmonic": None}
     assert all(p["analysis"] in ids[p["cluster"]]["analysis"] for p in tables["pairs"])
     assert tables["pairs"][0]["deviation_percent"] == pytest.approx(100 * 0.2 / 9.8)
 

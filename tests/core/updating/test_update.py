@@ -322,7 +322,7 @@ def test_stages_that_make_no_sense_are_refused():
     model = chain(HALVES)
     with pytest.raises(InputError, match="names no parameter"):
         Stage(())
-    with pytest.raises(InputError, match="give one of frequencies, shapes, .*, both"):
+    with pytest.raises(InputError, match=r"give one of frequencies, shapes, .*, both"):
         Stage((0,), "everything")
     with pytest.raises(InputError, match="parameter 7 of 2"):
         update(model, measured(model, [1.0, 1.0]), [Stage((7,))], n_modes=8)
