@@ -14,6 +14,7 @@ from ..data.modes import Modes
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, collect, physical
 from .poles.band_sweeps import BandFit
+from .poles.moments import unstacked
 from .poles.pole_candidates import Proposal
 from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
@@ -95,7 +96,9 @@ def assemble(
         significance=t.significance,
         close_pair_possible=pair,
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
-        remarks=of_modes(survey, t, p, quality, mpc, indicator),
+        remarks=of_modes(
+            survey, t, p, quality, mpc, indicator, scaling.modal_mass / p.real_size**2
+        ),
         bands=backgrounds,
         rejected=rejected(fits, proposals, unwanted),
         measured=measured,
@@ -146,6 +149,9 @@ def _backgrounds(
             left = left - modal_response(f, *roots)
         terms = residual_terms(f)
         size = np.linalg.norm(terms, axis=1)
+        judged = measured
+        if b.measured is not b.data:  # functions brought to one set of poles
+            judged = measured + unstacked(b.data.y - b.measured.y)
         residuals = left @ np.linalg.pinv(terms / size[:, None]) / size
         weighted = Background(b.band, residuals.transpose(2, 0, 1), *roots)
         synthesised = modal + background_response(f, weighted)
@@ -154,7 +160,7 @@ def _backgrounds(
             half = max(2.0 * abs(t.poles[k].real) / np.pi, least)
             near = np.abs(f - hz[k]) <= half
             used = survey.measured
-            quality[k] = correlation(measured[:, :, near][used], synthesised[:, :, near][used])
+            quality[k] = correlation(judged[:, :, near][used], synthesised[:, :, near][used])
         found.append(
             Background(
                 b.band,

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Bools, Numbers
-from .by_hand import near
+from ..arrays import Numbers
+from .by_hand import near, unused
 from .poles.band_sweeps import BandFit
 from .poles.pole_candidates import Proposal
 from .poles.pole_numbers import POLES
@@ -44,24 +44,14 @@ def rejected(
     modes = np.concatenate([b.fit.poles[b.core] for b in fits])
     found: list[Rejected] = []
     for b, proposed in zip(fits, proposals, strict=True):
-        aside = np.flatnonzero(b.background & _inside(b, b.fit.poles))
+        hz = np.abs(b.fit.poles) / (2.0 * np.pi)
+        aside = b.background & (hz >= b.band.low) & (hz <= b.band.high)
         reasons = _of_background(b, unwanted)
-        found += [_named(b.fit.poles[k], reasons[k]) for k in aside]
-        kept = np.concatenate([modes, b.fit.poles[aside]])
-        for pole in (c.pole for c in proposed.firm):
-            if not _inside(b, np.array([pole]))[0]:
-                continue
-            gap = np.abs(kept - pole) / np.minimum(np.abs(kept.real), abs(pole.real))
-            if len(gap) and gap.min() < POLES.candidate_same:
-                kept = np.delete(kept, int(np.argmin(gap)))
-                continue
-            found.append(_named(pole, _of_candidate(pole, modes)))
+        found += [_named(b.fit.poles[k], reasons[k]) for k in np.flatnonzero(aside)]
+        spare = np.isfinite(unused(b, proposed))
+        poles = [proposed.firm[k].pole for k in np.flatnonzero(spare)]
+        found += [_named(pole, _of_candidate(pole, modes)) for pole in poles]
     return tuple(sorted(found, key=lambda r: r.frequency_hz))
-
-
-def _inside(b: BandFit, poles: Numbers) -> Bools:
-    hz = np.abs(poles) / (2.0 * np.pi)
-    return np.asarray((hz >= b.band.low) & (hz <= b.band.high))
 
 
 def _named(pole: complex, reason: str) -> Rejected:
@@ -96,5 +86,5 @@ def _of_candidate(pole: complex, modes: Numbers) -> str:
     gap = np.abs(modes.imag - pole.imag) / width
     if len(gap) and gap.min() < POLES.one_resonance:
         hz = np.abs(modes[int(np.argmin(gap))]) / (2.0 * np.pi)
-        return f"the resonance at {hz:.2f} Hz once more: no second direction there"
+        return f"no second direction beside the resonance at {hz:.2f} Hz"
     return "explains no more than what is left over around it"

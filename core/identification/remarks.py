@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..arrays import Floats, Numbers
@@ -84,12 +86,18 @@ def of_window(poles: Numbers, damping: Floats, std: Floats, decay: float) -> lis
 
 
 def of_modes(
-    survey: Survey, t: ModeTable, p: Physical, quality: Floats, mpc: Floats, indicator: Floats
+    survey: Survey,
+    t: ModeTable,
+    p: Physical,
+    quality: Floats,
+    mpc: Floats,
+    indicator: Floats,
+    mass: Floats,
 ) -> tuple[str, ...]:
     """Say what makes each mode a poor one; empty for a mode without reproach."""
     texts = []
-    labels = survey.outputs.labels
-    real = p.real / p.real_size
+    again = _seen_alike(t)
+    usual = float(np.median(mass[np.isfinite(mass)])) if np.isfinite(mass).any() else np.inf
     for k, hz in enumerate(t.hz):
         found = []
         if quality[k] < IDENTIFICATION.poor_quality:
@@ -98,13 +106,15 @@ def of_modes(
             found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
         if indicator[k] < IDENTIFICATION.poor_indicator:
             found.append(f"no clear resonance of all responses (mode indicator {indicator[k]:.2f})")
-        sure, std, shape = p.known[:, k], p.std[:, k], real[:, k]
-        if np.any(std[~sure] > SURVEY.known * np.abs(shape[sure]).max(initial=0.0)):
-            where = [labels[o] for o in np.flatnonzero(~sure)[: SURVEY.named]]
-            found.append(f"its shape is hardly known at {', '.join(where)}")
-        spread = np.sqrt(np.mean(std[sure] ** 2) / np.mean(shape[sure] ** 2))
-        if spread > IDENTIFICATION.weak:
-            found.append(f"uncertain shape ({100 * spread:.0f} %)")
+        if again[k]:
+            others = ", ".join(f"{f:.2f}" for f in t.hz[again[k]])
+            found.append(
+                f"the references see it as they do {others} Hz, at other responses: perhaps one "
+                "resonance whose frequency differs from response to response"
+            )
+        if mass[k] > IDENTIFICATION.heavy * usual:
+            found.append(f"implausible modal mass ({mass[k] / usual:.0f} times the usual)")
+        found += _of_shape(p, k, survey.outputs.labels)
         if survey.coherence is not None:
             coherence = survey.coherence[int(np.argmin(np.abs(survey.frequencies_hz - hz)))]
             if coherence < SURVEY.coherent:
@@ -114,3 +124,29 @@ def of_modes(
             found.append("at the edge of the measured range")
         texts.append("; ".join(found))
     return tuple(texts)
+
+
+def _of_shape(p: Physical, k: int, labels: Sequence[str]) -> list[str]:
+    """Say what of a shape is not known."""
+    found = []
+    sure, std, shape = p.known[:, k], p.std[:, k], p.real[:, k] / p.real_size[k]
+    if np.any(std[~sure] > SURVEY.known * np.abs(shape[sure]).max(initial=0.0)):
+        where = [labels[o] for o in np.flatnonzero(~sure)[: SURVEY.named]]
+        found.append(f"its shape is hardly known at {', '.join(where)}")
+    spread = np.sqrt(np.mean(std[sure] ** 2) / np.mean(shape[sure] ** 2))
+    if spread > IDENTIFICATION.weak:
+        found.append(f"uncertain shape ({100 * spread:.0f} %)")
+    return found
+
+
+def _seen_alike(t: ModeTable) -> list[list[int]]:
+    """Modes near each one that have its participation, but shapes of other responses.
+
+    A structure has no two such modes: where it is driven, participation is the shape.
+    """
+    part, shapes = (x / np.linalg.norm(x, axis=0) for x in (t.participation, t.shapes))
+    alike = np.abs(part.conj().T @ part) ** 2 > IDENTIFICATION.one_participation
+    apart = (np.abs(shapes).T @ np.abs(shapes)) ** 2 < IDENTIFICATION.other_responses
+    near = np.abs(t.hz - t.hz[:, None]) < IDENTIFICATION.beside * t.hz
+    found = alike & apart & near & (len(part) > 1)
+    return [np.flatnonzero(row).tolist() for row in found]

@@ -56,7 +56,6 @@ def refine(
     data: BandData,
     poles: Numbers,
     participation: Numbers,
-    free: Numbers | None = None,
     max_iterations: int = POLES.fit_steps,
 ) -> Fit:
     """Minimise the output error over poles and participation, the shapes being projected out.
@@ -73,8 +72,6 @@ def refine(
         Start values, rad/s.
     participation : (n_input, n_mode) complex
         Start values.
-    free : (n_mode,) bool, optional
-        Modes whose pole and participation may move; the others' shapes are still fitted.
     max_iterations : int
 
     Returns
@@ -87,13 +84,12 @@ def refine(
     Golub, Pereyra (1973), The differentiation of pseudo-inverses and nonlinear least squares
     problems whose variables separate, SIAM J. Numer. Anal. 10, 413-432.
     """
-    moving = np.ones(len(poles), bool) if free is None else np.asarray(free)
     fit, projections = _with_shapes(data, poles, participation)
-    mu, count, converged = POLES.damping_first, 0, not moving.any()
+    mu, count, converged = POLES.damping_first, 0, not len(poles)
     floor = POLES.misfit_least * data.power
     while count < max_iterations and not converged:
         count += 1
-        columns = free_columns(fit.participation, moving)
+        columns = free_columns(fit.participation)
         S, gradient = _reduced_system(data, fit, projections)
         S, gradient = S[np.ix_(columns, columns)], gradient[columns]
         scale = np.sqrt(np.maximum(np.diag(S), 1e-300))
@@ -114,11 +110,10 @@ def refine(
     return Fit(fit.poles, fit.participation, fit.shapes, fit.misfit, count, bool(converged))
 
 
-def free_columns(participation: Numbers, moving: Numbers) -> Numbers:
+def free_columns(participation: Numbers) -> Numbers:
     """Positions in θ of what may move, the largest participation of each mode staying 1."""
     n_input, m = participation.shape
-    pole = np.repeat(moving[:, None], 2, axis=1)
-    part = np.repeat(np.repeat(moving[:, None, None], 2, axis=1), n_input, axis=2)
+    pole, part = np.ones((m, 2), bool), np.ones((m, 2, n_input), bool)
     part[np.arange(m), :, np.argmax(np.abs(participation), axis=0)] = False
     return np.flatnonzero(np.concatenate([pole.ravel(), part.ravel()]))
 

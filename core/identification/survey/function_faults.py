@@ -15,8 +15,8 @@ def dead(values: Numbers, measured: Bools) -> Bools:
     """Tell functions whose impulse response is as large before the impulse as after it.
 
     What a structure answers comes after the impulse and decays; noise of any colour, and hum,
-    does not. The impulse itself is left out: it is what modes outside the range make. Told only
-    where the typical function of the survey does decay.
+    does not. The impulse itself and a constant are left out: they are what modes outside the range
+    make. Told only where the typical function of the survey does decay.
 
     Parameters
     ----------
@@ -31,7 +31,9 @@ def dead(values: Numbers, measured: Bools) -> Bools:
     n_line = values.shape[2]
     near, half = SURVEY.impulse, n_line // 2
     for o in np.flatnonzero(measured.any(axis=1)):
-        power = np.abs(np.fft.ifft(values[o, measured[o]] * np.hanning(n_line), axis=1)) ** 2
+        functions = values[o, measured[o]]
+        functions = functions - functions.mean(axis=1, keepdims=True)
+        power = np.abs(np.fft.ifft(functions * np.hanning(n_line), axis=1)) ** 2
         late, early = power[:, near:half].sum(axis=1), power[:, half : 1 - near].sum(axis=1)
         after[o, measured[o]] = late / (late + early)
         beside[o, measured[o]] = (late + early) / power.sum(axis=1)

@@ -54,7 +54,7 @@ def errors(data: BandData, fit: Fit) -> Errors:
     size = T.shape[2]
     flat = T.reshape(-1, size)
     S = n.common_common - n.shape_common.reshape(-1, size).T @ flat
-    columns = free_columns(fit.participation, np.ones(m, bool))
+    columns = free_columns(fit.participation)
     noisy = _noisy(data, fit, n, F, len(columns))
     meat = noisy.common_common - flat.T @ noisy.shape_common.reshape(-1, size)
     meat -= noisy.shape_common.reshape(-1, size).T @ flat

@@ -382,6 +382,18 @@ def test_modes_of_two_runs_joined_are_found_at_the_mean(survey):
     found = identify(replace(one, values=np.concatenate([one.values[:10], other.values[10:]])))
     assert found.modes.frequencies_hz == pytest.approx(hz * 1.005, rel=0.002)
     assert any("differ from response to response" in w for w in found.warnings)
+    assert found.quality.min() > 0.99
+
+
+def test_modes_of_two_runs_too_far_apart_to_be_joined_bear_a_remark(survey):
+    hz = np.array([30.0, 47.0, 66.0, 85.0])
+    one, other = (
+        survey(11, frequencies=hz * s, n_response=20, n_line=1000)[0] for s in (1.0, 1.03)
+    )
+    assert not any(identify(one).remarks)
+    found = identify(replace(one, values=np.concatenate([one.values[:10], other.values[10:]])))
+    assert len(found.modes) == 8
+    assert all("perhaps one resonance" in r for r in found.remarks)
 
 
 def test_a_mode_is_refused_and_a_rejected_root_taken_by_hand(survey):

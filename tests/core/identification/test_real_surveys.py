@@ -119,7 +119,7 @@ def test_what_a_survey_holds_besides_is_rejected_with_its_reason(aeroplane):
     assert len(rejected) > 10
     again = [r for r in rejected if 125.0 < r.frequency_hz < 126.5]
     assert len(again) >= 2
-    assert all("Hz once more" in r.reason for r in again)
+    assert all("no second direction beside the resonance" in r.reason for r in again)
     assert any("errors of the survey" in r.reason for r in rejected if r.frequency_hz < 35.0)
 
 
@@ -132,6 +132,15 @@ def test_a_root_of_the_chart_is_held_where_the_functions_would_draw_it_away():
     assert np.abs(taken.modes.frequencies_hz / never[0] - 1.0).min() < 5e-3
     assert len(taken.modes) == len(found.modes) + 1
     assert any("is held where the stabilisation chart has it" in w for w in taken.warnings)
+
+
+@needs(AEROPLANE)
+def test_roots_that_another_range_lists_as_rejected_can_be_taken(aeroplane):
+    frfs = read_universal([AEROPLANE]).frfs
+    listed = [r.frequency_hz for r in aeroplane.rejected if 84.5 < r.frequency_hz < 124.0]
+    taken = identify(frfs, fmin=80.0, fmax=130.0, take=listed)
+    for hz in listed:
+        assert np.abs(taken.modes.frequencies_hz / hz - 1.0).min() < 5e-3
 
 
 @pytest.mark.slow

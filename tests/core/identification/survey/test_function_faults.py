@@ -27,9 +27,10 @@ def noise(rng, n):
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e3])
 @pytest.mark.parametrize("smoothed", [1, 5, 15])
-def test_noise_of_any_size_and_colour_is_a_dead_channel(frfs, size, smoothed):
+@pytest.mark.parametrize("offset", [0.0, 50.0])
+def test_noise_of_any_size_and_colour_is_a_dead_channel(frfs, size, smoothed, offset):
     def dead(h, rng):
-        return size * np.convolve(noise(rng, len(h)), np.hanning(smoothed + 2), "same")
+        return size * (offset + np.convolve(noise(rng, len(h)), np.hanning(smoothed + 2), "same"))
 
     (fault,) = faults(frfs, dead)
     assert (fault.kind, fault.functions, fault.done) == ("dead_channel", ("8:Z/1:Z",), "left out")
