@@ -47,7 +47,8 @@ class Pencil:
         both = (upper_k + 1j * upper_m).tocsr()  # keeps an entry unless it is zero in both
         both.sort_indices()
         self._indptr, self._indices = both.indptr, both.indices
-        self._k, self._m = both.data.real.copy(), both.data.imag.copy()
+        self._k, massive = both.data.real.copy(), np.flatnonzero(both.data.imag)
+        self._massive, self._m = massive, both.data.imag[massive]
         self.k_diagonal: Floats = np.asarray(self.K.diagonal(), np.float64)
         self.m_diagonal: Floats = np.asarray(self.M.diagonal(), np.float64)
 
@@ -66,7 +67,8 @@ class Pencil:
 
     def shifted(self, sigma: float) -> sp.csr_matrix:
         """Upper triangle of K - sigma M, (n, n) csr on a pattern that does not depend on sigma."""
-        data = self._k - sigma * self._m
+        data = self._k.copy()
+        data[self._massive] -= sigma * self._m
         return sp.csr_matrix((data, self._indices, self._indptr), shape=(self.n, self.n))
 
     @cached_property

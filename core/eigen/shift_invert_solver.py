@@ -60,7 +60,9 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     elastic = max(asked - n_rigid, 1)
     sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
     found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
-    del factor, lanczos  # two factors at a time only where the caller keeps one
+    if not request.keep_factor:  # two factors at a time only where the caller keeps one
+        found = replace(found, factor=None)
+    del factor, lanczos
     return replace(_counted(pencil, rigid, found, elastic, request), left_out=left_out)
 
 
@@ -70,8 +72,6 @@ def _counted(
     """Count the modes below a gap above the first `elastic` and search for those missed."""
     n_rigid, have, missed = rigid.shape[1], 0, 0
     for attempt in range(1, EIGEN.attempts + 1):
-        if not request.keep_factor:
-            found = replace(found, factor=None)
         if not request.count:
             return found
         gap = _gap(pencil, found, elastic)
@@ -85,6 +85,8 @@ def _counted(
         if attempt < EIGEN.attempts:
             further = max(elastic, have + missed) - len(found.values)
             found = _with_missed(pencil, rigid, found, max(further, 1), request, attempt)
+            if not request.keep_factor:
+                found = replace(found, factor=None)
     raise CheckError(
         f"{n_rigid + have} modes were found where the inertia count shows {n_rigid + have + missed}"
     )
@@ -205,7 +207,7 @@ def _converged(
             check_at = lanczos.size + max(EIGEN.width, lanczos.size // EIGEN.step)
         lanczos.advance()
         lanczos.step()
-    found = _polished(pencil, rigid, sigma, factor, lanczos.vectors(firm), theta[:firm])
+    found = _polished(pencil, rigid, sigma, factor, lanczos.taken(firm), theta[:firm])
     ahead = sigma + 1.0 / theta[firm : max(loose, firm)]
     return replace(found, complete=lanczos.exhausted, ahead=ahead)
 
@@ -217,15 +219,21 @@ def _polished(
 
     With Y = A^-1 M X the Ritz problem of (A, M) on Y needs no product with K.
     """
-    MX = pencil.M @ X
-    Y = factor.solve(MX) / theta
-    Y -= rigid @ (rigid.T @ (pencil.M @ Y))
-    error = X - Y
-    residual = np.sqrt(np.maximum(np.einsum("ij,ij->j", error, pencil.M @ error), 0.0))
-    stiff = (Y.T @ MX) / theta
-    mass = Y.T @ (pencil.M @ Y)
+    count = len(theta)
+    Y, residual = np.empty_like(X, order="F"), np.empty(count)
+    stiff, mass = np.empty((count, count)), np.empty((count, count))
+    blocks = [slice(first, first + EIGEN.width) for first in range(0, count, EIGEN.width)]
+    for few in blocks:
+        y = factor.solve(pencil.M @ X[:, few]) / theta[few]
+        Y[:, few] = y - rigid @ (rigid.T @ (pencil.M @ y))
+        error = X[:, few] - Y[:, few]
+        size = np.einsum("ij,ij->j", error, pencil.M @ error)
+        residual[few] = np.sqrt(np.maximum(size, 0.0))
+    for few in blocks:
+        stiff[:, few] = Y.T @ (pencil.M @ X[:, few]) / theta[few]
+        mass[:, few] = Y.T @ (pencil.M @ Y[:, few])
     alpha, C = sl.eigh((stiff + stiff.T) / 2.0, (mass + mass.T) / 2.0)
-    return Spectrum(sigma + alpha, Y @ C, residual, sigma, False, None, factor)
+    return Spectrum(sigma + alpha, np.matmul(Y, C, out=X), residual, sigma, False, None, factor)
 
 
 def _widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:

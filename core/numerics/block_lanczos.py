@@ -92,10 +92,14 @@ class BlockLanczos:
         residual = np.linalg.norm(self._R @ self._Y[self._last], axis=0)
         return theta, residual
 
-    def vectors(self, count: int) -> Floats:
-        """Return the Ritz vectors of the `count` largest values, purified, (n, count)."""
+    def taken(self, count: int) -> Floats:
+        """Return the Ritz vectors of the `count` largest values, purified, (n, count).
+
+        The basis is given up for them: the iteration is over.
+        """
         Y, theta = self._Y[:, :count], self._theta[:count]
         X: Floats = self._V[:, : self.size] @ Y
+        self._V = self._M_block = self._V[:, :0].copy()
         if self._width:
             X += self._next @ ((self._R @ Y[self._last]) / theta)
         return X

@@ -235,13 +235,12 @@ def _same(pattern: tuple[Ints, Ints], upper: sp.csr_matrix) -> bool:
 
 def upper_triangle(a: sp.spmatrix) -> sp.csr_matrix:
     """Upper triangle, (n, n) csr, sorted, with every diagonal entry stored."""
-    upper = sp.triu(a, format="csr")
-    upper.sum_duplicates()
+    upper, rows = sp.csr_matrix(a), np.arange(a.shape[0])
+    if not upper.has_canonical_format or (_first_column(upper) < rows).any():
+        upper = sp.triu(a, format="csr")
+        upper.sum_duplicates()
     require_finite(upper.data, "the matrix to factorise")
-    rows = np.arange(upper.shape[0])
-    first = upper.indptr[:-1]
-    stored = np.diff(upper.indptr) > 0
-    stored[stored] = upper.indices[first[stored]] == rows[stored]
+    stored = _first_column(upper) == rows
     if stored.all():
         return upper
     missing = rows[~stored]
@@ -249,6 +248,14 @@ def upper_triangle(a: sp.spmatrix) -> sp.csr_matrix:
     data = np.concatenate([entries.data, np.zeros(len(missing))])
     where = [np.concatenate([at, missing]) for at in (entries.row, entries.col)]
     return sp.csr_matrix((data, where), shape=upper.shape)
+
+
+def _first_column(a: sp.csr_matrix) -> Ints:
+    """Column of the first stored entry of each row, (n,); n where there is none."""
+    column = np.full(a.shape[0], a.shape[1])
+    stored = np.diff(a.indptr) > 0
+    column[stored] = a.indices[a.indptr[:-1][stored]]
+    return column
 
 
 def _scale(upper: sp.csr_matrix) -> Floats:

@@ -22,6 +22,9 @@ from ..errors import CheckError, InputError
 
 _ANALYSE, _FACTORISE, _SOLVE, _FORWARD, _RELEASE = 11, 22, 33, 331, -1
 
+_ALIKE = 90
+"""Per cent of their entries that rows share which make a block."""
+
 _ERRORS = {
     -1: "input inconsistent",
     -2: "not enough memory",
@@ -101,20 +104,25 @@ class Pardiso:
         self._call = _routine(wide)
         self._mtype = 2 if definite else -2
         self._pt = np.zeros(64, np.int64)
-        self._iparm = _settings(self._int)
-        self._ia = upper.indptr.astype(self._int)
-        self._ja = upper.indices.astype(self._int)
+        self._iparm = _settings(self._int, definite)
+        self._ia = upper.indptr.astype(self._int, copy=False)
+        self._ja = upper.indices.astype(self._int, copy=False)
         self._a = np.ascontiguousarray(upper.data, np.float64)
         weakref.finalize(self, _release, self._call, self._pt, self._mtype, self._iparm, self.n)
         self._run(_ANALYSE)
-        self._run(_FACTORISE)
+        self._factorise()
 
     def refactorise(self, data: Floats) -> None:
         """Factorise new values, (nnz,), on the pattern that was analysed."""
-        if data.shape != self._a.shape:
-            raise InputError(f"{data.shape[0]} values for a pattern of {self._a.shape[0]}")
+        if data.shape != self._ja.shape:
+            raise InputError(f"{data.shape[0]} values for a pattern of {self._ja.shape[0]}")
         self._a = np.ascontiguousarray(data, np.float64)
+        self._factorise()
+
+    def _factorise(self) -> None:
         self._run(_FACTORISE)
+        if self._mtype == 2:
+            self._a = np.zeros(1)  # only a factor with replaced pivots is refined by the matrix
 
     @property
     def negative(self) -> int:
@@ -167,13 +175,14 @@ def _routine(wide: bool) -> Any:
     return found.pardiso_64 if wide else found.pardiso
 
 
-def _settings(integer: type[np.signedinteger[Any]]) -> Numbers:
+def _settings(integer: type[np.signedinteger[Any]], definite: bool) -> Numbers:
     iparm = np.zeros(64, integer)
     iparm[0] = 1  # the values below, not the defaults
     iparm[1] = 2  # METIS ordering
     iparm[9] = 13  # replace pivots below 1e-13 (the matrix comes scaled)
     iparm[20] = 1  # 1x1 and 2x2 pivots
     iparm[34] = 1  # indices start at zero
+    iparm[36] = -_ALIKE if definite else 0  # in blocks of rows alike: a copy of A saved
     return iparm
 
 

@@ -32,14 +32,19 @@ def weighted_sum(terms: Iterable[tuple[float, sp.csr_matrix]], n: int) -> sp.csr
     """Return the sum of c A over pairs (c, A) of matrices (n, n).
 
     Neighbours on one pattern are summed entry by entry, the rest in pairs, so that many matrices
-    with few entries each cost no more than one with many.
+    with few entries each cost no more than one with many. A lone matrix as it is comes back as
+    a view that cannot be written to.
     """
+    pairs = [(c, matrix) for c, matrix in terms if c != 0.0]
+    if len(pairs) == 1 and pairs[0][0] == 1.0:
+        lone = pairs[0][1].tocsr()
+        view = lone.data.view()
+        view.flags.writeable = False
+        return shared([view], lone)[0]
     parts: list[sp.csr_matrix] = []
     pattern = None
     scaled = np.zeros(0)
-    for c, matrix in terms:
-        if c == 0.0:
-            continue
+    for c, matrix in pairs:
         if pattern is not None and same_pattern(pattern, matrix):
             scaled = scaled if len(scaled) == matrix.nnz else np.empty(matrix.nnz)
             parts[-1].data += np.multiply(matrix.data, c, out=scaled)
