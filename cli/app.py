@@ -34,6 +34,7 @@ def _root(
 
 def _register() -> None:
     from .options import CORRELATE, DISCOVER, PARAMETERS, UPDATE, comparing
+    from .verbs.compare import compare
     from .verbs.comparing import correlate, discover, update
     from .verbs.convert import convert
     from .verbs.demo import demo
@@ -53,6 +54,7 @@ def _register() -> None:
     app.command()(comparing(update, UPDATE, changes_deck=True))
     app.command()(comparing(discover, DISCOVER, changes_deck=True))
     app.command()(comparing(parameters, PARAMETERS, needs_test=False))
+    app.command()(compare)
     app.command()(report)
     app.command()(demo)
 

@@ -133,7 +133,7 @@ def _shaded(value: float, cell: int, shades: list[str]) -> tuple[str, str]:
 
 def solve_table(answer: SolveTables) -> RenderableType:
     """Return the modes of ``trueup solve`` with mass and centre of gravity."""
-    table = _titled("Normal modes", ("mode", "Hz", "generalised mass", ""))
+    table = titled("Normal modes", ("mode", "Hz", "generalised mass", ""))
     for k, mode in enumerate(answer.modes):
         rigid = k < answer.rigid_body_modes
         what = Text("rigid body", style="dim") if rigid else ""
@@ -153,7 +153,7 @@ def _solved_hz(f: float, rigid: bool) -> str:
 def identify_table(modes: Sequence[IdentifiedRow]) -> Table:
     """Return the modes of ``trueup identify`` with their uncertainty and quality."""
     headings = ("mode", "Hz", "±", "damping %", "±", "MPC %", "MPD °", "quality", "")
-    table = _titled("Identified modes", headings)
+    table = titled("Identified modes", headings)
     for k, mode in enumerate(modes):
         notes = [mode.remark] if mode.remark else []
         notes += ["moves as a rigid body (suspension)"] if mode.suspension else []
@@ -174,7 +174,7 @@ def identify_table(modes: Sequence[IdentifiedRow]) -> Table:
 
 def properties_table(answer: ParametersTables, most: int | None = None) -> Table:
     """Return the cards with values that may move, the first `most` of them."""
-    table = _titled("Properties", ("card", "number", "elements"))
+    table = titled("Properties", ("card", "number", "elements"))
     table.add_column("values", overflow="fold")
     for row in answer.properties[:most]:
         values = ", ".join(f"{name} {general(v, 5)}" for name, v in row.values.items() if v)
@@ -188,7 +188,7 @@ def properties_table(answer: ParametersTables, most: int | None = None) -> Table
 def candidates_table(answer: ParametersTables) -> Table:
     """Return what could be moved, those recommended first, then by sensitivity."""
     headings = ("value", "%/%", "± alone", "± all", "group", "rank", "explained %")
-    table = _titled("What the modes say of them")
+    table = titled("What the modes say of them")
     table.add_column("parameter", overflow="fold")
     for heading in headings:
         table.add_column(heading, justify="right", no_wrap=True)
@@ -215,7 +215,7 @@ def candidates_table(answer: ParametersTables) -> Table:
 
 def inspect_table(file: FileRow) -> Table:
     """Return what ``trueup inspect`` found in one file."""
-    table = _titled(" · ".join(t for t in (file.path, file.format) if t))
+    table = titled(" · ".join(t for t in (file.path, file.format) if t))
     table.add_column("what")
     table.add_column("holds", overflow="fold")
     for what, said in _contents(file.contents):
@@ -257,7 +257,7 @@ def _told(value: object, between: str = ", ") -> str:
     return general(value, 6) if isinstance(value, float) else str(value)
 
 
-def _titled(title: str, headings: Sequence[str] = ()) -> Table:
+def titled(title: str, headings: Sequence[str] = ()) -> Table:
     """Return an empty table; columns are of numbers where they have a heading."""
     table = Table(title=Text(title, style="bold"), title_justify="left", box=None, pad_edge=False,
                   header_style="dim", padding=(0, 2, 0, 0))  # fmt: skip
@@ -267,7 +267,7 @@ def _titled(title: str, headings: Sequence[str] = ()) -> Table:
 
 
 def _rich(table: report_table.Table, state: str = "") -> Table:
-    shown = _titled(f"{table.title}, {state}" if state else table.title)
+    shown = titled(f"{table.title}, {state}" if state else table.title)
     grouped = any(c.group for c in table.columns)
     if grouped:
         shown.padding = (0, 1, 0, 0)

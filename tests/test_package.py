@@ -230,7 +230,7 @@ def test_verbs_are_offered_for_completion() -> None:
         "-c", "import sys; sys.argv[0] = 'trueup'\nfrom trueup.cli.app import run; sys.exit(run())",
         _TRUEUP_COMPLETE="complete_bash", COMP_WORDS="trueup co", COMP_CWORD="1",
     )  # fmt: skip
-    assert said.stdout.split() == ["convert", "correlate"], said.stderr
+    assert said.stdout.split() == ["convert", "correlate", "compare"], said.stderr
 
 
 def test_no_file_names_the_machine_it_was_written_on() -> None:

@@ -85,7 +85,7 @@ def read_analysis(
     warnings = (*(deck.warnings if deck else ()), *model.warnings, *unknown)
     if modes is not None:
         known = analysis_modes(modes, deck)
-        return Analysis(deck, specs, model, known, _rigid(known), warnings, given)
+        return Analysis(deck, specs, model, known, rigid_count(known), warnings, given)
     asked = deck.eigen.nd if deck and deck.eigen and deck.eigen.nd else 0
     with naming(name):
         solution = normal_modes.solve(model, fmax=fmax)
@@ -228,7 +228,7 @@ def named(study: Study, deck: Deck | None, test: Measured, modes: Source | None)
     )
 
 
-def _rigid(modes: Modes) -> int:
+def rigid_count(modes: Modes) -> int:
     """Count the leading modes that are rigid-body motions to the rounding of the file."""
     hz = modes.frequencies_hz
     return int(np.argmax(hz > 1e-3 * np.max(hz))) if len(hz) else 0

@@ -104,12 +104,15 @@ def read_test(source: Source) -> Measurement:
         geometry; a node of the shapes without a position.
     """
     from ..adapters.universal import is_pyuff, read_pyuff, read_test as read
+    from .modes_as_test import holds_modes, modes_as_test
 
     if isinstance(source, Measurement):
         return source
     if is_pyuff(source):
         return read_pyuff(source)
     files = existing(files_of(source))
+    if holds_modes(files):
+        return modes_as_test(files)
     return _own_systems(files, read(files))
 
 

@@ -33,6 +33,10 @@ class CorrelationNumbers:
     same_hz: float = number(0.002, "of f", "by which the frequencies of a mode listed twice differ, at most", CHECK)
     rigid: float = number(0.99, "of a squared shape", "that is a motion of the whole in a mode on a suspension", CHECK)
     rigid_modes: int = number(3, "modes", "that are, at least, where a test is free: two are the sway of a tower", CHECK)
+    one_place: float = number(1e-3, "of the structure's size", "between grids of two models that are in one place", CHECK)
+    places: tuple[int, int] = number((4, 2000), "places", "that two models must have in common, and that are compared at most", "time")
+    at_rest: float = number(1e-3, "of the highest frequency", "below which a mode is one of a rigid body", CHECK)
+    along: float = number(0.999, "cosine", "of a direction with a basic axis that is one", ROUNDING)
     named: int = number(8, "sensors", "that a sentence names", "what a reader takes in")
 
 

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         TrueupError as TrueupError,
     )
     from .core.updating.residuals import register_residual as register_residual
+    from .verbs.compare import SideBySide as SideBySide, compare as compare
     from .verbs.convert import convert as convert
     from .verbs.correlate import correlate as correlate
     from .verbs.discover import discover as discover
@@ -83,6 +84,7 @@ __getattr__, __all__ = lazy_names(
         ".core.data.parametric_model": "Model",
         ".core.errors": "CheckError InputError TrueupError",
         ".core.updating.residuals": "register_residual",
+        ".verbs.compare": "SideBySide compare",
         ".verbs.convert": "convert",
         ".verbs.correlate": "correlate",
         ".verbs.discover": "discover",

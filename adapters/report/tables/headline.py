@@ -61,7 +61,7 @@ def _correlate(found: Compared) -> list[str]:
     if alone:
         noun, has = ("mode", "has") if len(alone) == 1 else ("modes", "have")
         told.append(f"Test {noun} {listed(alone)} {has} no partner.")
-    if alone or abs(worst.deviation_percent) > _FAR:
+    if any(found.test_hz[t - 1] > 0.0 for t in alone) or abs(worst.deviation_percent) > _FAR:
         told.append("trueup discover, given the same, looks for what explains the difference.")
     return told
 
