@@ -50,7 +50,7 @@ from .search.model_selection import (
     with_rival,
 )
 from .search.moves import Searcher
-from .search.patch_reshaping import reshaped
+from .search.patch_reshaping import nearby, reshaped
 from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
 from .search.robust_search import robust
 from .search.strategy import searched
@@ -173,7 +173,11 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
             levels = (*found.levels[: verdict.accepted], one)
             scale = max(verdict.scale, noise_scale(searcher.problem, one))
             found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
-    return (searcher, found, verdict) if explained else _laid(trial, searcher, found, verdict)
+    if not explained:
+        searcher, found, verdict = _laid(trial, searcher, found, verdict)
+    best = found.levels[verdict.accepted]
+    others = (f for q in range(len(best.suspects)) for f in nearby(searcher, best, q))
+    return searcher, found.with_rivals(others), verdict
 
 
 def _laid(
@@ -186,6 +190,8 @@ def _laid(
         with suppress(TrueupError):
             free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
+            if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
+                wide, laid = reshaped(wide, laid, verdict.scale)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
                 return wide, found.with_level(laid), verdict

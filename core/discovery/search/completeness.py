@@ -143,7 +143,7 @@ def completeness(
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
-        tried = (scored(searcher, f) for f in (*_near(searcher, found, k), *poorer))
+        tried = (scored(searcher, f) for f in (*_near(found, k), *poorer))
         fields[k] = sorted(tried, key=lambda s: -s.score)
         found = _led(found.with_rivals(poorer), fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
@@ -164,11 +164,11 @@ def completeness(
     return found, kept, whole
 
 
-def _near(searcher: Searcher, found: Found, k: int) -> list[Fit]:
-    """Return the best with so many suspects and the rivals that gain nearly as much."""
+def _near(found: Found, k: int) -> list[Fit]:
+    """Return the best with so many suspects and the others that gain nearly as much."""
     best = found.levels[k]
     far = SEARCH.rival_gain * (found.levels[0].objective - best.objective)
-    rivals = sorted(contenders(searcher, found, k), key=lambda f: f.objective)
+    rivals = sorted(found.rivals[k], key=lambda f: f.objective)
     near = (f for f in rivals if len(f.suspects) == k and f.objective - best.objective < far)
     return [best, *islice(near, SEARCH.rivals_judged)]
 

@@ -15,10 +15,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from ...arrays import Floats, Ints
-from ..effects import point_mass
+from ...arrays import Bools, Floats, Ints
+from ..effects import distributed_mass, point_mass
 from ..effects.candidates import Candidates, Suspect
-from ..effects.effect_laws import Law, MassLaw
+from ..effects.effect_laws import Law, MassLaw, Rows
+from ..effects.element_patches import Patch, PatchCandidates
 from ..effects.structure_points import translations
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
@@ -38,30 +39,49 @@ class Surroundings:
     grids : (n,) int
         Rows of the geometry.
     xyz : (n, 3) float
-    at : (2,) float
-        The place.
-    flat : (n, 2) float
+    middle, axes : (3,), (2, 3) float
+        Of the plane that they are laid on.
+    place : (3,) float
     mesh : float
         Side of an element.
     """
 
     grids: Ints
     xyz: Floats
-    at: Floats
-    flat: Floats
+    middle: Floats
+    axes: Floats
+    place: Floats
     mesh: float
+
+    @cached_property
+    def at(self) -> Floats:
+        """Return the place laid flat, (2,)."""
+        return self.laid(self.place)
 
     @cached_property
     def cells(self) -> Delaunay:
         """Return the triangles among the grids."""
-        return Delaunay(self.flat)
+        return Delaunay(self.laid(self.xyz))
 
     def shares(self, theta: Floats) -> Floats:
         """Return the shares of the grids in a disc, (n,).
 
         `theta` (3,): its middle from the place, and ln of its radius, in sides of an element.
         """
-        return shares(self.cells, self.at + self.mesh * theta[:2], self.mesh * np.exp(theta[2]))
+        return shares(self.cells, self.at + self.mesh * theta[:2], self.radius(theta))
+
+    def radius(self, theta: Floats) -> float:
+        """Return the radius of a disc."""
+        return self.mesh * float(np.exp(theta[2]))
+
+    def within(self, theta: Floats, xyz: Floats) -> Bools:
+        """Return whether points (n, 3) lie in a disc, (n,)."""
+        away = self.laid(xyz) - self.at - self.mesh * theta[:2]
+        return np.asarray(np.linalg.norm(away, axis=1) < self.radius(theta))
+
+    def laid(self, xyz: Floats) -> Floats:
+        """Return points (n, 3) laid flat, (n, 2)."""
+        return np.asarray((xyz - self.middle) @ self.axes.T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,15 +123,50 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
 
 
 def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
-    """Return a hypothesis with its masses on the discs that were fitted, and one who knows them."""
+    """Return a hypothesis with its masses on the discs that were fitted, and one who knows them.
+
+    On a disc wider than what counts as attached a mass is spread over the elements there.
+    """
     suspects = []
     for s in state.suspects:
         c = searcher.problem.catalogue[s.kind]
         if isinstance(c.law, FootLaw):
-            disc = _disc(structure, c, c.law.around, np.array(s.theta[1:]))
-            searcher, s = _with(searcher, s.kind, disc), replace(s, theta=s.theta[:1])
+            around, theta = c.law.around, np.array(s.theta[1:])
+            s = replace(s, theta=s.theta[:1])
+            wide = around.radius(theta) > SEARCH.spread_mass * searcher.size
+            patched = _spread(searcher, structure, around, theta) if wide else None
+            if patched is None:
+                searcher = _with(searcher, s.kind, _disc(structure, c, around, theta))
+            else:
+                searcher, kind = patched
+                s = replace(s, kind=kind, row=len(searcher.problem.catalogue[kind]) - 1)
         suspects.append(s)
     return searcher, replace(state, suspects=tuple(suspects))
+
+
+def _spread(
+    searcher: Searcher, structure: Structure, around: Surroundings, theta: Floats
+) -> tuple[Searcher, int] | None:
+    """Put the elements of a disc among the places of spread masses; None where there are none."""
+    kinds = [
+        (number, c)
+        for number, c in enumerate(searcher.problem.catalogue)
+        if isinstance(c, PatchCandidates) and c.kind is distributed_mass.KIND
+    ]
+    near: list[Patch] = []
+    for number, m in enumerate(structure.members):
+        if m.element.dimension == 2:
+            xyz = structure.centroids(m)
+            rows = np.flatnonzero(
+                around.within(theta, xyz) & np.isin(m.corners, around.grids).all(1)
+            )
+            near += [Patch(number, rows, xyz[rows].mean(axis=0), False)] if len(rows) else []
+    if not kinds or not near:
+        return None
+    kind, c = kinds[0]
+    more = c.with_patches([max(near, key=lambda p: len(p.rows))])
+    factors = more.extended(searcher.problem.factors[kind])
+    return _put(searcher, kind, more, factors), kind
 
 
 def surroundings(structure: Structure, xyz: Floats) -> Surroundings | None:
@@ -129,8 +184,7 @@ def surroundings(structure: Structure, xyz: Floats) -> Surroundings | None:
     own = grids[tree.query_ball_point(xyz, SEARCH.foot_reach * mesh)]
     middle = g.xyz[own].mean(axis=0)
     _, _, axes = np.linalg.svd(g.xyz[own] - middle, full_matrices=False)
-    flat, at = (g.xyz[own] - middle) @ axes[:2].T, (xyz - middle) @ axes[:2].T
-    found = Surroundings(own, g.xyz[own], at, flat, mesh)
+    found = Surroundings(own, g.xyz[own], middle, axes[:2], xyz, mesh)
     try:
         found.shares(np.zeros(3))
     except (QhullError, ValueError):
@@ -182,7 +236,6 @@ def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floa
     own, share = around.grids[kept], share[kept] / share[kept].sum()
     ids, n = structure.model.geometry.ids, len(kept)
     points = sp.csr_matrix((np.sqrt(share), (np.arange(n), own)), (n, len(ids)))
-    radius = around.mesh * float(np.exp(theta[2]))
     return Candidates(
         kind=c.kind,
         xyz=(share @ around.xyz[kept])[None],
@@ -190,23 +243,30 @@ def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floa
         trials=c.trials,
         root=translations(structure, points),
         rows_each=3 * n,
-        where=({"grids": ids[own].tolist(), "shares": share.tolist(), "radius": radius},),
+        where=(
+            {"grids": ids[own].tolist(), "shares": share.tolist(), "radius": around.radius(theta)},
+        ),
         typical=c.typical[:1],
         spread=c.spread[:1],
     )
 
 
 def _with(searcher: Searcher, kind: int, new: Candidates) -> Searcher:
-    """Put candidates into the catalogue, as one of its numbers."""
+    """Put candidates into the catalogue, as one of its numbers; no scan looks at them."""
+    searcher = _put(searcher, kind, new, new.factors(searcher.problem.basis))
+    coarse = _set(searcher.coarse, kind, np.zeros(0, np.int64))
     p = searcher.problem
+    missing = _set(p.missing, kind, None) if p.missing else ()
+    return replace(searcher, problem=replace(p, missing=missing), coarse=coarse)
 
-    def put(old: tuple[Any, ...], one: object) -> tuple[Any, ...]:
-        return (*old[:kind], one, *old[kind + 1 :])
 
-    problem = replace(
-        p,
-        catalogue=put(tuple(p.catalogue), new),
-        factors=put(p.factors, new.factors(p.basis)),
-        missing=put(p.missing, None) if p.missing else (),
+def _put(searcher: Searcher, kind: int, new: Candidates, factors: Rows) -> Searcher:
+    p = searcher.problem
+    catalogue = _set(tuple(p.catalogue), kind, new)
+    return replace(
+        searcher, problem=replace(p, catalogue=catalogue, factors=_set(p.factors, kind, factors))
     )
-    return replace(searcher, problem=problem, coarse=put(searcher.coarse, np.zeros(0, np.int64)))
+
+
+def _set(old: tuple[Any, ...], kind: int, one: object) -> tuple[Any, ...]:
+    return (*old[:kind], one, *old[kind + 1 :])

@@ -204,14 +204,20 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     return rule
 
 
-def _unmatched(searcher: Searcher, best: Fit, f: Fit) -> tuple[list[int], list[Suspect]]:
-    """Numbers of the suspects of the best that a rival does not have, and what it has instead."""
+def _unmatched(
+    searcher: Searcher, best: Fit, f: Fit, by_nature: bool = True
+) -> tuple[list[int], list[Suspect]]:
+    """Numbers of the suspects of the best that a rival does not have, and what it has instead.
+
+    A mass that is spread out and one that is not, at one place, say the same `by_nature`.
+    """
     catalogue = searcher.problem.catalogue
     near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
-        alike = a.kind == b.kind and a.many(s.row) == b.many(t.row)
+        alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
+        alike = alike and a.many(s.row) == b.many(t.row)
         return alike and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)
@@ -228,8 +234,8 @@ def instead(
     best = found.levels[verdict.accepted]
     here = cost(searcher, best, verdict.scale)
     out = []
-    for f in contenders(searcher, found, verdict.accepted):
-        alone, others = _unmatched(searcher, best, f)
+    for f in (f for level in found.rivals for f in level):
+        alone, others = _unmatched(searcher, best, f, by_nature=False)
         behind = cost(searcher, f, verdict.scale) - here
         if alone == [number] and len(others) == 1 and behind < SEARCH.credible:
             out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))

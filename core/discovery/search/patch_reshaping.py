@@ -37,31 +37,49 @@ def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fi
     return searcher, state
 
 
+def nearby(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
+    """Return fits with a mass spread over other patches of the catalogue near to where it is."""
+    s = state.suspects[q]
+    c = searcher.problem.catalogue[s.kind]
+    if not c.kind.spread_out:
+        return []
+    away = np.linalg.norm(c.xyz - c.xyz[s.row], axis=1)
+    rows = np.flatnonzero(away < SEARCH.patch_beside * searcher.size)
+    options = [replace(s, row=int(row)) for row in rows if row != s.row]
+    tried = _promising(searcher, state, q, options)[: SEARCH.reshape_beside]
+    return [_with(searcher, state, q, option) for option in tried]
+
+
 def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
-    suspect = state.suspects[q]
-    wide, options = _options(searcher, suspect)
-    if not options:
-        return None
+    wide, options = _options(searcher, state.suspects[q])
+    worth = 2.0 * scale * np.log(1.0 + len(options))
+    for option in _promising(wide, state, q, options)[: SEARCH.reshape_tried]:
+        trial = _with(wide, state, q, option)
+        if trial.objective < state.objective - worth:
+            return wide, trial
+    return None
+
+
+def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
+    beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
+    return searcher.fitted(state, beside, SEARCH.steps_new)
+
+
+def _promising(searcher: Searcher, state: Fit, q: int, options: Sequence[Suspect]) -> list[Suspect]:
+    """Return what may stand in place of one suspect with the best sizes, the best first."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
-    without = evaluate(wide.problem, state.nuisance, others)
-    small, here = wide.local(without)
+    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
     tried: list[tuple[float, Suspect]] = []
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
-        c = wide.problem.catalogue[kind]
-        trials = c.around(suspect.theta, np.array(SEARCH.reshape_sizes))
+        c = searcher.problem.catalogue[kind]
+        trials = c.around(state.suspects[q].theta, np.array(SEARCH.reshape_sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))
             tried.append((float(own[best]), Suspect(kind, int(row), tuple(trials[best]))))
-    worth = 2.0 * scale * np.log(1.0 + len(options))
-    for _, option in sorted(tried, key=lambda t: t[0])[: SEARCH.reshape_tried]:
-        beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
-        trial = wide.fitted(state, beside, SEARCH.steps_new)
-        if trial.objective < state.objective - worth:
-            return wide, trial
-    return None
+    return [s for _, s in sorted(tried, key=lambda t: t[0])]
 
 
 def _options(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspect]]:

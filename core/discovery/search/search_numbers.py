@@ -91,6 +91,7 @@ class SearchNumbers:
 
     reshape_steps: int = number(8, "steps", "by which a patch grows or shrinks, at most")
     reshape_tried: int = number(2, "shapes", "next to a patch that are fitted")
+    reshape_beside: int = number(4, "patches", "of the catalogue near a spread mass that compete with its own")
     reshape_sizes: tuple[float, ...] = number((-0.4, -0.15, 0.0, 0.15, 0.4), "θ", "tried with every shape: what a patch gains in area it loses in strength")
     row_of_elements: float = number(0.5, "of an element's side", "by which rows of elements are told apart", "half of it")
     largest_patch: float = number(0.5, "of all elements", "that a patch may hold")

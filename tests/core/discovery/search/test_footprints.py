@@ -55,6 +55,15 @@ def test_a_mass_keeps_its_size_as_its_disc_moves_and_grows(theta):
     assert value.reshape(-1, 3).sum(axis=0) == pytest.approx(np.exp(theta[0, 0]))
     assert slope[0] == pytest.approx(value)
     assert slope[1:].sum(axis=1) == pytest.approx(0.0, abs=1e-9)
-    moved = slope[1:, ::3] @ around.flat / np.exp(theta[0, 0])
+    moved = slope[1:, ::3] @ around.laid(around.xyz) / np.exp(theta[0, 0])
     assert moved[:2] == pytest.approx(np.eye(2), abs=0.1)
     assert moved[2] == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_disc_holds_the_points_within_its_radius_about_its_middle():
+    around = surroundings(structure(2), np.array([4.2, 4.0, 0.0]))
+    theta = np.array([0.4, -0.3, np.log(1.3)])
+    middle = np.linalg.lstsq(around.axes, around.mesh * theta[:2], rcond=None)[0] + around.place
+    away = np.linalg.norm(around.xyz - middle, axis=1)
+    assert 0 < np.count_nonzero(away < 1.3) < len(away)
+    assert np.array_equal(around.within(theta, around.xyz), away < 1.3)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.effects import distributed_mass, ground_spring, point_mass
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.posterior.credible_places import Place, between, credible_places
@@ -15,6 +16,7 @@ from trueup.core.discovery.search.beam_search import Found, grown
 from trueup.core.discovery.search.model_selection import (
     adequate,
     complete,
+    contenders,
     cost,
     enough,
     instead,
@@ -157,3 +159,17 @@ def test_what_an_adequate_hypothesis_leaves_is_noise():
     worse = replace(one, objective=one.objective + 150.0)
     assert not enough(replace(s, judged=leaving(0.1)))(worse, one, 1.0)
     assert enough(replace(s, judged=leaving(0.002)))(worse, one, 1.0)
+
+
+@pytest.mark.parametrize("other", [point_mass, distributed_mass, ground_spring])
+@pytest.mark.parametrize("away", [0.0, 0.5])
+def test_a_mass_at_one_place_is_no_rival_of_itself_spread_out(other, away):
+    kinds = (point_mass.KIND, other.KIND)
+    places = (np.zeros((1, 3)), np.full((1, 3), away))
+    catalogue = [
+        Some(kind=kind, xyz=xyz, many=lambda _: 1) for kind, xyz in zip(kinds, places, strict=True)
+    ]
+    s = Some(problem=Some(catalogue=catalogue), effort=Some(apart=0.1), size=1.0)
+    best, rival = (Some(suspects=(Suspect(k, 0, (0.0,)),)) for k in (0, 1))
+    told = contenders(s, Found((None, best), ((), (rival,))), 1)
+    assert (rival in told) == (away > 0.0 or other is ground_spring)
