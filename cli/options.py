@@ -142,6 +142,8 @@ UPDATE: dict[str, Any] = {
     "measured_mass": _option(
         float, "What the structure weighed, in the deck's unit, for the residual mass."
     ),
+    "starts": _option(int, "Begin from so many other factors as well.", metavar="N"),
+    "intervals": _option(bool, "95 % intervals of the factors by profile.", "--intervals"),
     "write_undetermined": _option(
         bool, "Move what the test does not determine, too.", "--write-undetermined"
     ),

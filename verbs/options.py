@@ -78,6 +78,10 @@ class UpdateOptions(CompareOptions, total=False):
     ``shape_sigma`` and ``regularisation`` weigh the residuals and the parameters; ``stages`` of a
     strategy; ``write_undetermined`` (False): parameters that the test does not determine move, too.
 
+    ``starts`` (0): from how many other factors the update is made as well, to say whether the
+    optimum is the only one; ``intervals`` (False): 95 % intervals of the factors by profile.
+    ``residuals`` with "prior" and ``prior_sigma``: how far off the deck's values may be.
+
     What was measured beside modes, in deck units, each for a residual of its own:
     ``measured_mass`` ("mass"), ``measured_centre_of_gravity`` (x, y, z: "centre_of_gravity"),
     ``load_cases`` ("deflections"): each with ``loads`` as "1187:-Z=100" and ``readings`` as
@@ -93,6 +97,8 @@ class UpdateOptions(CompareOptions, total=False):
     regularisation: float | None
     stages: Sequence[StageRequest | Mapping[str, object]] | None
     write_undetermined: bool | None
+    starts: int | None
+    intervals: bool | None
     measured_mass: float | None
     measured_centre_of_gravity: Sequence[float] | None
     load_cases: Sequence[LoadRequest | Mapping[str, object]] | None

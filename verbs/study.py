@@ -79,6 +79,8 @@ class Study:
     reduction: str | None = None
     regularisation: float = 1e-2
     write_undetermined: bool = False
+    starts: int = 0
+    intervals: bool = False
     stages: tuple[StageRequest, ...] = ()
     load_cases: tuple[LoadRequest, ...] = ()
     measured_mass: float | None = None
@@ -148,6 +150,8 @@ class Study:
             raise InputError(f"measured_mass is {self.measured_mass:g}; it must be above 0")
         if len(self.measured_centre_of_gravity) not in (0, 3):
             raise InputError("measured_centre_of_gravity is x, y, z; give three numbers")
+        if self.starts < 0:
+            raise InputError(f"starts is {self.starts}; give 0 or more")
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
             raise InputError("max_iterations must be at least 1")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from ..core.arrays import Floats
 from ..core.correlation.comparison import Comparison, Placed, compare
 from ..core.data.parameter import Parameter
 from ..core.data.parametric_model import Model
@@ -16,9 +17,10 @@ from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import CheckError, InputError
 from ..core.results.correlation import compared
 from ..core.results.plain import Table
-from ..core.results.update import parameter_rows, weights_table
+from ..core.results.update import parameter_rows, posterior_table, start_rows, weights_table
 from ..core.updating import update as core
 from ..core.updating.determined import update_determined
+from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from .analysis import Analysis, both_given, correlated, named, read_analysis, target_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
@@ -90,7 +92,7 @@ def update(
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
     placed = correlated(analysis, side, asked).placed
     progress("updating")
-    done = _moved(analysis, placed, asked)
+    done, starts, intervals = _moved(analysis, placed, asked)
 
     def comparison(solution: Eigensolution) -> Comparison:
         modes = modes_of(analysis.model, solution)
@@ -108,12 +110,14 @@ def update(
         deck_file=f"deck/{changed.name}",
         input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),
-        parameters=parameter_rows(analysis.model.parameters, done, values),
+        parameters=parameter_rows(analysis.model.parameters, done, values, intervals),
         history=history,
         before=replace(told, warnings=()),
         after=final,
         weights=weights_table(placed.errors),
         eigensolutions=done.eigensolutions,
+        starts=start_rows(starts),
+        posterior=posterior_table(analysis.model.parameters, done),
         stopped=done.stopped.sentence,
         seconds=time.perf_counter() - start,
         warnings=(*analysis.warnings, *told.warnings, *done.warnings),
@@ -123,17 +127,23 @@ def update(
     )
 
 
-def _moved(analysis: Analysis, placed: Placed, asked: Study) -> core.Updated:
-    target = target_of(analysis.model, placed, asked)
-    update = core.update if asked.write_undetermined else update_determined
-    return update(
-        analysis.model,
-        target,
-        _stages(asked, analysis.model.parameters),
-        asked.criteria,
-        asked.weights,
-        n_modes=len(analysis.modes),
+def _moved(
+    analysis: Analysis, placed: Placed, asked: Study
+) -> tuple[core.Updated, tuple[Start, ...], Floats | None]:
+    """Return the update, those from other starts, and intervals where they are asked for."""
+    model, target = analysis.model, target_of(analysis.model, placed, asked)
+    stages, update = _stages(asked, model.parameters), update_determined
+    if asked.write_undetermined:
+        update = core.update
+    how, count = (asked.criteria, asked.weights), len(analysis.modes)
+    done = update(model, target, stages, *how, n_modes=count)
+    best, starts = from_elsewhere(
+        model, target, stages, done, asked.starts, *how, n_modes=count, seed=asked.seed
     )
+    best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
+    if not asked.intervals:
+        return best, starts, None
+    return best, starts, profile_intervals(model, target, stages[-1], best, *how, n_modes=count)
 
 
 def _written(

@@ -11,9 +11,11 @@ from ..arrays import Floats
 from ..correlation.mode_errors import ModeErrors
 from ..data.parameter import Parameter
 from ..noun import OPTIONAL, Noun, key
+from ..updating.posterior import Start
 from ..updating.update import Iteration, Updated
 from .correlation import Compared, PairRow, RunTables
-from .plain import Table
+from .parameters import LikenessTable
+from .plain import Table, finite
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +23,8 @@ class ParameterRow:
     """A parameter: values of its fields before and after, and the factor between them.
 
     `standard_error` of the factor is None where the test says nothing; `significant` is told by
-    ``discover`` only.
+    ``discover`` only, the 95 % `interval` where it is asked for: an end is None where a bound or
+    the reach of the reduced model comes first.
     """
 
     name: str
@@ -32,6 +35,20 @@ class ParameterRow:
     standard_error: float | None
     at_bound: bool
     significant: bool | None = field(default=None, metadata=OPTIONAL)
+    interval: tuple[float | None, float | None] | None = field(default=None, metadata=OPTIONAL)
+
+
+@dataclass(frozen=True)
+class StartRow:
+    """An update from other factors: `same` says whether it led to the optimum that was taken.
+
+    `factors` and `objective` are None where nothing paired at the start.
+    """
+
+    start: tuple[float, ...]
+    factors: tuple[float | None, ...]
+    objective: float | None
+    same: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,13 +95,19 @@ class ChangingTables(RunTables):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class UpdateTables(ChangingTables):
-    """What ``update`` answers."""
+    """What ``update`` answers.
+
+    `starts` are the updates from elsewhere that were asked for; `posterior` is the correlation of
+    the factors, None of less than two.
+    """
 
     verb = "update"
     history: Table[Iteration]
     weights: WeightsTable | None
     eigensolutions: int
     stopped: str
+    starts: Table[StartRow] = field(default_factory=lambda: Table((), StartRow))
+    posterior: LikenessTable | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def pairs(self) -> Table[PairRow]:
@@ -93,16 +116,62 @@ class UpdateTables(ChangingTables):
 
 
 def parameter_rows(
-    parameters: Sequence[Parameter], done: Updated, written: Sequence[Sequence[float | None]]
+    parameters: Sequence[Parameter],
+    done: Updated,
+    written: Sequence[Sequence[float | None]],
+    intervals: Floats | None = None,
 ) -> Table[ParameterRow]:
-    """Return one row a parameter; `written` are the values of its fields as in the new deck."""
+    """Return one row a parameter; `written` are the values of its fields as in the new deck.
+
+    `intervals` (n_parameter, 2) are of the factors, NaN where a parameter has none.
+    """
     error = [None if np.isnan(e) else e for e in done.standard_error.tolist()]
     return Table(
-        ParameterRow(q.name, q.handle, q.deck_values, tuple(values), f, e, bound)
-        for q, f, e, bound, values in zip(
-            parameters, done.factors.tolist(), error, done.at_bound.tolist(), written, strict=True
+        ParameterRow(q.name, q.handle, q.deck_values, tuple(values), f, e, bound, None, interval)
+        for q, f, e, bound, values, interval in zip(
+            parameters,
+            done.factors.tolist(),
+            error,
+            done.at_bound.tolist(),
+            written,
+            _ends(intervals, len(error)),
+            strict=True,
         )
     )
+
+
+def _ends(intervals: Floats | None, n: int) -> list[tuple[float | None, float | None] | None]:
+    if intervals is None:
+        return [None] * n
+    return [
+        None if np.isnan(low) else (finite(low), finite(high)) for low, high in intervals.tolist()
+    ]
+
+
+def start_rows(starts: Sequence[Start]) -> Table[StartRow]:
+    """Return one row a start."""
+    return Table(
+        (
+            StartRow(
+                tuple(s.start.tolist()),
+                tuple(finite(f) for f in s.factors.tolist()),
+                finite(s.objective),
+                s.same,
+            )
+            for s in starts
+        ),
+        StartRow,
+    )
+
+
+def posterior_table(parameters: Sequence[Parameter], done: Updated) -> LikenessTable | None:
+    """Return the correlation of the factors that have a standard error."""
+    known = np.flatnonzero(np.isfinite(done.standard_error) & (done.standard_error > 0.0))
+    if done.covariance is None or len(known) < 2:
+        return None
+    deviation = done.standard_error[known]
+    values = done.covariance[np.ix_(known, known)] / np.outer(deviation, deviation)
+    return LikenessTable(tuple(parameters[k].name for k in known), values)
 
 
 def weights_table(errors: ModeErrors | None) -> WeightsTable | None:

@@ -71,6 +71,7 @@ def _as_it_was(done: Updated, point: Sequence[float]) -> Updated:
         done,
         factors=frozen(np.array(point)),
         standard_error=frozen(np.full(n, np.nan)),
+        covariance=None,
         at_bound=frozen(np.zeros(n, bool)),
         after=done.before,
         history=done.history[:1],

@@ -21,6 +21,8 @@ class Identifiability(Noun):
         every residual as it is.
     alone : (n,) float
         Likewise, each moving alone; infinite where it moves no residual.
+    covariance : (n, n) float
+        Likewise.
     correlation : (n, n) float
         Cosines between the columns of G: parameters at 1 or -1 cannot be told apart.
     singular_values : (m,) float
@@ -36,6 +38,7 @@ class Identifiability(Noun):
 
     standard_error: Floats
     alone: Floats
+    covariance: Floats
     correlation: Floats
     singular_values: Floats
     directions: Floats
@@ -62,9 +65,11 @@ def identifiability(gradient: Floats, scatter: float, limit: Floats | float) -> 
     n = gradient.shape[1]
     _, s, vt = np.linalg.svd(gradient, full_matrices=False)
     sound = s > UPDATING.unidentifiable * s.max(initial=1.0)
-    error = np.sqrt(np.sum(vt[sound] ** 2 / s[sound, None] ** 2, axis=0) * scatter)
+    covariance = (vt[sound].T / s[sound] ** 2) @ vt[sound] * scatter
+    error = np.sqrt(np.diag(covariance).copy())
     unseen = _complement(vt[sound])
-    error[(np.abs(unseen) > UPDATING.part).any(axis=0)] = np.nan
+    lost = (np.abs(unseen) > UPDATING.part).any(axis=0)
+    error[lost] = covariance[lost] = covariance[:, lost] = np.nan
     size = np.linalg.norm(gradient, axis=0)
     unit = gradient / np.where(size > 0.0, size, 1.0)
     with np.errstate(divide="ignore"):
@@ -72,6 +77,7 @@ def identifiability(gradient: Floats, scatter: float, limit: Floats | float) -> 
     return Identifiability(
         frozen(error),
         frozen(alone),
+        frozen(covariance),
         frozen(unit.T @ unit),
         frozen(s),
         frozen(vt),

@@ -128,17 +128,25 @@ class Objective:
     def identified(
         self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
     ) -> Identifiability | None:
-        """Return what the test says of the `active` parameters here; None where nothing pairs.
-
-        The scatter of the residuals is that which is left.
-        """
+        """Return what the test says of the `active` parameters here; None where nothing pairs."""
         if not state.seen.pairs:
             return None
         lin = self.linearise(order, state, active, residuals)
-        data = sum(len(r.squared(state.seen)) for r in residuals)
-        scatter = float(np.sum(lin.values**2)) / max(data - len(active), 1)
+        scatter = self.scatter(lin, state, len(active), residuals)
         factors = np.asarray(state.factors)[list(active)]
         return identifiability(lin.gradient, scatter, UPDATING.unsure * factors)
+
+    def scatter(
+        self, lin: Linearisation, state: State, active: int, residuals: Sequence[Residual]
+    ) -> float:
+        """Variance of the weighted residuals beside `active` parameters: what is left of them.
+
+        With a prior it is 1: their standard deviations are believed.
+        """
+        if any(r.believes_sigmas for r in residuals):
+            return 1.0
+        data = sum(len(r.squared(state.seen)) for r in residuals)
+        return float(np.sum(lin.values**2)) / max(data - active, 1)
 
     def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
         """Return the standard deviation of a residual, of each pair where the test has its own."""

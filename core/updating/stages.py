@@ -81,7 +81,8 @@ class Updated(Noun):
     `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
     `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
     the iteration ended; `undetermined` are the positions of parameters that the test does not
-    determine beside the others, `doubts` the warnings that say so.
+    determine beside the others, `doubts` the warnings that say so;
+    `covariance` (n_parameter, n_parameter) of the factors, NaN likewise.
     """
 
     factors: Floats
@@ -95,3 +96,4 @@ class Updated(Noun):
     warnings: tuple[str, ...]
     undetermined: tuple[int, ...] = ()
     doubts: tuple[str, ...] = ()
+    covariance: Floats | None = None

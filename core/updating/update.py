@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from ..arrays import frozen
+from ..arrays import Floats, frozen
 from ..correlation.criteria import Criteria
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
@@ -32,6 +32,7 @@ def update(
     n_modes: int = UPDATING.modes,
     tolerance: float = UPDATING.tolerance,
     progress: Callable[[Iteration], None] = lambda _: None,
+    start: Floats | None = None,
 ) -> Updated:
     """Minimise ΔzᵀWΔz + pᵀW_p p over the parameters, equations (2)–(4).
 
@@ -59,6 +60,8 @@ def update(
         The iteration ends when no factor moves by more than this fraction.
     progress : callable
         Called with each `Iteration`.
+    start : (n_parameter,) float, optional
+        Factors to begin with; default the deck's.
 
     Returns
     -------
@@ -78,7 +81,8 @@ def update(
             raise InputError(f"a stage refers to parameter {max(s.parameters)} of {known}")
     full = FullOrder(model, target.sensors, n_modes)
     objective = Objective(model.parameters, target, criteria, weights)
-    before = objective.at(full, np.array(model.deck_point), stages[0].minimised)
+    begin = np.array(model.deck_point if start is None else start)
+    before = objective.at(full, begin, stages[0].minimised)
     if before.correlation.pairs and not before.seen.pairs:
         raise InputError("none of the test modes that take part pairs with the model")
     if not before.correlation.pairs:
@@ -110,10 +114,11 @@ def update(
     last = stages[-1].minimised
     there = objective.at(near, state.factors, last)
     said = objective.identified(near, there, active, last)
-    error = np.full(known, np.nan)
+    error, covariance = np.full(known, np.nan), np.full((known, known), np.nan)
     doubtful: tuple[str, ...] = ()
     if said is not None:
         error[active] = said.standard_error
+        covariance[np.ix_(active, active)] = said.covariance
         names = [model.parameters[k].name for k in active]
         doubtful = tuple(doubts(names, np.asarray(state.factors)[active], said))
     determined = () if said is None else tuple(active[i] for i in said.determined)
@@ -123,7 +128,9 @@ def update(
     told = (*doubtful, *_lost_pairs(before, state), *_unfinished(stopped, len(history) - 1))
     after = _without_factor(state)
     open_ = tuple(k for k in active if k not in determined)
-    return Updated(*moved, before, after, tuple(history), solves, stopped, told, open_, doubtful)
+    return Updated(
+        *moved, before, after, tuple(history), solves, stopped, told, open_, doubtful, covariance
+    )
 
 
 def _work_off(

@@ -99,3 +99,26 @@ def test_what_cannot_be_is_said(
 ) -> None:
     with pytest.raises(trueup.InputError, match=said):
         trueup.update(*files, ["MAT1 1 E"], deck_length_unit="mm", **given)
+
+
+def test_a_prior_intervals_and_other_starts_are_told(
+    files: tuple[Path, Path], tmp_path: Path
+) -> None:
+    """The ratio is known, the common scale is the prior's: both factors go together."""
+    asked = (*files, ["MAT1 1 E", "MAT1 1 RHO"])
+    done = trueup.update(
+        *asked, residuals="frequencies, prior", prior_sigma=0.05, frequency_sigma=1e-4,
+        regularisation=0.0, deck_length_unit="mm", intervals=True, starts=2,
+    )  # fmt: skip
+    e, rho = done.parameters
+    assert e.factor / rho.factor == pytest.approx(TRUTH[0] / TRUTH[1], rel=1e-3)
+    assert done.posterior is not None
+    assert done.posterior.values[0, 1] == pytest.approx(1.0, abs=1e-4)
+    for p in done.parameters:
+        assert p.interval is not None
+        low, high = p.interval
+        assert (high - low) / 2.0 == pytest.approx(np.sqrt(3.84) * p.standard_error, rel=0.02)
+    assert [s.same for s in done.starts] == [True, True]
+    again = trueup.open_run(done.save(tmp_path / "run"))
+    assert again.to_dict() == done.to_dict()
+    assert " … " in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")

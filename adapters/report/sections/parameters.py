@@ -36,7 +36,7 @@ def _tables(answer: ChangingTables) -> Sequence[Table]:
 def _moved(answer: ChangingTables) -> Table:
     """Return what was moved: cards, values before and after, factor, standard error, bounds."""
     rows = [_row(p) for p in answer.parameters]
-    numbers = ("initial", "updated", "factor", "std. error")
+    numbers = ("initial", "updated", "factor", "std. error", "95 %")
     columns = [*left("parameter", "cards"), *numbers, *left("")]
     used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
     note = "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
@@ -57,8 +57,13 @@ def _row(p: ParameterRow) -> tuple[Cell, ...]:
         Cell(", ".join(general(v, 6) for v in p.updated)),
         Cell(fixed(p.factor, 4)),
         Cell(MISSING if error is None else f"± {fixed(error, 4)}", "poor" if loose else ""),
+        Cell("" if p.interval is None else " … ".join(map(_end, p.interval))),
         Cell("at bound", "poor") if p.at_bound else Cell(left_alone, "muted"),
     )
+
+
+def _end(value: float | None) -> str:
+    return "?" if value is None else fixed(value, 4)
 
 
 def _iterations(answer: UpdateTables) -> Table:

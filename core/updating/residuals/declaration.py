@@ -177,6 +177,9 @@ class Residual:
     tells_pairs : bool
         Whether modes are paired by this very residual: a step that loses a pair has then made it
         worse.
+    believes_sigmas : bool
+        Whether the standard deviations are those of a posterior with it: else the scatter of all
+        residuals is that which is left.
     """
 
     name: str
@@ -189,6 +192,7 @@ class Residual:
     unpaired: Callable[[Criteria], float] = lambda _: 0.0
     error: Callable[[Target], Floats | None] | None = None
     tells_pairs: bool = False
+    believes_sigmas: bool = False
 
     def squared(self, seen: Seen) -> Floats:
         """Squared length of each row of the value, (n_row,)."""

@@ -13,6 +13,7 @@ from ..updating_numbers import UPDATING
 from .declaration import Residual
 from .deflections import DEFLECTIONS
 from .frequencies import FREQUENCIES
+from .prior import PRIOR
 from .shapes import SHAPES
 from .weight import CENTRE_OF_GRAVITY, MASS
 
@@ -22,6 +23,7 @@ RESIDUALS: list[Residual] = [
     MASS,
     CENTRE_OF_GRAVITY,
     DEFLECTIONS,
+    PRIOR,
 ]
 """What an update may minimise; `register_residual` adds to it."""
 

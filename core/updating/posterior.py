@@ -1,0 +1,235 @@
+"""What an update leaves open: intervals of each factor, and other optima."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Floats
+from ..correlation.criteria import Criteria
+from ..data.parametric_model import Model
+from ..errors import CheckError, InputError
+from ..noun import Noun
+from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
+from .objective import Objective, State
+from .residuals import Residual, Target, Weights
+from .stages import Stage, Updated
+from .update import update
+from .updating_numbers import UPDATING
+
+
+@dataclass(frozen=True, eq=False)
+class Start(Noun):
+    """An update from elsewhere: where it began, where it ended, its objective there.
+
+    `same` says whether that is the optimum found from the deck. The factors (n_parameter,) and the
+    objective are NaN where nothing pairs with the test at the start.
+    """
+
+    start: Floats
+    factors: Floats
+    objective: float
+    same: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """An objective on a model reduced around its optimum."""
+
+    objective: Objective
+    near: Order
+    residuals: tuple[Residual, ...]
+
+    def least(self, state: State, k: int, value: float, others: Sequence[int]) -> State:
+        """Return the optimum of the other parameters where parameter `k` has a value."""
+        p = np.array(state.factors)
+        p[k] = value
+        best = self.objective.at(self.near, p, self.residuals)
+        for _ in range(UPDATING.profile_iterations * bool(others)):
+            step = self.objective.step(self.near, best, others, self.residuals)
+            trial = self.objective.at(self.near, best.factors + step, self.residuals)
+            if trial.objective > best.objective - UPDATING.profile_accuracy:
+                break
+            best = trial
+        return best
+
+
+def profile_intervals(
+    model: Model,
+    target: Target,
+    stage: Stage,
+    done: Updated,
+    criteria: Criteria | None = None,
+    weights: Weights | None = None,
+    n_modes: int = UPDATING.modes,
+) -> Floats:
+    """Return 95 % intervals of the factors by the profile of the objective, (n_parameter, 2).
+
+    A factor is moved, the others follow, until the objective has risen by 3.84 times the scatter of
+    the residuals. Where the posterior is not Gaussian this is no multiple of the standard error.
+    Venzon and Moolgavkar (1988), *A method for computing profile-likelihood-based confidence
+    intervals*, Applied Statistics 37(1), 87.
+
+    Parameters
+    ----------
+    model, target, criteria, weights, n_modes
+        As for `update`.
+    stage : Stage
+        The residuals of the objective; of its parameters those that `done` says are determined
+        have an interval, the others NaN.
+    done : Updated
+        Where the objective is least.
+
+    Returns
+    -------
+    (n_parameter, 2) float
+        An end is infinite where a bound or the reach of the reduced model comes first.
+    """
+    full = FullOrder(model, target.sensors, n_modes)
+    objective = Objective(model.parameters, target, criteria or Criteria(), weights or Weights())
+    residuals, known = stage.minimised, np.full((len(model.parameters), 2), np.nan)
+    active = [k for k in stage.parameters if k not in done.undetermined]
+    if not active:
+        return known
+    solution = full.solve(done.factors)
+    near = reduce_around(full, done.factors, solution, active)
+    problem = _Problem(objective, near, residuals)
+    top = objective.at(near, np.array(done.factors), residuals)
+    lin = objective.linearise(near, top, active, residuals)
+    rise = UPDATING.chi_square * objective.scatter(lin, top, len(active), residuals)
+    lower, upper = objective.bounds
+    for k in active:
+        others = [j for j in active if j != k]
+        centre = float(top.factors[k])
+        least = max(lower[k], centre / UPDATING.reach)
+        most = min(upper[k], centre * UPDATING.reach)
+        first = float(done.standard_error[k])
+        step = first if np.isfinite(first) and first > 0.0 else UPDATING.tolerance * centre
+        known[k] = [
+            _end(problem, top, k, others, rise, limit, np.sign(limit - centre) * step)
+            for limit in (least, most)
+        ]
+    return known
+
+
+def _end(
+    problem: _Problem,
+    top: State,
+    k: int,
+    others: Sequence[int],
+    rise: float,
+    limit: float,
+    step: float,
+) -> float:
+    """Find where the profile has risen; ±inf where the limit comes first."""
+    centre = float(top.factors[k])
+    inside, outside, state = (centre, 0.0), (centre, 0.0), top
+    while outside[1] < 1.0:
+        inside = outside
+        x = inside[0] + step
+        x = min(x, limit) if step > 0.0 else max(x, limit)
+        state = problem.least(state, k, x, others)
+        outside = (x, _root(state, top, rise))
+        if x == limit and outside[1] < 1.0:
+            return float(np.copysign(np.inf, step))
+        step *= 2.0
+    for _ in range(UPDATING.profile_steps):
+        share = (1.0 - inside[1]) / (outside[1] - inside[1])
+        x = inside[0] + share * (outside[0] - inside[0])
+        state = problem.least(state, k, x, others)
+        found = (x, _root(state, top, rise))
+        if abs(found[1] - 1.0) < UPDATING.profile_accuracy:
+            return x
+        inside, outside = (found, outside) if found[1] < 1.0 else (inside, found)
+    return outside[0]
+
+
+def _root(state: State, top: State, rise: float) -> float:
+    """Square root of the share of the rise: linear where the posterior is Gaussian."""
+    return float(np.sqrt(max(state.objective - top.objective, 0.0) / rise)) if rise else np.inf
+
+
+def from_elsewhere(
+    model: Model,
+    target: Target,
+    stages: Sequence[Stage],
+    done: Updated,
+    starts: int,
+    criteria: Criteria | None = None,
+    weights: Weights | None = None,
+    n_modes: int = UPDATING.modes,
+    seed: int = 0,
+) -> tuple[Updated, tuple[Start, ...]]:
+    """Update from other factors as well, and say whether the optimum is the only one.
+
+    Parameters
+    ----------
+    model, target, stages, criteria, weights, n_modes
+        As for `update`.
+    done : Updated
+        What came of the deck's own values.
+    starts : int
+        How many more; factors are log-normal about the deck's, within their bounds.
+    seed : int
+
+    Returns
+    -------
+    Updated
+        `done`, or where another start led to a lower objective what came of that.
+    tuple of Start
+    """
+    rng = np.random.default_rng(seed)
+    moving = sorted({k for s in stages for k in s.parameters} - set(done.undetermined))
+    left = [replace(s, parameters=p) for s in stages if (p := _kept(s, moving))]
+    best, told = done, list[Start]()
+    solves = done.eigensolutions
+    lowest = np.array([q.lower for q in model.parameters])
+    highest = np.array([q.upper for q in model.parameters])
+    for _ in range(starts if left else 0):
+        begin = np.array(model.deck_point)
+        spread = np.exp(UPDATING.start_spread * rng.standard_normal(len(moving)))
+        begin[moving] = np.clip(spread, lowest[moving], highest[moving])
+        try:
+            other = update(model, target, left, criteria, weights, n_modes, start=begin)
+        except (InputError, CheckError):
+            told.append(Start(begin, np.full(len(begin), np.nan), np.nan, False))
+            continue
+        solves += other.eigensolutions
+        told.append(Start(begin, other.factors, other.after.objective, False))
+        lower = other.after.objective < best.after.objective * (1.0 - UPDATING.least_gain)
+        if lower and not _same(other.factors, best):
+            history = (*done.history, *other.history[1:])
+            best = replace(
+                other, before=done.before, history=history, undetermined=done.undetermined
+            )
+    compared = tuple(replace(s, same=_same(s.factors, best)) for s in told)
+    return replace(best, eigensolutions=solves), compared
+
+
+def _same(factors: Floats, best: Updated) -> bool:
+    """Whether factors are those of an optimum, to their standard errors."""
+    near = np.maximum(UPDATING.same_optimum, np.nan_to_num(best.standard_error))
+    return bool((np.abs(factors - best.factors) <= near).all())
+
+
+def _kept(stage: Stage, moving: Sequence[int]) -> tuple[int, ...]:
+    return tuple(k for k in stage.parameters if k in moving)
+
+
+def remarks(done: Updated, best: Updated, starts: Sequence[Start]) -> tuple[str, ...]:
+    """Say whether other starts led elsewhere."""
+    if not starts:
+        return ()
+    found = [s for s in starts if np.isfinite(s.objective)]
+    same = sum(s.same for s in found)
+    if best.after is not done.after:
+        return (
+            "another start than the deck led to a better optimum, which is taken: "
+            f"{same} of {len(starts)} starts lead there",
+        )
+    if same == len(starts):
+        return ()
+    return (
+        f"{same} of {len(starts)} other starts lead to this optimum, {len(found) - same} to a "
+        f"worse one, {len(starts) - len(found)} pair with nothing",
+    )
