@@ -9,6 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from trueup.adapters.fmu import write_unit
+from trueup.adapters.fmu.build_kernel import _own_platform
 from trueup.core.statespace.channels import read_channels
 from trueup.core.statespace.modal_plant import ModalPlant
 
@@ -29,7 +30,7 @@ def plant() -> ModalPlant:
 
 def unit(folder: Path, version: int) -> Path:
     path = folder / f"plant{version}.fmu"
-    if not write_unit(path, plant(), version):
+    if not write_unit(path, plant(), version, [_own_platform() or "linux64"]):
         pytest.skip("no C compiler is at hand")
     return path
 

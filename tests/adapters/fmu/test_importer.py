@@ -11,12 +11,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from tests.adapters.fmu.plants import HZ, VERSIONS, held, plant, pushes, unit
 
+import trueup
+from trueup.adapters.fmu.build_kernel import _own_platform
+from trueup.adapters.nastran import build_model
+from trueup.core.numerics.factorisation import factorise
+
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed: pip install FMPy")
 
+DUCT = Path(__file__).parents[3] / "fixtures" / "duct" / "duct.bdf"
+OWN = [_own_platform() or "linux64"]
 N, NU, NY = len(HZ), 3, 5
 INPUTS, OUTPUTS = list(range(NU)), list(range(NU, NU + NY))
 STATES = list(range(NU + NY, NU + NY + 2 * N))
@@ -31,6 +39,7 @@ def running(path: Path, kind: str, values: dict[int, float] | None = None) -> It
 
     folder, told = extract(str(path)), read_model_description(str(path))
     fmu = instantiate_fmu(folder, told, kind)
+    fmu.told = told
     try:
         if told.fmiVersion == "2.0":
             fmu.setupExperiment(startTime=0.0)
@@ -99,6 +108,28 @@ def test_a_frequency_and_a_ratio_are_tuned_before_and_within_the_run(
         assert off(stepped(fmu, u, 0.02), held(tuned, u, 0.02)) < 1e-10
         with pytest.raises(fmpy.fmi1.FMICallException):
             put(fmu, [RATIO], [-0.01])
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("before", [True, False])
+def test_model_exchange_follows_tuned_parameters(
+    tmp_path: Path, version: int, before: bool
+) -> None:
+    hz, ratios = HZ.copy(), plant().damping.copy()
+    hz[1], ratios[1] = 3.3, 0.04
+    A, B, C, D = replace(plant(), frequencies_hz=hz, damping=ratios).matrices()
+    x, u = np.random.default_rng(2).normal(size=2 * N), pushes(1)[0]
+    tuned = {FREQUENCY: 3.3, RATIO: 0.04}
+    with running(unit(tmp_path, version), "ModelExchange", tuned if before else None) as fmu:
+        if not before:  # in event mode, which follows the initialisation
+            put(fmu, INPUTS, u)
+            get(fmu, OUTPUTS)
+            put(fmu, list(tuned), tuned.values())
+        fmu.enterContinuousTimeMode()
+        put(fmu, STATES, x)
+        put(fmu, INPUTS, u)
+        assert get(fmu, SLOPES) == pytest.approx(A @ x + B @ u, rel=1e-12)
+        assert get(fmu, OUTPUTS) == pytest.approx(C @ x + D @ u, rel=1e-12)
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -202,3 +233,54 @@ def test_a_simulated_frequency_response_is_the_modal_one(tmp_path: Path, version
     late = D[:, 1] * (np.exp(-0.5 * s * step) - hold)
     lag = modal[instant] + late[instant]
     assert found[instant] == pytest.approx(lag, rel=2e-3)
+
+
+@pytest.fixture(scope="module")
+def duct_directly() -> dict[float, np.ndarray]:
+    """Receptances 10:+Z and 333:-X over 10:+Z of all degrees of freedom, m/N, by frequency."""
+    model = build_model(trueup.read_deck(DUCT))
+    rows = [int(np.flatnonzero((model.dofs.node == n) & (model.dofs.component == c))[0])
+            for n, c in ((10, 3), (333, 1))]  # fmt: skip
+    R, K, M = sp.diags([1.0, -1.0]) @ model.expansion[rows], model.K(), model.M()
+    found = {}
+    for f in (14.0, 83.0, 119.0):
+        Z = sp.csr_matrix(K - (2.0 * np.pi * f) ** 2 * M)
+        found[f] = 1e-3 * (R @ factorise(Z, False).solve(R[0].toarray().ravel()))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_duct_simulated_is_the_deck_solved_directly(
+    tmp_path: Path, version: int, duct_directly: dict[float, np.ndarray]
+) -> None:
+    """Sines through the unit, and all degrees of freedom of the deck, undamped, in the band."""
+    asked = {"inputs": "10:+Z", "outputs": "10:+Z,333:-X", "fmax": 120.0, "damping": 0.0}
+    told = trueup.write_fmu(DUCT, tmp_path / "duct.fmu", fmi=version, platforms=OWN, **asked)
+    (note,) = [w for w in told.warnings if "what is left out" in w]
+    stated = float(note.split("at most ")[1].split(" %")[0]) / 100.0
+    with running(tmp_path / "duct.fmu", "CoSimulation") as fmu:
+        names = {v.name: v.valueReference for v in fmu.told.modelVariables}
+        n = sum(name.endswith(".q") for name in names)
+        push, motions = [0], [1, 2]
+        states, slopes = list(range(3, 3 + 2 * n)), list(range(3 + 2 * n, 3 + 4 * n))
+        A = np.array([fmu.getDirectionalDerivative(slopes, [vr], [1.0]) for vr in states]).T
+        B = np.array(fmu.getDirectionalDerivative(slopes, push, [1.0]))
+        C = np.array([fmu.getDirectionalDerivative(motions, [vr], [1.0]) for vr in states]).T
+        band = 2j * np.pi * np.linspace(2.0, 120.0, 60)
+        usual = np.median([np.abs(C @ np.linalg.solve(s * np.eye(2 * n) - A, B)) for s in band], 0)
+        for f, direct in duct_directly.items():
+            lines, s = 400, 2j * np.pi * f
+            step = 1.0 / (f * lines)
+            E = expm(np.block([[A, B[:, None]], [np.zeros((1, 2 * n + 1))]]) * step)
+            start = np.linalg.solve(np.exp(s * step) * np.eye(2 * n) - E[:-1, :-1], E[:-1, -1])
+            put(fmu, states, start.real)
+            turns = np.exp(s * step * np.arange(lines))
+            y = []
+            for k, now in enumerate(turns.real):
+                put(fmu, push, [now])
+                fmu.doStep(k * step, step)
+                y.append(get(fmu, motions))
+            phase = turns * np.exp(0.5 * s * step) * np.sinc(f * step)
+            fit = np.linalg.lstsq(np.column_stack([phase.real, -phase.imag]), np.array(y))[0]
+            assert (np.abs(fit[0] + 1j * fit[1] - direct) < stated * usual).all()
