@@ -129,6 +129,18 @@ def test_arrays_hold_the_state_space_with_names_and_units(tmp_path: Path) -> Non
     assert [str(n[0]) for n in matlab["input_names"].ravel()][2] == "push"
 
 
+def test_python_control_takes_the_arrays(tmp_path: Path) -> None:
+    control = pytest.importorskip("control", reason="python-control is not installed")
+    write_state_space(tmp_path / "plant.npz", plant())
+    p = np.load(tmp_path / "plant.npz", allow_pickle=False)
+    names = {k: [n.replace(".", "_") for n in p[f"{k[:-1]}_names"].tolist()]
+             for k in ("inputs", "outputs", "states")}  # fmt: skip
+    system = control.ss(p["A"], p["B"], p["C"], p["D"], **names)
+    assert system.input_labels == ["g1_force_Z", "g2_moment_RX", "push"]
+    exact = plant().responses(np.array([9.0]))[:, :, 0]
+    assert system(2j * np.pi * 9.0) == pytest.approx(exact, rel=1e-9)
+
+
 def test_platforms_that_are_not_known_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="the platform 'amiga' is not known; give all, or some of"):
         write_unit(tmp_path / "plant.fmu", plant(), 2, ["amiga"])
