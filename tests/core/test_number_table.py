@@ -40,7 +40,7 @@ FORMULAS: dict[str, set[float]] = {
     "coherence.py": {10.0},
     "time_records.py": {1e3},
     "participation.py": {20.0},
-    "double_hits.py": {4},
+    "function_faults.py": {4},
 }
 """What may stand outside the tables: counts of directions and degrees of freedom, halves, squares,
 the variance of a uniform law (1/12), per cent; and in some modules the stencil of second

@@ -6,11 +6,9 @@ import numpy as np
 
 from ...data.geometry import Geometry
 from .coherence import Coherence, coherence_checked
-from .contradictions import contradictions_mended
-from .double_hits import second_hits
+from .contradictions import contradictions_mended, gain_steps_mended
 from .driving_points import driving_points
-from .function_faults import noise_ratio
-from .gain_steps import gain_steps_mended
+from .function_faults import noise_ratio, second_hits
 from .neighbours import neighbours_of, points_mended, points_of_wrong_gain_left_out
 from .references import references_mended
 from .survey_data import Survey, named_and_left_out, noise_levels, weighed
@@ -61,7 +59,7 @@ def _noisy_left_out(survey: Survey) -> Survey:
 
 
 def _second_hits_left_out(survey: Survey) -> Survey:
-    delay = second_hits(survey)
+    delay = second_hits(survey.frequencies_hz, survey.values, survey.measured)
     if not delay.any():
         return survey
     after = 1e3 * float(np.median(delay[delay > 0.0]))

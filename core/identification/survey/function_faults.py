@@ -1,4 +1,4 @@
-"""Functions that are worth less than the others: dead, of a high noise floor, cut off."""
+"""Functions worth less than the others: dead, of a high noise floor, cut off, of a double hit."""
 
 from __future__ import annotations
 
@@ -92,3 +92,69 @@ def cut_off(frfs: Frfs) -> Bools:
             flat = np.count_nonzero(x >= (1.0 - SURVEY.flat) * top, axis=1)
             found[o, known] |= (flat >= SURVEY.flat_lines) & (flat < x.shape[1] // 2)
     return found
+
+
+def second_hits(frequencies_hz: Floats, values: Numbers, measured: Bools) -> Floats:
+    """Return the delay of a second hit in each function, 0 where there is none, s.
+
+    A second hit of a times the force, a time τ after the first and not in the force signal,
+    multiplies a function by 1 + a e^(−jωτ). Functions of normal modes have one phase between
+    resonances, up to the sign, and go through a resonance together: what is left of the phase of
+    one against all, weighted by how well all agree at a line, is the ripple a sin ωτ. One that no
+    other function of its point has is to go on over the whole range: nodes turn a phase here and
+    there.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+    values : (n_output, n_input, n_line) complex
+    measured : (n_output, n_input) bool
+
+    Returns
+    -------
+    (n_output, n_input) float
+    """
+    n_line = len(frequencies_hz)
+    step = float(np.median(np.diff(frequencies_hz)))
+    fine = 4 * n_line  # of the Fourier transform: a quarter of a cycle in the range
+    cycles = np.arange(round(4 * SURVEY.echo_cycles), round(fine * SURVEY.echo_line))
+    found, goes_on = np.zeros(measured.shape), np.zeros(measured.shape, bool)
+    for i in range(found.shape[1]):
+        rows = np.flatnonzero(measured[:, i])
+        if len(rows) < SURVEY.echo_functions:
+            continue
+        squared = values[rows, i] ** 2
+        squared /= np.maximum(np.abs(squared), 1e-300)
+        common = squared.mean(axis=0)
+        weight = np.abs(common)
+        phase = 0.5 * np.angle(squared * common.conj()) * weight
+        total = float(np.sum(weight**2))
+        spread = np.sum(phase**2, axis=1) / total
+        if np.median(spread) > SURVEY.echo_phase**2:
+            continue
+        ripple = 2.0 * np.abs(np.fft.fft(phase * weight, n=fine, axis=1)[:, cycles]) / total
+        best = ripple.argmax(axis=1)
+        top = ripple[np.arange(len(rows)), best]
+        sure = (top > SURVEY.echo_least) & (0.5 * top**2 > SURVEY.echo_share * spread)
+        found[rows[sure], i] = cycles[best[sure]] / (fine * step)
+        ripples = np.exp(-2j * np.pi * cycles[best[sure], None] * np.arange(n_line) / fine)
+        goes_on[rows[sure], i] = _goes_on((phase * weight)[sure] * ripples, weight**2)
+    alone = np.count_nonzero(found, axis=1, keepdims=True) < SURVEY.echo_together
+    slow = found < SURVEY.echo_alone / (n_line * step)
+    return np.where(alone & (slow | ~goes_on), 0.0, found)
+
+
+def _goes_on(products: Numbers, weight: Floats) -> Bools:
+    """Tell of products of phases and ripples whether no third of the range has much less of them.
+
+    Parameters
+    ----------
+    products : (n_function, n_line) complex
+    weight : (n_line,) float
+    """
+    whole = products.sum(axis=1, keepdims=True)
+    along = (products * whole.conj()).real / np.maximum(np.abs(whole) ** 2, 1e-300)
+    ends = np.searchsorted(np.cumsum(weight) / weight.sum(), [1.0 / 3.0, 2.0 / 3.0])
+    parts = zip(np.split(along, ends, axis=1), np.split(weight, ends), strict=True)
+    shares = [part.sum(axis=1) * weight.sum() / max(float(w.sum()), 1e-300) for part, w in parts]
+    return np.asarray(np.min(shares, axis=0) > SURVEY.echo_third)

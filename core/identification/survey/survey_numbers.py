@@ -39,6 +39,7 @@ class SurveyNumbers:
     impulse_from: int = number(8, "lines", "missing at 0 Hz, at most, for an impulse response", SURVEYS)
     echo_least: float = number(0.2, "rad", "ripple of the phase of a double hit, at least", SURVEYS)
     echo_share: float = number(0.35, "of the phase's square", "that one ripple explains, at least; in surveys in order 0.25 at most", SURVEYS)
+    echo_third: float = number(0.62, "of a ripple", "that each third of the range has of one which other functions of the point do not have; of double hits mostly 0.7 at least, in ranges of the aeroplane 0.59 at most", SURVEYS)
     echo_phase: float = number(0.35, "rad", "typical phase against the others, above which modes are no normal ones; aeroplane 0.18, GARTEUR 0.28", SURVEYS)
     echo_cycles: float = number(2.0, "cycles", "of a ripple in the range, at least", SURVEYS)
     echo_alone: float = number(3.0, "cycles", "likewise, of a ripple that other functions of the point do not have", SURVEYS)

@@ -107,3 +107,33 @@ def test_of_two_references_alone_nothing_tells_whose_size_is_wrong(survey):
     (fault,) = checked(prepare(replace(frfs, values=values))).faults
     assert (fault.kind, fault.done) == ("wrong_gain", "left out")
     assert fault.functions == ("8:Z/1:Z", "8:Z/40:Z")
+
+
+@pytest.mark.parametrize(("times", "said"), [(3.0, "3"), (0.5, "0.5")])
+@pytest.mark.parametrize("reference", [0, 1, 2])
+def test_points_after_a_change_of_gain_are_brought_to_the_size_of_the_others(
+    survey, reference, times, said
+):
+    frfs, _ = survey(12, n_mode=6, n_reference=3)
+    values = np.array(frfs.values)
+    values[27:, reference] *= times
+    mended = checked(prepare(replace(frfs, values=values)))
+    (fault,) = mended.faults
+    label = frfs.references.labels[reference]
+    assert (fault.kind, fault.done) == ("wrong_gain", "scaled")
+    assert fault.functions == tuple(f"{n}:Z/{label}" for n in range(28, 41))
+    assert f"about {said}" in fault.sentence
+    assert mended.physical == pytest.approx(prepare(frfs).physical, rel=0.05)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_survey_in_order_has_no_step_of_gain(survey, seed):
+    frfs, _ = survey(seed, n_mode=6, n_reference=3, noise=0.05)
+    assert checked(prepare(frfs)).faults == ()
+
+
+def test_references_exchanged_at_some_points_are_no_step_of_gain(survey):
+    frfs, _ = survey(12, n_mode=6, n_reference=3)
+    values = np.array(frfs.values)
+    values[27:36, [0, 1]] = values[27:36, [1, 0]]
+    assert not any("gain" in f.kind for f in checked(prepare(replace(frfs, values=values))).faults)

@@ -58,7 +58,10 @@ def test_a_part_of_the_survey_has_no_fault(aeroplane, references):
 
 
 @needs_data
-@pytest.mark.parametrize("ranges", [[(80.0, 140.0)], [(15.0, 60.0)], [(10.0, 45.0), (80.0, 180.0)]])
+@pytest.mark.parametrize("ranges", [
+    [(80.0, 140.0)], [(15.0, 60.0)], [(60.0, 150.0)], [(100.0, 170.0)],
+    [(10.0, 45.0), (80.0, 180.0)],
+])  # fmt: skip
 def test_a_part_of_the_range_has_no_fault(aeroplane, ranges):
     assert checked(prepare(aeroplane.frfs, ranges), aeroplane.geometry).faults == ()
 
