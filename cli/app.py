@@ -103,6 +103,7 @@ _TRACEBACK = "TRUEUP_TRACEBACK"
 _WORDS = {
     "give force=True": "give --force",
     "give lossy=True": "give --lossy",
+    "merge=True": "--merge",
     "another run folder": "another --out",
     " deck_length_unit=": " --deck-length-unit ",
     "with deck_length_unit": "with --deck-length-unit",

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Unpack
 
 from ..core.errors import InputError, Place, path_of
+from .copy_deck import SUFFIXES, copy_deck
 from .delivery import is_empty, losses, target_of
 from .exchange import KINDS, Boundary, Cargo, cargo_of, load
 from .options import Files, PlantOptions, Say, checked_call, unheard
+from .read import DECK, kind_of_file
 from .sources import Source, existing
 from .study import converted
 from .write_fmu import OTHERS, PLANTS, Converted, write_fmu
@@ -30,6 +32,7 @@ def convert(
     modes: int | None = None,
     fmax: float | None = None,
     lossy: bool = False,
+    merge: bool = False,
     force: bool = False,
     progress: Say = unheard,
     **plant: Unpack[PlantOptions],
@@ -40,7 +43,7 @@ def convert(
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
     gives them geometry and axes. A unit for simulators (.fmu), the same state space as arrays
     (.npz, .mat) and, with ``inputs``, its frequency responses (.unv, .uff) are made of modes: see
-    `write_fmu`.
+    `write_fmu`. A deck goes with its INCLUDE files, byte for byte, into a folder.
 
     Parameters
     ----------
@@ -60,6 +63,8 @@ def convert(
         `write_fmu`.
     lossy : bool
         Leave out what the destination cannot hold.
+    merge : bool
+        Write a deck and its INCLUDE files as one file (.bdf, .dat).
     force : bool
         Replace a destination that exists.
     progress : callable
@@ -90,9 +95,12 @@ def convert(
         )  # fmt: skip
     if plant:
         raise InputError(f"convert: '{next(iter(plant))}' is of {', '.join(PLANTS)} alone")
+    files = _files(sources)
+    if to is None and boundary is None and _is_copy(files, path, merge):
+        _check(files, path, from_, force or path.is_dir())
+        return copy_deck(files[0], path, merge)
     target = target_of(path, to)
     reduced = _boundary(boundary, modes, fmax)
-    files = _files(sources)
     _check(files, path, from_, force)
     progress("reading")
     cargo = load(files, from_, subcase, reduced) if files else cargo_of(sources, reduced)
@@ -120,6 +128,15 @@ def convert(
         lost=tuple(lost),
         warnings=tuple(dict.fromkeys(cargo.notes)),
     )
+
+
+def _is_copy(files: list[Path], path: Path, merge: bool) -> bool:
+    """Whether a deck is to be copied; a folder or the suffix of a deck says so, or `merge`."""
+    placed = path.is_dir() or path.suffix.lower() in ("", *SUFFIXES)
+    one = len(files) == 1 and files[0].is_file() and kind_of_file(files[0]) is DECK
+    if merge and not one:
+        raise InputError("merge=True makes one file of one deck: give a deck as the only source")
+    return one and (placed or merge)
 
 
 def _boundary(grids: str | None, modes: int | None, fmax: float | None) -> Boundary | None:

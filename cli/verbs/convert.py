@@ -44,6 +44,9 @@ def convert(
     lossy: Annotated[
         bool, typer.Option("--lossy", help="Leave out what DST cannot hold.")
     ] = False,
+    merge: Annotated[
+        bool, typer.Option("--merge", help="Write a deck and its INCLUDE files as one file.")
+    ] = False,
     inputs: Annotated[
         str | None,
         typer.Option(metavar="GRID:DIR,...", help="Forces and moments into a plant: 1187:+Z,40:RX"),
@@ -93,6 +96,7 @@ def convert(
     (.h5), OP4 (.op4) and DMIG (.pch). A deck alone is assembled; beside results or matrices it
     gives them geometry and axes. A deck, a run folder or modes become a unit for simulators (.fmu),
     a state space (.npz, .mat) or frequency responses (.unv, .uff) with --inputs and --outputs.
+    A deck goes with its INCLUDE files, byte for byte, into a folder.
     """
     from ...verbs.convert import convert as write
 
@@ -109,8 +113,8 @@ def convert(
     with working("reading", output) as say:
         done = write(
             sources, destination, from_=source_format, to=target_format, subcase=subcase,
-            boundary=boundary, modes=modes, fmax=fmax, lossy=lossy, force=force, progress=say,
-            **given,
+            boundary=boundary, modes=modes, fmax=fmax, lossy=lossy, merge=merge, force=force,
+            progress=say, **given,
         )  # fmt: skip
     emit_json(done.to_dict(), output)
     if speaks(output):

@@ -1,6 +1,8 @@
 """Normal modes: K x = lambda M x, lowest first, every solution checked."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -190,7 +192,8 @@ def solve(
     while True:
         try:
             known = (owner, pencil, rigid)
-            spectrum = dense_modes(*known) if small else sparse_modes(*known, request)
+            with _to_working_accuracy():
+                spectrum = dense_modes(*known) if small else sparse_modes(*known, request)
             break
         except Massless as found:
             if len(held) == EIGEN.held:
@@ -240,6 +243,18 @@ def modes_of(model: Model, solution: Eigensolution) -> Modes:
     shapes, mass = model.expansion @ solution.vectors, np.ones(len(solution.eigenvalues))
     hz = solution.frequencies_hz
     return Modes(hz, np.asarray(shapes), model.dofs, generalized_mass=mass, source="analysis")
+
+
+@contextmanager
+def _to_working_accuracy() -> Iterator[None]:
+    """Tell what LAPACK gives up on: `CheckError`."""
+    try:
+        yield
+    except np.linalg.LinAlgError as lost:
+        raise CheckError(
+            "the modes cannot be found to working accuracy: masses or stiffnesses differ by too "
+            f"many decades ({lost})"
+        ) from None
 
 
 def _checked(

@@ -6,9 +6,12 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from ....core.errors import InputError, Place, path_of
 from ..text.deck_text import DeckText
 from ..text.includes import is_anchored
+from ..text.source_file import key_of
 from .set_values import splice
 
 ELSEWHERE = "included"
@@ -54,6 +57,26 @@ def write_deck(deck: DeckText, out_dir: Path | str) -> Path:
     except OSError as error:
         raise InputError(f"cannot write the deck to {out}: {error.strerror}", file=out) from None
     return out / places[0]
+
+
+def merged(deck: DeckText) -> bytes:
+    """Return a deck as one text: what INCLUDE files hold stands in place of the statements.
+
+    Of an included file nothing is taken that follows its ENDDATA, of the top deck everything.
+    """
+    parts = []
+    for file, first, stop in deck.stretches:
+        text = deck.files[file]
+        if stop > first:
+            start, end = int(text.lines.starts[first]), int(text.lines.ends[stop - 1])
+            parts.append(text.data[start:end] + text.newline)
+    top = deck.files[0]
+    ends = np.flatnonzero(np.isin(top.lines.keys, [key_of("ENDDATA")]))
+    if len(ends):
+        parts.append(top.data[int(top.lines.starts[int(ends[0])]) :])
+    elif any(key_of("ENDDATA") in f.lines.keys for f in deck.files):
+        parts.append(b"ENDDATA" + top.newline)
+    return b"".join(parts)
 
 
 def write_in_place(deck: DeckText) -> tuple[Path, ...]:

@@ -143,3 +143,13 @@ def test_a_flap_on_a_soft_suspension_is_a_mechanism_and_the_suspension_is_none(f
     assert "4:3" in named
     assert "5:3" in named
     assert not any(label in named for label in ("1:3", "2:3", "3:3"))
+
+
+def test_what_lapack_gives_up_on_is_said(monkeypatch):
+    def lost(*_):
+        raise np.linalg.LinAlgError("6-th leading minor not positive definite")
+
+    monkeypatch.setattr("trueup.core.eigen.normal_modes.dense_modes", lost)
+    K, M, _ = two_masses([1.0, 1e60], [1.0, 1.0])
+    with pytest.raises(CheckError, match=r"differ by too many decades \(6-th"):
+        solve((K, M), 1)
