@@ -9,7 +9,7 @@ from tests.core.elements.plates_and_volumes import volume
 from trueup.core.elements.hexa import HEXA8, HEXA20
 from trueup.core.elements.penta import PENTA6, PENTA15
 from trueup.core.elements.pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
-from trueup.core.elements.solid import isotropic_solid, rotate_material, solid_mass
+from trueup.core.elements.solid import isotropic_solid, rotate_material, solid_mass, strains
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 TRIANGLE = SQUARE[[0, 1, 3]]
@@ -61,14 +61,44 @@ def test_six_rigid_motions_and_no_more(structure, kind, solid, stiffness, distor
 
 
 @pytest.mark.parametrize(("kind", "solid", "stiffness"), ALL, ids=NAMES)
-def test_energy_of_constant_strain(kind, solid, stiffness):
+def test_forces_of_constant_stress(kind, solid, stiffness):
+    """What a skewed and tapered element passes on to its neighbours; a wedge see below."""
     gradient = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.2, 0.6, 0.7]])
-    xyz = nodes(kind, solid)
     e = 0.5 * (gradient + gradient.T)
-    strain = np.array([e[0, 0], e[1, 1], e[2, 2], 2 * e[0, 1], 2 * e[1, 2], 2 * e[2, 0]])
-    u = (xyz @ gradient.T).ravel()
-    K = stiffness(xyz[None], STEEL)[0]
-    assert u @ K @ u == pytest.approx(VOLUME[kind] * strain @ STEEL[0] @ strain, rel=1e-12)
+    stress = STEEL[0] @ [e[0, 0], e[1, 1], e[2, 2], 2 * e[0, 1], 2 * e[1, 2], 2 * e[2, 0]]
+    xyz = nodes(kind, solid, 0.12, seed=3)
+    points, weights = solid.rules["full"]
+    B, detJ = strains(xyz[None], solid.interpolation, points)
+    exact = np.einsum("m,mij,i->j", detJ[0] * weights, B[0], stress)
+    for integration in ("full",) if solid is PENTA6 else solid.integrations:
+        force = stiffness(xyz[None], STEEL, integration)[0] @ (xyz @ gradient.T).ravel()
+        assert np.abs(force - exact).max() < 1e-13 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize(
+    ("shape", "limit"),
+    [("in plan", 1e-13), ("skewed", 1e-13), ("tapered", 1e-3), ("inner grid moved", 2e-2)],
+)
+def test_wedge_patch(shape, limit):
+    """Force at the inner grid beside those at the others; not zero where wedges taper."""
+    k, j, i = np.indices((3, 3, 3)).reshape(3, -1) / 2
+    points, move = np.column_stack([i, j, k]), np.random.default_rng(0).uniform(-0.1, 0.1, (9, 2))
+    if shape == "in plan":
+        points[:, :2] += np.tile(move, (3, 1))
+    elif shape == "skewed":
+        points[:, 0] += 0.5 * points[:, 2]
+    elif shape == "tapered":
+        points[:, :2] *= 1.0 - 0.3 * points[:, 2:]
+    else:
+        points[13] += 0.1
+    low = np.array([c + 3 * r + 9 * layer for layer in (0, 1) for r in (0, 1) for c in (0, 1)])
+    ring = low[:, None] + np.array([[0, 1, 4], [0, 4, 3]])[:, None]
+    conn = np.concatenate([ring, ring + 9], axis=2).reshape(-1, 6)
+    u = points @ np.array([[1.0, 0.5, 0.5], [0.5, 1.0, 0.5], [0.5, 0.5, 1.0]])
+    Ke = PENTA6.stiffness(points[conn], np.repeat(STEEL, len(conn), 0))
+    force = np.zeros((27, 3))
+    np.add.at(force, conn, np.einsum("nij,nj->ni", Ke, u[conn].reshape(-1, 18)).reshape(-1, 6, 3))
+    assert np.abs(force[13]).max() < limit * np.abs(force).max()
 
 
 # the inner cube of MacNeal and Harder's patch of seven bricks
