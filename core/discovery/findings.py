@@ -135,8 +135,9 @@ class Discovery:
     """The verdict with everything that led to it.
 
     `evidence_for` is twice the log of how much more likely the verdict is than the known
-    parameters alone; `posterior` its probability among the hypotheses compared; `foretold` by how
-    many standard deviations modes held out agree that it foretells them better than these.
+    parameters alone; `posterior` its probability among the hypotheses compared, times the share of
+    frozen cases in which an answer like it was right; `foretold` by how many standard deviations
+    modes held out agree that it foretells them better than these.
     `proposal` says that the effects explain much and foretell, but leave more than right models
     do: the verdict is ``undecided``, and the deck is completed by them all the same.
     """

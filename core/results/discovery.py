@@ -35,7 +35,7 @@ class GapTable(Noun):
 
 @dataclass(frozen=True)
 class JudgementTable:
-    """Twice the log of how much likelier the verdict is, and its probability.
+    """Twice the log of how much likelier the verdict is, and the chance that it is right.
 
     `foretold` is by how many standard deviations test modes agree that what was found, fitted to
     others, foretells them better than the known parameters alone do. `error` is the diffuse error

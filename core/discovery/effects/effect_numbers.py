@@ -86,7 +86,7 @@ class EffectNumbers:
     damper_sizes: int = number(14, "sizes", "of a dashpot that are tried")
 
     alike: float = number(1.1, "-", "likelihoods whose ratio is nearer to 1 say nothing", "what a reader takes in")
-    odds_most: float = number(100.0, "-", "ratio of likelihoods that is told as a figure, at most", "what fresh cases support")
+    odds_most: float = number(10.0, "-", "ratio of likelihoods that is told, at most", "of 37 claims in frozen cases two had the truth as an alternative")
     mode_runs: int = number(4, "stretches", "of modes that are listed, at most", "what a reader takes in")
 
 

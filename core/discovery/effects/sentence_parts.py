@@ -44,7 +44,7 @@ def odds(ratio: float, other: str = "") -> str:
 
 def _count(ratio: float) -> str:
     if ratio >= EFFECTS.odds_most:
-        return "more than a hundred"
+        return f"more than {EFFECTS.odds_most:.0f}"
     return f"{ratio:.2g}"
 
 

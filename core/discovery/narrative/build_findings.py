@@ -1,8 +1,9 @@
 """From the hypotheses that are left to what a person is told."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from ..search.model_selection import (
     cost,
     explained,
     instead,
+    scored,
     times,
 )
 from ..search.moves import Searcher
@@ -63,6 +65,7 @@ def build_discovery(
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
     clear = whole.clear and bool(findings) and not decide and not any(map(_says_nothing, findings))
+    proposal = clear and not whole.true
     adequate = whole.adequacy > MODEL_ERROR.adequate
     if clear and whole.true:
         word = "effect"
@@ -77,16 +80,17 @@ def build_discovery(
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"
+    sure = whole.posterior * _share(word, bool(findings), proposal)
     if word == "undecided" or not adequate:
         decide = (*left_over(whole, request.numbers), *decide)
     return Discovery(
         word,
-        (*findings, *accused),
+        (*(replace(f, confidence=sure) for f in findings), *accused),
         _alternatives(outcome),
         moved,
         verdict.scale,
         2.0 * whole.gain,
-        whole.posterior,
+        sure,
         whole.agree,
         tuple(int(i) for i in request.numbers[held_out[0]]),
         tuple(int(nodes[i]) for i in np.flatnonzero(held_out[1])),
@@ -98,7 +102,7 @@ def build_discovery(
         gain=whole.gain,
         adequacy=whole.adequacy,
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
-        proposal=clear and not whole.true,
+        proposal=proposal,
     )
 
 
@@ -144,6 +148,11 @@ class _Outcome:
         here = cost(self.searcher, self.best, self.verdict.scale)
         return cost(self.searcher, f, self.verdict.scale) - here
 
+    def times_less_likely(self, f: Fit) -> float:
+        """Return how many times, by the error of the model, choices paid for; at least once."""
+        best, other = (scored(self.searcher, g).score for g in (self.best, f))
+        return times(2.0 * max(best - other, 0.0))
+
     def of(self, s: Suspect) -> Candidates:
         """Return the candidates that a suspect is one of."""
         return self.searcher.problem.catalogue[s.kind]
@@ -181,8 +190,8 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     where = Where.of(c.where[row], c.xyz[row], region=spot)
     many = len(o.places(s))
     text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, many)
-    credible, sure = _credible(o, number, place, places), _confidence(o)
-    return Finding("model", c.kind.name, where, magnitude, interval, credible, sure, text)
+    credible = _credible(o, number, place, places)
+    return Finding("model", c.kind.name, where, magnitude, interval, credible, 0.0, text)
 
 
 def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> tuple[Where, ...]:
@@ -197,15 +206,17 @@ def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> 
     )
 
 
-def _confidence(o: _Outcome) -> float:
-    """Chance that a finding is right.
+def _share(word: str, findings: bool, proposal: bool) -> float:
+    """Return the share of frozen cases in which what is told so was right.
 
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
     sure, the less so where the best one is not clear or leaves more than right models do.
     """
-    claim, proposal, other = NARRATIVE.right
-    share = other if not o.whole.clear else claim if o.whole.true else proposal
-    return o.whole.posterior * share
+    if not findings:
+        return NARRATIVE.nothing
+    if word == "effect":
+        return NARRATIVE.claimed
+    return NARRATIVE.proposed if proposal else NARRATIVE.doubted
 
 
 def _moved(best: Fit, scale: float) -> tuple[MovedParameter, ...]:
@@ -238,13 +249,13 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
         if kinds_of(f) != kinds_of(o.best) or any(f is g for g in o.rivals):
             seen.setdefault(kinds_of(f), f)
     out = []
-    for kinds, f in seen.items():
+    for kinds, f in islice(seen.items(), NARRATIVE.alternatives):
         xyz = [c.xyz[row] for c, row in named(f)]
         regions = tuple(region(o.request.structure.model.geometry, x) for x in xyz)
         said = effects_said(kinds, regions)
-        out.append(alternative(kinds, xyz, times(o.behind(f)), said, regions))
+        out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions))
     if o.verdict.accepted:
-        ratio = times(o.behind(o.found.levels[0]))
+        ratio = o.times_less_likely(o.found.levels[0])
         out.append(alternative((), (), ratio, "the known parameters alone"))
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
 

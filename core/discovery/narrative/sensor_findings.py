@@ -52,4 +52,5 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
         magnitude = {kind.magnitude: f.factor, **({"axis": list(f.axis)} if f.axis else {})}
         off = NARRATIVE.interval * f.deviation
         interval = (f.factor - off, f.factor + off)
-    return Finding("test", f.kind, where, magnitude, interval, (), f.confidence, f"{said}.")
+    sure = f.confidence * (NARRATIVE.like_model if kind.like_model else 1.0)
+    return Finding("test", f.kind, where, magnitude, interval, (), sure, f"{said}.")

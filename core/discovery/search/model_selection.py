@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Bools
 from ..effects.candidates import Suspect
+from ..effects.effect_numbers import EFFECTS
 from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
@@ -265,5 +266,6 @@ def held_out(n: int, start: int, every: int, enough: int) -> Bools:
 
 
 def times(value: float) -> float:
-    """Return a likelihood ratio from twice its log, kept finite."""
-    return float(np.exp(min(0.5 * value, SEARCH.ln_most)))
+    """Return a likelihood ratio from twice its log, as far as odds are said."""
+    most = EFFECTS.odds_most
+    return float(np.clip(np.exp(np.clip(0.5 * value, -most, most)), 1.0 / most, most))

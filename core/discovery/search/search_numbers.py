@@ -86,7 +86,6 @@ class SearchNumbers:
     explains: float = number(4.0, LN, "a suspect explains a mode whose misfit it lowers by this", "two standard deviations")
     explains_share: float = number(0.1, "of what it lowers most", "and by this")
     same_effect_apart: float = number(1.5, "of Effort.apart", "a suspect of a rival that is nearer says the same")
-    ln_most: float = number(60.0, "ln", "likelihood ratios are said up to its exponential", "kept finite")
     one_effect: float = number(0.09, SIZE, "findings of one nature that are nearer are told as one")
 
     reshape_steps: int = number(8, "steps", "by which a patch grows or shrinks, at most")
