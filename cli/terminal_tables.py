@@ -251,6 +251,7 @@ def _told(value: object, between: str = ", ") -> str:
             for k, v in inner.items()
         )
     if isinstance(value, list | tuple):
+        between = "\n" if any(isinstance(v, str) and ": " in v for v in value) else between
         return between.join(_told(v) for v in value) if value else "none"
     if isinstance(value, bool):
         return "yes" if value else "no"

@@ -193,11 +193,14 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     InputError
         One is in neither.
     """
+    from .report import imprint_of
+
     deck = study.deck if deck is None else deck
     test = study.test or None if test is None else test
     if deck is None or test is None:
         raise InputError("give a deck and a test, or a study that names both")
     _require_order(deck, test)
+    imprint_of(study)
     return deck, test
 
 

@@ -9,6 +9,7 @@ from ..core.errors import InputError
 from ..core.results.correlation import compared
 from ..core.results.orthogonality import orthogonality_tables
 from .analysis import both_given, correlated, named, read_analysis
+from .made_of import made_of
 from .options import CorrelateOptions, Files, study_of
 from .run import Correlated, content_of
 from .sources import Source, measured
@@ -65,6 +66,7 @@ def correlate(
         told, expanded = orthogonality_tables(found, pairs), pairs.modes
     return Correlated(
         **vars(tables),
+        **made_of(analysis.deck, side, modes),
         deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
         orthogonality=told,

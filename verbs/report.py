@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,13 +10,17 @@ from typing import TYPE_CHECKING, Any
 from ..core.errors import InputError, Place, path_of
 from ..core.results.correlation import CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
-from ..core.results.modes import IdentifyTables
+from ..core.results.modes import IdentifyTables, SolveTables
 from ..core.results.update import UpdateTables
 from .open_run import read_content, read_diff, read_result
+from .study import Study, read_study
 
 if TYPE_CHECKING:
-    from ..adapters.report import Overlay
+    from ..adapters.report import Imprint, Overlay
     from ..adapters.store import StoreContent
+
+
+_PICTURES = {".png": "png", ".svg": "svg+xml", ".jpg": "jpeg", ".jpeg": "jpeg", ".webp": "webp"}
 
 
 def report(run: Path | str) -> Path:
@@ -30,20 +35,52 @@ def report(run: Path | str) -> Path:
 
     run = path_of(run, "a run folder")
     result = read_result(run)
-    if result["schema"] == IdentifyTables.schema:
-        raise Place(run).fault(
-            "is the run folder of an identification; its page is stabilisation.html, which "
-            "identify makes again"
-        )
+    if result["schema"] in (IdentifyTables.schema, SolveTables.schema):
+        verb = str(result["schema"]).split("/")[1]
+        raise Place(run).fault(f"is the run folder of {verb}, which makes its page itself")
     try:
         answer = answer_of(result)
     except InputError as error:
         raise Place(run / "result.json").fault(str(error)) from error
-    write_text(run / "report.html", render(answer, read_content(run), read_diff(run)))
+    asked = run / "study.toml"
+    imprint = imprint_of(read_study(asked)) if asked.is_file() else None
+    page = render(answer, read_content(run), read_diff(run), imprint)
+    write_text(run / "report.html", page)
     return run / "report.html"
 
 
-def render(answer: RunTables, content: StoreContent | None, diff: str | None) -> str:
+def imprint_of(study: Study) -> Imprint:
+    """Return what stands on the report of a study besides its results.
+
+    Raises
+    ------
+    InputError
+        A logo that cannot be read or is no picture that a page can show.
+    """
+    from ..adapters.report import Imprint
+    from ..core.files import reading
+
+    logo = ""
+    if study.logo is not None:
+        kind = _PICTURES.get(study.logo.suffix.lower())
+        if kind is None:
+            known = ", ".join(_PICTURES)
+            raise Place(study.logo).fault(f"is no picture that a page shows; give {known}")
+        with reading(study.logo):
+            held = base64.b64encode(study.logo.read_bytes()).decode()
+        logo = f"data:image/{kind};base64,{held}"
+    title, author, company, date = (
+        text or "" for text in (study.title, study.author, study.company, study.date)
+    )
+    return Imprint(title, author, company, date, logo)
+
+
+def render(
+    answer: RunTables,
+    content: StoreContent | None,
+    diff: str | None,
+    imprint: Imprint | None = None,
+) -> str:
     """Return the report page of a run.
 
     Parameters
@@ -54,11 +91,14 @@ def render(answer: RunTables, content: StoreContent | None, diff: str | None) ->
         Of result.h5, for pictures and moving shapes.
     diff : str or None
         Of the deck.
+    imprint : Imprint, optional
+        Title, author, company, date and logo.
     """
     from ..adapters.report import make_report
 
     geometry = content.geometry if content else None
-    return make_report(answer, diff, geometry=geometry, shapes=paired_shapes(answer, content))
+    shapes = paired_shapes(answer, content)
+    return make_report(answer, diff, geometry=geometry, shapes=shapes, imprint=imprint)
 
 
 def paired_shapes(answer: RunTables, content: StoreContent | None) -> Overlay | None:

@@ -62,7 +62,7 @@ class Run(RunTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
         from ..adapters.store import write_store
-        from .report import render
+        from .report import imprint_of, render
 
         super().fill(work)
         diff = None
@@ -72,7 +72,8 @@ class Run(RunTables, Folder):
             (work / "changes.diff").write_text(diff, encoding="utf-8", newline="")
         write_store(work / "result.h5", **vars(self.content))
         (work / "study.toml").write_text(study_toml(seen_from(work, self.study)), encoding="utf-8")
-        (work / "report.html").write_text(render(self, self.content, diff), encoding="utf-8")
+        page = render(self, self.content, diff, imprint_of(self.study))
+        (work / "report.html").write_text(page, encoding="utf-8")
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:

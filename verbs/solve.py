@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
@@ -36,10 +36,13 @@ class Solved(SolveTables, Folder):
     geometry : Geometry
     shapes : Modes
         On all degrees of freedom, mass-normalised.
+    parts : mapping of str to sequence of int
+        Grids of the elements of each property of a deck, for the pictures of its page.
     """
 
     geometry: Geometry = field(metadata=BESIDE)
     shapes: Modes = field(metadata=BESIDE)
+    parts: Mapping[str, Sequence[int]] = field(default_factory=dict, metadata=BESIDE)
 
     @property
     def content(self) -> StoreContent:
@@ -70,6 +73,10 @@ class Solved(SolveTables, Folder):
 
     def fill(self, work: Path) -> None:
         """Write everything that the run folder of a solution holds."""
+        from ..adapters.report.solution_page import solution_page
+
+        page = solution_page(self, self.geometry, self.shapes, self.parts)
+        (work / "report.html").write_text(page, encoding="utf-8")
         self.write(work / "result.h5")
         super().fill(work)
 
@@ -109,6 +116,7 @@ def solve(
         The eigensolution does not meet its own check.
     """
     from ..adapters.nastran import build_model, weight
+    from ..adapters.nastran.assembly.candidate_parameters import grids_by_property
 
     who = Place(shown="solve")
     number = converted("number", number, int | None, who)
@@ -142,4 +150,5 @@ def solve(
         warnings=(*(read.warnings if read else ()), *model.warnings, *solution.warnings),
         geometry=geometry_of(model, read),
         shapes=modes,
+        parts=grids_by_property(read) if read else {},
     )

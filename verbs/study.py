@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import datetime
 import math
 import numbers
 import os
@@ -99,6 +100,11 @@ class Study:
     pairs: tuple[tuple[int, int], ...] = ()
     mode_weights: tuple[tuple[int, float], ...] = ()
     node_map: tuple[tuple[int, int], ...] = ()
+    title: str | None = None
+    author: str | None = None
+    company: str | None = None
+    logo: Path | None = None
+    date: str | None = None
     out: Path | None = None
     seed: int = 0
     sigmas: Mapping[str, float] = field(default_factory=dict, metadata={"file_key": False})
@@ -236,7 +242,7 @@ def read_study(path: Path) -> Study:
     except tomllib.TOMLDecodeError as error:
         raise here.fault(f"is not valid TOML: {error}") from error
     values = _study_values(table, {**_FIELDS, **_sigma_fields()}, here)
-    for name in ("deck", "modes", "out"):
+    for name in ("deck", "modes", "logo", "out"):
         if values.get(name) is not None:
             values[name] = _under(path.parent, values[name])
     values["test"] = tuple(_under(path.parent, t) for t in values.get("test", ()))
@@ -285,9 +291,9 @@ def merge(
 
 def seen_from(folder: Path, study: Study) -> Study:
     """Return the study with its paths as seen from a folder, so that both can be moved together."""
-    deck, modes = (p and _seen_from(folder, p) for p in (study.deck, study.modes))
+    deck, modes, logo = (p and _seen_from(folder, p) for p in (study.deck, study.modes, study.logo))
     test = tuple(_seen_from(folder, p) for p in study.test)
-    return dataclasses.replace(study, deck=deck, test=test, modes=modes)
+    return dataclasses.replace(study, deck=deck, test=test, modes=modes, logo=logo)
 
 
 def _seen_from(folder: Path, path: Path) -> Path:
@@ -377,7 +383,7 @@ def converted(name: str, value: object, kind: Any, who: Place) -> Any:
 
 _MADE_FROM: dict[Any, tuple[type, ...]] = {
     Path: (str, os.PathLike),
-    str: (str,),
+    str: (str, datetime.date),
     int: (numbers.Integral,),
     float: (numbers.Real,),
     bool: (bool,),

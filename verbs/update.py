@@ -22,6 +22,7 @@ from ..core.updating import update as core
 from ..core.updating.determined import update_determined
 from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from .analysis import Analysis, both_given, correlated, named, read_analysis, target_of
+from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
@@ -107,6 +108,7 @@ def update(
     told, final = compared(before), replace(compared(after), warnings=())
     assert analysis.deck is not None
     return Updated(
+        **made_of(analysis.given, side),
         deck_file=f"deck/{changed.name}",
         input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),

@@ -32,16 +32,26 @@ def describe_deck(path: Path | str) -> dict[str, Any]:
     InputError
         A file that cannot be read, a card that is not a card: file, line, field.
     """
+    from .assembly.candidate_parameters import properties_of
     from .assembly.magnitudes import magnitudes  # slow to import, and not needed to read a deck
 
     deck = read_deck(path)
     known = magnitudes(deck)
+    held = [
+        f"{row.card} {row.id} ({row.elements}): "
+        + ", ".join(f"{name} {value:.6g}" for name, value in row.values.items() if value)
+        for row in properties_of(deck)
+    ]
     size = known.get("size", 0.0)
     slips = unit_slips(deck, size) if isinstance(size, float) else ()
     return {
         "path": str(path),
         "format": _FORMAT,
-        "contents": {**_contents(deck), **({"magnitudes": known} if known else {})},
+        "contents": {
+            **_contents(deck),
+            **({"magnitudes": known} if known else {}),
+            **({"properties": held} if held else {}),
+        },
         "skipped": list(deck.skipped),
         "warnings": [*deck.warnings, *slips],
     }

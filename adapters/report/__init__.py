@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ...core.late_imports import lazy_names
 
 if TYPE_CHECKING:
+    from .imprint import Imprint as Imprint
     from .page import make_report as make_report
     from .pictures.shape_overlay import Overlay as Overlay, overlay as overlay
     from .sections.known_sections import SECTIONS as SECTIONS, register_section as register_section
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __getattr__, __all__ = lazy_names(
     __name__,
     {
+        ".imprint": "Imprint",
         ".page": "make_report",
         ".pictures.shape_overlay": "Overlay overlay",
         ".sections.known_sections": "SECTIONS register_section",

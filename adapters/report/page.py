@@ -9,6 +9,7 @@ from ...core.results.correlation import RunTables
 from ...core.results.discovery import DiscoverTables
 from .html.html_table import html_table
 from .html.markup import esc, tag
+from .imprint import Imprint, colophon, letterhead
 from .pictures import colour
 from .pictures.shape_overlay import Overlay
 from .sections.findings import FINDINGS
@@ -29,6 +30,7 @@ def make_report(
     geometry: Geometry | None = None,
     title: str | None = None,
     shapes: Overlay | None = None,
+    imprint: Imprint | None = None,
 ) -> str:
     """Return the report of a run as one HTML page that needs nothing else.
 
@@ -47,6 +49,8 @@ def make_report(
         What was compared; stands above the headline.
     shapes : Overlay, optional
         The paired shapes (`overlay` makes them), shown moving.
+    imprint : Imprint, optional
+        Whose report it is.
 
     Returns
     -------
@@ -67,6 +71,7 @@ def make_report(
                 aria_label="Sections")  # fmt: skip
     body = tag(
         "main",
+        letterhead(imprint),
         kicker,
         tag("h1", _unbroken(first)),
         tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
@@ -74,8 +79,9 @@ def make_report(
         warned(answer.all_warnings),
         links if len(shown) > 2 else "",
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
-        tag("footer", esc(f"trueup · {answer.schema}")),
+        colophon(answer),
     )
+    name = imprint.title if imprint and imprint.title else name
     return html_page(name or kind, body + scripts(*["viewer.js"] * (shapes is not None)))
 
 

@@ -12,8 +12,8 @@ from ...core.results.plain import Json, Table
 from ..console import emit_json, speaks, stdout
 from ..options import JsonOption, Output, QuietOption
 
-_MOST, _SHOWN = 14, 8
-"""Entries of a list on the screen, the first of a long one of numbers; the JSON keeps all."""
+_MOST, _SHOWN, _ROWS = 14, 8, 2
+"""Entries of a list on the screen, the first of a long one of numbers, and of one of rows."""
 
 
 def inspect(
@@ -55,6 +55,8 @@ def _short(value: Json) -> Json:
         return {k: _short(v) for k, v in value.items() if v is not None}
     if not isinstance(value, list):
         return value
+    if len(value) > _MOST and any(isinstance(v, str) and ": " in v for v in value):
+        return [*value[:_ROWS], f"and {len(value) - _ROWS} more, see --json -"]
     if len(value) <= _MOST:
         return [_short(v) for v in value]
     numbers = all(isinstance(v, int | float) for v in value)

@@ -7,7 +7,9 @@ import typer
 
 from ...core.errors import InputError
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import JsonOption, Output, QuietOption, VerboseOption
+from ..options import ForceOption, JsonOption, Output, QuietOption, VerboseOption
+
+_FILES = (".h5", ".unv", ".uff")
 
 
 def solve(
@@ -17,21 +19,25 @@ def solve(
     ] = None,
     fmax: Annotated[float | None, typer.Option("--fmax", help="All modes up to here [Hz].")] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="Modes as .h5 or .unv.")
+        Path | None,
+        typer.Option("--out", metavar="FILE|DIR", help="Modes as .h5 or .unv; or a run folder."),
     ] = None,
     json: JsonOption = None,
+    force: ForceOption = False,
     quiet: QuietOption = False,
     verbose: VerboseOption = False,
 ) -> None:
     """Find the normal modes with the embedded solver."""
     from ...verbs.solve import solve as find
 
-    output = Output(json=json, quiet=quiet, verbose=verbose)
-    _check(number, fmax, out)
+    output = Output(json=json, force=force, quiet=quiet, verbose=verbose)
+    _check(number, fmax, out, force)
     with working(f"reading {deck.name}", output) as say:
         found = find(deck, number, fmax, progress=say)
-    if out:
+    if out and out.suffix in _FILES:
         found.write(out)
+    elif out:
+        found.save(out, force)
     emit_json(found.to_dict(), output)
     if speaks(output):
         from ..terminal_tables import solve_table
@@ -40,12 +46,16 @@ def solve(
     tell(output, "warning", found.warnings)
 
 
-def _check(number: int | None, fmax: float | None, out: Path | None) -> None:
+def _check(number: int | None, fmax: float | None, out: Path | None, force: bool) -> None:
+    from ...adapters.run_folder.write_run import refuse_existing
+
     if number is not None and number < 1:
         raise typer.BadParameter(f"-n is {number}; ask for at least one mode")
     if fmax is not None and not fmax > 0.0:
         raise typer.BadParameter(f"--fmax is {fmax}; give a frequency above 0 Hz")
-    if out is not None and out.suffix not in {".h5", ".unv", ".uff"}:
-        raise typer.BadParameter(f"--out {out}: modes are written as .h5 or .unv")
-    if out is not None and not out.parent.is_dir():
+    if out is not None and out.suffix not in _FILES:
+        if out.suffix:
+            raise typer.BadParameter(f"--out {out}: modes are written as .h5 or .unv")
+        refuse_existing(out, force)
+    elif out is not None and not out.parent.is_dir():
         raise InputError(f"--out {out}: the folder {out.parent} does not exist", file=out)

@@ -202,8 +202,20 @@ class Compared(Tables):
         return tuple(sorted((*(p.test for p in self.pairs), *self.unpaired_test)))
 
 
+@dataclass(frozen=True)
+class InputRow:
+    """A file that was read, and the SHA-256 of its bytes."""
+
+    path: str
+    sha256: str
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RunTables(Tables):
-    """Base of what a verb that compares answers."""
+    """Base of what a verb that compares answers; `version` of trueup made it of `inputs`."""
+
+    version: str = ""
+    inputs: Table[InputRow] = field(default_factory=lambda: Table((), InputRow))
 
     if TYPE_CHECKING:
         warnings: tuple[str, ...]

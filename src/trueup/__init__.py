@@ -23,6 +23,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .core.late_imports import lazy_names
+from .core.version import VERSION
 
 if TYPE_CHECKING:
     from .adapters.nastran import Deck as Deck
@@ -68,7 +69,7 @@ if TYPE_CHECKING:
     from .verbs.update import update as update
     from .verbs.write_fmu import Converted as Converted, write_fmu as write_fmu
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __getattr__, __all__ = lazy_names(
     __name__,

@@ -139,3 +139,21 @@ def test_the_demo_shows_the_paper(
     assert again.status == 1
     assert "exists; give --force" in again.sentence
     shutil.rmtree(folder)
+
+
+def test_a_run_folder_of_solve_has_a_page_with_moving_shapes_and_properties(call, duct, tmp_path):
+    run = tmp_path / "run"
+    assert call("solve", duct / "duct.bdf", "-n", 9, "--out", run, "-q").status == 0
+    page = (run / "report.html").read_text(encoding="utf-8")
+    assert "9 normal modes" in page
+    assert "data-shapes" in page
+    assert "PBAR 11, 72 elements" in page
+    assert (run / "tables" / "modes.csv").read_text(encoding="utf-8").count("\n") == 10
+    again = call("solve", duct / "duct.bdf", "--out", run)
+    assert again.status == 1
+    assert "--force" in again.sentence
+
+
+def test_inspect_lists_properties_with_their_values(call, duct):
+    said = call("inspect", duct / "duct.bdf")
+    assert "PBAR 11 (72): A 200, I1 9000, I2 9000, J 3000" in said.out

@@ -38,6 +38,22 @@ def properties_of(deck: Deck) -> tuple[PropertyRow, ...]:
     )
 
 
+def grids_by_property(deck: Deck) -> dict[str, tuple[int, ...]]:
+    """Return the grids of the elements of each property, by card, number and how many they are."""
+    found: dict[tuple[str, int], list[int]] = defaultdict(list)
+    for name, known in definitions().items():
+        for values in deck.bulk.table(name).values() if known.properties else ():
+            for card in known.properties.split():
+                if values.pid in deck.bulk.table(card):
+                    found[card, values.pid] += [g for g in getattr(values, "nodes", ()) if g]
+    held = _holding(deck.bulk)
+    return {
+        f"{card} {pid}, {held[card, pid]} elements": tuple(sorted(set(grids)))
+        for (card, pid), grids in sorted(found.items())
+        if grids
+    }
+
+
 def candidates(deck: Deck, most: int) -> tuple[tuple[ParameterSpec, ...], int]:
     """Return parameters worth a look, one a value, and how many more there would be.
 

@@ -66,6 +66,16 @@ def overlay(
     )
 
 
+def model_shapes(geometry: Geometry, modes: Modes, *, most: int = 1500) -> Overlay:
+    """Return the shapes of a model alone: an overlay without pairs and sensors."""
+    mesh = coarsened(surface(geometry), most)
+    moved = _at_nodes(np.real(modes.shapes), modes, geometry)[:, mesh.original]
+    size = np.maximum(np.linalg.norm(moved, axis=2).max(axis=1), 1e-300)
+    none = np.zeros((0, 3))
+    still = np.zeros((len(modes), 0))
+    return Overlay(mesh, moved / size[:, None, None], none, none, still, still, ())
+
+
 def _real(shapes: Numbers) -> Floats:
     """Shapes turned to their principal phase, real part."""
     phase = np.angle(np.sum(shapes**2, axis=0)) / 2.0

@@ -1,0 +1,3 @@
+"""The version of trueup."""
+
+VERSION = "0.1.0"
