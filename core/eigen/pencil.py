@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from ..arrays import Floats, Ints, require_finite
 from ..data.parametric_model import Model
-from ..errors import InputError
+from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from ..numerics.factorisation import Factorisation
@@ -73,9 +73,21 @@ class Pencil:
 
     @cached_property
     def stiffness_over_mass(self) -> Floats:
-        """k_ii / m_ii where both are positive, ascending, (n_both,); at least one value."""
+        """k_ii / m_ii where both are positive, ascending, (n_both,); at least one value.
+
+        Raises
+        ------
+        CheckError
+            They are no numbers of the machine's.
+        """
         both = (self.k_diagonal > 0.0) & (self.m_diagonal > 0.0)
-        return np.sort(self.k_diagonal[both] / self.m_diagonal[both]) if both.any() else np.ones(1)
+        if not both.any():
+            return np.ones(1)
+        with np.errstate(over="ignore"):
+            ratios = np.sort(self.k_diagonal[both] / self.m_diagonal[both])
+        if not np.isfinite(ratios[-1]):
+            raise CheckError("masses and stiffnesses differ by more decades than numbers have")
+        return ratios
 
     @cached_property
     def groups(self) -> Ints | None:

@@ -120,13 +120,14 @@ def _arcs(context: Context, own: list[Values], cards: list[Values], xyz: Floats,
     d = xyz[:, 1] - xyz[:, 0]
     chord = np.linalg.norm(d, axis=1)
     d = d / chord[:, None]
-    along = np.einsum("ni,ni->n", v, d) / np.linalg.norm(v, axis=1)
+    size = np.linalg.norm(v, axis=1)
+    along = np.einsum("ni,ni->n", v, d) / np.where(size > 0.0, size, 1.0)
     side = v - np.einsum("ni,ni->n", v, d)[:, None] * d
     bulge, angle = np.zeros_like(d), np.zeros(len(d))
     for k, (card, p) in enumerate(zip(cards, own, strict=True)):
         place = context.bulk.place("CBEND", card.eid)
         across = float(np.linalg.norm(side[k]))
-        if not across > _TURNED * float(np.linalg.norm(v[k])):
+        if not across > _TURNED * float(size[k]):
             raise place.error("its vector X1, X2, X3 or G0 is zero or runs along the chord")
         angle[k] = _angle(context, card, p, float(chord[k]), float(along[k]))
         inward = card.geom == 1 and along[k] > 0.0

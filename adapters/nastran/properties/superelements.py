@@ -102,6 +102,18 @@ def join_superelements(deck: Deck, matrices: Matrices) -> Deck:
     search) or SECONCT says so. A part may share the numbers of its cards with others: those that
     do not mean the same get others, which is said.
     """
+    elsewhere = [
+        (k, c.type)
+        for k, c in deck.bulk.table("SEBULK").items()
+        if k not in deck.parts and c.type not in ("PRIMARY", "COLLCTR", "REPEAT" * bool(deck.parts))
+    ]
+    if elsewhere:
+        number, kind = elsewhere[0]
+        refused = deck.bulk.place("SEBULK", number).error(
+            f"superelements of TYPE {kind} without a BEGIN SUPER={number} are not supported: give "
+            "the assembled deck"
+        )
+        return replace(deck, refused=(*deck.refused, refused))
     if not deck.parts:
         return deck
     external = _external_ones(deck)

@@ -153,3 +153,8 @@ def test_what_lapack_gives_up_on_is_said(monkeypatch):
     K, M, _ = two_masses([1.0, 1e60], [1.0, 1.0])
     with pytest.raises(CheckError, match=r"differ by too many decades \(6-th"):
         solve((K, M), 1)
+
+
+def test_ratios_beyond_the_numbers_of_the_machine_are_said():
+    with pytest.raises(CheckError, match="more decades than numbers have"):
+        solve((sp.diags([1.0, 1e200]).tocsr(), sp.diags([1.0, 1e-200]).tocsr()), 1)

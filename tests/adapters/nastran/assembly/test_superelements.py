@@ -110,6 +110,7 @@ def test_superelements_of_the_main_bulk_are_solved_whole_and_said(frequencies, w
     ("more", "sentence"),
     [
         ("SEBULK,1,MIRROR,2\n", "SEBULK 1 .*TYPE MIRROR are not supported"),
+        ("SEBULK,2,MIRROR,1\n", "SEBULK 2 .*TYPE MIRROR without a BEGIN SUPER=2 are not"),
         ("SEBULK,2,REPEAT,3\n", "SEBULK 2 .* superelement 3, which the deck does not have"),
         ("SELOC,1,101,105,999,3,6,9\n", "SELOC 1 .* grid 999, which does not exist"),
         ("SECONCT,1,0\n,999,3\n", "SECONCT .* grid 999 of superelement 1, which has none"),
