@@ -100,7 +100,7 @@ def test_sets_of_a_part_are_those_of_its_subcase(frequencies):
 
 
 def test_superelements_of_the_main_bulk_are_solved_whole_and_said(frequencies, whole):
-    bulk = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,1,8,15,22\nSESET,1,4,thru,7\n"
+    bulk = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,1,8,15,22\nSESET,1,4,thru,7\nCSUPEXT,1,3\n"
     found, deck = frequencies(bulk)
     np.testing.assert_allclose(found, whole, rtol=1e-12)
     assert any("SESET" in w and "not condensed" in w for w in deck.warnings)
