@@ -142,6 +142,10 @@ UPDATE: dict[str, Any] = {
     "measured_mass": _option(
         float, "What the structure weighed, in the deck's unit, for the residual mass."
     ),
+    "solver": _option(
+        str, "Your own Nastran, which then is what meets the test.", metavar="'CMD {deck}'"
+    ),
+    "solver_limit": _option(float, "Seconds that it may take. [default: 3600]"),
     "starts": _option(int, "Begin from so many other factors as well.", metavar="N"),
     "intervals": _option(bool, "95 % intervals of the factors by profile.", "--intervals"),
     "write_undetermined": _option(

@@ -82,6 +82,9 @@ class UpdateOptions(CompareOptions, total=False):
     optimum is the only one; ``intervals`` (False): 95 % intervals of the factors by profile.
     ``residuals`` with "prior" and ``prior_sigma``: how far off the deck's values may be.
 
+    ``solver``: the command of the user's own Nastran, "nastran {deck}", whose modes are then those
+    that meet the test; it may take ``solver_limit`` seconds (3600) a run.
+
     What was measured beside modes, in deck units, each for a residual of its own:
     ``measured_mass`` ("mass"), ``measured_centre_of_gravity`` (x, y, z: "centre_of_gravity"),
     ``load_cases`` ("deflections"): each with ``loads`` as "1187:-Z=100" and ``readings`` as
@@ -99,6 +102,8 @@ class UpdateOptions(CompareOptions, total=False):
     write_undetermined: bool | None
     starts: int | None
     intervals: bool | None
+    solver: str | None
+    solver_limit: float | None
     measured_mass: float | None
     measured_centre_of_gravity: Sequence[float] | None
     load_cases: Sequence[LoadRequest | Mapping[str, object]] | None

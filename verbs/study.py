@@ -81,6 +81,8 @@ class Study:
     regularisation: float = 1e-2
     write_undetermined: bool = False
     starts: int = 0
+    solver: str | None = None
+    solver_limit: float = 3600.0
     intervals: bool = False
     stages: tuple[StageRequest, ...] = ()
     load_cases: tuple[LoadRequest, ...] = ()
@@ -156,6 +158,8 @@ class Study:
             raise InputError(f"measured_mass is {self.measured_mass:g}; it must be above 0")
         if len(self.measured_centre_of_gravity) not in (0, 3):
             raise InputError("measured_centre_of_gravity is x, y, z; give three numbers")
+        if not self.solver_limit > 0.0:
+            raise InputError(f"solver_limit is {self.solver_limit:g} s; it must be above 0")
         if self.starts < 0:
             raise InputError(f"starts is {self.starts}; give 0 or more")
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:

@@ -5,34 +5,20 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
-import numpy as np
-
-from ..core.arrays import Floats
-from ..core.correlation.comparison import Comparison, Placed, compare
-from ..core.data.parameter import Parameter
 from ..core.data.parametric_model import Model
-from ..core.eigen.normal_modes import Eigensolution, modes_of
-from ..core.errors import CheckError, InputError
+from ..core.errors import InputError
 from ..core.results.correlation import compared
 from ..core.results.plain import Table
 from ..core.results.update import parameter_rows, posterior_table, start_rows, weights_table
-from ..core.updating import update as core
-from ..core.updating.determined import update_determined
-from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
-from .analysis import Analysis, both_given, correlated, named, read_analysis, target_of
+from .analysis import both_given, correlated, named, read_analysis
 from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated, content_of
 from .sources import Source, measured
-from .study import Study, meant
-
-if TYPE_CHECKING:
-    from ..adapters.nastran.editing.changed_deck import ChangedDeck
-
-_AGREES = 1e-4
-"""Relative difference of eigenvalues, updated model and deck read back, that is none."""
+from .study import Study
+from .updating_ways import by_itself, by_solver
 
 
 def update(
@@ -92,18 +78,10 @@ def update(
     side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
     placed = correlated(analysis, side, asked).placed
-    progress("updating")
-    done, starts, intervals = _moved(analysis, placed, asked)
-
-    def comparison(solution: Eigensolution) -> Comparison:
-        modes = modes_of(analysis.model, solution)
-        rigid = solution.rigid_body_modes
-        return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
-
-    states = [s.solution for s in (done.before, done.after)]
-    before, after = (comparison(s) for s in states if isinstance(s, Eigensolution))
-    progress("writing the updated deck and solving it again")
-    changed, values = _written(analysis, done)
+    found = by_solver if asked.solver else by_itself
+    way = found(analysis, placed, side, asked, progress)
+    done, starts, intervals = way.moved
+    before, after, (changed, values) = way.before, way.after, way.written
     history = Table(done.history)
     told, final = compared(before), replace(compared(after), warnings=())
     assert analysis.deck is not None
@@ -120,90 +98,11 @@ def update(
         eigensolutions=done.eigensolutions,
         starts=start_rows(starts),
         posterior=posterior_table(analysis.model.parameters, done),
+        solver=way.solver,
         stopped=done.stopped.sentence,
         seconds=time.perf_counter() - start,
-        warnings=(*analysis.warnings, *told.warnings, *done.warnings),
+        warnings=(*analysis.warnings, *told.warnings, *done.warnings, *way.warnings),
         content=content_of(before, final, after, history),
         study=named(asked, analysis.deck, side, None),
         deck=changed,
     )
-
-
-def _moved(
-    analysis: Analysis, placed: Placed, asked: Study
-) -> tuple[core.Updated, tuple[Start, ...], Floats | None]:
-    """Return the update, those from other starts, and intervals where they are asked for."""
-    model, target = analysis.model, target_of(analysis.model, placed, asked)
-    stages, update = _stages(asked, model.parameters), update_determined
-    if asked.write_undetermined:
-        update = core.update
-    how, count = (asked.criteria, asked.weights), len(analysis.modes)
-    done = update(model, target, stages, *how, n_modes=count)
-    best, starts = from_elsewhere(
-        model, target, stages, done, asked.starts, *how, n_modes=count, seed=asked.seed
-    )
-    best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
-    if not asked.intervals:
-        return best, starts, None
-    return best, starts, profile_intervals(model, target, stages[-1], best, *how, n_modes=count)
-
-
-def _written(
-    analysis: Analysis, done: core.Updated
-) -> tuple[ChangedDeck, list[list[float | None]]]:
-    """Return the updated deck and the values of its parameters' fields, read back and solved.
-
-    Raises
-    ------
-    CheckError
-        When the deck read back does not give the frequencies of the updated model.
-    """
-    from ..adapters.nastran import read_value, set_values
-    from ..adapters.nastran.assembly.read_back import read_back
-    from ..adapters.nastran.editing.changed_deck import ChangedDeck
-    from ..adapters.nastran.fields.parameter_references import moved
-
-    assert analysis.deck is not None
-    assert analysis.given is not None
-    wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
-    text, given = set_values(analysis.deck.text, wanted), analysis.given.text
-    changed = ChangedDeck.of(given, text if wanted else given)
-    target = done.after.solution.eigenvalues
-    again = read_back(changed, len(target)).solution
-    elastic = slice(again.rigid_body_modes, None)
-    off = np.max(np.abs(again.eigenvalues[elastic] / target[elastic] - 1.0), initial=0.0)
-    if not off < _AGREES:
-        raise CheckError(
-            f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
-            "updated model's; nothing was written"
-        )
-    return changed, [[read_value(text, r) for r in s.fields] for s in analysis.specs]
-
-
-def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, ...]:
-    """Return the stages; without ``[[stages]]`` one that moves every parameter.
-
-    Raises
-    ------
-    InputError
-        A stage that names a parameter the study does not define.
-    """
-    names = [p.name for p in parameters]
-    if not study.stages:
-        every = tuple(range(len(names)))
-        return (core.Stage(every, study.residuals, study.max_iterations),)
-    return tuple(
-        core.Stage(
-            tuple(_number(name, names) for name in s.parameters) or tuple(range(len(names))),
-            s.residuals,
-            s.max_iterations,
-        )
-        for s in study.stages
-    )
-
-
-def _number(name: str, names: Sequence[str]) -> int:
-    if name in names:
-        return names.index(name)
-    lacks = f"a stage names the parameter '{name}', which the study does not define"
-    raise InputError(lacks + meant(name, names))

@@ -51,6 +51,23 @@ class StartRow:
     same: bool
 
 
+@dataclass(frozen=True)
+class SolverRow:
+    """What the user's own solver said: how often it ran, how far the embedded one was off.
+
+    `off_before` and `off_after` [%] are the largest differences of a pair's frequency, of the deck
+    as it came and of the updated one, which the update corrects for; `left` is by how much that
+    correction still changed in the end.
+    """
+
+    command: str
+    runs: int
+    seconds: float
+    off_before: float
+    off_after: float
+    left: float
+
+
 @dataclass(frozen=True, eq=False)
 class WeightsTable(Noun):
     """Standard errors by which identified modes weigh: by test mode, by sensor."""
@@ -108,6 +125,7 @@ class UpdateTables(ChangingTables):
     stopped: str
     starts: Table[StartRow] = field(default_factory=lambda: Table((), StartRow))
     posterior: LikenessTable | None = field(default=None, metadata=OPTIONAL)
+    solver: SolverRow | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def pairs(self) -> Table[PairRow]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.results.discovery import DiscoverTables
-from ....core.results.update import ChangingTables, ParameterRow, UpdateTables
+from ....core.results.update import ChangingTables, ParameterRow, SolverRow, UpdateTables
 from ....core.updating.stages import Iteration
 from ..html.html_table import html_table
 from ..html.markup import tag
@@ -30,7 +30,23 @@ def _tables(answer: ChangingTables) -> Sequence[Table]:
     tables = [_moved(answer)] if answer.parameters else []
     if isinstance(answer, UpdateTables) and answer.history:
         tables.append(_iterations(answer))
+    if isinstance(answer, UpdateTables) and answer.solver is not None:
+        tables.append(_solver(answer.solver))
     return tables
+
+
+def _solver(s: SolverRow) -> Table:
+    headings = [*left("command"), "runs", "s", "off before %", "off after %", "left %"]
+    row = (s.command, str(s.runs), fixed(s.seconds, 0), *(fixed(v, 3) for v in _off(s)))
+    note = (
+        "Off: the largest difference of a pair's frequency from the embedded solver, which the "
+        "update corrected for; left: by how much that still changed. The pairs are of your solver."
+    )
+    return Table.of("Your solver", headings, [row], note)
+
+
+def _off(s: SolverRow) -> tuple[float, float, float]:
+    return s.off_before, s.off_after, s.left
 
 
 def _moved(answer: ChangingTables) -> Table:

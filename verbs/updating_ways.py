@@ -1,0 +1,216 @@
+"""An update by the embedded solver alone, or such that the user's own meets the test."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..core.arrays import Floats
+from ..core.correlation.comparison import Comparison, Placed, compare
+from ..core.correlation.mode_pairing import Pair
+from ..core.data.parameter import Parameter
+from ..core.eigen.normal_modes import Eigensolution, modes_of
+from ..core.errors import CheckError, InputError
+from ..core.reduction.eigenpair_derivatives import Spectral
+from ..core.results.update import SolverRow
+from ..core.updating import update as core
+from ..core.updating.determined import update_determined
+from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
+from .analysis import Analysis, placed as place, rigid_count, target_of
+from .options import Say
+from .outside_solver import outside_solver
+from .sources import Measured
+from .study import Study, meant
+
+if TYPE_CHECKING:
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+
+_MOST_RUNS = 4
+"""Updates that the user's solver verifies, at most."""
+_SETTLED = 0.05
+"""Percent of a frequency by which the correction for the user's solver may still change."""
+_AGREES = 1e-4
+"""Relative difference of eigenvalues, updated model and deck read back, that is none."""
+
+
+_Written = tuple["ChangedDeck", list[list[float | None]]]
+"""The updated deck, and the values of its parameters' fields."""
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """An update, both states compared with the test, and the deck."""
+
+    moved: tuple[core.Updated, tuple[Start, ...], Floats | None]
+    before: Comparison
+    after: Comparison
+    written: _Written
+    solver: SolverRow | None = None
+    warnings: tuple[str, ...] = ()
+
+
+def by_itself(analysis: Analysis, placed: Placed, _: Measured, asked: Study, progress: Say) -> Way:
+    """Update, solved by the embedded solver alone."""
+    progress("updating")
+    moved = _moved(analysis, placed, asked)
+
+    def comparison(solution: Spectral) -> Comparison:
+        assert isinstance(solution, Eigensolution)
+        modes = modes_of(analysis.model, solution)
+        rigid = solution.rigid_body_modes
+        return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
+
+    before, after = (comparison(s.solution) for s in (moved[0].before, moved[0].after))
+    progress("writing the updated deck and solving it again")
+    return Way(moved, before, after, _written(analysis, moved[0]))
+
+
+def by_solver(
+    analysis: Analysis, placed: Placed, side: Measured, asked: Study, progress: Say
+) -> Way:
+    """Update such that the user's own solver meets the test.
+
+    What it says of each pair's frequency over what the embedded solver says corrects the test that
+    is aimed at, until both go together; its modes are those that are compared.
+    """
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+
+    assert analysis.deck is not None
+    assert analysis.given is not None
+    assert asked.solver is not None
+    deck, began = analysis.deck, time.perf_counter()
+
+    def judged(changed: ChangedDeck) -> Comparison:
+        modes = solver.modes(changed, deck)
+        progress(f"{len(modes)} modes of your solver")
+        at = place(analysis.model, deck, modes, side, asked)
+        return compare(analysis.geometry, modes, at, asked.criteria, rigid_count(modes))
+
+    with outside_solver(asked.solver, asked.solver_limit) as solver:
+        progress("your solver solves the deck as it came")
+        before = judged(ChangedDeck.of(analysis.given.text, analysis.given.text))
+        own = compare(
+            analysis.geometry, analysis.modes, placed, asked.criteria, analysis.rigid_body_modes
+        )
+        factor = first = _correction(before, own.correlation.pairs)
+        for round_ in range(1, _MOST_RUNS + 1):
+            runs = round_ + 1
+            progress("updating")
+            test = placed.test
+            aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
+            moved = _moved(analysis, replace(placed, test=aim), asked)
+            written = _written(analysis, moved[0])
+            progress("your solver solves the updated deck")
+            after = judged(written[0])
+            last, factor = factor, _correction(after, moved[0].after.correlation.pairs)
+            left = _percent(factor / last)
+            if left < _SETTLED:
+                break
+    row = SolverRow(
+        asked.solver,
+        runs,
+        time.perf_counter() - began,
+        _percent(first),
+        _percent(factor),
+        left,
+    )
+    open_ = f"your solver and the embedded one still part by {left:.2g} % after {runs} runs"
+    return Way(moved, before, after, written, row, () if left < _SETTLED else (open_,))
+
+
+def _correction(by_solver: Comparison, own: Sequence[Pair]) -> Floats:
+    """Frequency by the user's solver over that by the embedded one, by test mode, (n_test,)."""
+    factor = np.full(len(by_solver.test), np.nan)
+    ours = {p.test: p.analysis_hz for p in own}
+    for p in by_solver.correlation.pairs:
+        if p.test in ours:
+            factor[p.test] = p.analysis_hz / ours[p.test]
+    known = np.isfinite(factor)
+    factor[~known] = np.median(factor[known]) if known.any() else 1.0
+    return factor
+
+
+def _percent(factor: Floats) -> float:
+    return float(100.0 * np.abs(factor - 1.0).max(initial=0.0))
+
+
+def _moved(
+    analysis: Analysis, placed: Placed, asked: Study
+) -> tuple[core.Updated, tuple[Start, ...], Floats | None]:
+    """Return the update, those from other starts, and intervals where they are asked for."""
+    model, target = analysis.model, target_of(analysis.model, placed, asked)
+    stages, update = _stages(asked, model.parameters), update_determined
+    if asked.write_undetermined:
+        update = core.update
+    how, count = (asked.criteria, asked.weights), len(analysis.modes)
+    done = update(model, target, stages, *how, n_modes=count)
+    best, starts = from_elsewhere(
+        model, target, stages, done, asked.starts, *how, n_modes=count, seed=asked.seed
+    )
+    best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
+    if not asked.intervals:
+        return best, starts, None
+    return best, starts, profile_intervals(model, target, stages[-1], best, *how, n_modes=count)
+
+
+def _written(analysis: Analysis, done: core.Updated) -> _Written:
+    """Return the updated deck and the values of its parameters' fields, read back and solved.
+
+    Raises
+    ------
+    CheckError
+        When the deck read back does not give the frequencies of the updated model.
+    """
+    from ..adapters.nastran import read_value, set_values
+    from ..adapters.nastran.assembly.read_back import read_back
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
+    from ..adapters.nastran.fields.parameter_references import moved
+
+    assert analysis.deck is not None
+    assert analysis.given is not None
+    wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
+    text, given = set_values(analysis.deck.text, wanted), analysis.given.text
+    changed = ChangedDeck.of(given, text if wanted else given)
+    target = done.after.solution.eigenvalues
+    again = read_back(changed, len(target)).solution
+    elastic = slice(again.rigid_body_modes, None)
+    off = np.max(np.abs(again.eigenvalues[elastic] / target[elastic] - 1.0), initial=0.0)
+    if not off < _AGREES:
+        raise CheckError(
+            f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
+            "updated model's; nothing was written"
+        )
+    return changed, [[read_value(text, r) for r in s.fields] for s in analysis.specs]
+
+
+def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, ...]:
+    """Return the stages; without ``[[stages]]`` one that moves every parameter.
+
+    Raises
+    ------
+    InputError
+        A stage that names a parameter the study does not define.
+    """
+    names = [p.name for p in parameters]
+    if not study.stages:
+        every = tuple(range(len(names)))
+        return (core.Stage(every, study.residuals, study.max_iterations),)
+    return tuple(
+        core.Stage(
+            tuple(_number(name, names) for name in s.parameters) or tuple(range(len(names))),
+            s.residuals,
+            s.max_iterations,
+        )
+        for s in study.stages
+    )
+
+
+def _number(name: str, names: Sequence[str]) -> int:
+    if name in names:
+        return names.index(name)
+    lacks = f"a stage names the parameter '{name}', which the study does not define"
+    raise InputError(lacks + meant(name, names))
