@@ -1,11 +1,14 @@
 """A spring between two places: a brace, a strut, a member that the model does not have."""
 
-from dataclasses import dataclass, field
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.spatial import cKDTree
 
-from ...arrays import Floats
+from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Structure, thinned
 from .candidates import Candidates
 from .effect_kind import STIFFNESS, EffectKind, Scale
@@ -14,57 +17,94 @@ from .effect_numbers import EFFECTS
 from .structure_points import points_of, translations
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Links(Candidates):
     """Springs along the lines between two places, `ends_xyz` (n, 6) of them one after the other."""
 
-    ends_xyz: Floats = field(default_factory=lambda: np.zeros((0, 6)))
+    structure: Structure
+    ends_xyz: Floats
 
     @property
     def spots(self) -> Floats:
         """Return both ends: links are near each other where both of these are."""
         return np.asarray(self.ends_xyz * np.sqrt(0.5))
 
+    def near(self, row: int, count: int) -> Links:
+        """Return the links between so many grids nearest to either end of one of them."""
+        points, xyz, grids = _grids(self.structure)
+        first, last = (
+            cKDTree(xyz).query(end, min(count, len(xyz)))[1]
+            for end in np.split(self.ends_xyz[row], 2)
+        )
+        a, b = (i.ravel() for i in np.meshgrid(first, last, indexing="ij"))
+        some = np.any(xyz[a] != xyz[b], axis=1)
+        return _between(self.structure, (points, xyz, grids), a[some], b[some], self)
+
+
+Points = tuple[sp.csr_matrix, Floats, list[list[int]]]
+
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Springs between any two of the grids that are left when these are thinned."""
-    points, xyz, grids = points_of(structure)
-    own = np.flatnonzero([len(g) == 1 for g in grids])
-    own = own[np.argsort(xyz[own] @ _ORDER, kind="stable")]
+    points, xyz, grids = _grids(structure)
     spacing = EFFECTS.link_spacing * scale.size
-    while len(kept := thinned(xyz[own], spacing)) > EFFECTS.link_ends:
+    while len(kept := thinned(xyz, spacing)) > EFFECTS.link_ends:
         spacing *= EFFECTS.link_thinned
-    own = own[kept]
-    a, b = np.triu_indices(len(own), 1)
-    line = xyz[own[b]] - xyz[own[a]]
-    length = np.linalg.norm(line, axis=1)
+    a, b = np.triu_indices(len(kept), 1)
+    length = np.linalg.norm(xyz[kept[b]] - xyz[kept[a]], axis=1)
     low, high = EFFECTS.link_lengths
     some = np.flatnonzero((length > low * scale.size) & (length < high * scale.size))
     if not len(some):
         return ()
-    a, b, n = a[some], b[some], line[some] / length[some, None]
-    rows, three = np.repeat(np.arange(len(some)), 3), np.arange(3)
-    pull = sp.csr_matrix(
-        (n.ravel(), (rows, (3 * b[:, None] + three).ravel())), (len(some), 3 * len(own))
-    )
-    push = sp.csr_matrix((n.ravel(), (rows, (3 * a[:, None] + three).ravel())), pull.shape)
-    first, last = xyz[own[a]], xyz[own[b]]
-    found = Links(
+    like = Candidates(
         kind=KIND,
-        xyz=0.5 * (first + last),
-        law=SpringLaw(np.zeros((len(some), 1))),
+        xyz=xyz[:0],
+        law=SpringLaw(np.zeros((0, 1))),
         trials=scale.springs(),
-        root=((pull - push) @ translations(structure, points[own])).tocsr(),
+        root=points[:0],
+        rows_each=1,
+        where=(),
+        typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
+        spread=np.array([EFFECTS.spring_spread]),
+    )
+    return (_between(structure, (points, xyz, grids), kept[a[some]], kept[b[some]], like),)
+
+
+def _grids(structure: Structure) -> Points:
+    """Return weights (n, n_grid), positions and numbers of the grids that move, in an order."""
+    points, xyz, grids = points_of(structure)
+    own = np.flatnonzero([len(g) == 1 for g in grids])
+    own = own[np.argsort(xyz[own] @ _ORDER, kind="stable")]
+    return points[own], xyz[own], [grids[i] for i in own.tolist()]
+
+
+def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
+    """Return the links between grids a (n,) and b (n,), in all else like some candidates."""
+    points, xyz, grids = at
+    used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
+    line = xyz[b] - xyz[a]
+    n = line / np.linalg.norm(line, axis=1)[:, None]
+    rows, three, shape = np.repeat(np.arange(len(a)), 3), np.arange(3), (len(a), 3 * len(used))
+    push, pull = (
+        sp.csr_matrix((n.ravel(), (rows, (3 * end[:, None] + three).ravel())), shape)
+        for end in np.split(ends.ravel(), 2)
+    )
+    return Links(
+        kind=KIND,
+        xyz=0.5 * (xyz[a] + xyz[b]),
+        law=SpringLaw(np.zeros((len(a), 1))),
+        trials=like.trials,
+        root=((pull - push) @ translations(structure, points[used])).tocsr(),
         rows_each=1,
         where=tuple(
             {"grids": [grids[i][0], grids[j][0]], "components": [1]}
-            for i, j in zip(own[a].tolist(), own[b].tolist(), strict=True)
+            for i, j in zip(a.tolist(), b.tolist(), strict=True)
         ),
-        typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
-        spread=np.array([EFFECTS.spring_spread]),
-        ends_xyz=np.hstack([first, last]),
+        typical=like.typical,
+        spread=like.spread,
+        structure=structure,
+        ends_xyz=np.hstack([xyz[a], xyz[b]]),
     )
-    return (found,)
 
 
 _ORDER = np.array([1.0, 0.7548776662466927, 0.5698402909980532])

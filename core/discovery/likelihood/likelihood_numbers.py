@@ -18,7 +18,7 @@ class Effort:
     most: int = number(4, "suspects", "of a hypothesis, at most")
     search_modes: int = number(48, "modes", "of a hypothesis on which places are scanned")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
-    near: float = number(0.06, SIZE, "how far a suspect moves at once")
+    near: float = number(0.12, SIZE, "how far a suspect moves at once")
     twice: int = number(8000, "degrees of freedom", "models up to it are searched a second time, with all kinds at once", "time")
 
 

@@ -80,8 +80,7 @@ class Completeness:
         error that the known parameters alone leave: what is not there hardly lessens it.
         """
         return bool(
-            self.gain > needed(self.best)
-            and self.ahead > SEARCH.ahead
+            min(self.gain, self.ahead) > needed(self.best)
             and (self.agree > SEARCH.agree or self.left < SEARCH.small_part)
         )
 

@@ -117,7 +117,7 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
         around = surroundings(structure, c.xyz[s.row]) if alone else None
         if around is not None:
             s = Suspect(len(searcher.problem.catalogue), 0, (*s.theta, *SEARCH.foot[0]))
-            searcher = _with(searcher, s.kind, _free(structure, c, around))
+            searcher = with_kind(searcher, s.kind, _free(structure, c, around))
         suspects.append(s)
     return searcher, replace(state, suspects=tuple(suspects))
 
@@ -136,7 +136,7 @@ def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searc
             wide = around.radius(theta) > SEARCH.spread_mass * searcher.size
             patched = _spread(searcher, structure, around, theta) if wide else None
             if patched is None:
-                searcher = _with(searcher, s.kind, _disc(structure, c, around, theta))
+                searcher = with_kind(searcher, s.kind, _disc(structure, c, around, theta))
             else:
                 searcher, kind = patched
                 s = replace(s, kind=kind, row=len(searcher.problem.catalogue[kind]) - 1)
@@ -251,7 +251,7 @@ def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floa
     )
 
 
-def _with(searcher: Searcher, kind: int, new: Candidates) -> Searcher:
+def with_kind(searcher: Searcher, kind: int, new: Candidates) -> Searcher:
     """Put candidates into the catalogue, as one of its numbers; no scan looks at them."""
     searcher = _put(searcher, kind, new, new.factors(searcher.problem.basis))
     coarse = _set(searcher.coarse, kind, np.zeros(0, np.int64))

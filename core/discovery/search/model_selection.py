@@ -49,7 +49,7 @@ def price(searcher: Searcher, suspect: Suspect) -> float:
 
 
 def choices(searcher: Searcher, suspect: Suspect) -> int:
-    """Return the number of places of a kind times, where it is tuned, what it may be tuned to."""
+    """Return the number of places of a kind times what it may be tuned to, times that of kinds."""
     catalogue = searcher.problem.catalogue
     kind = catalogue[suspect.kind].kind
     number = sum(
@@ -57,7 +57,7 @@ def choices(searcher: Searcher, suspect: Suspect) -> int:
         for c, rows in zip(catalogue, searcher.coarse, strict=True)
         if c.kind == kind
     )
-    return max(number, 2)
+    return max(number, 2) * len({c.kind for c in catalogue})
 
 
 def burden(searcher: Searcher, f: Fit) -> float:
@@ -146,9 +146,10 @@ def scored(searcher: Searcher, f: Fit) -> Scored:
 def needed(judged: Judged) -> float:
     """Return the gain, ln of a likelihood, that an effect needs beside the error that is left.
 
-    An error of the model has a likeliest place as well, and what that gains is a share of what
-    every mode says: `claimed` a mode is more than it, whatever the error that is left; where right
-    models leave as much half of the time, 1 is.
+    Over the known parameters alone, and over any other effect. An error of the model has a
+    likeliest place as well, and what that gains is a share of what every mode says: `claimed` a
+    mode is more than it, whatever the error that is left; where right models leave as much half of
+    the time, 1 is.
     """
     a_mode = SEARCH.claimed ** (1.0 - 2.0 * by_such_a_test(judged))
     return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
@@ -219,7 +220,8 @@ def _unmatched(
         a, b = catalogue[s.kind], catalogue[t.kind]
         alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
         alike = alike and a.many(s.row) == b.many(t.row)
-        return alike and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
+        along = a.where[s.row].get("components") == b.where[t.row].get("components")
+        return alike and along and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)
 

@@ -160,7 +160,7 @@ class Searcher:
         c = self.problem.catalogue[suspect.kind]
         distance = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
         rows = np.flatnonzero(distance <= self.effort.near * self.size)
-        rows = rows[np.argsort(distance[rows], kind="stable")][: self.effort.neighbours]
+        rows = _some(rows[np.argsort(distance[rows], kind="stable")], self.effort.neighbours)
         without = evaluate(self.problem, state.nuisance, others)
         rows = rows[~self._taken(without, suspect.kind, rows)]
         if not len(rows):
@@ -229,3 +229,9 @@ class Searcher:
         others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
         left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
         return [older[int(np.argmin(left))]]
+
+
+def _some(rows: Ints, count: int) -> Ints:
+    """Return so many of rows in order of distance: half are the nearest, half spread over all."""
+    near, far = np.split(rows, [count // 2])
+    return np.concatenate([near, far[:: max(1, -(-2 * len(far) // count))]])

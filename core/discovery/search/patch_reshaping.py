@@ -1,10 +1,11 @@
-"""Patches grow and shrink, a row of elements at a time, where that pays.
+"""Patches grow and shrink, a row of elements at a time, and links end elsewhere, where that pays.
 
 The catalogue has round and elongated patches of a few sizes. What is really there ends where a
 bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
 second effect beside the first. So the patches of a hypothesis that earned its place take in the
 next row of elements on one side or all round, or give one up, or stop at the property they are on,
-as long as each step gains more than trying so many shapes is worth.
+as long as each step gains more than trying so many shapes is worth. So do links: the catalogue has
+those between some grids.
 """
 
 from collections.abc import Sequence
@@ -15,10 +16,12 @@ import numpy as np
 from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Candidates, Suspect
 from ..effects.element_patches import Patch, PatchCandidates, area_of
+from ..effects.link_spring import Links
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
+from .footprints import with_kind
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -87,6 +90,10 @@ def _options(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspe
     c = searcher.problem.catalogue[suspect.kind]
     if isinstance(c, PatchCandidates):
         return _added(searcher, suspect, variants(c.structure, c.patches[suspect.row]))
+    if isinstance(c, Links):
+        near, kind = c.near(suspect.row, SEARCH.link_near), len(searcher.problem.catalogue)
+        options = [replace(suspect, kind=kind, row=row) for row in range(len(near))]
+        return with_kind(searcher, kind, near), options
     beside = [
         replace(suspect, kind=kind, row=int(row))
         for kind, d in _patched(searcher, c)

@@ -17,7 +17,7 @@ from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit, softened
 from ..likelihood.map_fit import fit
 from .beam_search import Found, grown
-from .model_selection import adequate, complete, cost, enough, noise_scale, with_unseen
+from .model_selection import adequate, complete, cost, enough, noise_scale, usual, with_unseen
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -29,13 +29,11 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     on with the others.
     """
     late = [c.kind.late for c in searcher.problem.catalogue]
-    usual = _with(searcher, [not x for x in late])
-    found = _by_tuning(usual, progress)
+    simple = _with(searcher, [not x for x in late])
+    found = _by_tuning(simple, progress)
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
     best = int(np.argmin(costs))
-    if not any(late) or scale < SEARCH.second_opinion:
-        return found
-    if best and adequate(searcher, found.levels[best]):
+    if not any(late) or usual(searcher, found.levels[best]):
         return found
     progress("looking for springs between two places")
     alone = _with(searcher, late)
@@ -45,7 +43,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     if top is None or price > costs[best]:
         return found.with_rivals(f for _, f in tried[:best])
     levels = [*found.levels[: len(top.suspects)], top]
-    return _better(searcher, found, grown(usual, enough(searcher), progress, levels))
+    return _better(searcher, found, grown(simple, enough(searcher), progress, levels))
 
 
 def _by_tuning(searcher: Searcher, progress: Callable[[str], None]) -> Found:

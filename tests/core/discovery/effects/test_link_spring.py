@@ -66,3 +66,22 @@ def test_links_are_near_each_other_where_both_their_ends_are(structure):
     assert found.xyz[rows[(1, 11)]] == pytest.approx(found.xyz[rows[(3, 9)]])
     assert np.linalg.norm(cross - other) == pytest.approx(0.2)
     assert np.linalg.norm(cross - found.spots[rows[(2, 11)]]) == pytest.approx(0.1 / np.sqrt(2.0))
+
+
+def test_links_near_one_end_at_the_grids_about_its_ends(structure):
+    found = links(structure)
+    row = next(i for i, w in enumerate(found.where) if sorted(w["grids"]) == [1, 11])
+    near = found.near(row, 3)
+    assert {tuple(w["grids"]) for w in near.where} == {
+        (a, b) for a in (1, 2, 5) for b in (11, *_beside_11(near))
+    }
+    same = next(i for i, w in enumerate(near.where) if w["grids"] == [1, 11])
+    assert near.root[[same]].toarray() == pytest.approx(found.root[[row]].toarray())
+
+
+def _beside_11(near):
+    """Two of the four neighbours of grid 11: they are equally far."""
+    others = {w["grids"][1] for w in near.where} - {11}
+    assert len(others) == 2
+    assert others <= {7, 10, 12, 15}
+    return others

@@ -67,6 +67,8 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
 
 def test_two_places_that_are_as_good_are_not_clear():
     assert not found(ahead=1.0).clear
+    assert not found(error=0.02, gain=50.0, ahead=20.0).clear
+    assert found(error=0.02, gain=50.0, ahead=40.0).clear
     assert found(ahead=1.0).posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), abs=1e-6)
 
 
@@ -92,7 +94,7 @@ def weighed(monkeypatch, found, evidence):
         room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
     )
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
-    kind = Some(kind="mass", tunings=1, xyz=xyz, many=lambda row: 1)
+    kind = Some(kind="mass", tunings=1, xyz=xyz, many=lambda row: 1, where=[{}] * 100)
     searcher = Some(
         problem=Some(catalogue=[kind]),
         coarse=[np.arange(100)],

@@ -167,9 +167,20 @@ def test_a_mass_at_one_place_is_no_rival_of_itself_spread_out(other, away):
     kinds = (point_mass.KIND, other.KIND)
     places = (np.zeros((1, 3)), np.full((1, 3), away))
     catalogue = [
-        Some(kind=kind, xyz=xyz, many=lambda _: 1) for kind, xyz in zip(kinds, places, strict=True)
+        Some(kind=kind, xyz=xyz, many=lambda _: 1, where=[{}])
+        for kind, xyz in zip(kinds, places, strict=True)
     ]
     s = Some(problem=Some(catalogue=catalogue), effort=Some(apart=0.1), size=1.0)
     best, rival = (Some(suspects=(Suspect(k, 0, (0.0,)),)) for k in (0, 1))
     told = contenders(s, Found((None, best), ((), (rival,))), 1)
     assert (rival in told) == (away > 0.0 or other is ground_spring)
+
+
+@pytest.mark.parametrize(("components", "others"), [([5], 1), ([3], 0)])
+def test_a_support_that_turns_is_another_explanation_than_one_that_moves(components, others):
+    where = [{"components": [3]}, {"components": components}]
+    support = Some(kind="support", xyz=np.zeros((2, 3)), where=where, many=lambda row: 1)
+    searcher = Some(problem=Some(catalogue=[support]), effort=Some(apart=0.1), size=1.0)
+    best, rival = (Some(suspects=(Some(kind=0, row=row),)) for row in (0, 1))
+    found = Found((Some(suspects=()), best), ((), (rival,)))
+    assert len(contenders(searcher, found, 1)) == others
