@@ -165,5 +165,6 @@ BEAM3 = Element(
     edges=_EDGES,
     stiffness=beam3_stiffness,
     mass=beam3_mass,
+    curved=True,
     unknown="stiffness and mass",
 )

@@ -187,5 +187,6 @@ BEND = Element(
     freedoms=6,
     stiffness=bend_stiffness,
     mass=bend_mass,
+    curved=True,
     unknown="mass",
 )

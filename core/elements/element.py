@@ -46,6 +46,8 @@ class Element:
     exact : bool
         Whether the stiffness is exact between the nodes, so that lumping the mass of a straight
         bar (`bar.bar_mass`) is all that a coarse mesh gets wrong.
+    curved : bool
+        Whether its length is another than that between its ends.
     unknown : str
         What of its stiffness in Nastran is not known, in words, where another law stands for it.
     """
@@ -62,6 +64,7 @@ class Element:
     integrations: tuple[str, ...] = ()
     linear_mass: Floats | None = None
     exact: bool = False
+    curved: bool = False
     unknown: str = ""
 
     @property

@@ -169,6 +169,8 @@ def _sections(bulk: Bulk, own: list[Values], radius: Floats) -> tuple[BendSectio
 def _constants(bulk: Bulk, p: Values, R: float) -> list[float]:
     place = bulk.place("PBEND", p.pid)
     E, G, _, rho = isotropic(bulk, p.mid, place)
+    if not min(E, G) > 0.0:
+        raise place.error("E and G of its material must be positive")
     if p.fsi is None:
         A, I1, I2, J, k1, k2 = p.a, p.i1, p.i2, p.j, p.k1, p.k2
         if not min(A, I1, I2, J) > 0.0:

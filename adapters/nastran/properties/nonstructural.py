@@ -132,6 +132,11 @@ def _read(name: str, number: int, card: Values, measure: _Measures, place: Place
         if name in ("NSML", "NSML1"):
             if len({by_area for _, by_area in found.values()}) > 1:
                 raise place.error("areas and lengths are mixed in one list")
+            if bent := [eid for eid in found if measure.is_bent(eid)]:
+                raise place.error(
+                    f"it lumps mass by the length of element {bent[0]}, which is curved: that is "
+                    "not supported, give its mass per length (NSM, NSM1)"
+                )
             share = 1.0 / sum(size for size, _ in found.values())
         shares.append(_Share((name, number), index, dict.fromkeys(found, share)))
     return shares
@@ -169,6 +174,11 @@ class _Measures:
                 if mine and (wanted is None or number in wanted):
                     out[eid] = (sizes[eid], element.dimension == 2)
         return out
+
+    def is_bent(self, eid: int) -> bool:
+        """Whether an element is a line on a curve."""
+        bent = (name for name, e in self._elements.items() if e.dimension == 1 and e.curved)
+        return any(eid in self._bulk.table(name) for name in bent)
 
     def _sizes(self, name: str, element: Element) -> Mapping[int, float]:
         if name not in self._known:

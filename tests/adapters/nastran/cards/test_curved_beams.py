@@ -16,8 +16,9 @@ MATERIAL = f"MAT1,1,{E},,{NU},{RHO}\n"
 
 @pytest.fixture
 def model(tmp_path):
-    def of(text):
-        (tmp_path / "a.bdf").write_text("BEGIN BULK\nPARAM,COUPMASS,1\n" + text + "ENDDATA\n")
+    def of(text, case=""):
+        head = f"SOL 103\nCEND\n{case}BEGIN BULK\nPARAM,COUPMASS,1\n"
+        (tmp_path / "a.bdf").write_text(f"{head}{text}ENDDATA\n")
         return build_model(read_deck(tmp_path / "a.bdf"))
 
     return of
@@ -150,6 +151,14 @@ def test_twist_offsets_neutral_axis_and_mass_of_three_nodes(model):
     assert mass[::6, ::6].sum() == pytest.approx((RHO * A + 2e-8) * 50.0)
 
 
+def test_nonstructural_mass_counts_along_the_arc(model):
+    case = quarter(2, 3).replace("MAT1", "NSM1,5,PBEND,3.,7\nMAT1")
+    mass = model(case, "NSM = 5\n").M().toarray()[::6, ::6].sum()
+    assert mass == pytest.approx((RHO * A + 3.0) * 0.5 * np.pi * R, rel=1e-6)
+    with pytest.raises(InputError, match=r"NSML1 5 .*element 1, which is curved"):
+        model(case.replace("NSM1,", "NSML1,"), "NSM = 5\n")
+
+
 def test_an_arch_of_three_node_beams_comes_to_the_circle(model):
     exact = np.pi / 4 * R**3 / (E * IN) + np.pi / 4 * R / (E * A) + np.pi / 4 * R / (0.7 * G * A)
     off = []
@@ -218,9 +227,9 @@ def test_a_composite_beam_of_two_materials(model):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (quarter(1, 3).replace(",3\n", ",5\n"), r"CBEND 1 \(.*line 9\): GEOM 5 is not one of"),
+        (quarter(1, 3).replace(",3\n", ",5\n"), r"CBEND 1 \(.*line 11\): GEOM 5 is not one of"),
         (quarter(1, 3).replace("0.000000000000,3", "0.,3").replace(f",{R},", ",20.,"), "GEOM 3 of"),
-        (quarter(1, 4).replace(",90.0", ",190.0"), r"PBEND 7 \(.*line 6\): GEOM 4 of"),
+        (quarter(1, 4).replace(",90.0", ",190.0"), r"PBEND 7 \(.*line 8\): GEOM 4 of"),
         (pbcomp(4, FOUR) + "CBEAM,1,7,1,3,0.,1.,0.\n" + CLAMPED, r"PBCOMP 7 .*: SYMOPT 4"),
         (pbcomp(5, FOUR[::3]) + "CBEAM,1,7,1,3,0.,1.,0.\n" + CLAMPED, "on a straight line"),
         (CLAMPED + f"CBEAM3,1,7,1,2,3,0.,1.,0.\nPBEAM3,7,1,{A},{IN},{ACROSS}\n", "GC does not"),
