@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from .options import Output
 
 
+_INTERRUPTED = 130
+"""Exit status of a program that Ctrl-C ended: 128 and the number of the signal."""
+
+
 def spell_what_cannot_be_shown() -> None:
     """Let standard output and error spell the signs that their encoding does not have."""
 
@@ -67,9 +71,31 @@ def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
         if output.verbose:
             stderr().print(what, markup=False)
 
-    if output.quiet or not sys.stderr.isatty():
-        yield told
-        return
+    with _interruptible(what):
+        if output.quiet or not sys.stderr.isatty():
+            yield told
+            return
+        with _shown(what) as show:
+
+            def say(what: str) -> None:
+                show(what)
+                told(what)
+
+            yield say
+
+
+@contextmanager
+def _interruptible(what: str) -> Iterator[None]:
+    """Say of an interrupted piece of work that it left nothing."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        sys.stderr.write(f"trueup: interrupted while {what}; nothing was written\n")
+        raise SystemExit(_INTERRUPTED) from None
+
+
+@contextmanager
+def _shown(what: str) -> Iterator[Callable[[str], None]]:
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     with Progress(
@@ -80,12 +106,7 @@ def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
         transient=True,
     ) as progress:
         task = progress.add_task(what, total=None)
-
-        def say(what: str) -> None:
-            progress.update(task, description=what)
-            told(what)
-
-        yield say
+        yield lambda what: progress.update(task, description=what)
 
 
 def emit_json(result: Mapping[str, object], output: Output) -> None:

@@ -70,11 +70,16 @@ def _keep_foreign(old: Path, new: Path) -> None:
 
 
 def refuse_existing(path: Path, force: bool) -> None:
-    """Raise `InputError` when a run folder would be written over an existing one."""
+    """Raise `InputError` when a run folder would be written over another, or cannot be."""
     if path.exists() and not force:
         raise Place(path).fault("exists; give force=True to replace it or another run folder")
     if path.exists() and not (path.is_dir() and (path / "result.json").exists()):
         raise Place(path).fault("exists and is not a run folder; give another run folder")
+    there = next((p for p in path.absolute().parents if p.exists()), path.parent)
+    try:
+        Path(tempfile.mkdtemp(prefix=".trueup.", dir=there)).rmdir()
+    except OSError as error:
+        raise _unwritten(path, error) from error
 
 
 def json_text(result: Mapping[str, object]) -> str:

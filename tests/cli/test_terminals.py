@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 
@@ -45,3 +46,29 @@ def test_a_test_mode_without_a_partner_cannot_be_moved_to(call, duct, tmp_path):
     assert said.status == 1
     assert "none of the test modes that take part pairs" in said.sentence
     assert not (tmp_path / "run").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_said_before_the_work(call, duct, tmp_path):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    said = call("discover", duct / "duct.bdf", duct / "duct_test.unv", "--out",
+                tmp_path / "file" / "run")  # fmt: skip
+    assert said.status == 1
+    assert "cannot be written" in said.sentence
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no SIGINT is sent there")
+def test_an_interrupted_verb_says_what_it_was_at_and_leaves_nothing(duct, tmp_path):
+    words = ("discover", duct / "duct.bdf", duct / "duct_test.unv", "--out", tmp_path / "run")
+    told = ["-c", "import signal, runpy; signal.signal(signal.SIGINT, signal.default_int_handler);"
+            "runpy.run_module('trueup', run_name='__main__')"]  # fmt: skip
+    done = subprocess.Popen(
+        [sys.executable, *told, *map(str, words), "-v"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert done.stderr is not None
+    assert done.stderr.readline() == "reading and placing\n"
+    done.send_signal(signal.SIGINT)
+    _, err = done.communicate(timeout=120)
+    assert done.returncode == 130
+    assert "interrupted while reading and placing; nothing was written" in err
+    assert not list(tmp_path.iterdir())
