@@ -42,6 +42,7 @@ def _register() -> None:
     from .verbs.identify import identify
     from .verbs.inspect import inspect
     from .verbs.parameters import parameters
+    from .verbs.plan import plan
     from .verbs.report import report
     from .verbs.solve import solve
 
@@ -54,6 +55,7 @@ def _register() -> None:
     app.command()(comparing(update, UPDATE, changes_deck=True))
     app.command()(comparing(discover, DISCOVER, changes_deck=True))
     app.command()(comparing(parameters, PARAMETERS, needs_test=False))
+    app.command()(plan)
     app.command()(compare)
     app.command()(report)
     app.command()(demo)

@@ -24,6 +24,11 @@ class PlacementNumbers:
     fewest: float = number(0.2, "of the sensors", "on the model, below which a test is refused", CHECK)
     local: float = number(0.5, "of the local mesh size", "that a sensor may be off the model", CHECK)
     off: tuple[float, float] = number((0.005, 0.03), SIZE, "that it may be, at least and at most", CHECK)
+    dependent: float = number(1e-8, "of the largest pivot", "of shapes that the candidates do not tell apart", ROUNDING)
+    at_once: float = number(0.05, "of the candidates", "that are left out in one step while there are many", "time")
+    one_by_one: int = number(500, "candidates", "from which on they are left out one by one", "time")
+    pool: int = number(2000, "candidates", "among which the least MAC is sought", "memory")
+    slight: float = number(1e-6, "-", "weight of the mean beside the least of equal shares", ROUNDING)
     rotation: float = number(1e-6, "-", "error of a rotation that is none", ROUNDING)
 
 

@@ -60,6 +60,7 @@ if TYPE_CHECKING:
         MovableParameters as MovableParameters,
         parameters as parameters,
     )
+    from .verbs.plan import Planned as Planned, plan as plan
     from .verbs.read import read as read
     from .verbs.report import report as report
     from .verbs.run import Correlated as Correlated, Discovered as Discovered, Updated as Updated
@@ -95,6 +96,7 @@ __getattr__, __all__ = lazy_names(
         ".verbs.options": "CompareOptions CorrelateOptions DiscoverOptions ParametersOptions "
         "PlantOptions UpdateOptions",
         ".verbs.parameters": "MovableParameters parameters",
+        ".verbs.plan": "Planned plan",
         ".verbs.read": "read",
         ".verbs.report": "report",
         ".verbs.run": "Correlated Discovered Updated",
