@@ -92,6 +92,12 @@ def _units() -> str:
     return f"  <UnitDefinitions>\n{lines}  </UnitDefinitions>\n"
 
 
+def _experiment(plant: ModalPlant) -> str:
+    """Twenty steps a period of the highest mode, after which held inputs hardly excite it."""
+    highest = plant.frequencies_hz.max(initial=0.0)
+    return f'  <DefaultExperiment stepSize="{0.05 / highest:.1e}"/>\n' if highest > 0.0 else ""
+
+
 def _version_2(plant: ModalPlant, every: Sequence[Variable], sources: Sequence[str]) -> str:
     files = "".join(f'      <File name="{name}"/>\n' for name in sources)
     common = (
@@ -102,9 +108,11 @@ def _version_2(plant: ModalPlant, every: Sequence[Variable], sources: Sequence[s
     out = [
         f"  <ModelExchange {common}>\n    <SourceFiles>\n{files}    </SourceFiles>\n"
         "  </ModelExchange>\n"
-        f'  <CoSimulation {common} canHandleVariableCommunicationStepSize="true">\n'
+        f'  <CoSimulation {common} canHandleVariableCommunicationStepSize="true"'
+        ' canInterpolateInputs="true">\n'
         f"    <SourceFiles>\n{files}    </SourceFiles>\n  </CoSimulation>\n",
         _units(),
+        _experiment(plant),
         "  <ModelVariables>\n",
     ]
     for vr, v in enumerate(every[:-1]):
@@ -148,6 +156,7 @@ def _version_3(plant: ModalPlant, every: Sequence[Variable]) -> str:
         f"  <ModelExchange {common}/>\n"
         f'  <CoSimulation {common} canHandleVariableCommunicationStepSize="true"/>\n',
         _units(),
+        _experiment(plant),
         "  <ModelVariables>\n",
     ]
     for vr, v in enumerate(every):

@@ -181,8 +181,7 @@ EXPORT int FMI2(DoStep)(Plant *p, double time, double step, int keep) {
 EXPORT int FMI2(CancelStep)(Plant *p) { return unknown(p, 1); }
 EXPORT int FMI2(SetRealInputDerivatives)(Plant *p, const Vr vr[], size_t n, const int order[],
                                          const double value[]) {
-    (void)vr, (void)order, (void)value;
-    return unknown(p, n);
+    return plant_set_slopes(p, vr, n, order, value);
 }
 EXPORT int FMI2(GetRealOutputDerivatives)(Plant *p, const Vr vr[], size_t n, const int order[],
                                           double value[]) {

@@ -64,11 +64,12 @@ static void know(Plant *p) {
     p->known = 1;
 }
 
-/* Motion after h seconds under a unit force from rest, g'' + 2 d g' + w^2 g = 1: the power series,
-   free of cancellation where w h and d h are small. */
-static double pushed(double w, double d, double h) {
-    double term = 0.5 * h * h, before = 0.0, sum = term;
-    for (int k = 2; k < 60; k++) {
+/* Motion after h seconds under a unit force from rest (g'' + 2 d g' + w^2 g = 1: term = h^2 / 2,
+   first = 2), or under one that grows by a unit a second (h^3 / 6, 3): the power series, free of
+   cancellation where w h and d h are small. */
+static double pushed(double w, double d, double h, double term, int first) {
+    double before = 0.0, sum = term;
+    for (int k = first; k < first + 58; k++) {
         double next = -(2.0 * d * h * k * term + w * w * h * h * before) / (k * (k + 1.0));
         before = term;
         term = next;
@@ -78,7 +79,8 @@ static double pushed(double w, double d, double h) {
     return sum;
 }
 
-/* The exponential of one mode, exp([[0, 1], [-w^2, -2 d]] h), and what a held force adds. */
+/* The exponential of one mode, exp([[0, 1], [-w^2, -2 d]] h), and what a held and what a growing
+   force add. */
 static void exponential(double f, double z, double h, double *c) {
     double w = TWO_PI * f, d = z * w, s = w * sqrt(fabs(1.0 - z) * (1.0 + z)), S, C, g;
     if (s * h < 1e-4) { /* near critical damping, or no stiffness */
@@ -94,10 +96,13 @@ static void exponential(double f, double z, double h, double *c) {
         S = e * sin(s * h) / s;
         C = e * cos(s * h);
     }
-    if (w * h < 0.5 && d * h < 0.5)
-        g = pushed(w, d, h);
-    else
+    if (w * h < 0.5 && d * h < 0.5) {
+        g = pushed(w, d, h, h * h / 2.0, 2);
+        c[5] = pushed(w, d, h, h * h * h / 6.0, 3);
+    } else {
         g = (1.0 - C - d * S) / (w * w);
+        c[5] = (h - 2.0 * d * g - S) / (w * w);
+    }
     c[0] = C + d * S;
     c[1] = S;
     c[2] = -w * w * S;
@@ -109,16 +114,21 @@ int plant_advance(Plant *p, double from, double by) {
     if (!(by >= 0.0) || !isfinite(from + by)) return fail(p, "a step must be 0 s or longer");
     if (by != p->held) {
         for (size_t k = 0; k < p->modes; k++)
-            exponential(p->f[k], p->z[k], by, p->step + 5 * k);
+            exponential(p->f[k], p->z[k], by, p->step + 6 * k);
         p->held = by;
     }
+    int growing = 0;
+    for (size_t j = 0; j < p->inputs; j++) growing |= p->slope[j] != 0.0;
     push(p);
+    if (growing) forces(p, p->slope, p->a);
     for (size_t k = 0; k < p->modes; k++) {
-        const double *c = p->step + 5 * k, force = p->push[k];
+        const double *c = p->step + 6 * k, force = p->push[k];
         const double q = p->x[2 * k], v = p->x[2 * k + 1];
-        p->x[2 * k] = c[0] * q + c[1] * v + c[4] * force;
-        p->x[2 * k + 1] = c[2] * q + c[3] * v + c[1] * force;
+        p->x[2 * k] = c[0] * q + c[1] * v + c[4] * force + (growing ? c[5] * p->a[k] : 0.0);
+        p->x[2 * k + 1] = c[2] * q + c[3] * v + c[1] * force + (growing ? c[4] * p->a[k] : 0.0);
     }
+    for (size_t j = 0; growing && j < p->inputs; j++) p->u[j] += by * p->slope[j];
+    p->pushed = !growing;
     *p->time = from + by;
     p->known = 0;
     return OK;
@@ -178,6 +188,17 @@ int plant_set(Plant *p, const unsigned vr[], size_t n, const double value[]) {
         all[kind][i] = value[j];
         p->known = 0;
         if (kind == INPUT) p->pushed = 0;
+    }
+    return OK;
+}
+
+int plant_set_slopes(Plant *p, const unsigned vr[], size_t n, const int order[],
+                     const double value[]) {
+    for (size_t j = 0; j < n; j++) {
+        size_t i;
+        if (kind_of(p, vr[j], &i) != INPUT || order[j] != 1 || !isfinite(value[j]))
+            return fail(p, "only first derivatives of inputs can be set");
+        p->slope[i] = value[j];
     }
     return OK;
 }
@@ -293,8 +314,8 @@ static const char *load(Plant *p, const char *resources, const char *token) {
     size_t n = p->modes = (size_t)head[1], nu = p->inputs = (size_t)head[2];
     size_t ny = p->outputs = (size_t)head[3], all = 4 * n + n * nu + ny + n * ny;
     p->file = malloc((all + 1) * sizeof(double));
-    p->length = 1 + 4 * n + nu;
-    p->time = calloc(p->length + 11 * n + nu + 2 * ny, sizeof(double));
+    p->length = 1 + 4 * n + 2 * nu;
+    p->time = calloc(p->length + 12 * n + nu + 2 * ny, sizeof(double));
     p->place = malloc((ny + 1) * sizeof(size_t));
     size_t got = p->file && p->time && p->place ? fread(p->file, sizeof(double), all, stream) : 0;
     fclose(stream);
@@ -305,7 +326,8 @@ static const char *load(Plant *p, const char *resources, const char *token) {
     const double *quantity = p->B + n * nu, *rows = quantity + ny;
     p->x = p->time + 1;
     p->u = p->x + 2 * n;
-    p->f = p->u + nu;
+    p->slope = p->u + nu;
+    p->f = p->slope + nu;
     p->z = p->f + n;
     p->push = p->z + n;
     p->a = p->push + n;

@@ -21,9 +21,9 @@ struct Plant {
     const double *B, *P, *nominal;
     double *file;                 /* what was read: f, z, nominal, B, quantities, P */
     size_t length;                /* of what a snapshot holds: */
-    double *time, *x, *u, *f, *z;
+    double *time, *x, *u, *slope, *f, *z; /* slope: of the inputs, by time */
     double *push, *a, *y, *seed;  /* modal forces, accelerations, outputs in the order of P, room */
-    double *step, held;           /* five numbers a mode that step by `held` seconds */
+    double *step, held;           /* six numbers a mode that step by `held` seconds */
     int pushed, known;            /* push belongs to the present inputs, a and y to all */
     Report report;
     void *environment, *logger;
@@ -36,6 +36,8 @@ void plant_free(Plant *);
 void plant_reset(Plant *);
 int plant_get(Plant *, const unsigned vr[], size_t n, double value[]);
 int plant_set(Plant *, const unsigned vr[], size_t n, const double value[]);
+int plant_set_slopes(Plant *, const unsigned vr[], size_t n, const int order[],
+                     const double value[]);
 void plant_set_states(Plant *, const double x[]);
 void plant_derivatives(Plant *, double dx[]);
 int plant_advance(Plant *, double from, double by);

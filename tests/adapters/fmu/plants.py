@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,21 @@ def held(of: ModalPlant, u: np.ndarray, step: float) -> np.ndarray:
     for now in u:
         x = E[:, :n] @ x + E[:, n:] @ now
         y.append(C @ x + D @ now)
+    return np.array(y)
+
+
+def grown(of: ModalPlant, u: np.ndarray, step: float) -> np.ndarray:
+    """As `held`, of inputs (n_step + 1, n_input) that go straight from point to point."""
+    A, B, C, D = of.matrices()
+    n, m = B.shape
+    whole = np.zeros((n + 2 * m, n + 2 * m))
+    whole[:n, : n + m] = np.hstack([A, B])
+    whole[n : n + m, n + m :] = np.eye(m)
+    E = expm(whole * step)[:n]
+    x, y = np.zeros(n), []
+    for now, then in pairwise(u):
+        x = E @ np.concatenate([x, now, (then - now) / step])
+        y.append(C @ x + D @ then)
     return np.array(y)
 
 

@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import pytest
 import scipy.sparse as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from tests.adapters.fmu.plants import HZ, VERSIONS, held, plant, pushes, unit
+from tests.adapters.fmu.plants import HZ, VERSIONS, grown, held, plant, pushes, unit
 
 import trueup
 from trueup.adapters.fmu.build_kernel import _own_platform
@@ -91,6 +92,22 @@ def test_co_simulation_is_exact_whatever_the_step(
     u = pushes(40)
     with running(unit(tmp_path, version), "CoSimulation") as fmu:
         assert off(stepped(fmu, u, step), held(plant(), u, step)) < 1e-10
+
+
+@pytest.mark.parametrize("step", [1e-5, 1e-3, 0.013, 0.4])
+def test_inputs_that_grow_over_a_step_are_exact_too(tmp_path: Path, step: float) -> None:
+    """Derivatives of inputs are of FMI 2.0 alone."""
+    u = pushes(41)
+    with running(unit(tmp_path, 2), "CoSimulation") as fmu:
+        y = []
+        for k, (now, then) in enumerate(pairwise(u)):
+            put(fmu, INPUTS, now)
+            fmu.setRealInputDerivatives(INPUTS, [1] * NU, ((then - now) / step).tolist())
+            fmu.doStep(k * step, step)
+            y.append(get(fmu, OUTPUTS))
+        assert off(np.array(y), grown(plant(), u, step)) < 1e-10
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            fmu.setRealInputDerivatives(INPUTS[:1], [2], [1.0])
 
 
 @pytest.mark.parametrize("version", VERSIONS)

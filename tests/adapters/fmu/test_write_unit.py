@@ -83,6 +83,9 @@ def test_the_description_says_units_starts_and_dependencies(tmp_path: Path, vers
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))
     identifiers = {e.get("modelIdentifier") for e in root if "modelIdentifier" in e.attrib}
     assert identifiers == {"a_plant"}
+    experiment = root.find("DefaultExperiment")
+    assert experiment is not None
+    assert float(experiment.attrib["stepSize"]) == pytest.approx(0.05 / HZ.max())
     every = root.find("ModelVariables")
     assert every is not None
     said = {}
