@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from ..core.arrays import Floats
+from ..core.data.geometry import Geometry
 from ..core.data.parametric_model import Model
 from ..core.eigen import normal_modes
 from ..core.eigen.eigen_numbers import EIGEN
 from ..core.errors import InputError, naming
+from ..core.noun import BESIDE
 from ..core.reduction.eigenpair_derivatives import sensitivities
 from ..core.reduction.full_or_reduced import FullOrder
 from ..core.results.parameters import (
@@ -46,7 +49,21 @@ _MOST = 200
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MovableParameters(ParametersTables, Folder):
-    """What `parameters` found: the tables of result.json as fields."""
+    """What `parameters` found: the tables of result.json as fields.
+
+    `geometry` is of the deck; `places` are the grids that each parameter moves something at.
+    """
+
+    geometry: Geometry = field(metadata=BESIDE)
+    places: dict[str, tuple[int, ...]] = field(metadata=BESIDE)
+
+    def fill(self, work: Path) -> None:
+        """Write everything that a run folder holds into an empty folder."""
+        from ..adapters.report.parameters_page import parameters_page
+
+        super().fill(work)
+        page = parameters_page(self, self.geometry, self.places)
+        (work / "report.html").write_text(page, encoding="utf-8")
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +169,20 @@ def parameters(
         likeness=LikenessTable(names, said.correlation),
         recommended=tuple((asked.parameters or names)[k] for k in choice.chosen),
         warnings=(*given.warnings, *model.warnings, *seen.warnings, *left),
+        geometry=model.geometry,
+        places=_places(model),
     )
+
+
+def _places(model: Model) -> dict[str, tuple[int, ...]]:
+    """Return the grids of the degrees of freedom whose stiffness or mass each parameter moves."""
+    there, p = abs(model.expansion), model.deck_point
+    found = {}
+    for k, q in enumerate(model.parameters):
+        moved = [np.abs(d.diagonal()) for d in (model.dK(k, p), model.dM(k, p))]
+        rows = np.flatnonzero(there @ np.sum([m > 0.0 for m in moved], axis=0))
+        found[q.name] = tuple(np.unique(model.dofs.node[rows]).tolist())
+    return found
 
 
 def _of_deck(deck: Deck, model: Model, asked: Study) -> _Seen:

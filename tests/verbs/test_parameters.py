@@ -97,3 +97,17 @@ def test_without_a_test_the_modes_of_the_deck_speak(duct):
 def test_bad_input_is_one_sentence(duct, given, said):
     with pytest.raises(InputError, match=said):
         trueup.parameters(str(duct / "duct.bdf"), **given)
+
+
+def test_its_page_shows_matrices_and_the_parameters_on_the_structure(told, duct, tmp_path):
+    """Flange rings are where their bars are; the skin's modulus is everywhere."""
+    model = trueup.read_deck(duct / "duct.bdf").bulk
+    ring = {g for b in model.table("CBAR").values() if b.pid == 11 for g in b.nodes[:2]}
+    assert set(told.places["PBAR 11 I1, PBAR 11 I2"]) == ring
+    assert len(told.places["MAT1 1 E"]) == len(told.geometry.ids)
+    page = (told.save(tmp_path / "run") / "report.html").read_text(encoding="utf-8")
+    assert "Sensitivity of each mode" in page
+    assert "Cosines between what parameters do" in page
+    assert page.count("<title>") == 1
+    for name in told.sensitivities.parameters:
+        assert page.count(name) >= 4  # table, both matrices, structure
