@@ -19,9 +19,9 @@ from .poles.pole_candidates import Proposal
 from .poles.pole_stabilisation import Chart
 from .quality import correlation, multivariate_indicator, phase_collinearity, phase_deviation
 from .rejected import rejected
-from .remarks import of_leakage, of_modes, of_own_poles, of_window, pair_possible
+from .remarks import Judged, of_leakage, of_modes, of_own_poles, of_window, pair_possible
 from .result import Background, Identification, Indicator, background_response, residual_terms
-from .survey.driving_points import driving_points, scale
+from .survey.driving_points import driving_points, reciprocity_of_modes, scale
 from .survey.modal_synthesis import derivative_order, modal_response
 from .survey.mode_indicator import cmif
 from .survey.references import checked_references
@@ -79,6 +79,9 @@ def assemble(
         return Modes(hz, shapes / size, survey.outputs, damping, mass, survey.source)
 
     indicator = _indicator_at(survey, t.hz)
+    mass = scaling.modal_mass / p.real_size**2
+    reciprocal = reciprocity_of_modes(p.shapes, p.participation, points)
+    judged = Judged(quality, mpc, indicator, mass, reciprocal)
     measured = _measured(survey)
     indicators = cmif(np.where(survey.measured[:, :, None], measured.values, 0.0))
     return Identification(
@@ -96,9 +99,7 @@ def assemble(
         significance=t.significance,
         close_pair_possible=pair,
         rigid_share=rigid_share(p.real, survey.outputs, geometry),
-        remarks=of_modes(
-            survey, t, p, quality, mpc, indicator, scaling.modal_mass / p.real_size**2
-        ),
+        remarks=of_modes(survey, t, p, judged),
         bands=backgrounds,
         rejected=rejected(fits, proposals, unwanted),
         measured=measured,

@@ -11,6 +11,7 @@ class IdentificationNumbers:
     poor_mpc: float = number(0.7, "-", "modal phase collinearity below which it is remarked", SURVEYS)
     poor_indicator: float = number(0.3, "-", "indicator of a mode below which it is remarked", SURVEYS)
     weak: float = number(0.05, "of a shape", "standard error above which it is called uncertain", SURVEYS)
+    poor_reciprocity: float = number(0.85, "MAC", "of shape and participation at the driving points, below which it is remarked; aeroplane 0.89 at least, surveys in order 0.97", SURVEYS)
     one_participation: float = number(0.99, "MAC", "above which two modes are one to the references", SURVEYS)
     other_responses: float = number(0.2, "MAC", "of magnitudes of shapes, below which responses of one mode are others than those of another; random shapes 0.4", SURVEYS)
     beside: float = number(0.04, "of f", "within which a resonance may stand whose frequency differs from response to response", SURVEYS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -85,35 +86,29 @@ def of_window(poles: Numbers, damping: Floats, std: Floats, decay: float) -> lis
     ]
 
 
-def of_modes(
-    survey: Survey,
-    t: ModeTable,
-    p: Physical,
-    quality: Floats,
-    mpc: Floats,
-    indicator: Floats,
-    mass: Floats,
-) -> tuple[str, ...]:
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What modes are judged by, (n_mode,) each; `reciprocity` from `reciprocity_of_modes`."""
+
+    quality: Floats
+    mpc: Floats
+    indicator: Floats
+    mass: Floats
+    reciprocity: Floats
+
+
+def of_modes(survey: Survey, t: ModeTable, p: Physical, judged: Judged) -> tuple[str, ...]:
     """Say what makes each mode a poor one; empty for a mode without reproach."""
     texts = []
     again = _seen_alike(t)
-    usual = float(np.median(mass[np.isfinite(mass)])) if np.isfinite(mass).any() else np.inf
     for k, hz in enumerate(t.hz):
-        found = []
-        if quality[k] < IDENTIFICATION.poor_quality:
-            found.append(f"synthesised and measured functions agree to {quality[k]:.2f} only")
-        if mpc[k] < IDENTIFICATION.poor_mpc:
-            found.append(f"complex shape (phase collinearity {mpc[k]:.2f})")
-        if indicator[k] < IDENTIFICATION.poor_indicator:
-            found.append(f"no clear resonance of all responses (mode indicator {indicator[k]:.2f})")
+        found = _of_figures(judged, k)
         if again[k]:
             others = ", ".join(f"{f:.2f}" for f in t.hz[again[k]])
             found.append(
                 f"the references see it as they do {others} Hz, at other responses: perhaps one "
                 "resonance whose frequency differs from response to response"
             )
-        if mass[k] > IDENTIFICATION.heavy * usual:
-            found.append(f"implausible modal mass ({mass[k] / usual:.0f} times the usual)")
         found += _of_shape(p, k, survey.outputs.labels)
         if survey.coherence is not None:
             coherence = survey.coherence[int(np.argmin(np.abs(survey.frequencies_hz - hz)))]
@@ -124,6 +119,25 @@ def of_modes(
             found.append("at the edge of the measured range")
         texts.append("; ".join(found))
     return tuple(texts)
+
+
+def _of_figures(value: Judged, k: int) -> list[str]:
+    """Say which figures of a mode are poor."""
+    known = value.mass[np.isfinite(value.mass)]
+    mass = value.mass / (np.median(known) if len(known) else 1.0)
+    told = (
+        (value.quality[k] < IDENTIFICATION.poor_quality,
+         f"synthesised and measured functions agree to {value.quality[k]:.2f} only"),
+        (value.mpc[k] < IDENTIFICATION.poor_mpc,
+         f"complex shape (phase collinearity {value.mpc[k]:.2f})"),
+        (value.indicator[k] < IDENTIFICATION.poor_indicator,
+         f"no clear resonance of all responses (mode indicator {value.indicator[k]:.2f})"),
+        (value.reciprocity[k] < IDENTIFICATION.poor_reciprocity,
+         "not reciprocal: at the driving points its shape and what the references see of it agree "
+         f"to {value.reciprocity[k]:.2f} only"),
+        (mass[k] > IDENTIFICATION.heavy, f"implausible modal mass ({mass[k]:.0f} times the usual)"),
+    )  # fmt: skip
+    return [text for poor, text in told if poor]
 
 
 def _of_shape(p: Physical, k: int, labels: Sequence[str]) -> list[str]:

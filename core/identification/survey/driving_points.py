@@ -171,6 +171,28 @@ def scale(
     return Scaling(np.asarray(inverse_mass.real / mass), tuple(warnings))
 
 
+def reciprocity_of_modes(shapes: Numbers, participation: Numbers, points: Floats) -> Floats:
+    """MAC of shape and participation at the driving points; NaN where fewer than two tell.
+
+    Parameters
+    ----------
+    shapes : (n_output, n_mode) complex
+    participation : (n_input, n_mode) complex
+    points : (n_input, n_output) float
+        From `driving_points`.
+
+    Returns
+    -------
+    (n_mode,) float
+    """
+    driven = np.flatnonzero(np.isfinite(points).all(axis=1))
+    if len(driven) < 2:
+        return np.full(shapes.shape[1], np.nan)
+    at, part = points[driven] @ shapes, participation[driven]
+    both = np.sum(np.abs(at) ** 2, axis=0) * np.sum(np.abs(part) ** 2, axis=0)
+    return np.asarray(np.abs(np.sum(at.conj() * part, axis=0)) ** 2 / np.maximum(both, 1e-300))
+
+
 def _unreciprocal(at: Numbers, part: Numbers, level: Floats) -> Floats:
     """Difference of residues between driving points and their reciprocal, over the size of all.
 

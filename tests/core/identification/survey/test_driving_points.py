@@ -8,6 +8,7 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.identification.survey.driving_points import (
     driving_points,
     positive_share,
+    reciprocity_of_modes,
     scale,
 )
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
@@ -35,6 +36,19 @@ def test_modal_mass_of_plain_driving_points():
     found = scale(POLES, shapes, part[drive], points, dofs.take(drive))
     assert found.modal_mass == pytest.approx(MASS)
     assert found.warnings == ()
+
+
+def test_the_mode_whose_shape_contradicts_its_participation_is_told():
+    dofs, shapes, part = structure()
+    drive = np.array([2, 7, 9])
+    points = driving_points(dofs, dofs.take(drive))
+    wrong = shapes.copy()
+    wrong[drive, 1] = np.roll(shapes[drive, 1], 1)
+    told = reciprocity_of_modes(wrong, part[drive], points)
+    assert told[[0, 2]] == pytest.approx(1.0)
+    a, b = shapes[drive, 1], wrong[drive, 1]
+    assert told[1] == pytest.approx((a @ b) ** 2 / (a @ a) / (b @ b))
+    assert np.isnan(reciprocity_of_modes(shapes, part[drive[:1]], points[:1])).all()
 
 
 def test_a_force_askew_is_met_by_three_responses():
