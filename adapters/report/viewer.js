@@ -25,10 +25,10 @@
     if (canvas.width !== Math.round(w * k) || canvas.height !== Math.round(h * k)) { canvas.width = Math.round(w * k); canvas.height = Math.round(h * k); }
     ctx.setTransform(k, 0, 0, k, 0, 0); ctx.clearRect(0, 0, w, h); ctx.lineJoin = 'round';
     const ca = Math.cos(view.turn), sa = Math.sin(view.turn), ce = Math.cos(view.lift), se = Math.sin(view.lift);
-    const scale = 0.46 * Math.min(w / (reach + amount), h / (reach * Math.abs(se) + height * ce + amount));
+    const scale = 0.46 * view.zoom * Math.min(w / (reach + amount), h / (reach * Math.abs(se) + height * ce + amount));
     const project = (x, y, z, out, i) => {     // right, down, away
-      out[i] = w / 2 + scale * (-sa * x + ca * y);
-      out[i + 1] = h / 2 - scale * (-se * (ca * x + sa * y) + ce * z);
+      out[i] = w / 2 + view.right + scale * (-sa * x + ca * y);
+      out[i + 1] = h / 2 + view.down - scale * (-se * (ca * x + sa * y) + ce * z);
       out[i + 2] = -(ce * (ca * x + sa * y) + se * z);
     };
     const at = 3 * nodes * pair;
@@ -39,7 +39,7 @@
     for (let i = 0; i < order.length; i++) order[i] = i;
     order.sort((a, b) => depth[b] - depth[a]);
     const size = n => Math.hypot(shapes[at + 3 * n], shapes[at + 3 * n + 1], shapes[at + 3 * n + 2]) / 127;
-    for (const e of order) {
+    for (const e of view.model ? order : []) {
       ctx.beginPath();
       if (e < nFaces) {
         let sum = 0;
@@ -53,15 +53,24 @@
       }
       ctx.stroke();
     }
-    if (!detail && order.length) return;     // sensors alone where there are no lines
-    const q = new Float32Array(9), from = probes * pair;
+    if (detail) ['x', 'y', 'z'].forEach((name, k) => {
+      const a = [-sa, ca, 0][k], b = [-se * ca, -se * sa, ce][k], x = 34, y = h - 34;
+      ctx.beginPath(); ctx.moveTo(x, y); ctx.lineTo(x + 22 * a, y - 22 * b); ctx.strokeStyle = ink.line; ctx.lineWidth = 1.2; ctx.stroke();
+      ctx.fillStyle = ink.line; ctx.font = '11px sans-serif'; ctx.fillText(name, x + 28 * a - 3, y - 28 * b + 3);
+    });
+    if (!view.test || (!detail && order.length)) return;     // sensors alone where there are no lines
+    const q = new Float32Array(12), from = probes * pair;
     for (let i = 0; i < probes; i++) {
       const x = 2 * sensors[3 * i] / 32767, y = 2 * sensors[3 * i + 1] / 32767, z = 2 * sensors[3 * i + 2] / 32767;
       [model[from + i], test[from + i]].forEach((value, j) => {
         const r = s * 2 * value / 127;
         project(x + r * axes[3 * i] / 127, y + r * axes[3 * i + 1] / 127, z + r * axes[3 * i + 2] / 127, q, 3 * j);
       });
+      project(x, y, z, q, 6);                // the direction that is measured, through where it rests
+      const tick = k => 0.03 * axes[3 * i + k] / 127;
+      project(x + tick(0), y + tick(1), z + tick(2), q, 9); q[9] -= q[6]; q[10] -= q[7];
       ctx.globalAlpha = Math.min(1, Math.max(0.18, 0.62 - 1.1 * q[2]));
+      ctx.beginPath(); ctx.moveTo(q[6] - q[9], q[7] - q[10]); ctx.lineTo(q[6] + q[9], q[7] + q[10]); ctx.strokeStyle = ink.line; ctx.lineWidth = 0.7; ctx.stroke();
       ctx.beginPath(); ctx.moveTo(q[0], q[1]); ctx.lineTo(q[3], q[4]); ctx.strokeStyle = ink.test; ctx.lineWidth = 2; ctx.stroke();
       for (const [j, colour] of [[0, ink.model], [3, ink.test]]) { ctx.beginPath(); ctx.arc(q[j], q[j + 1], 3, 0, 7); ctx.fillStyle = colour; ctx.fill(); ctx.strokeStyle = ink.page; ctx.lineWidth = 0.8; ctx.stroke(); }
     }
@@ -69,11 +78,21 @@
   };
 
   const make = (name, fields = {}, ...children) => { const e = Object.assign(document.createElement(name), fields); e.append(...children); return e; };
-  const view = { turn: -0.86, lift: 0.48 };
+  const front = { turn: -0.86, lift: 0.48, zoom: 1, right: 0, down: 0, model: true, test: true };
+  const view = { ...front };
   let pair = 0, playing = !matchMedia('(prefers-reduced-motion: reduce)').matches, seen = false, start = 0;
   const canvas = make('canvas', { tabIndex: 0 }); canvas.setAttribute('role', 'img');
   const caption = make('figcaption'), strip = make('div', { className: 'strip' });
   const play = make('button', { type: 'button' });
+  const press = (text, title, act) => { const b = make('button', { type: 'button', title }, text); b.addEventListener('click', () => { act(); if (!playing) still(); }); return b; };
+  const look = (turn, lift) => () => Object.assign(view, { turn, lift, zoom: 1, right: 0, down: 0 });
+  const zoom = by => { view.zoom = Math.min(20, Math.max(0.2, view.zoom * by)); };
+  const shown = (what, title) => { const box = make('input', { type: 'checkbox', checked: true }); box.addEventListener('change', () => { view[what] = box.checked; if (!playing) still(); }); return make('label', { title }, box, what); };
+  const save = () => {                       // on the page's colour, as large as it is shown
+    const sheet = make('canvas', { width: canvas.width, height: canvas.height }), ctx = sheet.getContext('2d');
+    ctx.fillStyle = ink.page; ctx.fillRect(0, 0, sheet.width, sheet.height); ctx.drawImage(canvas, 0, 0);
+    make('a', { href: sheet.toDataURL('image/png'), download: labels[pair].replace(/[^\w.]+/g, '_').slice(0, 60) + '.png' }).click();
+  };
   const slider = make('input', { type: 'range', min: 0, max: 0.4, step: 0.01, value: amount });
   const stage = host.querySelector('.stage');
   const still = () => { draw(canvas, pair, amount, view, true); };
@@ -86,13 +105,15 @@
     start = start || time; draw(canvas, pair, amount * Math.cos((time - start) / 320), view, true); requestAnimationFrame(frame);
   };
   const run = on => { playing = on; play.textContent = on ? 'Pause' : 'Play'; start = 0; on ? requestAnimationFrame(frame) : still(); };
-  stage.replaceChildren(caption, canvas, make('div', { className: 'controls' }, play, make('label', {}, 'amplitude ', slider)), strip);
+  stage.replaceChildren(caption, canvas, make('div', { className: 'controls' }, play, make('label', {}, 'amplitude ', slider),
+    press('iso', 'from the front', look(front.turn, front.lift)), press('x', 'along x', look(0, 0)), press('y', 'along y', look(-Math.PI / 2, 0)), press('z', 'along z', look(-Math.PI / 2, Math.PI / 2)),
+    press('+', 'nearer (Ctrl and wheel)', () => zoom(1.25)), press('\u2212', 'farther', () => zoom(0.8)), ...(probes ? [shown('model', 'the analysis'), shown('test', 'the sensors')] : []), press('PNG', 'save what is shown', save)), strip);
   colours();
   labels.forEach((label, k) => {
     const small = make('canvas'), b = make('button', { type: 'button', title: label }, small, brief[k]);
     b.addEventListener('click', () => pick(k)); strip.append(b);
   });
-  const thumbs = () => [...strip.querySelectorAll('canvas')].forEach((c, k) => draw(c, k, +d.amplitude, { turn: -0.86, lift: 0.48 }, false));
+  const thumbs = () => [...strip.querySelectorAll('canvas')].forEach((c, k) => draw(c, k, +d.amplitude, front, false));
   thumbs(); pick(0); run(playing); still();
   play.addEventListener('click', () => run(!playing));
   slider.addEventListener('input', () => { amount = +slider.value; if (!playing) still(); });
@@ -100,10 +121,12 @@
   canvas.addEventListener('pointerdown', e => { held = [e.clientX, e.clientY]; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener('pointerup', () => { held = null; });
   const turn = (x, y) => { view.turn -= x; view.lift = Math.min(1.57, Math.max(-1.57, view.lift + y)); if (!playing) still(); };
-  canvas.addEventListener('pointermove', e => { if (held) { turn((e.clientX - held[0]) / 120, (e.clientY - held[1]) / 120); held = [e.clientX, e.clientY]; } });
+  canvas.addEventListener('wheel', e => { if (e.ctrlKey) { e.preventDefault(); zoom(Math.exp(-e.deltaY / 300)); if (!playing) still(); } }, { passive: false });
+  canvas.addEventListener('pointermove', e => { if (held && e.shiftKey) { view.right += e.clientX - held[0]; view.down += e.clientY - held[1]; held = [e.clientX, e.clientY]; if (!playing) still(); } else if (held) { turn((e.clientX - held[0]) / 120, (e.clientY - held[1]) / 120); held = [e.clientX, e.clientY]; } });
   canvas.addEventListener('keydown', e => {
     const step = { ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.12], ArrowDown: [0, 0.12] }[e.key];
     if (step) { e.preventDefault(); turn(...step); }
+    if (e.key === '+' || e.key === '-') { zoom(e.key === '+' ? 1.25 : 0.8); if (!playing) still(); }
   });
   new IntersectionObserver(all => { seen = all[0].isIntersecting; if (seen && playing) requestAnimationFrame(frame); }).observe(canvas);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { colours(); thumbs(); still(); });

@@ -15,7 +15,8 @@ def _render(run: ReportedRun[RunTables]) -> str:
     keys = key("where the model puts a sensor", "model")
     keys += key("where the test puts it, to the same scale", "measured")
     figure = moving_figure(overlay, [_label(p) for p in overlay.pairs], brief)
-    return figure + tag("p", keys, class_="note")
+    told = " It moves along the direction that it measures, drawn as a thin line, and no other."
+    return figure + tag("p", keys, told, class_="note")
 
 
 def _label(pair: PairRow) -> str:
