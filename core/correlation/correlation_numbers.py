@@ -23,6 +23,7 @@ class CorrelationNumbers:
     dependent: float = number(1e-6, "of the larger", "of a wave that is zero at all sensors of a ring", ROUNDING)
     sectors: int = number(12, "sectors", "in which a body of revolution is looked at along its axis", CHECK)
     round: float = number(0.9, "of the largest", "of the rim of a round body in each sector", CHECK)
+    harmonics: int = number(30, "waves", "round the axis that are looked for, at most", "time")
     harmonic: float = number(0.5, "of the power", "of a shape's harmonic, for it to be named", CHECK)
     angle_digits: int = number(6, "digits", "of directions that are different", ROUNDING)
     little: float = number(0.5, "weight", "below which a sensor is named", CHECK)

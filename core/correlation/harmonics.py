@@ -107,7 +107,7 @@ def _rings_about(direction: Floats, cloud: Floats, xyz: Floats, axes: Floats) ->
     way = np.argmax(np.abs(along), axis=1)
     group = _numbered(np.column_stack([ring, way]))
     own = along[np.arange(len(way)), way]
-    many = np.array([_distinct(angle[group == g]) for g in range(group.max(initial=-1) + 1)])
+    many = np.array([_distinct(angle[rows]) for rows in _members(group)])
     kept = (
         (np.abs(own) >= CORRELATION.straight)
         & (radius > near)
@@ -131,7 +131,7 @@ def harmonics(rings: Rings, shapes: Numbers) -> tuple[Harmonic | None, ...]:
     shapes : (n_sensor, n_mode) float or complex
     """
     values = realised(shapes) * rings.sign[:, None]
-    groups = [np.flatnonzero(rings.group == g) for g in np.unique(rings.group[rings.group >= 0])]
+    groups = [rows for rows in _members(rings.group) if rings.group[rows[0]] >= 0]
     whole = np.sum(values[rings.group >= 0] ** 2, axis=0)
     bases = _told_apart([rings.angle[rows] for rows in groups])
     power = np.array(
@@ -156,14 +156,14 @@ def harmonics(rings: Rings, shapes: Numbers) -> tuple[Harmonic | None, ...]:
 def _told_apart(angles: list[Floats]) -> list[list[Floats]]:
     """Orthonormal waves of each number in each group, up to the first that looks like a lower."""
     known: list[list[Floats]] = []
-    for n in range(max((_distinct(a) for a in angles), default=0)):
+    most = max((_distinct(a) for a in angles), default=0)
+    for n in range(min(most, CORRELATION.harmonics + 1)):
         of = [_orthonormal(_waves(n, a)) for a in angles]
         if n and all(b.shape[1] == 1 for b in of):
             break
         for lower in known:
-            cosines = [np.linalg.svd(a.T @ b)[1] for a, b in zip(of, lower, strict=True)]
-            weights = [b.shape[1] for b in lower]
-            if sum(np.sum(c**2) for c in cosines) > CORRELATION.told_apart * sum(weights):
+            cosines = sum(float(np.sum((a.T @ b) ** 2)) for a, b in zip(of, lower, strict=True))
+            if cosines > CORRELATION.told_apart * sum(b.shape[1] for b in lower):
                 return known
         known.append(of)
     return known
@@ -186,7 +186,8 @@ def _crest(rings: Rings, groups: list[Ints], values: Floats, n: int) -> float:
         a, b = np.linalg.lstsq(_waves(n, rings.angle[rows]), values[rows], rcond=None)[0]
         c = complex(a, -b) * (1j if rings.tangential[rows[0]] else 1.0)
         total += c**2 * len(rows)
-    return float(np.degrees(-0.5 * np.angle(total) / n % (np.pi / n)))
+    degrees = np.round(np.degrees(-0.5 * np.angle(total) / n), CORRELATION.angle_digits)
+    return float(degrees % (180.0 / n))
 
 
 def _centre(stations: list[Floats], near: float) -> Floats | None:
@@ -230,6 +231,12 @@ def _clustered(values: Floats, near: float) -> Ints:
     out = np.empty(len(values), np.int64)
     out[order] = number
     return out
+
+
+def _members(group: Ints) -> list[Ints]:
+    """Return the rows of each group, by rising number."""
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(group[order])) + 1) if len(group) else []
 
 
 def _numbered(rows: Ints) -> Ints:

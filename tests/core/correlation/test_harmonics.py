@@ -114,3 +114,11 @@ def test_a_disc_has_its_axis_in_the_middle_whatever_the_radii_of_the_sensors():
     np.testing.assert_allclose(rings.origin[:2], CENTRE[:2], atol=1e-9)
     (found,) = harmonics(rings, np.cos(3 * (theta - np.radians(17.4)))[:, None])
     assert str(found) == "n = 3, 17.4°"
+
+
+def test_a_crest_at_the_origin_is_at_nought_and_many_sensors_take_no_time():
+    angles = np.linspace(0.0, 2.0 * np.pi, 150, endpoint=False)
+    xyz, axes, theta, which = duct(angles)
+    (found,) = harmonics(find_rings(xyz, xyz, axes), shape(7, 0.0, theta, which)[:, None])
+    assert str(found) == "n = 7, 0.0°"
+    assert found.highest == 30
