@@ -118,17 +118,23 @@ int plant_advance(Plant *p, double from, double by) {
         p->held = by;
     }
     int growing = 0;
-    for (size_t j = 0; j < p->inputs; j++) growing |= p->slope[j] != 0.0;
     push(p);
-    if (growing) forces(p, p->slope, p->a);
     for (size_t k = 0; k < p->modes; k++) {
         const double *c = p->step + 6 * k, force = p->push[k];
         const double q = p->x[2 * k], v = p->x[2 * k + 1];
-        p->x[2 * k] = c[0] * q + c[1] * v + c[4] * force + (growing ? c[5] * p->a[k] : 0.0);
-        p->x[2 * k + 1] = c[2] * q + c[3] * v + c[1] * force + (growing ? c[4] * p->a[k] : 0.0);
+        p->x[2 * k] = c[0] * q + c[1] * v + c[4] * force;
+        p->x[2 * k + 1] = c[2] * q + c[3] * v + c[1] * force;
     }
-    for (size_t j = 0; growing && j < p->inputs; j++) p->u[j] += by * p->slope[j];
-    p->pushed = !growing;
+    for (size_t j = 0; j < p->inputs; j++) growing |= p->slope[j] != 0.0;
+    if (growing) {
+        forces(p, p->slope, p->a);
+        for (size_t k = 0; k < p->modes; k++) {
+            p->x[2 * k] += p->step[6 * k + 5] * p->a[k];
+            p->x[2 * k + 1] += p->step[6 * k + 4] * p->a[k];
+        }
+        for (size_t j = 0; j < p->inputs; j++) p->u[j] += by * p->slope[j];
+        p->pushed = 0;
+    }
     *p->time = from + by;
     p->known = 0;
     return OK;

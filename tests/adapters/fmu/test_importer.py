@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -82,6 +84,18 @@ def test_validation_finds_nothing(tmp_path: Path, version: int) -> None:
     from fmpy.validation import validate_fmu
 
     assert validate_fmu(str(unit(tmp_path, version))) == []
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_another_checker_finds_nothing(tmp_path: Path, version: int) -> None:
+    checker = shutil.which("fmutool", path=str(Path(sys.executable).parent))
+    if checker is None:
+        pytest.skip("no checker: pip install fmu-manipulation-toolbox")
+    command = [checker, "-input", str(unit(tmp_path, version)), "-check"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    said = done.stdout + done.stderr
+    assert f"seems to be compliant with FMI-{version}.0" in said
+    assert f"No semantic error against the FMI-{version} standard" in said
 
 
 @pytest.mark.parametrize("version", VERSIONS)
