@@ -25,7 +25,7 @@ class CorrelationNumbers:
     round: float = number(0.9, "of the largest", "of the rim of a round body in each sector", CHECK)
     harmonics: int = number(30, "waves", "round the axis that are looked for, at most", "time")
     harmonic: float = number(0.5, "of the power", "of a shape's harmonic, for it to be named", CHECK)
-    angle_digits: int = number(6, "digits", "of directions that are different", ROUNDING)
+    angle_digits: int = number(9, "digits", "of directions that are different", ROUNDING)
     little: float = number(0.5, "weight", "below which a sensor is named", CHECK)
     nasa: tuple[float, float, float] = number((5.0, 0.90, 0.10), "%, -, -", "frequency, cross-orthogonality of pairs, and of others, asked by NASA for payloads", "NASA-STD-5002")
     air_force: tuple[float, float, float] = number((3.0, 0.95, 0.10), "%, -, -", "the same asked by the US Air Force", "SMC-S-004")

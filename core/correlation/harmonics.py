@@ -186,8 +186,8 @@ def _crest(rings: Rings, groups: list[Ints], values: Floats, n: int) -> float:
         a, b = np.linalg.lstsq(_waves(n, rings.angle[rows]), values[rows], rcond=None)[0]
         c = complex(a, -b) * (1j if rings.tangential[rows[0]] else 1.0)
         total += c**2 * len(rows)
-    degrees = np.round(np.degrees(-0.5 * np.angle(total) / n), CORRELATION.angle_digits)
-    return float(degrees % (180.0 / n))
+    crest = np.round(-0.5 * np.angle(total) / n, CORRELATION.angle_digits)
+    return float(np.degrees(crest % (np.pi / n)))
 
 
 def _centre(stations: list[Floats], near: float) -> Floats | None:
