@@ -42,10 +42,11 @@ class Placed:
     of: Ints
 
     def take(self, rows: Bools) -> Placed:
-        """Return some of them."""
+        """Return some of them, with the properties that they have."""
         cards = [card for card, there in zip(self.cards, rows, strict=True) if there]
-        kept = {name: getattr(self, name)[rows] for name in ("ids", "nodes", "xyz", "of")}
-        return replace(self, cards=cards, **kept)
+        kept = {name: getattr(self, name)[rows] for name in ("ids", "nodes", "xyz")}
+        used, of = np.unique(self.of[rows], return_inverse=True)
+        return replace(self, cards=cards, keys=[self.keys[k] for k in used], of=of, **kept)
 
     def of_nodes_there(self, K: Floats) -> Floats:
         """Stiffness of the nodes that are there from that of all nodes."""

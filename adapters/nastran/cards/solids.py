@@ -56,7 +56,8 @@ def solids(context: Context) -> list[Group]:
     groups: list[Group] = []
     for solid in placed(context, "PCOMPS"):
         several = np.array([of_several(context.bulk, key) for key in solid.keys])[solid.of]
-        groups += [_group(context, solid.take(~several))] * (not several.all())
+        if not several.all():
+            groups.append(_group(context, solid.take(~several)))
         if several.any():
             groups.append(laminated(context, solid.take(several)))
     return groups

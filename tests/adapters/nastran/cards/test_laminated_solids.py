@@ -139,7 +139,22 @@ def test_mass_is_that_of_the_plies(model):
     found = model(box() + materials(0.3) + PLIES)
     mass = found.M().toarray().sum() / 3.0
     assert mass == pytest.approx(105.0 * (SHARE @ [4e-9, 2e-9, 4e-9]))
-    assert any("laminates is not known" in w for w in found.warnings)
+    (said,) = (w for w in found.warnings if "laminates is not known" in w)
+    assert "one stress across" in said
+
+
+def test_elements_with_and_without_plies_stand_beside_each_other(model):
+    """Two boxes apart: each has the matrix that it has alone."""
+    other = BOX + np.array([20.0, 0.0, 0.0])
+    shifted = "".join(f"GRID,{k},,{x},{y},{z}\n" for k, (x, y, z) in enumerate(other.tolist(), 11))
+    text = box() + shifted + "CHEXA,2,8,11,12,13,14,15,16\n,17,18\nPSOLID,8,1\n"
+    both = model(text + materials(0.3) + PLIES)
+    plies = model(box() + materials(0.3) + PLIES)
+    solid = model(box() + materials(0.3) + "PSOLID,7,1\n")
+    K = both.K().toarray()
+    np.testing.assert_allclose(K[:24, :24], plies.K().toarray(), atol=1e-9 * K.max())
+    np.testing.assert_allclose(K[24:, 24:], solid.K().toarray(), atol=1e-9 * K.max())
+    assert len([w for w in both.warnings if "PCOMPS" in w]) == 1
 
 
 @pytest.mark.parametrize(
