@@ -88,19 +88,19 @@ def point_mass(scene: Scene) -> tuple[Truth, Entry]:
 
 
 def twins(scene: Scene) -> list[tuple[Truth, Entry]]:
-    """Hide two like masses at places that mirror each other across the longer or shorter axis."""
+    """Hide two like masses at lively places that mirror each other across one of two axes."""
     m, rng = scene.mesh, scene.rng
     low, high = m.xyz.min(axis=0), m.xyz.max(axis=0)
     axis = int(rng.choice(np.argsort(-(high - low))[:2]))
     mass = scene.mass * float(rng.uniform(0.015, 0.06))
+    lively = scene.lively()
     for _ in range(200):
         node = _node(scene)
         place = m.xyz[node].copy()
         place[axis] = low[axis] + high[axis] - place[axis]
         twin = int(np.argmin(np.linalg.norm(m.xyz - place, axis=1)))
-        if np.linalg.norm(m.xyz[twin] - m.xyz[node]) > 0.25 * scene.structure.size and not np.isin(
-            twin, m.clamped
-        ):
+        apart = np.linalg.norm(m.xyz[twin] - m.xyz[node]) > 0.25 * scene.structure.size
+        if apart and np.isin(twin, lively):
             break
     return [
         (Truth(masses=((n, mass),)), {"kind": "point_mass", **_xyz(scene, n), "mass": mass})
