@@ -160,7 +160,7 @@ def _by_test(found: Compared, name: str) -> Iterator[MatchRow]:
 
 
 def _model(path: Path, name: str, number: int | None, fmax: float | None) -> _Model:
-    from .modes_as_test import holds_modes, modes_as_test
+    from .modes_as_test import holds_modes, modes_on_grids
     from .read import DECK, kind_of_file
     from .solve import solve
     from .sources import read_test
@@ -169,7 +169,7 @@ def _model(path: Path, name: str, number: int | None, fmax: float | None) -> _Mo
         deck = read_deck(path)
         found = solve(deck, number, fmax)
         return _Model(name, found.geometry, found.shapes, deck, found.rigid_body_modes, found.mass)
-    test = modes_as_test([path]) if holds_modes([path]) else read_test(path)
+    test = modes_on_grids([path]) if holds_modes([path]) else read_test(path)
     if test.modes is None:
         raise InputError(f"{path} holds no modes; identify finds them in responses", file=path)
     return _Model(name, test.geometry, test.modes)

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from ..adapters.universal import ModalTest
+from ..core.data.modes import Modes
 from ..core.errors import InputError, Place
 from .exchange import load
 from .read import DECK, RESULTS, STORE, kind_of_file
+
+_GRIDS = 1000
+"""Grids of a model that stand for a test, at most: many more than sensors ever are."""
 
 
 def holds_modes(files: Sequence[Path]) -> bool:
@@ -20,7 +27,15 @@ def holds_modes(files: Sequence[Path]) -> bool:
 
 
 def modes_as_test(files: Sequence[Path]) -> ModalTest:
-    """Return modes as a test, on all their grids; a deck among the files gives their positions.
+    """Return modes as a test, of a large model on some of its grids; see `modes_on_grids`."""
+    test = modes_on_grids(files)
+    assert test.modes is not None
+    modes, said = _thinned(test.modes)
+    return replace(test, modes=modes, warnings=said)
+
+
+def modes_on_grids(files: Sequence[Path]) -> ModalTest:
+    """Return modes on all their grids; a deck among the files gives their positions.
 
     Of several sets of modes in a store those of a test come first.
 
@@ -41,3 +56,15 @@ def modes_as_test(files: Sequence[Path]) -> ModalTest:
         decks = " with" if any(kind_of_file(f) is DECK for f in files) else "; give the deck, too:"
         raise here.fault(f"holds modes and no positions of their grids{decks} a deck that has them")
     return ModalTest(geometry, modes, length_unit=geometry.length_unit, files=tuple(files))
+
+
+def _thinned(modes: Modes) -> tuple[Modes, tuple[str, ...]]:
+    """Return translations at so many grids, taken evenly; say so where there are more."""
+    nodes = np.unique(modes.dofs.node)
+    if len(nodes) <= _GRIDS:
+        return modes, ()
+    kept = nodes[np.linspace(0, len(nodes) - 1, _GRIDS).round().astype(int)]
+    rows = np.flatnonzero(np.isin(modes.dofs.node, kept) & (modes.dofs.component <= 3))
+    said = f"of the {len(nodes)} grids that the modes hold {_GRIDS} stand for the test"
+    thin = replace(modes, shapes=modes.shapes[rows], dofs=modes.dofs.take(rows))
+    return thin, (said,)

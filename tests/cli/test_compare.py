@@ -72,3 +72,11 @@ def test_what_cannot_be_compared_is_said(runs, duct):
         trueup.compare([runs / "as_is", duct / "duct.bdf"])
     with pytest.raises(InputError, match="given twice"):
         trueup.compare([duct / "duct.bdf", duct / "duct.bdf"])
+
+
+def test_of_a_large_model_some_grids_stand_for_the_test(duct, tmp_path):
+    modes = trueup.solve(duct / "duct.bdf", 10).write(tmp_path / "modes.h5")
+    test = trueup.read_test(modes)
+    assert len(set(test.modes.dofs.node.tolist())) == 1000
+    assert set(test.modes.dofs.component.tolist()) == {1, 2, 3}
+    assert "of the 1933 grids that the modes hold 1000 stand" in test.warnings[0]
