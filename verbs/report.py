@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..adapters.store import StoreContent
 
 
+_OWN_PAGES = {IdentifyTables.schema: "stabilisation.html", SolveTables.schema: "report.html"}
 _PICTURES = {".png": "png", ".svg": "svg+xml", ".jpg": "jpeg", ".jpeg": "jpeg", ".webp": "webp"}
 
 
@@ -35,9 +36,9 @@ def report(run: Path | str) -> Path:
 
     run = path_of(run, "a run folder")
     result = read_result(run)
-    if result["schema"] in (IdentifyTables.schema, SolveTables.schema):
+    if page := _OWN_PAGES.get(str(result["schema"])):
         verb = str(result["schema"]).split("/")[1]
-        raise Place(run).fault(f"is the run folder of {verb}, which makes its page itself")
+        raise Place(run).fault(f"is the run folder of {verb}, which makes its page itself: {page}")
     try:
         answer = answer_of(result)
     except InputError as error:
