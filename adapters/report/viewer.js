@@ -87,7 +87,7 @@
   const press = (text, title, act) => { const b = make('button', { type: 'button', title }, text); b.addEventListener('click', () => { act(); if (!playing) still(); }); return b; };
   const look = (turn, lift) => () => Object.assign(view, { turn, lift, zoom: 1, right: 0, down: 0 });
   const zoom = by => { view.zoom = Math.min(20, Math.max(0.2, view.zoom * by)); };
-  const shown = (what, title) => { const box = make('input', { type: 'checkbox', checked: true }); box.addEventListener('change', () => { view[what] = box.checked; if (!playing) still(); }); return make('label', { title }, box, what); };
+  const shown = (what, name) => { const box = make('input', { type: 'checkbox', checked: true }); box.addEventListener('change', () => { view[what] = box.checked; if (!playing) still(); }); return make('label', {}, box, name); };
   const save = () => {                       // on the page's colour, as large as it is shown
     const sheet = make('canvas', { width: canvas.width, height: canvas.height }), ctx = sheet.getContext('2d');
     ctx.fillStyle = ink.page; ctx.fillRect(0, 0, sheet.width, sheet.height); ctx.drawImage(canvas, 0, 0);
@@ -107,7 +107,7 @@
   const run = on => { playing = on; play.textContent = on ? 'Pause' : 'Play'; start = 0; on ? requestAnimationFrame(frame) : still(); };
   stage.replaceChildren(caption, canvas, make('div', { className: 'controls' }, play, make('label', {}, 'amplitude ', slider),
     press('iso', 'from the front', look(front.turn, front.lift)), press('x', 'along x', look(0, 0)), press('y', 'along y', look(-Math.PI / 2, 0)), press('z', 'along z', look(-Math.PI / 2, Math.PI / 2)),
-    press('+', 'nearer (Ctrl and wheel)', () => zoom(1.25)), press('\u2212', 'farther', () => zoom(0.8)), ...(probes ? [shown('model', 'the analysis'), shown('test', 'the sensors')] : []), press('PNG', 'save what is shown', save)), strip);
+    press('+', 'nearer (Ctrl and wheel)', () => zoom(1.25)), press('\u2212', 'farther', () => zoom(0.8)), ...(probes ? [shown('model', 'structure'), shown('test', 'sensors')] : []), press('PNG', 'save what is shown', save)), strip);
   colours();
   labels.forEach((label, k) => {
     const small = make('canvas'), b = make('button', { type: 'button', title: label }, small, brief[k]);
