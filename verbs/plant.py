@@ -228,10 +228,8 @@ def _known(found: PlantSource, basis: ModalBasis) -> dict[str, Floats]:
     known: dict[str, Floats] = {}
     if found.test is not None:
         known["test"] = _of_pairs(*found.test, hz[: len(hz) - basis.residual], len(hz))
-    elif found.modes is not None and len(found.modes) >= len(hz):
-        ratios = found.modes.damping
-        first = np.searchsorted(found.modes.frequencies_hz, hz * (1.0 - _SAME))
-        known["test"] = np.where(hz > 0.0, ratios[np.minimum(first, len(ratios) - 1)], np.nan)
+    elif basis.damping is not None:
+        known["test"] = basis.damping
     if found.deck is not None and found.model is not None and basis.vectors is not None:
         from ..adapters.nastran.assembly.deck_damping import modal_ratios
 

@@ -36,6 +36,8 @@ class ModalBasis:
         Of the undamped receptance of the whole model to that of all these modes, at `band_hz`.
     vectors : (n_free, n) float or None
         Of a model.
+    damping : (n,) float or None
+        Of modes alone: their ratios, NaN where unknown.
     notes : tuple of str
     """
 
@@ -46,6 +48,7 @@ class ModalBasis:
     band_hz: float | None = None
     difference: Floats | None = None
     vectors: Floats | None = field(default=None, repr=False)
+    damping: Floats | None = None
     notes: tuple[str, ...] = ()
 
     def plant(
@@ -123,8 +126,14 @@ def basis_of_model(
         hz = np.concatenate([hz, np.sqrt(more) / (2.0 * np.pi)])
         vectors, added = np.hstack([vectors, others]), len(more)
     drive, sense = vectors.T @ forces, np.asarray(read @ vectors)
-    difference = None
-    if fmax is not None:
+    difference, short = None, []
+    top = kept.frequencies_hz.max(initial=0.0)
+    if fmax is not None and n_modes == len(kept.eigenvalues) and top < fmax:
+        short = [
+            f"the {n_modes} modes asked for end at {top:.4g} Hz: from there to the {fmax:g} Hz of "
+            "the band resonances may be missing; ask for more"
+        ]
+    elif fmax is not None:
         own = sense @ (drive / ((2.0 * np.pi) ** 2 * (hz**2 - fmax**2))[:, None])
         difference = receptance_at(K, M, forces, read, fmax) - own
     stay = slice(None) if rigid else slice(zero, None)
@@ -133,7 +142,7 @@ def basis_of_model(
     left_out = [f"{zero} rigid-body modes are left out as asked for"] if zero and not rigid else []
     return ModalBasis(
         hz[stay], drive[stay], sense[:, stay], added, fmax, difference, vectors[:, stay],
-        (*kept.warnings, *left_out),
+        notes=(*kept.warnings, *left_out, *short),
     )  # fmt: skip
 
 
@@ -166,7 +175,11 @@ def basis_of_modes(
             "give modes with their mass, or the deck"
         )
     hz = modes.frequencies_hz
-    free = hz <= STATESPACE.resting * hz.max(initial=0.0)
+    rest = STATESPACE.resting * np.abs(hz).max(initial=0.0)
+    if np.any(hz < -rest):
+        k = int(np.flatnonzero(hz < -rest)[0])
+        raise InputError(f"mode {k + 1} of {who} has {hz[k]:g} Hz: the model is unstable")
+    free = hz <= rest
     hz = np.where(free, 0.0, hz)
     stay = np.ones(len(hz), bool) if fmax is None else hz <= STATESPACE.beyond * fmax
     stay[n_modes or len(hz) :] = False
@@ -176,10 +189,16 @@ def basis_of_modes(
         raise InputError(f"no mode of {who} is left to make a plant of")
     shapes = (modes.shapes / np.sqrt(mass))[:, stay]
     drive, sense = np.asarray(rows_in @ shapes).T, np.asarray(rows_out @ shapes)
-    refuse_fixed(inputs, drive.T, "no mode moves there")
-    refuse_fixed(outputs, sense, "no mode moves there")
+    seen = STATESPACE.still * np.abs(shapes).max(initial=0.0)
+    refuse_fixed(inputs, drive.T, "no mode moves there", seen)
+    refuse_fixed(outputs, sense, "no mode moves there", seen)
     note = (
         "of modes alone nobody knows what was left out: the band is good to about "
         f"{hz[stay].max() / STATESPACE.beyond:.4g} Hz, antiresonances less"
     )
-    return ModalBasis(hz[stay], drive, sense, band_hz=fmax, notes=(note,))
+    notes = [note]
+    if np.any(modes.frequencies_hz[free & stay] > 0.0):
+        top = modes.frequencies_hz[free & stay].max()
+        notes.append(f"modes up to {top:.3g} Hz are taken to be rigid-body motions")
+    known = np.where(free, np.nan, modes.damping)[stay]
+    return ModalBasis(hz[stay], drive, sense, band_hz=fmax, damping=known, notes=tuple(notes))

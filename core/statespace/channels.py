@@ -201,13 +201,17 @@ def rows_of(channels: Sequence[Channel], dofs: Dofs, owner: str) -> Floats:
     return rows
 
 
-def refuse_fixed(channels: Sequence[Channel], moving: Floats, why: str) -> None:
+def refuse_fixed(
+    channels: Sequence[Channel], moving: Floats, why: str, rounding: float = 0.0
+) -> None:
     """Refuse channels at places that cannot move.
 
     Parameters
     ----------
     moving : (n, m) float
         What each channel reads of all motions that there are.
+    rounding : float
+        Up to which it is nothing.
 
     Raises
     ------
@@ -215,5 +219,5 @@ def refuse_fixed(channels: Sequence[Channel], moving: Floats, why: str) -> None:
         An input or output that reads nothing at all.
     """
     for c, row in zip(channels, moving, strict=True):
-        if not np.any(row):
+        if not np.any(np.abs(row) > rounding):
             raise InputError(f"{c.role} {c.said} is fixed: {why}")

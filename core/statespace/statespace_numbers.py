@@ -14,6 +14,7 @@ class StateSpaceNumbers:
     dependent: float = number(1e-10, "of the largest", "squared size of a residual vector that the others span", ROUNDING)
     resting: float = number(1e-3, "of the highest frequency", "modes below which are rigid-body motions to the rounding of a file", ROUNDING)
     aligned: float = number(1e-6, "-", "what the axes of a node may miss of a direction", ROUNDING)
+    still: float = number(1e-12, "of the largest motion", "of modes alone, below which a place does not move", ROUNDING)
     silent: float = number(1e-3, "of the largest of its row and column", "receptance below which an error counts as of this much", "three decades, the range of a test")
     lines: int = number(200, "lines", "of the band over which receptances are averaged", "enough for a median")
     written: int = number(1600, "lines", "of functions that are written, where no number is asked for", "customary of analysers")

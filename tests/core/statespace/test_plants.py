@@ -118,6 +118,41 @@ def test_where_no_mode_moves_is_refused() -> None:
         basis_of_modes(modes, INTO, OUT, *rows)
 
 
+def test_modes_in_any_order_and_close_ones_keep_their_own_damping() -> None:
+    ratios = np.array([0.03, 0.01, 0.05, 0.02])
+    alone = of_modes(np.array([200.0, 100.0, 100.05, 0.01]), damping=ratios)
+    assert alone.damping == pytest.approx([0.03, 0.01, 0.05, np.nan], nan_ok=True)
+    assert "modes up to 0.01 Hz are taken to be rigid-body motions" in alone.notes
+
+
+def test_a_mode_below_zero_is_unstable_and_no_rigid_body_motion() -> None:
+    with pytest.raises(InputError, match=r"mode 2 of m has -100 Hz: the model is unstable"):
+        of_modes(np.array([50.0, -100.0]))
+    assert len(of_modes(np.array([-1e-5, 100.0])).frequencies_hz) == 2
+
+
+def test_rounding_is_no_motion() -> None:
+    with pytest.raises(InputError, match=r"output 5:\+X is fixed: no mode moves there"):
+        of_modes(np.array([50.0, 100.0]), at_5=1e-15)
+
+
+def of_modes(hz: np.ndarray, damping: np.ndarray | None = None, at_5: float = 1.0) -> ModalBasis:
+    model = scalar_model(*chain(N, k=4e4, ground=300.0))
+    shapes = np.ones((N, len(hz)))
+    shapes[4] = at_5
+    modes = Modes(hz, shapes, model.dofs, damping, np.ones(len(hz)), "m")
+    into, out = read_channels("1:X", "input"), read_channels("5:X", "output")
+    rows = rows_of(into, model.dofs, "it"), rows_of(out, model.dofs, "it")
+    return basis_of_modes(modes, into, out, *rows)
+
+
+def test_no_error_is_stated_of_a_band_that_the_modes_asked_for_do_not_reach() -> None:
+    short = basis(300.0, n_modes=3, fmax=20.0)
+    assert short.difference is None
+    assert any(n.startswith("the 3 modes asked for end at") for n in short.notes)
+    assert basis(300.0, n_modes=8, fmax=2.0).difference is not None
+
+
 def test_units_of_the_deck_become_si() -> None:
     """One tonne on a spring of 5 N/mm, a moment arm beside: as in kilograms and metres."""
     into = read_channels("1:X,1:RZ", "input")
