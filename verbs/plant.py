@@ -18,6 +18,7 @@ from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError, naming
 from ..core.noun import Noun
+from ..core.results.discovery import DiscoverTables
 from ..core.statespace.build_plant import ModalBasis, basis_of_model, basis_of_modes
 from ..core.statespace.channels import Channel, check_names, read_channels, rows_of
 from ..core.statespace.damping_choice import Asked, choose_damping, read_damping
@@ -174,8 +175,10 @@ def _of_run(run: Run) -> PlantSource:
     seen, sensors = content.matrices.get("observation"), None
     if seen is not None and seen.shape[1] == len(found.dofs):
         sensors = (content.modes["test"].dofs, sp.csr_matrix(seen))
-    unit = found.length_unit or run.study.deck_length_unit
-    return replace(found, length_unit=unit, sensors=sensors, test=test)
+    unit, notes = found.length_unit or run.study.deck_length_unit, found.notes
+    if isinstance(run, DiscoverTables) and run.verdict == "undecided" and not run.adopted:
+        notes = (*notes, "the run is undecided: its deck is the one given to it, nothing added")
+    return replace(found, length_unit=unit, sensors=sensors, test=test, notes=notes)
 
 
 def _of_cargo(cargo: Any) -> PlantSource:

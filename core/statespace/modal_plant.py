@@ -114,7 +114,7 @@ class ModalPlant(Noun):
         Raises
         ------
         InputError
-            No band, or outputs of several quantities.
+            No band, outputs of several quantities, or a grid and a sensor of one number.
         """
         kinds = sorted({c.quantity for c in self.outputs})
         if len(kinds) > 1:
@@ -122,6 +122,13 @@ class ModalPlant(Noun):
             raise InputError(f"the outputs are {mixed}; functions of a file are of one quantity")
         if self.band_hz is None:
             raise InputError("the upper end of the band is not known; give fmax")
+        grids = {c.node for c in (*self.inputs, *self.outputs) if not c.sensor}
+        both = sorted(grids & {c.node for c in self.outputs if c.sensor})
+        if both:
+            raise InputError(
+                f"grid {both[0]} and sensor {both[0]} would be one node of a file of functions; "
+                "write sensors and grids into files of their own"
+            )
         hz = self.band_hz / lines * np.arange(1, lines + 1)
         into, out = (
             Dofs(

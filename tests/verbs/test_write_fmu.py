@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from dataclasses import replace
@@ -242,7 +243,13 @@ def test_runs_of_every_verb_make_plants(tmp_path: Path) -> None:
     trueup.discover(truth, test).save(tmp_path / "discover")
     trueup.correlate(truth, test).save(tmp_path / "correlate")
     trueup.solve(truth, 6).write(tmp_path / "modes.unv")
+    undecided = json.loads((tmp_path / "discover" / "result.json").read_text())
+    undecided["verdict"], undecided["judgement"]["proposal"] = "undecided", False
+    shutil.copytree(tmp_path / "discover", tmp_path / "undecided")
+    (tmp_path / "undecided" / "result.json").write_text(json.dumps(undecided))
     asked["outputs"] = "11:Y,6:Z:vel"
+    told = trueup.write_fmu(tmp_path / "undecided", tmp_path / "u.npz", **asked)
+    assert any(w.startswith("the run is undecided") for w in told.warnings)
     at = np.array([5.69, 8.05, 35.3, 49.9])  # resonances, which modes alone know as well
 
     def made(name: str, **more: Any) -> np.ndarray:

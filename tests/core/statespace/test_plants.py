@@ -153,6 +153,14 @@ def test_no_error_is_stated_of_a_band_that_the_modes_asked_for_do_not_reach() ->
     assert basis(300.0, n_modes=8, fmax=2.0).difference is not None
 
 
+def test_a_sensor_and_a_grid_of_one_number_do_not_become_one_node() -> None:
+    into, out = read_channels("1:X", "input"), read_channels("2:X,@1:X", "output")
+    made = ModalPlant(np.ones(1), np.zeros(1), np.ones((1, 1)), np.ones((2, 1)), into, out,
+                      band_hz=9.0)  # fmt: skip
+    with pytest.raises(InputError, match="grid 1 and sensor 1 would be one node"):
+        made.frfs(10)
+
+
 def test_units_of_the_deck_become_si() -> None:
     """One tonne on a spring of 5 N/mm, a moment arm beside: as in kilograms and metres."""
     into = read_channels("1:X,1:RZ", "input")
