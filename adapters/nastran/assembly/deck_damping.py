@@ -78,6 +78,7 @@ def _loss_matrix(deck: Deck) -> sp.csr_matrix | None:
     if not any(np.any(c.ge) for c in _with_loss(deck.bulk)):
         return None
     variation = read_variation(deck, ())
+    variation = replace(variation, bulk=_by_direction(variation.bulk))
     structure, blocks = read_structure(deck, variation), []
     for group, block in zip(structure.groups, structure.blocks, strict=True):
         loss = np.array([_loss(variation.bulk, s) for s in group.sources])[group.source_of]
@@ -85,6 +86,17 @@ def _loss_matrix(deck: Deck) -> sp.csr_matrix | None:
             blocks.append(_scaled(block, loss))
     terms, _ = parametric_terms(blocks, structure.points.n_dof, np.zeros(0), np.zeros(0))
     return sum((t.matrix for t in terms[1:]), terms[0].matrix).tocsr()
+
+
+def _by_direction(bulk: Bulk) -> Bulk:
+    """Take loss factors of single directions into the stiffness of a PBUSH; GE1 alone is of all."""
+    apart = {
+        number: p._replace(k=tuple(np.multiply(p.k, p.ge)), ge=(1.0,) * len(p.ge))
+        for number, p in bulk.table("PBUSH").items()
+        if any(p.ge[1:])
+    }
+    table = {**bulk.table("PBUSH"), **apart}
+    return replace(bulk, tables={**bulk.tables, "PBUSH": table}) if apart else bulk
 
 
 def _with_loss(bulk: Bulk) -> Iterable[Any]:

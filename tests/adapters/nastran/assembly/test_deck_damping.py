@@ -67,6 +67,19 @@ def test_materials_and_springs_count_by_their_share_of_the_strain_energy(tmp_pat
     assert found.min() > 0.0
 
 
+def test_a_bush_has_a_loss_factor_of_each_direction_and_the_first_alone_is_of_all(tmp_path):
+    bush = "CBUSH,10,10,5,,,,,0\nPBUSH,10,K,5.+5,3.+5,4.+5\n,,GE,{}\n"
+    bare = PLATE + SHELL + mats(0.0, 0.0)
+    for said, losses in ((".1,.3,.2", (0.1, 0.3, 0.2)), ("0.,.3", (0.0, 0.3, 0.0)),
+                         (".1", (0.1, 0.1, 0.1))):  # fmt: skip
+        found, modes, model = ratios(tmp_path, bare + bush.format(said))
+        at = [int(np.flatnonzero((model.dofs.node == 5) & (model.dofs.component == c))[0])
+              for c in (1, 2, 3)]  # fmt: skip
+        move = (model.expansion[at] @ modes.vectors) ** 2
+        share = move.T @ (np.array([5e5, 3e5, 4e5]) * losses)
+        assert found == pytest.approx(share / (2.0 * modes.eigenvalues), rel=1e-6, abs=1e-12)
+
+
 @pytest.mark.parametrize(("kind", "at_0"), [("G", 0.01), ("CRIT", 0.02)])
 def test_the_selected_table_is_read_at_each_frequency(tmp_path, kind, at_0):
     table = f"TABDMP1,3,{kind}\n,0.,.02,100.,.04,ENDT\n"
