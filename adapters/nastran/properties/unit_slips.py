@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import log10
+from math import inf, log10
 from typing import NamedTuple
 
 from ....core.data.length_units import METRES
@@ -10,13 +10,14 @@ from ..deck.read_deck import Deck
 
 
 class _System(NamedTuple):
-    """A consistent system: pascals, kg/m³ and metres in its units; how usual it is, in decades."""
+    """Pascals, kg/m³, metres and seconds in units that go together; how usual, in decades."""
 
     name: str
     stress: float
     density: float
     length: float
     usual: float
+    time: float = 1.0
 
 
 _SYSTEMS = (
@@ -25,13 +26,16 @@ _SYSTEMS = (
     _System("in, lbf s²/in, lbf", 6894.757, 1.0686896e7, 0.0254, 0.0),
     _System("ft, slug, lbf", 47.880259, 515.37882, 0.3048, 1.0),
     _System("mm, kg, mN", 1e3, 1e9, 1e-3, 1.0),
-    _System("mm, kg, kN, ms", 1e9, 1e9, 1e-3, 2.0),
-    _System("mm, g, N, ms", 1e6, 1e6, 1e-3, 2.0),
+    _System("mm, kg, kN, ms", 1e9, 1e9, 1e-3, 2.0, 1e-3),
+    _System("mm, g, N, ms", 1e6, 1e6, 1e-3, 2.0, 1e-3),
     _System("mm, kgf s²/mm, kgf", 9.80665e6, 9.80665e9, 1e-3, 2.0),
     _System("m, t, kN", 1e3, 1e3, 1.0, 2.0),
     _System("cm, g, dyn", 0.1, 1e3, 1e-2, 2.0),
 )
-_STRESS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757, "ksi": 6.894757e6}
+_STRESS = {
+    "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psf": 47.880259, "psi": 6894.757,
+    "ksi": 6.894757e6, "Msi": 6.894757e9,
+}  # fmt: skip
 _DENSITY = {
     "kg/m³": 1.0, "g/cm³": 1e3, "kg/mm³": 1e9, "t/mm³": 1e12, "lb/in³": 27679.905,
     "lbf s²/in⁴": 1.0686896e7, "slug/ft³": 515.37882, "lb/ft³": 16.018463,
@@ -72,9 +76,10 @@ def unit_slips(deck: Deck, size: float) -> tuple[str, ...]:
     """Return at most one sentence: the likeliest slip in the units of a deck, and its factor.
 
     Steel, aluminium and titanium are recognised by E and density together, in any units; where
-    no consistent system has both, one of them was typed in another. Then the length unit that
-    goes with the materials is held against the one declared and the size of the structure,
-    `size` in deck units.
+    no consistent system has both, one of them was typed in another, or PARAM WTMASS is wrong.
+    Where time is in ms, frequencies are not in Hz. Then the length unit that goes with the
+    materials is held against the one declared and the size of the structure, `size` in deck
+    units, and the thickest shell against that.
     """
     wtmass = deck.param("WTMASS", 1.0)
     systems: list[_System] = []
@@ -83,12 +88,17 @@ def unit_slips(deck: Deck, size: float) -> tuple[str, ...]:
         if not (E > 0.0 and rho > 0.0):
             continue
         fitting = [s for s in _SYSTEMS if _makes_sense(E * s.stress, rho * s.density)]
+        told = _wtmass_slip(f"MAT1 {mid}", E, rho / wtmass, wtmass, size, fitting)
+        if told:
+            return (told,)
         if not fitting:
             slip = min(_slips(E, rho, size), key=lambda s: s.cost, default=None)
             if slip:
                 return (_said(f"MAT1 {mid}", E, rho / wtmass, wtmass, slip),)
+        elif all(s.time < 1.0 for s in fitting):
+            return (_not_in_hertz(f"MAT1 {mid}", fitting[0]),)
         systems += fitting
-    return _length_slip(deck.length_unit, size, systems)
+    return _length_slip(deck.length_unit, size, systems) or _thickness_slip(deck, size)
 
 
 def _near(a: float, b: float, factor: float) -> bool:
@@ -118,15 +128,66 @@ def _slips(E: float, rho: float, size: float) -> Iterator[_Slip]:
 
 
 def _said(card: str, E: float, rho: float, wtmass: float, slip: _Slip) -> str:
-    off = (slip.factor if slip.what == "E" else 1.0 / slip.factor) ** 0.5
     weight = next((w for g, w in _GRAVITY.items() if _near(slip.factor * g, 1.0, 1.01)), None)
     remedy = f"in {slip.system.name} its {slip.what} is to be multiplied by {slip.factor:.3g}"
     if slip.what == "density" and weight and wtmass == 1.0:
         remedy = f"PARAM,WTMASS,{weight} seems to be forgotten (a factor {slip.factor:.3g} on mass)"
     return (
         f"the units of {card} do not go together: E {E:g} with density {rho:g} is {slip.read}; "
-        f"{remedy}; all frequencies come out "
-        f"{off if off > 1.0 else 1.0 / off:.3g} times too {'low' if off > 1.0 else 'high'}"
+        f"{remedy}; {_off(1.0 / slip.factor if slip.what == 'E' else slip.factor)}"
+    )
+
+
+def _wtmass_slip(
+    card: str, E: float, rho: float, wtmass: float, size: float, fitting: list[_System]
+) -> str:
+    """Say what is wrong with PARAM WTMASS where another makes a more usual system; else ""."""
+    usual = min((s.usual for s in fitting), default=inf)
+    if wtmass == 1.0 or usual == 0.0:
+        return ""
+    given = f"the units of {card} do not go together: with PARAM,WTMASS,{wtmass:g}"
+    for s in _SYSTEMS:
+        if s.usual < usual and _makes_sense(E * s.stress, rho * s.density):
+            return (
+                f"{given}, but its density {rho:g} is a mass in {s.name} as it stands: WTMASS "
+                f"seems to be one too many; {_off(1.0 / wtmass)}"
+            )
+    for slip in sorted(_slips(E, rho, size), key=lambda s: s.cost):
+        if slip.what != "density" or slip.system.usual >= usual or _near(slip.factor, wtmass, 1.01):
+            continue
+        for gravity, weight in _GRAVITY.items():
+            if _near(slip.factor * gravity, 1.0, 1.01):
+                return (
+                    f"{given}; E {E:g} with density {rho:g} is {slip.read}, for which it is to be "
+                    f"{weight}; {_off(slip.factor / wtmass)}"
+                )
+    return ""
+
+
+def _off(mass: float) -> str:
+    """Say how far frequencies are off where the mass is to be multiplied by `mass`."""
+    times = mass**0.5
+    high_or_low = "high" if times > 1.0 else "low"
+    return f"all frequencies come out {max(times, 1.0 / times):.3g} times too {high_or_low}"
+
+
+def _not_in_hertz(card: str, system: _System) -> str:
+    usual = _SYSTEMS[0]
+    return (
+        f"the units of {card} are {system.name}: frequencies come out in kHz, where Hz is said, "
+        f"1000 times too low; in {usual.name} its E is to be multiplied by "
+        f"{system.stress / usual.stress:.3g}, its density by {system.density / usual.density:.3g}"
+    )
+
+
+def _thickness_slip(deck: Deck, size: float) -> tuple[str, ...]:
+    shells = deck.bulk.table("PSHELL").items()
+    thickness, pid = max(((card.t or 0.0, pid) for pid, card in shells), default=(0.0, 0))
+    if not 0.0 < size < thickness:
+        return ()
+    return (
+        f"the units of PSHELL {pid} do not go together with those of the grids: T is {thickness:g} "
+        f"where the whole structure is {size:.3g} large",
     )
 
 

@@ -143,8 +143,8 @@ def read_deck_text(path: Path | str) -> DeckText:
             found = locate_include(written, files[parent].path, top, where)
             real = found.resolve()
             if real not in by_path:
-                by_path[real] = len(files)
                 files.append(_load(found, where))
+                by_path[real] = len(files) - 1
             children[parent, written] = by_path[real]
         return children[parent, written]
 

@@ -27,7 +27,8 @@ def said(model):
         (2.1e5, 7.85e-9, 800.0, ""), (7e4, 2.7e-9, 300.0, ""), (1.1e5, 4.43e-9, 2500.0, ""),
         (2.1e11, 7850.0, 40.0, ""), (7e10, 2700.0, 0.05, ""), (3e10, 2400.0, 300.0, ""),
         (1.07e7, 2.59e-4, 60.0, ""), (2.9e7, 0.283, 60.0, "PARAM,WTMASS,.00259\n"),
-        (1.44e9, 5.37, 9.0, ""), (2.1e8, 7.85e-6, 800.0, ""), (210.0, 7.85e-6, 800.0, ""),
+        (1.44e9, 5.37, 9.0, ""), (2.1e8, 7.85e-6, 800.0, ""),
+        (2.1e11, 7.85, 8.0, "PARAM,WTMASS,1E3\n"), (4.3e9, 490.0, 9.0, "PARAM,WTMASS,.0311\n"),
         (2e9, 8.02e-9, 300.0, ""), (1.0, 1.0, 1.0, ""), (5.0, 1.2e-9, 80.0, ""),
         (2.1e8, 7.85, 20.0, ""), (1.5e5, 1.6e-9, 4e4, ""),
     ],
@@ -75,6 +76,45 @@ def test_lengths_that_the_materials_contradict(said, E, rho, size, more, words):
     (sentence,) = said(E, rho, size, more)
     for word in words:
         assert word in sentence
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "wtmass", "words"),
+    [
+        (3e7, 7.34e-4, 0.00259, ["one too many", "in, lbf s²/in, lbf", "19.6 times too high"]),
+        (2.1e11, 7850.0, 0.00259, ["one too many", "m, kg, N"]),
+        (3e7, 0.283, 386.0, ["psi and lb/in³", "to be 0.00259", "386 times too low"]),
+        (30.0, 0.283, 0.00259, ["steel in Msi", "by 1e+06"]),
+        (4.3e9, 490.0, 1.0, ["psf and lb/ft³", "WTMASS,0.0311"]),
+    ],
+)
+def test_masses_by_a_wrong_gravity(said, E, rho, wtmass, words):
+    (sentence,) = said(E, rho, 30.0, f"PARAM,WTMASS,{wtmass!r}\n")
+    for word in words:
+        assert word in sentence
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "words"),
+    [
+        (
+            210.0,
+            7.85e-6,
+            ["mm, kg, kN, ms", "in kHz", "E is to be multiplied by 1e+03", "by 0.001"],
+        ),
+        (7e4, 2.7e-3, ["mm, g, N, ms", "in kHz", "E is to be multiplied by 1,", "by 1e-06"]),
+    ],
+)
+def test_frequencies_by_the_millisecond_are_not_in_hertz(said, E, rho, words):
+    (sentence,) = said(E, rho, 800.0)
+    for word in words:
+        assert word in sentence
+
+
+@pytest.mark.parametrize(("thickness", "told"), [(5.0, 1), (0.5, 0)])
+def test_a_shell_thicker_than_the_structure_is_large(said, thickness, told):
+    shell = f"PSHELL,9,1,{thickness!r}\n"
+    assert len(said(2.1e11, 7850.0, 0.8, shell)) == told
 
 
 def test_declared_units_that_agree_are_not_mentioned(said):

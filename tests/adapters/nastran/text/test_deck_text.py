@@ -100,6 +100,7 @@ FAULTS = {
     "no name": ({"deck_bdf": "INCLUDE \n"}, "INCLUDE names no file"),
     "symbol": ({"deck_bdf": "INCLUDE 'NOSUCH:a.bdf'\n"}, "symbol 'NOSUCH', which is not set"),
     "binary": ({"deck_bdf": "GRID\0\0"}, "is not a text file"),
+    "binary part": ({"deck_bdf": "INCLUDE 'a.bdf'\n", "a_bdf": "GRID\0\0"}, "a.bdf is not a text"),
 }
 
 
