@@ -84,6 +84,8 @@ def write_fmu(
     asked: Any = dict(options)
     version = converted("fmi", asked.pop("fmi", 2), int, who)
     lines = converted("lines", asked.pop("lines", STATESPACE.written), int, who)
+    for name in asked.keys() & {"residual", "rigid_body"}:
+        asked[name] = converted(name, asked[name], bool, who)
     modes, fmax = (
         converted("modes", modes, int | None, who),
         converted("fmax", fmax, float | None, who),

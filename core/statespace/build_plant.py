@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from ..arrays import Floats, Numbers
 from ..data.modes import Modes
 from ..data.parametric_model import Model
+from ..eigen.eigen_numbers import EIGEN
 from ..eigen.normal_modes import solve
 from ..errors import InputError
 from .channels import Channel, refuse_fixed
@@ -128,10 +129,10 @@ def basis_of_model(
     drive, sense = vectors.T @ forces, np.asarray(read @ vectors)
     difference, short = None, []
     top = kept.frequencies_hz.max(initial=0.0)
-    if fmax is not None and n_modes == len(kept.eigenvalues) and top < fmax:
+    if fmax is not None and len(kept.eigenvalues) in (n_modes, EIGEN.most) and top < fmax:
         short = [
-            f"the {n_modes} modes asked for end at {top:.4g} Hz: from there to the {fmax:g} Hz of "
-            "the band resonances may be missing; ask for more"
+            f"the {len(kept.eigenvalues)} modes end at {top:.4g} Hz: from there to the {fmax:g} Hz "
+            "of the band resonances may be missing; ask for more modes, or for a narrower band"
         ]
     elif fmax is not None:
         own = sense @ (drive / ((2.0 * np.pi) ** 2 * (hz**2 - fmax**2))[:, None])

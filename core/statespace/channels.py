@@ -97,6 +97,8 @@ def read_channels(given: str | Sequence[str], role: Role) -> tuple[Channel, ...]
     InputError
         None at all, one that cannot be read, names that collide.
     """
+    if not isinstance(given, str | Sequence):
+        raise InputError(f'the {role}s are {given!r}; write them as in "1187:+Z,1187:RZ"')
     every = given.split(",") if isinstance(given, str) else list(given)
     texts = [str(t).strip() for t in every if str(t).strip()]
     if not texts:

@@ -53,25 +53,41 @@ def read_damping(asked: Asked) -> DampingChoice:
     if asked is None:
         return DampingChoice()
     if isinstance(asked, str):
-        sources, by_mode, rest = [], {}, None
-        for word in filter(None, (w.strip() for w in asked.split(","))):
-            if word in KNOWN:
-                sources.append(word)
-            elif found := _FOR_MODE.fullmatch(word):
-                by_mode[int(found[1])] = _ratio(found[2])
-            else:
-                rest = _ratio(word)
-        return DampingChoice(tuple(sources), by_mode, rest)
+        return _of_text(asked)
     if isinstance(asked, Mapping):
+        numbers = [k for k in asked if not isinstance(k, int | np.integer)]
+        if numbers:
+            raise InputError(f"damping: {numbers[0]!r} is no number of a mode")
         return DampingChoice(KNOWN, {int(k): _ratio(z) for k, z in asked.items()})
     if isinstance(asked, int | float):
         return DampingChoice((), {}, _ratio(asked))
-    return DampingChoice((), {k: _ratio(z) for k, z in enumerate(np.ravel(asked).tolist(), 1)})
+    return DampingChoice(KNOWN, {k: _ratio(z) for k, z in enumerate(np.ravel(asked).tolist(), 1)})
+
+
+def _of_text(asked: str) -> DampingChoice:
+    sources: list[str] = []
+    by_mode: dict[int, float] = {}
+    rest: float | None = None
+    for word in filter(None, (w.strip() for w in asked.split(","))):
+        if word in KNOWN:
+            sources.append(word)
+        elif found := _FOR_MODE.fullmatch(word):
+            if int(found[1]) in by_mode:
+                raise InputError(f"damping={asked!r} gives mode {found[1]} two ratios")
+            by_mode[int(found[1])] = _ratio(found[2])
+        elif rest is None:
+            rest = _ratio(word)
+        else:
+            raise InputError(
+                f"damping={asked!r} gives two ratios for all; write '1:0.01, 2:0.02' for modes"
+            )
+    others = KNOWN if by_mode and rest is None else ()
+    return DampingChoice(tuple(sources) or others, by_mode, rest)
 
 
 def _ratio(value: object) -> float:
     try:
-        ratio = float(value)  # type: ignore[arg-type]
+        ratio = np.nan if isinstance(value, bool) else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         ratio = np.nan
     if not 0.0 <= ratio < np.inf:
@@ -118,15 +134,19 @@ def choose_damping(
     ratios[np.isnan(ratios) & ~elastic] = 0.0
     if choice.rest is not None:
         ratios[elastic] = choice.rest
-        return ratios, []
-    if not elastic.any():
-        return ratios, []
+    high = [
+        f"the damping of mode {k + 1} is {ratios[k]:g} times critical; 5 % is written 0.05"
+        for k in np.flatnonzero(ratios >= 1.0)[:1]
+    ]
+    if choice.rest is not None or not elastic.any():
+        return ratios, high
     test = known.get("test")
     heard = test is not None and "test" in choice.sources and not np.isnan(test).all()
     usual = float(np.nanmedian(test)) if heard and test is not None else STATESPACE.damping
     ratios[elastic] = usual
     whose = "the median of the test" if heard else "a default"
     return ratios, [
+        *high,
         f"no damping is known of {np.count_nonzero(elastic)} of {n} modes: {100 * usual:.3g} % of "
-        f"critical is taken, {whose}"
+        f"critical is taken, {whose}",
     ]

@@ -290,6 +290,8 @@ def test_runs_of_every_verb_make_plants(tmp_path: Path) -> None:
         ({"fmi": 1}, "fmi=1 is no version of FMI"),
         ({"fmax": -1.0}, "fmax is -1.0; it must be above 0"),
         ({"output": "3:Z"}, "unknown key 'output'"),
+        ({"residual": "no"}, "'residual' has a value of the wrong type: 'no'"),
+        ({"inputs": 10}, "the inputs are 10; write them as in"),
     ],
 )
 def test_bad_input_is_one_sentence_and_no_file(
