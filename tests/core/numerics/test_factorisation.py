@@ -80,6 +80,24 @@ def test_without_pivoting_the_count_is_right_or_refused(indefinite):
         assert factorise(indefinite, False, "superlu").negative == truth
 
 
+@pytest.mark.parametrize(("stiff", "told"), [(1e8, True), (1e10, True), (1e13, False)])
+def test_pairs_of_masses_beside_stiff_springs_are_counted_while_rounding_allows(stiff, told):
+    """Pairs that a stiff spring joins move as one mass of two in a chain of springs of one."""
+    pairs = 300
+    springs = np.tile([1.0, stiff], pairs)
+    diagonal = springs + np.append(springs[1:], 0.0)
+    chain = sp.diags([-springs[1:], diagonal, -springs[1:]], [-1, 0, 1], format="csr")
+    odd = 2 * np.arange(1, pairs + 1) - 1
+    values = 2.0 * np.sin(odd * np.pi / (2 * (2 * pairs + 1))) ** 2
+    shift = (values[20] + values[21]) / 2.0
+    factor = factorise(chain - shift * sp.identity(2 * pairs, format="csr"), False, "superlu")
+    if told:
+        assert factor.negative == 21
+    else:
+        with pytest.raises(CheckError, match="lost its accuracy"):
+            _ = factor.negative
+
+
 def test_superlu_refuses_a_count_it_cannot_vouch_for():
     tiny = sp.csr_matrix([[1e-30, 1.0, 0.0], [1.0, 1e-30, 1.0], [0.0, 1.0, 1e-30]])
     f = factor_module._SuperluFactorisation(tiny, False)
