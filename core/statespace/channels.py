@@ -25,6 +25,7 @@ _WRITTEN = re.compile(
 _NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _SHORT = {"disp": 0, "vel": 1, "acc": 2}
+_TAKEN = {"time": "the time of simulators", "mode": "what the modes of the plant are called"}
 _TURNING = ("rotation", "angularVelocity", "angularAcceleration")
 
 
@@ -122,9 +123,17 @@ def check_names(channels: Sequence[Channel]) -> None:
                 f"{other.role} {other.said} and {c.role} {c.said} are both called '{c.name}'; "
                 "give one of them another name, as in tip=40:+X"
             )
-        if c.name == "time":
-            raise InputError(f"{c.role} {c.said} is called 'time', which is the time of simulators")
+        if taken := _TAKEN.get(c.name.partition(".")[0]):
+            raise InputError(f"{c.role} {c.said} is called '{c.name}', which is {taken}")
         seen[c.name] = c
+    for name, c in seen.items():
+        parts = name.split(".")
+        for owner in (".".join(parts[:k]) for k in range(1, len(parts))):
+            if owner in seen:
+                raise InputError(
+                    f"{c.role} {c.said} is called '{name}' and {seen[owner].role} "
+                    f"{seen[owner].said} '{owner}', of which it would be a part"
+                )
 
 
 def _channel(text: str, role: Role) -> Channel:

@@ -48,6 +48,9 @@ def test_what_cannot_be_read_is_said_in_a_sentence(given: str, role: str, says: 
         ("1:Z,1:+Z", "output 1:\\+Z and output 1:\\+Z are both called 'g1.displacement.Z'"),
         ("a=1:Z,a=2:Z", "both called 'a'"),
         ("time=1:Z", "the time of simulators"),
+        ("mode=1:Z", "is called 'mode', which is what the modes of the plant are called"),
+        ("mode.x=1:Z", "is called 'mode.x', which is"),
+        ("g2=1:Z,2:Z", "'g2.displacement.Z' and output 1:\\+Z 'g2', of which it would be a part"),
     ],
 )
 def test_names_that_collide_are_refused(given: str, says: str) -> None:
