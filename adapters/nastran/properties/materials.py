@@ -13,6 +13,8 @@ from ..deck.card_definition import Card, Values
 from ..deck.movable_values import Doubt, Moves
 
 _RHO = "RHO:r=0."
+_INDEFINITE = 1e-3
+"""Negative stiffness of a MAT9, beside its largest, that is no rounding of its digits."""
 
 CARDS = (
     Card(
@@ -189,6 +191,12 @@ def elastic(bulk: Bulk, mid: int, asked_by: Place) -> Elastic:
     C = np.zeros((6, 6))
     rows, columns = np.triu_indices(6)
     C[rows, columns] = C[columns, rows] = card.g
+    values = np.linalg.eigvalsh(C)
+    if values[0] < -_INDEFINITE * abs(values).max():
+        raise bulk.place(name, int(mid)).error(
+            "G11 to G66 are those of no material: some strain of it takes negative energy; "
+            "check their order and signs"
+        )
     return Elastic(C, card.rho, False)
 
 

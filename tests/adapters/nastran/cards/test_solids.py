@@ -102,6 +102,17 @@ def test_plies_of_a_solid_laminate_lie_as_psdir_and_theta_say(solve):
     assert any("PCOMPS 1" in w and "is not known" in w for w in said)
 
 
+@pytest.mark.parametrize(("coupling", "possible"), [(6.9999e4, True), (7.5e4, False)])
+def test_a_mat9_that_gives_energy_back_is_refused(solve, coupling, possible):
+    stiff = ",,,,7.E4\n,0.,,,,7.E4,,,\n,2.E4,,,2.E4,,2.E4,2.7-9\n"
+    properties = PROPERTY + f"MAT9,1,7.E4,{coupling!r},0." + stiff
+    if possible:
+        solve(BRICK, properties=properties)
+        return
+    with pytest.raises(InputError, match=r"MAT9 1 \(.*G11 to G66 are those of no material"):
+        solve(BRICK, properties=properties)
+
+
 def test_orthotropic_material_that_cannot_be_is_refused(solve):
     with pytest.raises(InputError, match=r"MAT11 1 .*NU12, NU13 and NU23 are not possible"):
         solve(BRICK, properties=PROPERTY + ORTHOTROPIC.replace(",.3,", ",2.,"))
