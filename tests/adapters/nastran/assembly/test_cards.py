@@ -243,7 +243,7 @@ BAD = [
     ("GRDSET,,,,,,,1A3\nGRID,1", r"GRDSET: PS \(field 8\) holds '1A3'"),
     (
         "MAT1,1,7.+4,,.3,nan",
-        r"deck.bdf line \d+: MAT1 1: RHO \(field 6\) holds 'nan', which is not a finite",
+        r"deck.bdf line \d+: MAT1 1: RHO \(field 6\) holds 'nan', which is not a real number",
     ),
     ("MAT1,1,inf,,.3", r"MAT1 1: E \(field 3\) holds 'inf'"),
     ("MAT1,1,-7.+4,,.3", r"MAT1 1 \(.*deck.bdf line \d+\): E is -70000"),
