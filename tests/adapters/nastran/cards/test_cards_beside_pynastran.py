@@ -84,7 +84,8 @@ ISOP REDUCED FULL|TFLAG 0 1|NORM MASS MAX|METHOD LAN AHOU|MSGLVL 0 1 2 3 4|PARAM
 PARAM.V1 0.5 227.25|X3:r -2. 1.5|X4:r 2. 1.5E2|NSM.TYPE PSHELL PBAR PBEAM|NSML.TYPE PSHELL PROD
 NSM1.TYPE PSHELL|NSML1.TYPE ELEMENT|PBARL.TYPE BAR TUBE2|PBEAML.TYPE BAR|components:i 1 2 3
 RBAR.CNA 123456|RROD.CMA 1 2 3|DMIG.NAME MADE|DMIG.CJ 1 2 3|DTI.NAME UNITS|DTI.IREC 1|DTI.MASS KG
-DTI.FORCE N|CFAST.TYPE PROP ELEM|GEOM 1 2 3 4|MFLAG 0 1|DTI.LENGTH M MM|DTI.TIME S"""
+DTI.FORCE N|CFAST.TYPE PROP ELEM|GEOM 1 2 3 4|MFLAG 0 1|DTI.LENGTH M MM|DTI.TIME S
+TABDMP1.TYPE G CRIT Q"""
 BLANK = "EIGR.G EIGR.C PARAM.V2 RBAR.CNB RBAR.CMA RROD.CMB PBAR.I12 RBAR1.TREF RROD.TREF DMIG.B"
 DRAWN = {
     **{w.split()[0]: words(w.partition(" ")[2]) for w in re.split(r"[|\n]", WORDS.strip())},
@@ -110,7 +111,7 @@ BEHIND = {
         lambda v: ["K", *v[:6], None, "B", *v[6:12], None, "GE", *v[12:18], None,
                    "RCV", *v[18:22], None, None, None, "M", v[22]]
     ),
-    "TABLEM1": points(5), "TABLEM2": points(5), "TABLEM3": points(4),
+    "TABDMP1": points(6), "TABLEM1": points(5), "TABLEM2": points(5), "TABLEM3": points(4),
     "TABLEM4": st.lists(REAL, min_size=1, max_size=5).map(lambda a: [*[None] * 3, *a, "ENDT"]),
     "RBE1": st.builds(lambda n, m: [*n, *[None] * (7 - len(n)), "UM", *m], DOFS, DOFS),
     "RBE2": st.builds(lambda g, a: [*g, a], GRIDS, POSITIVE),
