@@ -20,6 +20,7 @@ PAIR = {
     "test", "analysis", "test_hz", "analysis_hz", "deviation_percent", "mac", "cluster",
     "rotation_deg",
 }  # fmt: skip
+HARMONICS = {"test_harmonic", "test_orientation_deg", "analysis_harmonic", "analysis_orientation_deg"}
 DAMPING = {"test_damping", "analysis_damping", "test_mpc"}
 
 Call = Callable[..., Any]
@@ -56,7 +57,7 @@ def test_the_result_says_what_the_interface_promises(runs: dict[str, Any]) -> No
     result = runs["analysis"][1]
     assert result["schema"] == "trueup/correlate/1"
     assert set(result) >= CORRELATION
-    assert all(set(p) == PAIR | DAMPING for p in result["pairs"])
+    assert all(set(p) == PAIR | DAMPING | HARMONICS for p in result["pairs"])
     assert set(result["mac"]) == {"test", "analysis", "values"}
     sensor = result["alignment"]["sensors"][0]
     assert set(sensor) >= {"node", "direction", "nearest_grid", "distance"}
