@@ -37,9 +37,13 @@ def dissected(graph: sp.csr_matrix, weight: Ints, undivided: Order) -> Ints:
     undivided : callable
         Orders a graph with weights that is not dissected.
     """
-    pieces, label = connected_components(graph, directed=False)
-    if pieces > 1:
-        parts = np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+    _, piece = connected_components(graph, directed=False)
+    few = np.bincount(piece) <= _FEW
+    if few.all():
+        return undivided(graph, weight)
+    piece = np.where(few[piece], -1, piece)
+    if np.ptp(piece):
+        parts = [np.flatnonzero(piece == k) for k in np.unique(piece)]
         separator = np.zeros(0, np.int64)
     else:
         *parts, separator = _cut(graph, weight)
@@ -55,19 +59,17 @@ def _cut(graph: sp.csr_matrix, weight: Ints) -> tuple[Ints, Ints, Ints]:
     Nodes count as far along as they are nearer to one of two ends, far apart, than to the other,
     smoothed, so that equal distances part, too.
     """
-    n = len(weight)
-    side = np.zeros(n, np.int64)
-    if n > _FEW:
-        one = int(dijkstra(graph, unweighted=True, indices=0).argmax())
-        from_one = dijkstra(graph, unweighted=True, indices=one)
-        along = from_one - dijkstra(graph, unweighted=True, indices=int(from_one.argmax()))
-        mean = sp.diags(1.0 / np.diff(graph.indptr)) @ graph.astype(bool)
-        for _ in range(_SMOOTHED):
-            along = mean @ along
-        order = np.argsort(along, kind="stable")
-        share = np.cumsum(weight[order]) / weight.sum()
-        side[order[share < 0.5 - _MIDDLE / 2]] = -1
-        side[order[share > 0.5 + _MIDDLE / 2]] = 1
+    side = np.zeros(len(weight), np.int64)
+    one = int(dijkstra(graph, unweighted=True, indices=0).argmax())
+    from_one = dijkstra(graph, unweighted=True, indices=one)
+    along = from_one - dijkstra(graph, unweighted=True, indices=int(from_one.argmax()))
+    mean = sp.diags(1.0 / np.diff(graph.indptr)) @ graph.astype(bool)
+    for _ in range(_SMOOTHED):
+        along = mean @ along
+    order = np.argsort(along, kind="stable")
+    share = np.cumsum(weight[order]) / weight.sum()
+    side[order[share < 0.5 - _MIDDLE / 2]] = -1
+    side[order[share > 0.5 + _MIDDLE / 2]] = 1
     before, separator = _least_separator(graph, weight, side)
     return np.flatnonzero(before), np.flatnonzero(~before & ~separator), np.flatnonzero(separator)
 

@@ -6,6 +6,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from trueup.core.numerics.fill_reducing_ordering import nodal_order
+from trueup.core.numerics.nested_dissection import dissected
 
 
 def _grid(nx, ny, per_node, rng=None, nz=1):
@@ -62,3 +63,17 @@ def test_matrices_without_any_structure():
     for a in (sp.identity(1), sp.identity(5), sp.csr_matrix(np.ones((4, 4)))):
         order = nodal_order(sp.csr_matrix(a))
         assert sorted(order) == list(range(a.shape[0]))
+
+
+def test_many_small_pieces_are_ordered_at_once():
+    """Held rows of a model are pieces of their own: thousands of orders of one row take seconds."""
+    asked = []
+
+    def undivided(graph, weight):
+        asked.append(graph.shape[0])
+        return np.arange(graph.shape[0])
+
+    graph = sp.block_diag([_grid(20, 20, 1), sp.eye(3000)], format="csr")
+    order = dissected(graph, np.ones(3400, np.int64), undivided)
+    assert np.array_equal(np.sort(order), np.arange(3400))
+    assert sorted(asked) == [400, 3000]
