@@ -20,7 +20,12 @@ PAIR = {
     "test", "analysis", "test_hz", "analysis_hz", "deviation_percent", "mac", "cluster",
     "rotation_deg",
 }  # fmt: skip
-HARMONICS = {"test_harmonic", "test_orientation_deg", "analysis_harmonic", "analysis_orientation_deg"}
+HARMONICS = {
+    "test_harmonic",
+    "test_orientation_deg",
+    "analysis_harmonic",
+    "analysis_orientation_deg",
+}
 DAMPING = {"test_damping", "analysis_damping", "test_mpc"}
 
 Call = Callable[..., Any]
