@@ -274,6 +274,6 @@ def _error(plant: ModalPlant) -> list[str]:
     if plant.error is None or plant.band_hz is None:
         return []
     return [
-        f"up to {plant.band_hz:.4g} Hz what is left out is at most {100 * plant.error:.2g} % of "
+        f"up to {plant.band_hz:.4g} Hz what is left out is about {100 * plant.error:.2g} % of "
         "the median of a receptance in the band"
     ]
