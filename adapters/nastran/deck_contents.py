@@ -7,7 +7,7 @@ from ...core.data.geometry import Geometry
 from ...core.errors import InputError
 from .deck.case_control import CaseControl
 from .deck.number_spaces import space_of
-from .deck.read_deck import Deck, EigenRequest
+from .deck.read_deck import Deck, EigenRequest, seen_from
 from .deck_reader import read_deck
 from .properties.grids import read_points
 from .properties.unit_slips import unit_slips
@@ -68,7 +68,7 @@ def _contents(deck: Deck) -> dict[str, Any]:
     known, counts = deck.bulk.definitions, deck.counts
     elements = {n: k for n, k in counts.items() if space_of(n, known) == "element"}
     found = {
-        "files": [_shown(f, deck.path) for f in deck.files] if deck.files[1:] else None,
+        "files": [seen_from(deck.path, f) for f in deck.files] if deck.files[1:] else None,
         "grids": counts.get("GRID"),
         "bounding_box": _box(deck) if counts.get("GRID") else None,
         "elements": elements,
@@ -79,13 +79,6 @@ def _contents(deck: Deck) -> dict[str, Any]:
         "params": deck.params,
     }
     return {k: v for k, v in found.items() if v}
-
-
-def _shown(file: Path, main: Path) -> str:
-    try:
-        return str(file.relative_to(main.parent))
-    except ValueError:
-        return str(file)
 
 
 def _box(deck: Deck) -> list[float] | None:

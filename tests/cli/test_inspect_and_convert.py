@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -99,6 +100,16 @@ def test_every_file_at_hand_is_told_on_one_screen_or_refused_in_one_sentence(
             assert status == 0, (path, err)
             assert kind_of_file(path).name == KINDS[path.suffix]
             assert 3 <= len(out.splitlines()) <= 40, path
+
+
+def test_the_screen_of_a_deck_does_not_grow_with_the_path_to_it(
+    data: Path, trueup: Call, tmp_path: Path
+) -> None:
+    deck = data / "nastran" / "all_elements" / "modes_elements.bdf"
+    far = tmp_path.joinpath(*(["a folder with a long name"] * 5))
+    shutil.copytree(deck.parent, far)
+    near, there = (trueup("inspect", path)[1].splitlines() for path in (deck, far / deck.name))
+    assert near[1:] == there[1:]
 
 
 def test_inspection_as_json(data: Path, trueup: Call) -> None:

@@ -272,6 +272,7 @@ def _skipped(
     for name, raws in others.items():
         first = raws[0]
         file = str(bulk.files[first.file])
+        seen = seen_from(bulk.files[0], bulk.files[first.file])
         card = bulk.definitions.get(name) or _unknown(name)
         why = card.refused or card.ignored
         count = f"{len(raws)} cards" if len(raws) > 1 else "1 card"
@@ -282,9 +283,17 @@ def _skipped(
             warnings.append(f"{file} line {first.line}: {name} is not known and was left out")
         elif card.warned:
             warnings.append(f"{file} line {first.line}: {name} ({count}) is left out: {why}")
-        where = f", first in {file}" if first.file else ""  # the deck itself goes without saying
+        where = f", first in {seen}" if first.file else ""  # the deck itself goes without saying
         skipped.append({"what": f"{name} ({count}{where})", "line": first.line, "why": why})
     return tuple(skipped), tuple(refused), tuple(warnings)
+
+
+def seen_from(main: Path, file: Path) -> str:
+    """Name a file of a deck as its INCLUDE would: short where it lies below the deck's folder."""
+    try:
+        return str(file.resolve().relative_to(main.resolve().parent))
+    except ValueError:
+        return str(file)
 
 
 def _unknown(name: str) -> Card:
