@@ -211,7 +211,7 @@ def _of_test(deck: Deck, model: Model, side: Measured, asked: Study) -> _Seen:
     on_model = placed(model, deck, modes, side, asked)
     target = target_of(model, on_model, asked)
     full = FullOrder(model, target.sensors, len(solution.eigenvalues))
-    objective = Objective(model.parameters, target, asked.criteria, asked.weights)
+    objective = Objective(target, asked.criteria, asked.weights)
     residuals = residuals_named(asked.residuals)
     state = objective.at(full, model.deck_point, residuals)
     if not state.seen.pairs:

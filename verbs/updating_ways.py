@@ -143,18 +143,17 @@ def _moved(
 ) -> tuple[core.Updated, tuple[Start, ...], Floats | None]:
     """Return the update, those from other starts, and intervals where they are asked for."""
     model, target = analysis.model, target_of(analysis.model, placed, asked)
-    stages, update = _stages(asked, model.parameters), update_determined
-    if asked.write_undetermined:
-        update = core.update
-    how, count = (asked.criteria, asked.weights), len(analysis.modes)
-    done = update(model, target, stages, *how, n_modes=count)
-    best, starts = from_elsewhere(
-        model, target, stages, done, asked.starts, *how, n_modes=count, seed=asked.seed
+    count = len(analysis.modes)
+    every = [core.Configuration(model, target, asked.criteria, asked.weights, count)]
+    stages = _stages(asked, model.parameters)
+    done = (core.update_configurations if asked.write_undetermined else update_determined)(
+        every, stages
     )
+    best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed)
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
     if not asked.intervals:
         return best, starts, None
-    return best, starts, profile_intervals(model, target, stages[-1], best, *how, n_modes=count)
+    return best, starts, profile_intervals(every, stages[-1], best)
 
 
 def _written(analysis: Analysis, done: core.Updated) -> _Written:

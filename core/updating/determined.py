@@ -6,23 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import frozen
-from ..correlation.criteria import Criteria
-from ..data.parametric_model import Model
-from .residuals import Target, Weights
+from .problem import Configuration, Problem
 from .stages import Reason, Stage, Stop, Updated
-from .update import update
-from .updating_numbers import UPDATING
+from .update import update_configurations
 
 
-def update_determined(
-    model: Model,
-    target: Target,
-    stages: Sequence[Stage],
-    criteria: Criteria | None = None,
-    weights: Weights | None = None,
-    n_modes: int = UPDATING.modes,
-) -> Updated:
-    """Update as `update` does, and leave at the deck's value what the test does not determine.
+def update_determined(configurations: Sequence[Configuration], stages: Sequence[Stage]) -> Updated:
+    """Update as ever, and leave at the deck's value what the test does not determine.
 
     Where an update ends with parameters whose values the test leaves open, it is made again
     without them: of those that it cannot tell apart the one that moves the residuals most is kept
@@ -36,22 +26,23 @@ def update_determined(
     Raises
     ------
     InputError, CheckError
-        As `update`.
+        As `update_configurations`.
     """
-    done = update(model, target, stages, criteria, weights, n_modes)
+    problem = Problem.of(configurations)
+    done = update_configurations(configurations, stages)
     solves, left, told = done.eigensolutions, set[int](), list[str]()
     while done.undetermined:
         told += done.doubts
         left |= {*done.undetermined}
         moving = _without(stages, left)
         if not moving:
-            done = _as_it_was(done, tuple(model.deck_point))
+            done = _as_it_was(done, tuple(problem.deck_point))
             break
-        done = update(model, target, moving, criteria, weights, n_modes)
+        done = update_configurations(configurations, moving)
         solves += done.eigensolutions
     if not left:
         return done
-    names = " and ".join(model.parameters[k].name for k in sorted(left))
+    names = " and ".join(problem.parameters[k].name for k in sorted(left))
     stay = f"{names} stay{'s' if len(left) == 1 else ''} as in the deck"
     warnings = (*dict.fromkeys(told), stay, *done.warnings)
     at = tuple(sorted(left))

@@ -4,18 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from ..arrays import Floats, frozen
 from ..correlation.criteria import Criteria
 from ..correlation.mac import realised
 from ..correlation.mode_pairing import Correlation, correlate
-from ..data.parameter import Parameter
 from ..reduction.eigenpair_derivatives import Spectral
 from ..reduction.full_or_reduced import Order
-from .identifiability import Identifiability, identifiability
 from .residuals import Linearisation, Residual, Seen, Slopes, Target, Weights
-from .updating_numbers import UPDATING
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,20 +27,11 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Objective:
-    """ΔzᵀWΔz + pᵀW_p p of a test, with what is due for test modes that have no partner."""
+    """ΔzᵀWΔz of a test, with what is due for test modes that have no partner."""
 
-    parameters: tuple[Parameter, ...]
     target: Target
     criteria: Criteria
     weights: Weights
-
-    @property
-    def bounds(self) -> tuple[Floats, Floats]:
-        """Lowest and highest factors, each (n_parameter,)."""
-        return (
-            np.array([q.lower for q in self.parameters]),
-            np.array([q.upper for q in self.parameters]),
-        )
 
     def at(self, order: Order, p: Floats, residuals: Sequence[Residual]) -> State:
         """Solve and correlate at the factors `p`."""
@@ -72,44 +59,18 @@ class Objective:
         due = set(self.target.modes or every) - {q.test for q in seen.pairs}
         return self._cost(seen, float(self.weights.of(due).sum()), residuals)
 
-    def closer(self, trial: State, state: State, residuals: Sequence[Residual]) -> bool:
-        """Whether a step is one: by all test modes, or by most of the pairs, which are kept.
-
-        Where nothing counts but what pairs are told by, a pair that is lost is what the step did.
-        """
-        if trial.objective < state.objective:
-            return True
-        if all(r.tells_pairs for r in residuals):
-            return False
+    def kept(
+        self, trial: State, state: State, residuals: Sequence[Residual]
+    ) -> tuple[int, int, float, float]:
+        """Return how many pairs both have, how many the second, and what those of both cost."""
         old = {q.test: k for k, q in enumerate(state.seen.pairs)}
         new = {q.test: k for k, q in enumerate(trial.seen.pairs)}
         common = sorted(old.keys() & new.keys())
-        if len(common) < UPDATING.kept * len(old):
-            return False
-        cost = [
+        now, then = (
             self._cost(s.seen.take([at[k] for k in common]), 0.0, residuals)
             for s, at in ((trial, new), (state, old))
-        ]
-        return cost[0] < (1.0 - UPDATING.least_gain) * cost[1]
-
-    def step(
-        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
-    ) -> Floats:
-        """Return the bounded step of equations (3) and (4), (n_parameter,)."""
-        lin = self.linearise(order, state, active, residuals)
-        free = list(active)
-        lower, upper = self.bounds
-        weight = np.array([self.parameters[k].weight for k in free])
-        prior = np.sqrt(self.weights.regularisation * weight)
-        p = np.asarray(state.factors)[free]
-        down, up = UPDATING.step
-        least = np.maximum(lower[free] - p, -down * p) - UPDATING.slack
-        most = np.minimum(upper[free] - p, up * p) + UPDATING.slack
-        G = np.vstack([lin.gradient, np.diag(prior)])
-        full = np.zeros(len(self.parameters))
-        due = np.concatenate([-lin.values, np.zeros(len(free))])
-        full[free] = lsq_linear(G, due, bounds=(least, most)).x
-        return full
+        )
+        return len(common), len(old), now, then
 
     def linearise(
         self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
@@ -124,29 +85,6 @@ class Objective:
         return Linearisation(
             np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
         )
-
-    def identified(
-        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
-    ) -> Identifiability | None:
-        """Return what the test says of the `active` parameters here; None where nothing pairs."""
-        if not state.seen.pairs:
-            return None
-        lin = self.linearise(order, state, active, residuals)
-        scatter = self.scatter(lin, state, len(active), residuals)
-        factors = np.asarray(state.factors)[list(active)]
-        return identifiability(lin.gradient, scatter, UPDATING.unsure * factors)
-
-    def scatter(
-        self, lin: Linearisation, state: State, active: int, residuals: Sequence[Residual]
-    ) -> float:
-        """Variance of the weighted residuals beside `active` parameters: what is left of them.
-
-        With a prior it is 1: their standard deviations are believed.
-        """
-        if any(r.believes_sigmas for r in residuals):
-            return 1.0
-        data = sum(len(r.squared(state.seen)) for r in residuals)
-        return float(np.sum(lin.values**2)) / max(data - active, 1)
 
     def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
         """Return the standard deviation of a residual, of each pair where the test has its own."""

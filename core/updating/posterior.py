@@ -6,15 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Floats
-from ..correlation.criteria import Criteria
-from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
 from ..noun import Noun
-from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
-from .objective import Objective, State
-from .residuals import Residual, Target, Weights
+from .problem import Configuration, Orders, Point, Problem
+from .residuals import Residual
 from .stages import Stage, Updated
-from .update import update
+from .update import update_configurations
 from .updating_numbers import UPDATING
 
 
@@ -33,21 +30,21 @@ class Start(Noun):
 
 
 @dataclass(frozen=True, eq=False)
-class _Problem:
-    """An objective on a model reduced around its optimum."""
+class _Near:
+    """A problem on models reduced around its optimum."""
 
-    objective: Objective
-    near: Order
+    problem: Problem
+    orders: Orders
     residuals: tuple[Residual, ...]
 
-    def least(self, state: State, k: int, value: float, others: Sequence[int]) -> State:
+    def least(self, state: Point, k: int, value: float, others: Sequence[int]) -> Point:
         """Return the optimum of the other parameters where parameter `k` has a value."""
         p = np.array(state.factors)
         p[k] = value
-        best = self.objective.at(self.near, p, self.residuals)
+        best = self.problem.at(self.orders, p, self.residuals)
         for _ in range(UPDATING.profile_iterations * bool(others)):
-            step = self.objective.step(self.near, best, others, self.residuals)
-            trial = self.objective.at(self.near, best.factors + step, self.residuals)
+            step = self.problem.step(self.orders, best, others, self.residuals)
+            trial = self.problem.at(self.orders, best.factors + step, self.residuals)
             if trial.objective > best.objective - UPDATING.profile_accuracy:
                 break
             best = trial
@@ -55,13 +52,7 @@ class _Problem:
 
 
 def profile_intervals(
-    model: Model,
-    target: Target,
-    stage: Stage,
-    done: Updated,
-    criteria: Criteria | None = None,
-    weights: Weights | None = None,
-    n_modes: int = UPDATING.modes,
+    configurations: Sequence[Configuration], stage: Stage, done: Updated
 ) -> Floats:
     """Return 95 % intervals of the factors by the profile of the objective, (n_parameter, 2).
 
@@ -72,8 +63,7 @@ def profile_intervals(
 
     Parameters
     ----------
-    model, target, criteria, weights, n_modes
-        As for `update`.
+    configurations : sequence of Configuration
     stage : Stage
         The residuals of the objective; of its parameters those that `done` says are determined
         have an interval, the others NaN.
@@ -85,19 +75,17 @@ def profile_intervals(
     (n_parameter, 2) float
         An end is infinite where a bound or the reach of the reduced model comes first.
     """
-    full = FullOrder(model, target.sensors, n_modes)
-    objective = Objective(model.parameters, target, criteria or Criteria(), weights or Weights())
-    residuals, known = stage.minimised, np.full((len(model.parameters), 2), np.nan)
+    problem = Problem.of(configurations)
+    residuals, known = stage.minimised, np.full((len(problem.parameters), 2), np.nan)
     active = [k for k in stage.parameters if k not in done.undetermined]
     if not active:
         return known
-    solution = full.solve(done.factors)
-    near = reduce_around(full, done.factors, solution, active)
-    problem = _Problem(objective, near, residuals)
-    top = objective.at(near, np.array(done.factors), residuals)
-    lin = objective.linearise(near, top, active, residuals)
-    rise = UPDATING.chi_square * objective.scatter(lin, top, len(active), residuals)
-    lower, upper = objective.bounds
+    there = problem.at(problem.full, np.array(done.factors), residuals)
+    near = _Near(problem, problem.around(there, active), residuals)
+    top = problem.at(near.orders, there.factors, residuals)
+    lin = problem.linearise(near.orders, top, active, residuals)
+    rise = UPDATING.chi_square * problem.scatter(lin, top, len(active), residuals)
+    lower, upper = problem.bounds
     for k in active:
         others = [j for j in active if j != k]
         centre = float(top.factors[k])
@@ -106,15 +94,15 @@ def profile_intervals(
         first = float(done.standard_error[k])
         step = first if np.isfinite(first) and first > 0.0 else UPDATING.tolerance * centre
         known[k] = [
-            _end(problem, top, k, others, rise, limit, np.sign(limit - centre) * step)
+            _end(near, top, k, others, rise, limit, np.sign(limit - centre) * step)
             for limit in (least, most)
         ]
     return known
 
 
 def _end(
-    problem: _Problem,
-    top: State,
+    near: _Near,
+    top: Point,
     k: int,
     others: Sequence[int],
     rise: float,
@@ -128,7 +116,7 @@ def _end(
         inside = outside
         x = inside[0] + step
         x = min(x, limit) if step > 0.0 else max(x, limit)
-        state = problem.least(state, k, x, others)
+        state = near.least(state, k, x, others)
         outside = (x, _root(state, top, rise))
         if x == limit and outside[1] < 1.0:
             return float(np.copysign(np.inf, step))
@@ -136,7 +124,7 @@ def _end(
     for _ in range(UPDATING.profile_steps):
         share = (1.0 - inside[1]) / (outside[1] - inside[1])
         x = inside[0] + share * (outside[0] - inside[0])
-        state = problem.least(state, k, x, others)
+        state = near.least(state, k, x, others)
         found = (x, _root(state, top, rise))
         if abs(found[1] - 1.0) < UPDATING.profile_accuracy:
             return x
@@ -144,28 +132,24 @@ def _end(
     return outside[0]
 
 
-def _root(state: State, top: State, rise: float) -> float:
+def _root(state: Point, top: Point, rise: float) -> float:
     """Square root of the share of the rise: linear where the posterior is Gaussian."""
     return float(np.sqrt(max(state.objective - top.objective, 0.0) / rise)) if rise else np.inf
 
 
 def from_elsewhere(
-    model: Model,
-    target: Target,
+    configurations: Sequence[Configuration],
     stages: Sequence[Stage],
     done: Updated,
     starts: int,
-    criteria: Criteria | None = None,
-    weights: Weights | None = None,
-    n_modes: int = UPDATING.modes,
     seed: int = 0,
 ) -> tuple[Updated, tuple[Start, ...]]:
     """Update from other factors as well, and say whether the optimum is the only one.
 
     Parameters
     ----------
-    model, target, stages, criteria, weights, n_modes
-        As for `update`.
+    configurations, stages
+        As for `update_configurations`.
     done : Updated
         What came of the deck's own values.
     starts : int
@@ -183,14 +167,14 @@ def from_elsewhere(
     left = [replace(s, parameters=p) for s in stages if (p := _kept(s, moving))]
     best, told = done, list[Start]()
     solves = done.eigensolutions
-    lowest = np.array([q.lower for q in model.parameters])
-    highest = np.array([q.upper for q in model.parameters])
+    problem = Problem.of(configurations)
+    lowest, highest = problem.bounds
     for _ in range(starts if left else 0):
-        begin = np.array(model.deck_point)
+        begin = np.array(problem.deck_point)
         spread = np.exp(UPDATING.start_spread * rng.standard_normal(len(moving)))
         begin[moving] = np.clip(spread, lowest[moving], highest[moving])
         try:
-            other = update(model, target, left, criteria, weights, n_modes, start=begin)
+            other = update_configurations(configurations, left, start=begin)
         except (InputError, CheckError):
             told.append(Start(begin, np.full(len(begin), np.nan), np.nan, False))
             continue

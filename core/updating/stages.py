@@ -6,7 +6,7 @@ from enum import Enum
 from ..arrays import Floats, Numbers
 from ..errors import InputError
 from ..noun import Noun
-from .objective import State
+from .problem import Point
 from .residuals import Residual, residuals_named
 from .updating_numbers import UPDATING
 
@@ -64,7 +64,8 @@ class Stop:
 class Iteration(Noun):
     """One entry of the history; stages count from 1.
 
-    `deviations_percent` (n_test,) is NaN for a test mode without partner.
+    `deviations_percent` (n_test,) is NaN for a test mode without partner; of several configurations
+    they stand one after the other.
     """
 
     iteration: int
@@ -79,17 +80,17 @@ class Updated(Noun):
     """The outcome of an update.
 
     `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
-    `at_bound` (n_parameter,) bool; `before` and `after` are of full order; `stopped` says why
-    the iteration ended; `undetermined` are the positions of parameters that the test does not
-    determine beside the others, `doubts` the warnings that say so;
+    `at_bound` (n_parameter,) bool; `before` and `after` are of full order, of all configurations;
+    `stopped` says why the iteration ended; `undetermined` are the positions of parameters that the
+    test does not determine beside the others, `doubts` the warnings that say so;
     `covariance` (n_parameter, n_parameter) of the factors, NaN likewise.
     """
 
     factors: Floats
     standard_error: Floats
     at_bound: Numbers
-    before: State
-    after: State
+    before: Point
+    after: Point
     history: tuple[Iteration, ...]
     eigensolutions: int
     stopped: Stop

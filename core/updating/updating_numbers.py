@@ -35,6 +35,7 @@ class UpdatingNumbers:
     agree: float = number(0.1, "of the tolerance", "difference of eigenvalues, full and reduced, that ends an update", CHECK)
     agree_least: float = number(1e-9, "of λ", "the same, at least", ROUNDING)
     balance: float = number(1e-6, "of the load", "unbalanced force at which a static solution holds", ROUNDING)
+    same_value: float = number(1e-5, "of a value", "difference of a property between decks that is none", "figures of a field")
     same: float = number(1e-6, "of the objective", "reduced ones this close to the full one are not told apart from it", CHECK)
     chi_square: float = number(3.84, "χ²", "95 % of it with one degree of freedom", "statistics")
     profile_iterations: int = number(8, "iterations", "of the others as one parameter is moved", CHECK)

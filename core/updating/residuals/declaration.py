@@ -211,4 +211,4 @@ class Residual:
             raise InputError(f"residual '{self.name}': its derivative is not (n_row, k, n_active)")
         rows = np.broadcast_to(np.asarray(sigma, np.float64), len(values))
         values, gradient = values / rows[:, None], gradient / rows[:, None, None]
-        return Linearisation(values.ravel(), gradient.reshape(values.size, -1))
+        return Linearisation(values.ravel(), gradient.reshape(values.size, gradient.shape[-1]))

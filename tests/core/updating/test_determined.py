@@ -9,6 +9,7 @@ from tests.core.updating.test_update import HALVES, N, chain, measured
 
 from trueup.core.updating.determined import update_determined
 from trueup.core.updating.identifiability import identifiability
+from trueup.core.updating.problem import Configuration
 from trueup.core.updating.stages import Reason
 from trueup.core.updating.update import Stage
 
@@ -16,7 +17,9 @@ from trueup.core.updating.update import Stage
 def test_of_stiffness_and_mass_in_common_one_moves():
     """Frequencies know the ratio alone: 1.2 by the stiffness or 1/1.2 by the mass."""
     model = chain([range(N), range(N)], ["k", "m"])
-    done = update_determined(model, measured(model, [1.2, 1.0]), [Stage((0, 1))], n_modes=8)
+    done = update_determined(
+        [Configuration(model, measured(model, [1.2, 1.0]), n_modes=8)], [Stage((0, 1))]
+    )
     moved = [k for k in (0, 1) if done.factors[k] != 1.0]
     assert len(moved) == 1
     assert done.undetermined == (1 - moved[0],)
@@ -27,14 +30,18 @@ def test_of_stiffness_and_mass_in_common_one_moves():
 
 def test_what_is_determined_moves_as_ever():
     model = chain(HALVES)
-    done = update_determined(model, measured(model, [1.2, 0.9]), [Stage((0, 1))], n_modes=8)
+    done = update_determined(
+        [Configuration(model, measured(model, [1.2, 0.9]), n_modes=8)], [Stage((0, 1))]
+    )
     assert done.undetermined == ()
     assert done.factors == pytest.approx([1.2, 0.9], rel=1e-3)
 
 
 def test_where_nothing_is_determined_nothing_moves():
     model = chain([[], []])
-    done = update_determined(model, measured(model, [1.0, 1.0]), [Stage((0, 1))], n_modes=8)
+    done = update_determined(
+        [Configuration(model, measured(model, [1.0, 1.0]), n_modes=8)], [Stage((0, 1))]
+    )
     assert done.factors.tolist() == [1.0, 1.0]
     assert done.undetermined == (0, 1)
     assert done.stopped.reason is Reason.NOTHING_DETERMINED

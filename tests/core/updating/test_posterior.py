@@ -8,6 +8,7 @@ from tests.core.updating.test_update import HALVES, chain, measured
 
 from trueup.core.data.parameter import Parameter
 from trueup.core.updating.posterior import from_elsewhere, profile_intervals, remarks
+from trueup.core.updating.problem import Configuration
 from trueup.core.updating.residuals import Weights
 from trueup.core.updating.update import Stage, update
 
@@ -18,7 +19,8 @@ def posterior(model, truth, weights, active=(0,)):
     target = measured(model, truth, slice(0, 1))
     stage = Stage(active, "frequencies, prior", 30)
     done = update(model, target, [stage], weights=weights, n_modes=1, tolerance=1e-9)
-    found = profile_intervals(model, target, stage, done, weights=weights, n_modes=1)
+    one = Configuration(model, target, weights=weights, n_modes=1)
+    found = profile_intervals([one], stage, done)
     return done, found
 
 
@@ -78,7 +80,7 @@ def test_what_stays_as_it_is_has_no_interval():
     target = measured(model, [1.1, 0.9], noise=0.01)
     stage = Stage((1,), "frequencies", 20)
     done = update(model, target, [stage], n_modes=8)
-    found = profile_intervals(model, target, stage, done, n_modes=8)
+    found = profile_intervals([Configuration(model, target, n_modes=8)], stage, done)
     assert np.isnan(found[0]).all()
     assert found[1, 0] < done.factors[1] < found[1, 1]
 
@@ -89,12 +91,13 @@ def test_other_starts_lead_to_the_one_optimum_or_say_that_there_are_more():
     target = measured(model, [1.3, 0.8])
     stage = Stage((0, 1), "frequencies", 30)
     done = update(model, target, [stage], n_modes=8)
-    best, starts = from_elsewhere(model, target, [stage], done, 5, n_modes=8, seed=1)
+    one = Configuration(model, target, n_modes=8)
+    best, starts = from_elsewhere([one], [stage], done, 5, seed=1)
     assert best.after is done.after
     assert len({tuple(s.start) for s in starts}) == 5
     assert all(s.same for s in starts)
     assert remarks(done, best, starts) == ()
-    best, starts = from_elsewhere(model, target, [stage], done, 5, n_modes=8, seed=3)
+    best, starts = from_elsewhere([one], [stage], done, 5, seed=3)
     (said,) = remarks(done, best, starts)
     assert said.startswith("4 of 5 other starts lead to this optimum, 1 to a worse one")
     lost = starts[[s.same for s in starts].index(False)]
@@ -106,9 +109,8 @@ def test_a_better_optimum_elsewhere_is_taken():
     model = chain(HALVES)
     target = measured(model, [1.3, 0.8])
     done = update(model, target, [Stage((0, 1), "frequencies", 1)], n_modes=8)
-    best, starts = from_elsewhere(
-        model, target, [Stage((0, 1), "frequencies", 30)], done, 3, n_modes=8
-    )
+    one = Configuration(model, target, n_modes=8)
+    best, starts = from_elsewhere([one], [Stage((0, 1), "frequencies", 30)], done, 3)
     np.testing.assert_allclose(best.factors, [1.3, 0.8], rtol=1e-3)
     assert best.before is done.before
     assert "better optimum, which is taken: 3 of 3" in remarks(done, best, starts)[0]

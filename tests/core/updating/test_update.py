@@ -340,9 +340,7 @@ def test_residuals_and_objective_speak_of_the_same_shapes(ring, rotate):
     model = ring(20, parameters=[("E", [0, 1, 2, 9, 10]), ("rho", [4, 5, 6])])
     target = measured(model, [1.25, 1.3], slice(6, 18))
     full = full_or_reduced.FullOrder(model, target.sensors, 24)
-    what = objective.Objective(
-        model.parameters, target, Criteria(rotate=rotate, mac_min=0.3), Weights()
-    )
+    what = objective.Objective(target, Criteria(rotate=rotate, mac_min=0.3), Weights())
     state = what.at(full, np.ones(2), [SHAPES])
     missing = 12 - len(state.correlation.pairs)
     lin = what.linearise(full, state, [0, 1], [SHAPES])
