@@ -53,7 +53,19 @@ _DUCT = (
     Step("Discover: what the model lacks, put into the deck, flanges fitted along",
          "discover.toml", "discover", "6_discover"),
 )  # fmt: skip
-_DEMOS = {"duct": _DUCT}
+_PORTS = (
+    Step("The deck as it is against the test, mode by mode",
+         "frequencies.toml", "correlate", "1_as_it_is", "none"),
+    Step("The same after close analysis modes are rotated onto the test",
+         "frequencies.toml", "correlate", "2_rotated"),
+    Step("Strategy 1: the flanges, by frequencies only",
+         "frequencies.toml", "update", "3_frequencies"),
+    Step("Strategy 2: rim densities by the shapes alone, none rotated, then the flanges",
+         "masses_first.toml", "update", "4_masses_first", "none"),
+    Step("Strategy 3: frequencies and shapes together, rotated at every iteration",
+         "both.toml", "update", "5_both"),
+)  # fmt: skip
+_DEMOS = {"duct": _DUCT, "ports": _PORTS}
 
 
 def demo(

@@ -141,6 +141,25 @@ def test_the_demo_shows_the_paper(
     shutil.rmtree(folder)
 
 
+@pytest.mark.slow
+def test_the_strategies_meet_a_truth_of_masses_on_rims(call: Call, tmp_path: Path) -> None:
+    said = call("demo", "ports", "--out", tmp_path / "d")
+    assert said.status == 0, said.err
+    runs = sorted((tmp_path / "d" / "runs").iterdir())
+    results = [json.loads((r / "result.json").read_text()) for r in runs]
+    frequencies, both = results[2], results[4]
+    pairs = [r.get("after", r)["summary"]["pairs"] for r in results]
+    assert pairs[0] < pairs[1] <= pairs[2]
+    assert pairs[0] < pairs[3] < pairs[4] == 24
+    worst = [r["after"]["summary"]["worst_deviation_percent"] for r in results[2:]]
+    assert max(worst[1:]) < 3.0 < worst[0]
+    assert max(len(r["history"]) - 1 for r in (frequencies, both)) <= 5
+    factors = {q["name"]: q["factor"] for q in both["parameters"]}
+    truth = {"front flange": 1.6, "rear flange": 1.3}
+    truth |= {f"rim {k} density": f for k, f in enumerate((2.5, 1.8, 3.5, 1.4), 1)}
+    assert {k: factors[k] for k in truth} == pytest.approx(truth, rel=0.04)
+
+
 def test_a_run_folder_of_solve_has_a_page_with_moving_shapes_and_properties(call, duct, tmp_path):
     run = tmp_path / "run"
     assert call("solve", duct / "duct.bdf", "-n", 9, "--out", run, "-q").status == 0
