@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..core.data.modes import Modes
 from ..core.errors import InputError, Place, path_of
 from ..core.results.correlation import CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
@@ -16,7 +17,7 @@ from .open_run import read_content, read_diff, read_result
 from .study import Study, read_study
 
 if TYPE_CHECKING:
-    from ..adapters.report import Imprint, Overlay
+    from ..adapters.report import Film, Imprint, Overlay
     from ..adapters.store import StoreContent
 
 
@@ -98,7 +99,7 @@ def render(
     from ..adapters.report import make_report
 
     geometry = content.geometry if content else None
-    shapes = paired_shapes(answer, content)
+    shapes = _film(answer, content)
     return make_report(answer, diff, geometry=geometry, shapes=shapes, imprint=imprint)
 
 
@@ -106,16 +107,30 @@ def paired_shapes(answer: RunTables, content: StoreContent | None) -> Overlay | 
     """Return the final pairs of a run as shapes; None where it has none, or no modes."""
     from ..adapters.report import overlay
 
+    held = _shown_modes(content)
+    if content is None or content.geometry is None or held is None:
+        return None
+    observation, transformation = map(content.matrices.get, ("observation", "transformation"))
+    return overlay(answer.final, content.geometry, *held, observation, transformation)
+
+
+def _film(answer: RunTables, content: StoreContent | None) -> Film | None:
+    from ..adapters.report import paired_film
+
+    held = _shown_modes(content)
+    if content is None or content.geometry is None or held is None:
+        return None
+    observation, transformation = map(content.matrices.get, ("observation", "transformation"))
+    return paired_film(
+        answer.final, content.geometry, *held, observation, transformation, content.test_geometry
+    )
+
+
+def _shown_modes(content: StoreContent | None) -> tuple[Modes, Modes] | None:
+    """Return the final modes of the analysis and those of the test; None where one is missing."""
     if not content or not content.geometry or not {"analysis", "test"} <= set(content.modes):
         return None
-    return overlay(
-        answer.final,
-        content.geometry,
-        content.modes.get("updated", content.modes["analysis"]),
-        content.modes["test"],
-        content.matrices.get("observation"),
-        content.matrices.get("transformation"),
-    )
+    return content.modes.get("updated", content.modes["analysis"]), content.modes["test"]
 
 
 def answer_of(result: Mapping[str, Any]) -> RunTables:

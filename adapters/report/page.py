@@ -11,7 +11,7 @@ from .html.html_table import html_table
 from .html.markup import esc, tag
 from .imprint import Imprint, colophon, letterhead
 from .pictures import colour
-from .pictures.shape_overlay import Overlay
+from .pictures.film import Film
 from .sections.findings import FINDINGS
 from .sections.known_sections import SECTIONS
 from .sections.pairs import PAIRS
@@ -29,7 +29,7 @@ def make_report(
     diff: str | None = None,
     geometry: Geometry | None = None,
     title: str | None = None,
-    shapes: Overlay | None = None,
+    shapes: Film | None = None,
     imprint: Imprint | None = None,
 ) -> str:
     """Return the report of a run as one HTML page that needs nothing else.
@@ -47,8 +47,8 @@ def make_report(
         The analysis model, for the pictures; drawn coarser where it is large.
     title : str, optional
         What was compared; stands above the headline.
-    shapes : Overlay, optional
-        The paired shapes (`overlay` makes them), shown moving.
+    shapes : Film, optional
+        Of pairs and single modes (`paired_film` makes them), shown moving.
     imprint : Imprint, optional
         Whose report it is.
 

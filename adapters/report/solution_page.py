@@ -11,6 +11,7 @@ from ...core.results.modes import SolveTables
 from .html.html_table import html_table
 from .html.markup import esc, tag
 from .page import html_page, scripts, warned
+from .pictures.film import one_side
 from .pictures.moving_figure import moving_figure
 from .pictures.scene import scene
 from .pictures.shape_overlay import model_shapes
@@ -90,7 +91,9 @@ def _moving(geometry: Geometry, shapes: Modes, rigid: int) -> str:
         return ""
     named = [(int(k) + 1, hz(float(shapes.frequencies_hz[k]))) for k in few]
     return moving_figure(
-        overlay, [f"mode {k} at {f} Hz" for k, f in named], [f"{k} · {f}" for k, f in named]
+        one_side(overlay),
+        [f"mode {k} at {f} Hz" for k, f in named],
+        [f"{k} · {f}" for k, f in named],
     )
 
 

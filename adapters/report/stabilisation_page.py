@@ -9,6 +9,7 @@ from ...core.identification import Identification
 from .html.html_table import html_table
 from .html.markup import esc, key, tag
 from .page import html_page, scripts, warned
+from .pictures.film import one_side
 from .pictures.function_overlay import function_overlay
 from .pictures.moving_figure import moving_figure
 from .pictures.sensor_shapes import sensor_shapes
@@ -81,7 +82,7 @@ def _shapes(found: Identification, geometry: Geometry | None) -> str:
     if not geometry or not geometry.elements:
         note += " The file holds no lines: neighbours are joined for the eye."
     legend = tag("p", keys, class_="note") + tag("p", note, class_="note")
-    return moving_figure(moving, labels, brief) + legend
+    return moving_figure(one_side(moving), labels, brief) + legend
 
 
 def _assurance(found: Identification) -> str:

@@ -1,6 +1,6 @@
 """The paired shapes of a run on a mesh that can be drawn."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class Overlay(Noun):
         model by least squares.
     pairs : tuple of PairRow
         As many as there are shapes.
+    nodal : (n_pair, n_original, 3) float
+        Analysis displacement at all nodes of the geometry, in the scale of `shapes`.
     """
 
     mesh: DrawnMesh
@@ -58,3 +60,4 @@ class Overlay(Noun):
     model: Floats
     test: Floats
     pairs: tuple[PairRow, ...]
+    nodal: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))

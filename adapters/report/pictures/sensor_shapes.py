@@ -36,24 +36,24 @@ def sensor_shapes(geometry: Geometry | None, modes: Modes, *, most: int = 1500) 
     if not len(rows):
         return None
     at, axes, read = at[rows], modes.dofs.axis[rows], np.real(modes.shapes[rows])
-    moved = _at_nodes(at, axes, read, len(geometry.ids))
+    moved = at_places(at, axes, read, len(geometry.ids))
     size = np.maximum(np.linalg.norm(moved, axis=2).max(axis=1), 1e-300)
     drawn = surface(geometry)
     if not len(drawn.faces) + len(drawn.lines):
-        drawn = replace(drawn, lines=_joined(geometry.xyz, np.unique(at)))
+        drawn = replace(drawn, lines=joined(geometry.xyz, np.unique(at)))
     mesh = coarsened(drawn, most)
     shapes = moved[:, mesh.original] / size[:, None, None]
     test = (read / size).T
     return Overlay(mesh, shapes, geometry.xyz[at], axes, np.zeros_like(test), test, ())
 
 
-def _joined(xyz: Floats, nodes: Ints) -> Ints:
+def joined(xyz: Floats, nodes: Ints) -> Ints:
     """Return lines (n, 2) of the minimum spanning tree of some nodes."""
     ends = minimum_spanning_tree(squareform(pdist(xyz[nodes]))).nonzero()
     return np.asarray(nodes[np.stack(ends, axis=1)], np.int64)
 
 
-def _at_nodes(at: Ints, axes: Floats, read: Floats, n_node: int) -> Floats:
+def at_places(at: Ints, axes: Floats, read: Floats, n_node: int) -> Floats:
     """Least displacements of nodes that read so along the axes, (n_mode, n_node, 3)."""
     moved = np.zeros((read.shape[1], n_node, 3))
     for node in np.unique(at):

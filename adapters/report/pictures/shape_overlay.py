@@ -4,6 +4,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Numbers
+from ....core.data.dofs import Dofs
 from ....core.data.geometry import Geometry
 from ....core.data.modes import Modes
 from ....core.results.correlation import Compared
@@ -47,36 +48,38 @@ def overlay(
     if transformation is not None and found.criteria.rotate == "analysis":
         full = full @ transformation
     elif transformation is not None and found.criteria.rotate == "test":
-        measured = _real(measured)
+        measured = real_shapes(measured)
         length = np.maximum(np.linalg.norm(measured, axis=0), 1e-300)
         measured = measured / length @ transformation
     full, measured = full[:, a], measured[:, t]
     mesh = coarsened(surface(geometry), most)
-    moved = _at_nodes(full, analysis, geometry)[:, mesh.original]
-    size = np.maximum(np.linalg.norm(moved, axis=2).max(axis=1), 1e-300)
+    nodal = nodal_shapes(geometry, analysis.dofs, full)
+    size = np.maximum(np.linalg.norm(nodal[:, mesh.original], axis=2).max(axis=1), 1e-300)
+    nodal /= size[:, None, None]
     model = np.asarray(observation @ full).T / size[:, None]
     return Overlay(
         mesh,
-        moved / size[:, None, None],
+        nodal[:, mesh.original],
         np.array([s.xyz for s in found.alignment.sensors]),
         np.asarray(test.dofs.axis),
         model,
-        _fitted(_real(measured), model.T).T,
+        _fitted(real_shapes(measured), model.T).T,
         tuple(found.pairs),
+        nodal,
     )
 
 
 def model_shapes(geometry: Geometry, modes: Modes, *, most: int = 1500) -> Overlay:
     """Return the shapes of a model alone: an overlay without pairs and sensors."""
     mesh = coarsened(surface(geometry), most)
-    moved = _at_nodes(np.real(modes.shapes), modes, geometry)[:, mesh.original]
+    moved = nodal_shapes(geometry, modes.dofs, np.real(modes.shapes))[:, mesh.original]
     size = np.maximum(np.linalg.norm(moved, axis=2).max(axis=1), 1e-300)
     none = np.zeros((0, 3))
     still = np.zeros((len(modes), 0))
     return Overlay(mesh, moved / size[:, None, None], none, none, still, still, ())
 
 
-def _real(shapes: Numbers) -> Floats:
+def real_shapes(shapes: Numbers) -> Floats:
     """Shapes turned to their principal phase, real part."""
     phase = np.angle(np.sum(shapes**2, axis=0)) / 2.0
     return np.asarray(np.real(shapes * np.exp(-1j * phase)))
@@ -87,11 +90,11 @@ def _fitted(b: Floats, a: Floats) -> Floats:
     return np.asarray(b * scale)
 
 
-def _at_nodes(full: Floats, analysis: Modes, geometry: Geometry) -> Floats:
-    """Return translations by node of the geometry, (n_pair, n_node, 3), from whatever axes."""
+def nodal_shapes(geometry: Geometry, dofs: Dofs, full: Floats) -> Floats:
+    """Return translations by node of the geometry, (n_mode, n_node, 3), from whatever axes."""
     moved = np.zeros((len(geometry.ids), 3, full.shape[1]))
-    rows = np.flatnonzero(analysis.dofs.component <= 3)
-    node = geometry.index_of(analysis.dofs.node[rows])
+    rows = np.flatnonzero(dofs.component <= 3)
+    node = geometry.index_of(dofs.node[rows])
     rows, node = rows[node >= 0], node[node >= 0]
-    np.add.at(moved, node, analysis.dofs.axis[rows][:, :, None] * full[rows][:, None, :])
+    np.add.at(moved, node, dofs.axis[rows][:, :, None] * full[rows][:, None, :])
     return moved.transpose(2, 0, 1)

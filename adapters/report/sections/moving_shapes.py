@@ -1,25 +1,43 @@
-"""The moving overlay of analysis and test."""
+"""The moving shapes: pairs, analysis over test or beside it, and modes without a partner."""
 
 from ....core.results.correlation import PairRow, RunTables
 from ..html.markup import key, tag
+from ..pictures.film import Frame
 from ..pictures.moving_figure import moving_figure
 from ..tables.number_formats import fixed, hz, percent
 from .section import ReportedRun, Section
 
 
 def _render(run: ReportedRun[RunTables]) -> str:
-    overlay = run.shapes
-    if overlay is None:
+    film = run.shapes
+    if film is None:
         return ""
-    brief = [f"{p.test} · {hz(p.test_hz)}" for p in overlay.pairs]
+    labels = [_label(f) for f in film.frames]
+    labels += [f"{_label(f)}, before turning" for f in film.all_frames[len(film.frames) :]]
+    figure = moving_figure(film, labels, [_brief(f) for f in film.frames])
     keys = key("where the model puts a sensor", "model")
     keys += key("where the test puts it, to the same scale", "measured")
-    figure = moving_figure(overlay, [_label(p) for p in overlay.pairs], brief)
-    told = " It moves along the direction that it measures, drawn as a thin line, and no other."
+    told = (
+        " Thin lines are the directions measured; in others a sensor follows the model, or rests "
+        "where the test is alone."
+    )
+    if not film.drawn:
+        told += " The test holds no lines: neighbours are joined for the eye."
     return figure + tag("p", keys, told, class_="note")
 
 
-def _label(pair: PairRow) -> str:
+def _label(frame: Frame) -> str:
+    if frame.pair is None:
+        return f"{frame.side} {frame.mode} ({hz(frame.hz)} Hz), no partner"
+    return _paired(frame.pair)
+
+
+def _brief(frame: Frame) -> str:
+    alone = {"test": "T", "analysis": "A"}.get(frame.side, "")
+    return f"{alone}{frame.mode} · {hz(frame.hz)}"
+
+
+def _paired(pair: PairRow) -> str:
     return (
         f"test {pair.test} ({hz(pair.test_hz)} Hz) and analysis {pair.analysis} "
         f"({hz(pair.analysis_hz)} Hz), {fixed(pair.deviation_percent, 1)} %, "
@@ -27,4 +45,4 @@ def _label(pair: PairRow) -> str:
     )
 
 
-MOVING_SHAPES = Section("Shapes of the pairs", "shapes", RunTables, render=_render)
+MOVING_SHAPES = Section("Shapes", "shapes", RunTables, render=_render)

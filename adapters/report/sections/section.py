@@ -7,7 +7,7 @@ from typing import Generic, TypeVar
 from ....core.data.geometry import Geometry
 from ....core.results.correlation import RunTables
 from ..html.html_table import html_table
-from ..pictures.shape_overlay import Overlay
+from ..pictures.film import Film
 from ..tables.table import Table
 
 T = TypeVar("T", bound=RunTables)
@@ -23,15 +23,15 @@ class ReportedRun(Generic[T]):
         What the verb answered: `CorrelateTables`, `UpdateTables`, `DiscoverTables`.
     geometry : Geometry or None
         The analysis model, for pictures.
-    shapes : Overlay or None
-        The paired shapes.
+    shapes : Film or None
+        Shapes of the pairs and of modes without a partner.
     diff : str
         Unified diff of the deck; empty where it was not changed.
     """
 
     tables: T
     geometry: Geometry | None = None
-    shapes: Overlay | None = None
+    shapes: Film | None = None
     diff: str = ""
 
 

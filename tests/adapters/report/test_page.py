@@ -17,7 +17,7 @@ import pytest
 import scipy.sparse as sp
 from hypothesis import HealthCheck, given, settings, strategies as st
 
-from trueup.adapters.report import headline, make_report, overlay
+from trueup.adapters.report import headline, make_report, paired_film
 from trueup.adapters.report.sections.deck_changes import deck_diff
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
@@ -348,6 +348,17 @@ said.push(document.querySelector('.stage figcaption').textContent, canvas.toData
 const pressed = strip.map(b => b.getAttribute('aria-pressed'));
 canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}));
 said.push(pressed);
+const ways = document.querySelector('.controls select');
+said.push(['both', 'apart', 'test', 'analysis'].map(way => {
+  ways.value = way; ways.dispatchEvent(new Event('change')); return canvas.toDataURL();
+}));
+strip[0].click();
+const plain = document.querySelector('.controls input[type=checkbox]');
+plain.checked = true; plain.dispatchEvent(new Event('change'));
+said.push(document.querySelector('.stage > figcaption').textContent);
+dispatchEvent(new Event('beforeprint'));
+const stills = [...document.querySelectorAll('.stills figcaption')];
+said.push([stills.length, stills[2].textContent]);
 document.title = JSON.stringify(said);
 """
 
@@ -361,13 +372,16 @@ def test_the_shapes_move_in_a_browser(
     seen = sp.csr_matrix((np.ones(3), (range(3), (0, 2, 22))), shape=(3, 24))
     sensors = Dofs(np.array([101, 101, 108]), np.array([1, 3, 2]))
     test = Modes(np.arange(1.0, 4.0), (seen @ analysis.shapes)[:, :3], sensors)
-    shapes = overlay(answer_of(correlation).final, cube, analysis, test, seen)
-    count, drawn, replaced, caption, changed, pressed = titled(
+    shapes = paired_film(answer_of(correlation).final, cube, analysis, test, seen)
+    count, drawn, replaced, caption, changed, pressed, ways, plain, stills = titled(
         make_report(answer_of(correlation), None, cube, shapes=shapes), SHAPES_PROBE, tmp_path
     )
-    assert count == 2
+    assert count == 4
     assert drawn
     assert replaced
     assert caption.startswith("Test 2 (20.00 Hz) and analysis 1 (20.50 Hz), 2.5 %, MAC 92 %")
     assert changed
-    assert pressed == ["false", "true"]
+    assert pressed == ["false", "true", "false", "false"]
+    assert len(set(ways)) == 4, "overlaid, side by side and each side alone are other pictures"
+    assert plain.startswith("Test 1 (10.00 Hz) and analysis 2 (9.00 Hz), −10.0 %, MAC 40 %, before")
+    assert stills == [4, "Test 3 (31.25 Hz), no partner"]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from trueup.adapters.report import make_report, overlay
+from trueup.adapters.report import make_report, overlay, paired_film
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
@@ -95,12 +95,13 @@ def test_the_page_carries_the_shapes_and_a_still(
     correlation: dict[str, Any], cube: Geometry
 ) -> None:
     run = answer_of(correlation)
-    found = overlay(run.final, cube, ANALYSIS, measured(np.eye(4)), SEEN)
+    found = paired_film(run.final, cube, ANALYSIS, measured(np.eye(4)), SEEN)
     assert found is not None
     html = make_report(run, None, cube, shapes=found)
     data = dict(re.findall(r'data-(\w+)="([^"]*)"', html.split('class="viewer"')[1]))
-    carried = np.frombuffer(base64.b64decode(data["shapes"]), np.int8).reshape(2, 8, 3) / 127
-    np.testing.assert_allclose(carried, found.shapes, atol=0.5 / 127 + 1e-9)
+    carried = np.frombuffer(base64.b64decode(data["shapes"]), np.int8).reshape(5, 8, 3) / 127
+    shapes = [f.shape for f in found.all_frames]
+    np.testing.assert_allclose(carried, shapes, atol=0.5 / 127 + 1e-9)
     faces = np.frombuffer(base64.b64decode(data["faces"]), "<u2").reshape(-1, 4)
     np.testing.assert_array_equal(faces, found.mesh.faces)
     assert data["labels"].startswith("test 1 (10.00 Hz) and analysis 2 (9.00 Hz), −10.0 %, MAC 81")
