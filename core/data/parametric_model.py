@@ -1,4 +1,4 @@
-"""K and M as sums of constant matrices times scalar functions of the parameters."""
+"""K, M and D as sums of constant matrices times scalar functions of the parameters."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ class Term(Noun):
 class Model(Noun):
     """A finite-element model on its free (independent, unconstrained) degrees of freedom.
 
-    K(p) = sum_t c_t(p) K_t, and likewise M(p): equation (1) of the source paper written
-    generally.
+    K(p) = sum_t c_t(p) K_t, and likewise M(p), D(p) and H(p): equation (1) of the source paper
+    written generally. A motion of frequency w takes the force (K + iH + iwD - w^2 M) u.
 
     Parameters
     ----------
@@ -101,6 +101,9 @@ class Model(Noun):
     rigid_mass : tuple of (6, 6) float
         Of each term of `mass` what rigid motions about the origin of the basic frame move, fixed
         points included. Empty where that is not known.
+    damping, loss : tuple of Term
+        Viscous damping D, and H, the structural one: stiffness times loss factor. Empty where the
+        model says nothing of it.
     """
 
     geometry: Geometry
@@ -113,15 +116,17 @@ class Model(Noun):
     warnings: tuple[str, ...] = ()
     idle: tuple[int, ...] = ()
     rigid_mass: tuple[Floats, ...] = ()
+    damping: tuple[Term, ...] = ()
+    loss: tuple[Term, ...] = ()
 
     def __post_init__(self) -> None:
         require_kind(self.geometry, Geometry, "geometry of Model")
         require_kind(self.dofs, Dofs, "dofs of Model")
-        for name in ("stiffness", "mass", "parameters"):
+        for name in ("stiffness", "mass", "parameters", "damping", "loss"):
             require_kind(getattr(self, name), tuple, f"{name} of Model")
         require_shape(self.expansion, (len(self.dofs), "n"), "the expansion")
-        for t in (*self.stiffness, *self.mass):
-            require_kind(t, Term, "a part of stiffness or mass")
+        for t in (*self.stiffness, *self.mass, *self.damping, *self.loss):
+            require_kind(t, Term, "a part of stiffness, mass or damping")
             require_shape(t.matrix, (self.n_free, self.n_free), "a matrix term")
         for q in self.parameters:
             require_kind(q, Parameter, "a parameter of Model")
@@ -150,6 +155,14 @@ class Model(Noun):
         """Return M at the parameter values `p` (default: the deck), (n_free, n_free)."""
         return _sum(self.mass, self.deck_point if p is None else p, self.n_free)
 
+    def D(self, p: Floats) -> sp.csr_matrix:
+        """Return D at the parameter values `p`, (n_free, n_free)."""
+        return _sum(self.damping, p, self.n_free)
+
+    def H(self, p: Floats) -> sp.csr_matrix:
+        """Return H at the parameter values `p`, (n_free, n_free)."""
+        return _sum(self.loss, p, self.n_free)
+
     def dK(self, parameter: int, p: Floats) -> sp.csr_matrix:
         """Return the derivative of K by one parameter at `p`, (n_free, n_free)."""
         return _sum_derivative(self.stiffness, p, parameter, self.n_free)
@@ -157,6 +170,14 @@ class Model(Noun):
     def dM(self, parameter: int, p: Floats) -> sp.csr_matrix:
         """Return the derivative of M by one parameter at `p`, (n_free, n_free)."""
         return _sum_derivative(self.mass, p, parameter, self.n_free)
+
+    def dD(self, parameter: int, p: Floats) -> sp.csr_matrix:
+        """Return the derivative of D by one parameter at `p`, (n_free, n_free)."""
+        return _sum_derivative(self.damping, p, parameter, self.n_free)
+
+    def dH(self, parameter: int, p: Floats) -> sp.csr_matrix:
+        """Return the derivative of H by one parameter at `p`, (n_free, n_free)."""
+        return _sum_derivative(self.loss, p, parameter, self.n_free)
 
 
 def _sum(terms: tuple[Term, ...], p: Floats, n: int) -> sp.csr_matrix:

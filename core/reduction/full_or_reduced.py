@@ -33,6 +33,17 @@ class FullOrder:
         at = self.sensors if with_shapes else None
         return sensitivities(self.model, p, solution, T, tuple(active), at)
 
+    def damping_on_modes(self, p: Floats, solution: Spectral) -> tuple[Floats, Floats]:
+        """Return D and H on the modes, each (n_mode, n_mode)."""
+        X = solution.vectors
+        return X.T @ (self.model.D(p) @ X), X.T @ (self.model.H(p) @ X)
+
+    def changes_on_modes(self, p: Floats, solution: Spectral, active: Sequence[int]) -> Floats:
+        """Return K', M', D' and H' on the modes, (4, len(active), n_mode, n_mode)."""
+        X, model = solution.vectors, self.model
+        parts = (model.dK, model.dM, model.dD, model.dH)
+        return np.array([[X.T @ (part(k, p) @ X) for k in active] for part in parts])
+
 
 @dataclass(frozen=True, eq=False)
 class ReducedOrder:
@@ -61,6 +72,17 @@ class ReducedOrder:
         assert isinstance(solution, ReducedModes)
         at = self.sensors if with_shapes else None
         return self.reduced.sensitivities(p, T, tuple(active), at, solution)
+
+    def damping_on_modes(self, p: Floats, solution: Spectral) -> tuple[Floats, Floats]:
+        """Return D and H on the modes, each (n_mode, n_mode)."""
+        q, r = solution.vectors, self.reduced
+        return q.T @ r.damping.at(p) @ q, q.T @ r.loss.at(p) @ q
+
+    def changes_on_modes(self, p: Floats, solution: Spectral, active: Sequence[int]) -> Floats:
+        """Return K', M', D' and H' on the modes, (4, len(active), n_mode, n_mode)."""
+        q, r = solution.vectors, self.reduced
+        parts = (r.stiffness, r.mass, r.damping, r.loss)
+        return np.array([q.T @ part.slopes(p, active) @ q for part in parts])
 
 
 Order = FullOrder | ReducedOrder

@@ -72,6 +72,8 @@ class ReducedModel(Noun):
         Q^T K Q and Q^T M Q at any parameter values.
     solution : Eigensolution
         Of the full model at `p0`, with its factor.
+    damping, loss : ReducedSum
+        Q^T D Q and Q^T H Q.
     """
 
     model: Model
@@ -79,6 +81,8 @@ class ReducedModel(Noun):
     stiffness: ReducedSum
     mass: ReducedSum
     solution: Eigensolution = field(repr=False)
+    damping: ReducedSum
+    loss: ReducedSum
 
     @property
     def size(self) -> int:
@@ -230,8 +234,10 @@ def build_reduced(
         model, p0, solution, factor, targets, parameters, max_static, least_energy
     )
     Q = np.hstack([modes, answers])
-    K, M = (reduced_sum(terms, Q) for terms in (model.stiffness, model.mass))
-    return ReducedModel(model, Q, K, M, solution)
+    K, M, D, H = (
+        reduced_sum(terms, Q) for terms in (model.stiffness, model.mass, model.damping, model.loss)
+    )
+    return ReducedModel(model, Q, K, M, solution, D, H)
 
 
 def static_answers(

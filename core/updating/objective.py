@@ -9,9 +9,10 @@ from ..arrays import Floats, frozen
 from ..correlation.criteria import Criteria
 from ..correlation.mac import realised
 from ..correlation.mode_pairing import Correlation, correlate
+from ..reduction.damped_poles import Damped
 from ..reduction.eigenpair_derivatives import Spectral
 from ..reduction.full_or_reduced import Order
-from .residuals import Linearisation, Residual, Seen, Slopes, Target, Weights
+from .residuals import DampedPairs, Linearisation, Residual, Seen, Slopes, Target, Weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,20 @@ class Objective:
         T = self._turned(found, [q.analysis for q in pairs])
         test = self._test_shapes(found)[:, [q.test for q in pairs]]
         quotients = solution.eigenvalues @ T**2 / np.sum(T**2, axis=0)
-        seen = Seen(order.model, frozen(p), pairs, quotients, shapes @ T, test, self.target.beside)
+        ratios, taken = self.target.damping, [q.test for q in pairs]
+        damped = DampedPairs(
+            Damped(order, frozen(p), solution), T, None if ratios is None else ratios[taken]
+        )
+        seen = Seen(
+            order.model,
+            frozen(p),
+            pairs,
+            quotients,
+            shapes @ T,
+            test,
+            self.target.beside,
+            damped,
+        )
         return State(seen.factors, solution, found, seen, self.value(seen, residuals))
 
     def value(self, seen: Seen, residuals: Sequence[Residual]) -> float:

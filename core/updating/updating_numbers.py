@@ -13,6 +13,7 @@ class UpdatingNumbers:
     shape: float = number(0.1, "√(1 − MAC)", "standard deviation of a shape, unless said otherwise", "modal tests")
     mass: float = number(0.005, "of the mass", "standard deviation of what was weighed, unless said otherwise", "scales")
     centre_of_gravity: float = number(0.002, "of the size of the structure", "standard deviation of a coordinate, unless said otherwise", "scales")
+    damping: float = number(0.1, "of a ratio", "standard deviation of a damping ratio, unless said otherwise", "modal tests")
     deflection: float = number(0.02, "of the largest of its load case", "standard deviation of a static reading, unless said otherwise", "static tests")
     prior: float = number(0.2, "of a factor", "standard deviation of the deck's values, unless said otherwise", "practice of updating")
     regularisation: float = number(1e-2, "-", "on steps of the factors, unless said otherwise", CHECK)

@@ -1,7 +1,7 @@
 """Make a neutral model of a deck: elements, constraints, parameters put together."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,8 +21,9 @@ from ..fields.parameter_references import ParameterSpec
 from ..properties.analysis_set import AnalysisSet, read_analysis_set
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices
-from ..properties.grids import Points, point_dofs
+from ..properties.grids import Points, point_dofs, to_basic
 from ..properties.unit_slips import unit_slips
+from .deck_damping import damping_terms
 from .deck_elements import Structure, read_structure
 from .parameter_bounds import admissible
 from .variation import Variation, read_variation
@@ -34,7 +35,9 @@ _EPZERO = 1e-8
 """PARAM EPZERO: smallest stiffness of a grid's direction, relative to its largest."""
 
 
-def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
+def build_model(
+    deck: Deck, parameters: Sequence[ParameterSpec] = (), damped: bool = False
+) -> Model:
     """Assemble a deck.
 
     Parameters
@@ -43,6 +46,8 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
         As read.
     parameters : sequence of ParameterSpec
         Values of the deck that shall be free to move.
+    damped : bool
+        Whether its damping is assembled, too; it is where a parameter moves nothing but that.
 
     Returns
     -------
@@ -54,7 +59,7 @@ def build_model(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Model:
     InputError
         What the deck or the parameters lack: card, file and line.
     """
-    return assemble(deck, parameters).model
+    return assemble(deck, parameters, damped).model
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +82,9 @@ class Assembly:
     fixed: Bools
 
 
-def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
+def assemble(
+    deck: Deck, parameters: Sequence[ParameterSpec] = (), damped: bool = False
+) -> Assembly:
     """Assemble a deck and keep its parts; see `build_model`."""
     variation = read_variation(deck, parameters)
     structure = read_structure(deck, variation)
@@ -110,19 +117,20 @@ def assemble(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Assembly:
         idle=idle,
         rigid_mass=_rigid_mass(points, whole[1]),
     )
+    if damped or _idle(model):
+        D, H = damping_terms(deck, model, variation, parameters)
+        model = replace(model, damping=D, loss=H)
+    _require_influence(model)
     return Assembly(model, structure, whole[0], constraints.fixed)
 
 
 def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
     """Stiffness and mass of the g-set: elements, then direct matrices in the constant term."""
     n = structure.points.n_dof
-    lower = np.array([p.lower for p in variation.parameters])
-    upper = np.array([p.upper for p in variation.parameters])
     try:
-        terms = parametric_terms(structure.blocks, n, lower, upper)
+        terms = parametric_terms(structure.blocks, n, *variation.bounds)
     except CheckError as error:
         raise InputError(str(error)) from None
-    _check_influence(variation.parameters, (*terms[0], *terms[1]))
     added = direct_matrices(deck, structure.points)
     return tuple(
         tuple(Term(t.matrix + extra, ()) if not t.factors and extra.nnz else t for t in part)
@@ -130,14 +138,20 @@ def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
     )  # type: ignore[return-value]
 
 
-def _check_influence(parameters: tuple[Parameter, ...], terms: Sequence[Term]) -> None:
+def _idle(model: Model) -> list[Parameter]:
+    """Return the parameters that change nothing of a model."""
+    terms = (*model.stiffness, *model.mass, *model.damping, *model.loss)
     moved = {f.parameter for t in terms for f in t.factors}
-    for number, parameter in enumerate(parameters):
-        if number not in moved:
-            raise InputError(
-                f"parameter {parameter.name!r} ({', '.join(parameter.handle)}) changes neither "
-                "stiffness nor mass: no element uses it, or Nastran takes the value from elsewhere"
-            )
+    return [q for k, q in enumerate(model.parameters) if k not in moved]
+
+
+def _require_influence(model: Model) -> None:
+    for parameter in _idle(model):
+        raise InputError(
+            f"parameter {parameter.name!r} ({', '.join(parameter.handle)}) changes neither "
+            "stiffness nor mass nor damping: no element uses it, or Nastran takes the value from "
+            "elsewhere"
+        )
 
 
 def _remove_singular(
@@ -270,21 +284,6 @@ def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ..
         parts.append(f"{len(scalar)} scalar points ({', '.join(map(str, scalar[:5]))})")
     what = "stiffness were fixed (AUTOSPC)" if automatic else "stiffness and mass were fixed"
     return (f"{len(dofs)} degrees of freedom without {what}: {'; '.join(parts)}",)
-
-
-def to_basic(points: Points) -> sp.csr_matrix:
-    """Return basic displacements from those in the displacement systems."""
-    n = points.n_dof
-    turned = np.flatnonzero(points.rotated)
-    diagonal = np.ones(n)
-    start = (6 * turned[:, None] + np.array([0, 3])).reshape(-1)
-    triples = start[:, None] + np.arange(3)
-    diagonal[triples] = 0.0
-    R = np.repeat(points.directions[turned], 2, axis=0)
-    rows = np.repeat(triples, 3, axis=1).reshape(-1)
-    columns = np.tile(triples, (1, 3)).reshape(-1)
-    values = R.swapaxes(1, 2).reshape(-1)
-    return (sp.diags(diagonal) + sp.coo_matrix((values, (rows, columns)), shape=(n, n))).tocsr()
 
 
 def _geometry(deck: Deck, structure: Structure) -> Geometry:

@@ -1,6 +1,6 @@
-"""Damping that a deck states, on its free degrees of freedom and of its modes."""
+"""Damping that a deck states: matrices on its free degrees of freedom, ratios of its modes."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,16 +10,18 @@ import scipy.sparse as sp
 from ....core.arrays import Floats, Ints, Matrices
 from ....core.assembly.affine_terms import parametric_terms
 from ....core.assembly.element_assembly import ElementBlock
-from ....core.data.parametric_model import Model
+from ....core.data.parameter import Parameter
+from ....core.data.parametric_model import Factor, Model, Term
 from ..cards import Key
+from ..cards.element_group import Group
 from ..deck.bulk import Bulk
 from ..deck.read_deck import Deck
+from ..fields.parameter_references import ParameterSpec
 from ..properties.damping_tables import selected_ratios
-from ..properties.grids import read_points
-from .build_model import to_basic
-from .deck_dashpots import damping_matrix
+from ..properties.grids import read_points, to_basic
+from .deck_dashpots import damping_matrix, dashpot_terms
 from .deck_elements import read_structure
-from .variation import read_variation
+from .variation import Variation, read_variation
 
 _MATERIAL = ("mid", "mid1", "mid2")
 """Fields of a property that name its material; the first counts."""
@@ -27,7 +29,8 @@ _MATERIAL = ("mid", "mid1", "mid2")
 
 def free_damping(deck: Deck, model: Model) -> sp.csr_matrix | None:
     """Return D of the deck's dashpots on the free degrees of freedom; None where it has none."""
-    return _free(deck, model, damping_matrix(deck))
+    D = damping_matrix(deck)
+    return None if D is None else _free(deck, model, D)
 
 
 def modal_ratios(deck: Deck, model: Model, frequencies_hz: Floats, X: Floats) -> Floats | None:
@@ -56,7 +59,9 @@ def modal_ratios(deck: Deck, model: Model, frequencies_hz: Floats, X: Floats) ->
     """
     w = 2.0 * np.pi * np.where(frequencies_hz > 0.0, frequencies_hz, np.nan)
     structural, selected = deck.param("G", 0.0), selected_ratios(deck, frequencies_hz)
-    K4, D = _free(deck, model, _loss_matrix(deck)), free_damping(deck, model)
+    loss = _onto(deck, model, _loss_terms(deck, read_variation(deck, ())))
+    K4 = sum((t.matrix for t in loss[1:]), loss[0].matrix) if loss else None
+    D = free_damping(deck, model)
     if structural == 0.0 and selected is None and K4 is None and D is None:
         return None
     ratios = structural / 2.0 + (0.0 if selected is None else selected) + 0.0 * w
@@ -66,26 +71,60 @@ def modal_ratios(deck: Deck, model: Model, frequencies_hz: Floats, X: Floats) ->
     return np.asarray(ratios)
 
 
-def _free(deck: Deck, model: Model, A: sp.csr_matrix | None) -> sp.csr_matrix | None:
-    if A is None:
-        return None
+def damping_terms(
+    deck: Deck, model: Model, variation: Variation, specs: Sequence[ParameterSpec]
+) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
+    """Return D and H of a deck on its free degrees of freedom, as terms in the parameters.
+
+    D are the dashpots and PARAM ALPHA1 M + ALPHA2 K; H is PARAM G K and the stiffness of every
+    element times its GE. The ratios of a TABDMP1 are of modes and have no matrix.
+
+    Parameters
+    ----------
+    model : Model
+        With its stiffness and mass.
+    variation : Variation
+        What `specs` move.
+    """
+    named = {ref.field: k for k, spec in enumerate(specs) for ref in spec.fields if not ref.id}
+
+    def times(name: str, terms: tuple[Term, ...]) -> tuple[Term, ...]:
+        value, own = deck.param(name, 0.0), named.get(name)
+        more = () if own is None else (linear(variation.parameters[own], own),)
+        return tuple(Term(value * t.matrix, (*t.factors, *more)) for t in terms if value != 0.0)
+
+    D = _onto(deck, model, dashpot_terms(deck, variation))
+    H = _onto(deck, model, _loss_terms(deck, variation))
+    D = (*D, *times("ALPHA1", model.mass), *times("ALPHA2", model.stiffness))
+    return D, (*H, *times("G", model.stiffness))
+
+
+def linear(parameter: Parameter, number: int) -> Factor:
+    """Return the factor that is the parameter itself, which has this number."""
+    lower, upper = parameter.lower, parameter.upper
+    return Factor(number, ((lower + upper) / 2.0, (upper - lower) / 2.0), lower, upper)
+
+
+def _onto(deck: Deck, model: Model, terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Return terms over the g-set on the free degrees of freedom; empty ones are left out."""
+    return tuple(Term(_free(deck, model, t.matrix), t.factors) for t in terms if t.matrix.nnz)
+
+
+def _free(deck: Deck, model: Model, A: sp.csr_matrix) -> sp.csr_matrix:
     motion = to_basic(read_points(deck.bulk)).T @ model.expansion
     return (motion.T @ A @ motion).tocsr()
 
 
-def _loss_matrix(deck: Deck) -> sp.csr_matrix | None:
+def _loss_terms(deck: Deck, variation: Variation) -> tuple[Term, ...]:
     """Return the stiffness of every element times its loss factor, over the g-set."""
     if not any(np.any(c.ge) for c in _with_loss(deck.bulk)):
-        return None
-    variation = read_variation(deck, ())
-    variation = replace(variation, bulk=_by_direction(variation.bulk))
-    structure, blocks = read_structure(deck, variation), []
+        return ()
+    own = replace(variation, bulk=_by_direction(variation.bulk), read_as=_by_direction, _known={})
+    structure, blocks = read_structure(deck, own), []
     for group, block in zip(structure.groups, structure.blocks, strict=True):
-        loss = np.array([_loss(variation.bulk, s) for s in group.sources])[group.source_of]
-        if loss.any():
-            blocks.append(_scaled(block, loss))
-    terms, _ = parametric_terms(blocks, structure.points.n_dof, np.zeros(0), np.zeros(0))
-    return sum((t.matrix for t in terms[1:]), terms[0].matrix).tocsr()
+        if any(_loss(own.bulk, s) for s in group.sources):
+            blocks.append(_scaled(block, group, own))
+    return parametric_terms(blocks, structure.points.n_dof, *own.bounds)[0]
 
 
 def _by_direction(bulk: Bulk) -> Bulk:
@@ -121,9 +160,15 @@ def _loss(bulk: Bulk, source: frozenset[Key]) -> float:
     return 0.0
 
 
-def _scaled(block: ElementBlock, loss: Floats) -> ElementBlock:
+def _scaled(block: ElementBlock, group: Group, variation: Variation) -> ElementBlock:
     def evaluate(rows: Ints, p: Floats, wanted: tuple[bool, bool]) -> Matrices:
         K, _ = block.evaluate(rows, p, (wanted[0], False))
-        return (None if K is None else K * loss[rows, None, None]), None
+        if K is None:
+            return None, None
+        bulk, of = variation.at(p), group.source_of[rows]
+        loss = np.zeros(len(group.sources))
+        for s in np.unique(of):
+            loss[s] = _loss(bulk, group.sources[s])
+        return K * loss[of, None, None], None
 
     return replace(block, evaluate=evaluate)

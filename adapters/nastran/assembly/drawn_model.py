@@ -8,8 +8,7 @@ from ....core.arrays import Ints
 from ....core.data.geometry import Geometry
 from ....core.data.parametric_model import Model
 from ..deck.read_deck import Deck
-from ..properties.grids import Points, point_dofs, read_points
-from .build_model import to_basic
+from ..properties.grids import Points, point_dofs, read_points, to_basic
 
 
 def drawn_model(deck: Deck) -> Model:

@@ -4,8 +4,8 @@ A card at other parameter values is its own text with the numbers multiplied, re
 deck leaves blank and Nastran derives follows, just as it would in the rewritten deck.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ....core.errors import InputError, Place
 from ..deck.bulk import Bulk
 from ..deck.field_values import Fields
 from ..deck.movable_values import index_of
-from ..deck.raw_cards import fields_of
+from ..deck.raw_cards import Raw, fields_of
 from ..deck.read_deck import Deck
 from ..fields.layouts import field_position
 from ..fields.parameter_references import FieldRef, ParameterSpec
@@ -34,6 +34,10 @@ class _Move:
     value: float
 
 
+def _as_it_is(bulk: Bulk) -> Bulk:
+    return bulk
+
+
 @dataclass(frozen=True, eq=False)
 class Variation:
     """The parameters of a model and the cards they act on.
@@ -48,13 +52,22 @@ class Variation:
         Fields moved, by card.
     thermal : Thermal
         Materials that follow the temperature.
+    read_as : callable
+        What is made of the cards that were moved.
     """
 
     bulk: Bulk
     parameters: tuple[Parameter, ...]
     moves: dict[Key, tuple[_Move, ...]]
     thermal: Thermal
+    read_as: Callable[[Bulk], Bulk] = _as_it_is
     _known: dict[bytes, Bulk] = field(default_factory=dict, repr=False)
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest factors, each (n_parameter,)."""
+        lower = np.array([q.lower for q in self.parameters])
+        return lower, np.array([q.upper for q in self.parameters])
 
     def acting_on(self, key: Key) -> frozenset[int]:
         """Return the numbers of the parameters that move a field of this card."""
@@ -68,7 +81,7 @@ class Variation:
         if tag not in self._known:
             if len(self._known) > 64:
                 self._known.clear()
-            self._known[tag] = self._make(p)
+            self._known[tag] = self.read_as(self._make(p))
         return self._known[tag]
 
     def describe(self, p: Floats) -> str:
@@ -106,19 +119,21 @@ def read_variation(deck: Deck, specs: Sequence[ParameterSpec]) -> Variation:
     thermal = read_thermal(deck)
     moves: dict[Key, list[_Move]] = {}
     parameters = []
-    taken: dict[tuple[Key, int], str] = {}
+    taken: dict[object, str] = {}
     for number, spec in enumerate(specs):
         values = []
         for ref in spec.fields:
             key = (ref.card, ref.id)
             index, value = _locate(bulk, ref, spec.name)
-            if (key, index) in taken:
+            where = (key, index) if ref.id else ref
+            if where in taken:
                 raise InputError(
-                    f"{ref} is moved by the parameter {taken[key, index]!r} and by {spec.name!r}: "
+                    f"{ref} is moved by the parameter {taken[where]!r} and by {spec.name!r}: "
                     "one field can belong to one parameter only"
                 )
-            taken[key, index] = spec.name
-            moves.setdefault(key, []).append(_Move(number, index, value))
+            taken[where] = spec.name
+            if ref.id:
+                moves.setdefault(key, []).append(_Move(number, index, value))
             values.append(value)
         named = tuple(str(f) for f in spec.fields)
         bounds = spec.lower, spec.upper
@@ -140,12 +155,12 @@ def value_of(deck: Deck, ref: FieldRef) -> float:
 
 def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     """Index among the card's fields, and value, of the field a parameter names."""
-    raw = bulk.numbered.get(ref.card, {}).get(ref.id)
+    raw = _raw(bulk, ref)
     if raw is None:
         known = sorted(bulk.numbered.get(ref.card, {}))
         shown = ", ".join([*map(str, known[:8]), *["..."] * (len(known) > 8)])
         there = f"; the deck has {ref.card} {shown}" if known else ""
-        card = f"{ref.card} {ref.id}"
+        card = ref.title
         said = f"parameter {name!r}: there is no {card} in the deck{there}"
         raise Place(bulk.files[0]).error(said, card)
     fields = fields_of(raw.lines)
@@ -155,7 +170,7 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
         return str(_at(fields, 1 + index_of(position)) or "").upper()
 
     position = field_position(ref.card, ref.field, read)
-    place = bulk.place(ref.card, ref.id)
+    place = replace(bulk.at(raw), card=ref.title)
 
     def wrong(what: str) -> InputError:
         return place.about(f"parameter {name!r}: {what}")
@@ -176,6 +191,13 @@ def _locate(bulk: Bulk, ref: FieldRef, name: str) -> tuple[int, float]:
     if value == 0.0:
         raise wrong(f"{ref.field} is zero on {place}, and a factor cannot move it")
     return index, value
+
+
+def _raw(bulk: Bulk, ref: FieldRef) -> Raw | None:
+    if ref.id:
+        return bulk.numbered.get(ref.card, {}).get(ref.id)
+    both = zip(bulk.listed(ref.card), bulk.raw.get(ref.card, ()), strict=True)
+    return next((raw for card, raw in both if card.n == ref.field), None)
 
 
 def _at(fields: Fields, index: int) -> str | None:

@@ -7,11 +7,11 @@ import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
 from ....core.discovery.reduction.elements_and_supports import Members, Structure, Supports
-from ..assembly.build_model import Assembly, assemble, to_basic
+from ..assembly.build_model import Assembly, assemble
 from ..assembly.deck_damping import free_damping
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
-from ..properties.grids import Points
+from ..properties.grids import Points, to_basic
 
 
 def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Structure:

@@ -10,6 +10,7 @@ from ....core.errors import InputError, Place
 from ..cards import definitions
 from ..deck.movable_values import index_of
 from ..deck.number_spaces import SPACES, space_of
+from ..fields.parameter_references import FieldRef
 from ..text.deck_text import DeckText, Segment
 from ..text.source_file import CONTINUATION, REPLICATION, Keys, name_of
 from .cells import CardLine
@@ -112,6 +113,28 @@ def find_card(deck: DeckText, name: str, number: int) -> Card:
             f"{called} stands {len(found)} times in the deck ({places}): it is not clear which "
             "one is meant, give the copies their own numbers"
         )
+    return found[0]
+
+
+def find_value(deck: DeckText, ref: FieldRef) -> Card:
+    """Return the one card that holds a value.
+
+    Raises
+    ------
+    InputError
+        As `find_card`.
+    """
+    if ref.id:
+        return find_card(deck, ref.card, ref.id)
+    every = (
+        card_at(deck, segment, row, ref.card)
+        for segment in deck.segments
+        for row, _ in deck.rows_in(segment, ref.card)
+    )
+    found = [card for card in every if card.text(0) == ref.field]
+    if len(found) != 1:
+        stands = f"stands {len(found)} times in the bulk data; it must stand there once"
+        raise InputError(f"{ref} {stands}", file=deck.files[0].path, card=str(ref))
     return found[0]
 
 

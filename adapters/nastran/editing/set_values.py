@@ -8,7 +8,7 @@ from ..fields.layouts import field_position
 from ..fields.parameter_references import FieldRef
 from ..text.deck_text import DeckText
 from ..text.real_numbers import parse_real, writable
-from .find_cards import Card, find_card
+from .find_cards import Card, find_value
 from .rewrite_fields import Value, rewrite_card
 
 
@@ -20,7 +20,7 @@ def read_value(deck: DeckText, ref: FieldRef) -> float | None:
     InputError
         No such card, several such cards, a card that has no such field, text that is no number.
     """
-    card = find_card(deck, ref.card, ref.id)
+    card = find_value(deck, ref)
     return _value(deck, card, ref, _index(deck, card, ref))
 
 
@@ -46,7 +46,7 @@ def set_values(deck: DeckText, values: Mapping[FieldRef, float]) -> DeckText:
     edits: dict[tuple[int, int], dict[int, Value]] = defaultdict(dict)
     cards: dict[tuple[int, int], Card] = {}
     for ref, value in values.items():
-        card = find_card(deck, ref.card, ref.id)
+        card = find_value(deck, ref)
         index = _index(deck, card, ref)
         if _value(deck, card, ref, index) == writable(value):
             continue
@@ -93,7 +93,7 @@ def _index(deck: DeckText, card: Card, ref: FieldRef) -> int:
     position = field_position(ref.card, ref.field, card.read)
     if position is None:
         raise deck.place(card.file, card.rows[0]).error(
-            f"this {ref.card} {ref.id} has no {ref.field}"
+            f"this {ref.title} has no {ref.field}"
         )
     return card.index(position)
 

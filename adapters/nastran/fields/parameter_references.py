@@ -10,6 +10,7 @@ from ....core.errors import InputError
 from .layouts import canonical_field
 
 DEFAULT_BOUNDS = (0.2, 5.0)
+PARAM = "PARAM"
 
 _FORM = re.compile(r"(?:(?P<name>[^=\[\]]*)=)?(?P<cards>[^=\[\]]*)(?:\[(?P<bounds>[^\[\]]*)\])?\s*")
 _EXAMPLE = "write it like 'PSHELL 3 T' or 'front flange = PBAR 11 I1, PBAR 11 I2 [0.2, 5]'"
@@ -20,6 +21,8 @@ _RANGE = re.compile(r"(?P<first>[1-9]\d*)(?::(?P<last>[1-9]\d*))?", re.ASCII)
 @dataclass(frozen=True, order=True)
 class FieldRef:
     """One value of the deck: the card's name, its number, the field's name in the guide.
+
+    Of a PARAM the number is 0 and the field its name.
 
     Raises
     ------
@@ -37,7 +40,12 @@ class FieldRef:
         object.__setattr__(self, "field", canonical_field(card, self.field))
 
     def __str__(self) -> str:
-        return f"{self.card} {self.id} {self.field}"
+        return f"{self.title} {self.field}" if self.id else self.title
+
+    @property
+    def title(self) -> str:
+        """Name and number of the card."""
+        return f"{self.card} {self.id or self.field}"
 
 
 @dataclass(frozen=True)
@@ -214,6 +222,8 @@ def _parse_values(text: str) -> NamedValues:
     match = _REGION.fullmatch(text)
     region = _parse_region(match["kind"], match["numbers"], text) if match else None
     words = (match["cards"] if match else text).split()
+    if len(words) == 2 and words[0].upper() == PARAM and not region:
+        return NamedValues(text, PARAM, words[1], (0, 0))
     if len(words) != 3:
         missing = ", ".join(("a card", "a number", "a field")[len(words) :])
         wrong = f"lacks {missing}" if missing else "has too many words"

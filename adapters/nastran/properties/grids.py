@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints, skew
 from ....core.data.dofs import Dofs
@@ -151,6 +152,21 @@ def point_dofs(ids: Ints, scalar_ids: Ints) -> Dofs:
     """Return six degrees of freedom a grid, then one a scalar point."""
     component = np.concatenate([np.tile(np.arange(1, 7), len(ids)), np.ones(len(scalar_ids), int)])
     return Dofs(np.concatenate([np.repeat(ids, 6), scalar_ids]), component)
+
+
+def to_basic(points: Points) -> sp.csr_matrix:
+    """Return basic displacements from those in the displacement systems."""
+    n = points.n_dof
+    turned = np.flatnonzero(points.rotated)
+    diagonal = np.ones(n)
+    start = (6 * turned[:, None] + np.array([0, 3])).reshape(-1)
+    triples = start[:, None] + np.arange(3)
+    diagonal[triples] = 0.0
+    R = np.repeat(points.directions[turned], 2, axis=0)
+    rows = np.repeat(triples, 3, axis=1).reshape(-1)
+    columns = np.tile(triples, (1, 3)).reshape(-1)
+    values = R.swapaxes(1, 2).reshape(-1)
+    return (sp.diags(diagonal) + sp.coo_matrix((values, (rows, columns)), shape=(n, n))).tocsr()
 
 
 def read_points(bulk: Bulk) -> Points:

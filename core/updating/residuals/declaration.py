@@ -13,6 +13,7 @@ from ...correlation.criteria import Criteria
 from ...correlation.mode_pairing import Pair
 from ...data.parametric_model import Model
 from ...errors import InputError
+from ...reduction.damped_poles import Damped
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +68,8 @@ class Target:
     frequency_std, shape_std : (n_test,) float, optional
         Standard errors of the test's frequencies, relative, and lengths of those of its shapes,
         over the shapes'; they add to the standard deviations of the weights.
+    damping, damping_std : (n_test,) float, optional
+        Ratios of the test, NaN where unknown, and their standard errors.
     beside : Beside
     """
 
@@ -77,6 +80,31 @@ class Target:
     frequency_std: Floats | None = None
     shape_std: Floats | None = None
     beside: Beside = Beside()
+    damping: Floats | None = None
+    damping_std: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DampedPairs:
+    """A model with its damping, and what of it the pairs are.
+
+    Parameters
+    ----------
+    model : Damped
+    turned : (n_mode, n_pair) float
+        Coefficients of the analysis' modes that the pairs are of.
+    measured : (n_pair,) float, optional
+        Damping ratios of the test, NaN where unknown.
+    """
+
+    model: Damped
+    turned: Floats
+    measured: Floats | None = None
+
+    def take(self, at: Ints) -> DampedPairs:
+        """Return the same of some of the pairs."""
+        known = None if self.measured is None else self.measured[at]
+        return replace(self, turned=self.turned[:, at], measured=known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +123,8 @@ class Seen:
         any scaling.
     beside : Beside
         What else was measured.
+    damped : DampedPairs, optional
+        The same with damping.
     """
 
     model: Model
@@ -104,6 +134,7 @@ class Seen:
     analysis: Floats
     test: Floats
     beside: Beside = Beside()
+    damped: DampedPairs | None = None
 
     @property
     def test_eigenvalues(self) -> Floats:
@@ -119,6 +150,7 @@ class Seen:
             eigenvalues=self.eigenvalues[at],
             analysis=self.analysis[:, at],
             test=self.test[:, at],
+            damped=None if self.damped is None else self.damped.take(at),
         )
 
 
@@ -180,6 +212,8 @@ class Residual:
     believes_sigmas : bool
         Whether the standard deviations are those of a posterior with it: else the scatter of all
         residuals is that which is left.
+    damped : bool
+        Whether the damping of the model counts.
     """
 
     name: str
@@ -193,6 +227,7 @@ class Residual:
     error: Callable[[Target], Floats | None] | None = None
     tells_pairs: bool = False
     believes_sigmas: bool = False
+    damped: bool = False
 
     def squared(self, seen: Seen) -> Floats:
         """Squared length of each row of the value, (n_row,)."""

@@ -10,6 +10,7 @@ import numpy as np
 from ...arrays import Floats
 from ...errors import InputError, require_kind
 from ..updating_numbers import UPDATING
+from .damping import DAMPING
 from .declaration import Residual
 from .deflections import DEFLECTIONS
 from .frequencies import FREQUENCIES
@@ -23,6 +24,7 @@ RESIDUALS: list[Residual] = [
     MASS,
     CENTRE_OF_GRAVITY,
     DEFLECTIONS,
+    DAMPING,
     PRIOR,
 ]
 """What an update may minimise; `register_residual` adds to it."""
