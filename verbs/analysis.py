@@ -75,7 +75,7 @@ def read_analysis(
         else:
             deck, specs = parameters_of(deck, study.parameters)
         try:
-            model = source if deck is None else build_model(deck, specs)
+            model = source if deck is None else build_model(deck, specs, study.damped)
         except InputError as error:
             if modes is None or deck is None or specs:
                 raise
@@ -164,6 +164,8 @@ def target_of(model: Model, placed: Placed, study: Study) -> Target:
         None if errors is None else errors.frequency,
         None if errors is None else errors.length,
         _beside(model, study),
+        placed.test.damping,
+        placed.damping_std,
     )
 
 

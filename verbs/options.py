@@ -90,6 +90,7 @@ class UpdateOptions(CompareOptions, total=False):
     ``load_cases`` ("deflections"): each with ``loads`` as "1187:-Z=100" and ``readings`` as
     "40:+Z=-1.25". ``mass_sigma``, ``centre_of_gravity_sigma`` and ``deflection_sigma`` are their
     standard deviations, of the mass, of the structure's size, and of the largest reading of a case.
+    "damping" moves the ratios of complex modes to the test's; ``damping_sigma`` is of a ratio.
     """
 
     residuals: str | None

@@ -146,7 +146,7 @@ def parameters(
         more = 0
         if not specs:
             specs, more = candidates(given, _MOST)
-        model = build_model(read, specs)
+        model = build_model(read, specs, asked.damped)
     progress("solving")
     if test is None:
         seen = _of_deck(given, model, asked)

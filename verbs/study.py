@@ -199,6 +199,14 @@ class Study:
 
         return Weights(self.sigmas, self.regularisation, dict(self.mode_weights))
 
+    @property
+    def damped(self) -> bool:
+        """Whether the damping of the deck counts."""
+        from ..core.updating.residuals import residuals_named
+
+        every = (self.residuals, *(s.residuals for s in self.stages))
+        return any(r.damped for words in every for r in residuals_named(words))
+
 
 _HINTS = get_type_hints(Study)
 _FIELDS = {

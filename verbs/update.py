@@ -11,7 +11,13 @@ from ..core.data.parametric_model import Model
 from ..core.errors import InputError
 from ..core.results.correlation import compared
 from ..core.results.plain import Table
-from ..core.results.update import parameter_rows, posterior_table, start_rows, weights_table
+from ..core.results.update import (
+    damping_rows,
+    parameter_rows,
+    posterior_table,
+    start_rows,
+    weights_table,
+)
 from .analysis import both_given, correlated, named, read_analysis
 from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
@@ -99,6 +105,7 @@ def update(
         starts=start_rows(starts),
         posterior=posterior_table(analysis.model.parameters, done),
         solver=way.solver,
+        damping=damping_rows(done),
         stopped=done.stopped.sentence,
         seconds=time.perf_counter() - start,
         warnings=(*analysis.warnings, *told.warnings, *done.warnings, *way.warnings),

@@ -49,6 +49,8 @@ class Placed(Noun):
         Modal phase collinearity of test modes that were identified here.
     weights : (n_test,) float, optional
         What the user says that each test mode counts beside the others; all the same without.
+    damping_std : (n_test,) float, optional
+        Standard errors of damping ratios that were identified here.
     """
 
     alignment: Alignment
@@ -60,6 +62,7 @@ class Placed(Noun):
     length_factor: float = 1.0
     mpc: Floats | None = None
     weights: Floats | None = None
+    damping_std: Floats | None = None
 
     def take(self, rows: Numbers) -> Placed:
         """Return the test at some of its sensors (indices or mask)."""
@@ -74,8 +77,11 @@ class Placed(Noun):
         errors = self.errors
         if errors is not None:
             errors = ModeErrors(errors.frequency[modes], errors.shape[:, modes])
-        weights = None if self.weights is None else self.weights[modes]
-        return replace(self, test=self.test.take(modes), errors=errors, weights=weights)
+        weights, damping_std = (
+            None if v is None else v[modes] for v in (self.weights, self.damping_std)
+        )
+        taken = self.test.take(modes)
+        return replace(self, test=taken, errors=errors, weights=weights, damping_std=damping_std)
 
     def weighted(self, rows: Numbers | sp.spmatrix) -> Numbers | sp.csr_matrix:
         """Multiply rows of sensors with the square roots of their weights."""
@@ -196,7 +202,15 @@ def place_test(
     weighed = (told(errors, kept.sensors.labels),) if errors else ()
     said = (*warnings, *seen.warnings, *weighed)
     return Placed(
-        alignment, kept, at_sensors, in_frame, said, errors, units.factor, measurement.mpc
+        alignment,
+        kept,
+        at_sensors,
+        in_frame,
+        said,
+        errors,
+        units.factor,
+        measurement.mpc,
+        damping_std=measurement.damping_std,
     )
 
 

@@ -11,7 +11,9 @@ from ..arrays import Floats
 from ..correlation.mode_errors import ModeErrors
 from ..data.parameter import Parameter
 from ..noun import OPTIONAL, Noun, key
+from ..reduction.damped_poles import ratios
 from ..updating.posterior import Start
+from ..updating.residuals import Seen
 from ..updating.update import Iteration, Updated
 from .correlation import Compared, PairRow, RunTables
 from .parameters import LikenessTable
@@ -49,6 +51,19 @@ class StartRow:
     factors: tuple[float | None, ...]
     objective: float | None
     same: bool
+
+
+@dataclass(frozen=True)
+class DampingRow:
+    """Damping ratios of a pair [%]: of the test, None unknown, and of the analysis.
+
+    `before` is None where the test mode had no partner then.
+    """
+
+    test: int
+    test_percent: float | None
+    before: float | None
+    after: float
 
 
 @dataclass(frozen=True)
@@ -115,7 +130,7 @@ class UpdateTables(ChangingTables):
     """What ``update`` answers.
 
     `starts` are the updates from elsewhere that were asked for; `posterior` is the correlation of
-    the factors, None of less than two.
+    the factors, None of less than two; `damping` are the ratios where that of the deck counts.
     """
 
     verb = "update"
@@ -126,6 +141,7 @@ class UpdateTables(ChangingTables):
     starts: Table[StartRow] = field(default_factory=lambda: Table((), StartRow))
     posterior: LikenessTable | None = field(default=None, metadata=OPTIONAL)
     solver: SolverRow | None = field(default=None, metadata=OPTIONAL)
+    damping: Table[DampingRow] | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def pairs(self) -> Table[PairRow]:
@@ -180,6 +196,28 @@ def start_rows(starts: Sequence[Start]) -> Table[StartRow]:
         ),
         StartRow,
     )
+
+
+def damping_rows(done: Updated) -> Table[DampingRow] | None:
+    """Return one row a pair; None where the model says nothing of its damping."""
+    before, after = (_ratios(s.seen) for s in (done.before, done.after))
+    if not after:
+        return None
+    return Table(
+        DampingRow(test + 1, finite(100.0 * known), before.get(test, (None, None))[1], found)
+        for test, (known, found) in after.items()
+    )
+
+
+def _ratios(seen: Seen) -> dict[int, tuple[float, float]]:
+    """By test mode: its ratio, NaN unknown, and that of the analysis in percent."""
+    pairs = seen.damped
+    if pairs is None or not (seen.model.damping or seen.model.loss):
+        return {}
+    found = 100.0 * ratios(pairs.model.poles(pairs.turned))
+    known = np.full(len(found), np.nan) if pairs.measured is None else pairs.measured
+    both = zip(known.tolist(), found.tolist(), strict=True)
+    return {q.test: pair for q, pair in zip(seen.pairs, both, strict=True)}
 
 
 def posterior_table(parameters: Sequence[Parameter], done: Updated) -> LikenessTable | None:

@@ -92,9 +92,7 @@ def splice(data: bytes, pieces: Iterable[tuple[int, int, bytes]]) -> bytes:
 def _index(deck: DeckText, card: Card, ref: FieldRef) -> int:
     position = field_position(ref.card, ref.field, card.read)
     if position is None:
-        raise deck.place(card.file, card.rows[0]).error(
-            f"this {ref.title} has no {ref.field}"
-        )
+        raise deck.place(card.file, card.rows[0]).error(f"this {ref.title} has no {ref.field}")
     return card.index(position)
 
 

@@ -1,6 +1,15 @@
 """The residuals that an update may minimise: one declaration a file, one line each in a list."""
 
-from .declaration import Beside, DampedPairs, Linearisation, LoadCase, Residual, Seen, Slopes, Target
+from .declaration import (
+    Beside,
+    DampedPairs,
+    Linearisation,
+    LoadCase,
+    Residual,
+    Seen,
+    Slopes,
+    Target,
+)
 from .known_residuals import RESIDUALS, Weights, register_residual, residuals_named
 
 __all__ = [

@@ -47,7 +47,7 @@ def test_a_mode_without_a_ratio_says_nothing():
 
 
 def test_standard_errors_of_the_ratios_weigh():
-    model, target = case()
+    _, target = case()
     target = replace(target, damping_std=0.3 * target.damping)
     own = DAMPING.error(target)
     np.testing.assert_allclose(own, 0.3)
