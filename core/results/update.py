@@ -200,7 +200,7 @@ def start_rows(starts: Sequence[Start]) -> Table[StartRow]:
 
 def damping_rows(done: Updated) -> Table[DampingRow] | None:
     """Return one row a pair; None where the model says nothing of its damping."""
-    before, after = (_ratios(s.seen) for s in (done.before, done.after))
+    before, after = (_ratios(s.states[0].seen) for s in (done.before, done.after))
     if not after:
         return None
     return Table(

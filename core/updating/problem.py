@@ -76,8 +76,7 @@ class Point:
 
     def without_factors(self) -> Self:
         """Return the same without the factorised matrices of full solutions."""
-        light = [replace(s, solution=replace(_in_full(s), factor=None)) for s in self.states]
-        return replace(self, states=tuple(light))
+        return replace(self, states=tuple(map(_without_factor, self.states)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,6 +293,13 @@ class Problem:
                     f"test {modes}{whose} paired with the model as given, not with the updated one"
                 )
         return tuple(told)
+
+
+def _without_factor(state: State) -> State:
+    bare, damped = replace(_in_full(state), factor=None), state.seen.damped
+    if damped is not None:
+        damped = replace(damped, model=replace(damped.model, solution=bare))
+    return replace(state, solution=bare, seen=replace(state.seen, damped=damped))
 
 
 def _in_full(state: State) -> Eigensolution:

@@ -39,7 +39,7 @@ def test_a_mode_without_a_ratio_says_nothing():
     done = update(model, target, [Stage((2, 3, 4), "damping", 20)], n_modes=8,
                   tolerance=1e-7, start=np.array([1.2, 0.9, 1.0, 1.0, 1.0]))  # fmt: skip
     np.testing.assert_allclose(done.factors, TRUTH, rtol=1e-6)
-    objective = Objective(model.parameters, target, Criteria(), Weights())
+    objective = Objective(target, Criteria(), Weights())
     seen = objective.at(full(model), np.array([1.2, 0.9, 1.0, 1.0, 1.0]), (DAMPING,)).seen
     left = DAMPING.value(seen)[:, 0]
     assert not left[[1, 4]].any()
