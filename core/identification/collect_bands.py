@@ -13,6 +13,7 @@ from ..data.geometry import Geometry
 from ..data.modes import Modes
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, collect, physical
+from .peaks_without_mode import of_peaks
 from .poles.band_sweeps import BandFit
 from .poles.moments import unstacked
 from .poles.pole_candidates import Proposal
@@ -84,6 +85,7 @@ def assemble(
     judged = Judged(quality, mpc, indicator, mass, reciprocal)
     measured = _measured(survey)
     indicators = cmif(np.where(survey.measured[:, :, None], measured.values, 0.0))
+    warnings += of_peaks(survey, fits, indicators[:, 0], np.array([*t.hz, *unwanted]))
     return Identification(
         modes=modes(p.shapes, p.size),
         real_modes=modes(p.real, p.real_size),

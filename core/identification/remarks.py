@@ -156,11 +156,14 @@ def _of_shape(p: Physical, k: int, labels: Sequence[str]) -> list[str]:
 def _seen_alike(t: ModeTable) -> list[list[int]]:
     """Modes near each one that have its participation, but shapes of other responses.
 
-    A structure has no two such modes: where it is driven, participation is the shape.
+    A structure has no two such modes: where it is driven, participation is the shape. A single
+    reference sees all modes alike; there it is told where most modes have such a one.
     """
     part, shapes = (x / np.linalg.norm(x, axis=0) for x in (t.participation, t.shapes))
     alike = np.abs(part.conj().T @ part) ** 2 > IDENTIFICATION.one_participation
     apart = (np.abs(shapes).T @ np.abs(shapes)) ** 2 < IDENTIFICATION.other_responses
     near = np.abs(t.hz - t.hz[:, None]) < IDENTIFICATION.beside * t.hz
-    found = alike & apart & near & (len(part) > 1)
+    found = alike & apart & near
+    if len(part) == 1 and np.mean(found.any(axis=1)) < IDENTIFICATION.most:
+        return [[] for _ in found]
     return [np.flatnonzero(row).tolist() for row in found]
