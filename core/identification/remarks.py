@@ -164,6 +164,7 @@ def _seen_alike(t: ModeTable) -> list[list[int]]:
     apart = (np.abs(shapes).T @ np.abs(shapes)) ** 2 < IDENTIFICATION.other_responses
     near = np.abs(t.hz - t.hz[:, None]) < IDENTIFICATION.beside * t.hz
     found = alike & apart & near
-    if len(part) == 1 and np.mean(found.any(axis=1)) < IDENTIFICATION.most:
+    twice = np.count_nonzero(found.any(axis=1))
+    if len(part) == 1 and twice < IDENTIFICATION.most * len(found):
         return [[] for _ in found]
     return [np.flatnonzero(row).tolist() for row in found]
