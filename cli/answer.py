@@ -11,6 +11,7 @@ from .options import Output
 
 if TYPE_CHECKING:
     from ..verbs.run import Changing, Run
+    from ..verbs.update_together import UpdatedTogether
 
 
 def new_folder(study: Study, verb: str, output: Output) -> Path:
@@ -23,8 +24,8 @@ def new_folder(study: Study, verb: str, output: Output) -> Path:
     """
     from ..adapters.run_folder.write_run import refuse_existing
 
-    assert study.deck is not None
-    folder = study.out or free_folder(f"{study.deck.stem}_{verb}")
+    name = study.deck.stem if study.deck else "configurations"
+    folder = study.out or free_folder(f"{name}_{verb}")
     refuse_existing(folder, output.force)
     return folder
 
@@ -57,15 +58,14 @@ def answer_changed(found: Changing, folder: Path, output: Output) -> None:
             stdout().print(f"changed in place: {file} (before: {backup})", markup=False)
 
 
-def answer(found: Run, folder: Path, output: Output) -> None:
+def answer(found: Run | UpdatedTogether, folder: Path, output: Output) -> None:
     """Give the result: JSON where asked, else the sentence and the tables; then the warnings."""
     emit_json(found.to_dict(), output)
     if speaks(output):
-        from ..adapters.report.tables.headline import story
-        from .terminal_tables import result_tables
+        from .terminal_tables import result_tables, sentences
 
         console = stdout()
-        first, *rest = story(found)
+        first, *rest = sentences(found)
         console.print(first, markup=False)
         if rest:
             console.print(" ".join(rest), markup=False)

@@ -192,7 +192,8 @@ def comparing(
             refuse_idle(verb.__name__, there, needs_test or bool(study.test), bool(study.stages))
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
-        if study.deck is None or (needs_test and not study.test):
+        together = verb.__name__ == "update" and study.configurations
+        if not together and (study.deck is None or (needs_test and not study.test)):
             what = "DECK and TEST" if needs_test else "DECK"
             raise typer.BadParameter(f"give {what}, or a study file (--study) naming it")
         verb(study, output)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..core.results.inspection import FileRow
     from ..core.results.modes import IdentifiedRow, SolveTables
     from ..core.results.parameters import ParametersTables
+    from ..core.results.together import TogetherTables
 
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
@@ -33,12 +34,21 @@ _BRIEF = {
 }
 
 
-def result_tables(answer: RunTables, width: int = 110) -> Iterator[RenderableType]:
+def sentences(answer: RunTables | TogetherTables) -> list[str]:
+    """Return the result in sentences, the most important first."""
+    from ..adapters.report.tables.headline import story
+    from ..adapters.report.together_page import headline
+    from ..core.results.together import TogetherTables
+
+    return [headline(answer)] if isinstance(answer, TogetherTables) else story(answer)
+
+
+def result_tables(answer: RunTables | TogetherTables, width: int = 110) -> Iterator[RenderableType]:
     """Yield what a correlation, an update or a discovery has to show, section by section.
 
     Parameters
     ----------
-    answer : RunTables
+    answer : RunTables or TogetherTables
         What the verb answered.
     width : int
         Columns of the terminal; a MAC matrix that does not fit is left out.
@@ -46,7 +56,13 @@ def result_tables(answer: RunTables, width: int = 110) -> Iterator[RenderableTyp
     from ..adapters.report.sections.known_sections import SECTIONS
     from ..adapters.report.sections.mac_matrices import MAC_MATRICES
     from ..adapters.report.sections.pairs import PAIRS
+    from ..adapters.report.together_page import together_tables
+    from ..core.results.together import TogetherTables
 
+    if isinstance(answer, TogetherTables):
+        for made in together_tables(answer):
+            yield Padding(_rich(made), (1, 0, 0, 0), expand=False)
+        return
     for section in SECTIONS:
         shown: Sequence[RenderableType | None]
         if section is PAIRS:

@@ -17,7 +17,8 @@ from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError, naming
 from .sources import Measured, Source, file_or_pynastran, geometry_of, read_deck
-from .study import Study, value_at
+from .study import Study
+from .study_tables import value_at
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec
@@ -197,6 +198,7 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     """
     from .report import imprint_of
 
+    require_one(study)
     deck = study.deck if deck is None else deck
     test = study.test or None if test is None else test
     if deck is None or test is None:
@@ -204,6 +206,15 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     _require_order(deck, test)
     imprint_of(study)
     return deck, test
+
+
+def require_one(study: Study) -> None:
+    """Refuse a study of several configurations."""
+    if study.configurations:
+        raise InputError(
+            "the study names configurations, which update moves together; this looks at one "
+            "configuration: give its deck and test"
+        )
 
 
 def _require_order(deck: Source, test: Source) -> None:

@@ -22,7 +22,7 @@ def open_run(folder: Path | str) -> Folder:
 
     Returns
     -------
-    Correlated, Updated, Discovered, Identified or Solved
+    Correlated, Updated, UpdatedTogether, Discovered, Identified or Solved
 
     Raises
     ------
@@ -32,12 +32,15 @@ def open_run(folder: Path | str) -> Folder:
     from .identify import Identified
     from .run import Correlated, Discovered, Updated
     from .solve import Solved
+    from .update_together import UpdatedTogether
 
     kinds: dict[str, type[Folder]] = {
         kind.schema: kind for kind in (Correlated, Updated, Discovered, Identified, Solved)
     }
     run = path_of(folder, "a run folder")
     result = read_result(run)
+    if result["schema"] == UpdatedTogether.schema:
+        return UpdatedTogether.of_folder(run, result)
     content = read_content(run)
     kind = kinds.get(str(result["schema"]))
     if kind is None or content is None:

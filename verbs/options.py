@@ -10,7 +10,8 @@ from typing import ParamSpec, TypedDict, TypeVar
 
 from ..core.errors import InputError, path_of
 from ..core.statespace.damping_choice import Asked
-from .study import LoadRequest, StageRequest, Study, merge, read_study, unknown
+from .study import Study, merge, read_study, unknown
+from .study_tables import ConfigurationRequest, LoadRequest, StageRequest
 from .taking_part import refuse_idle
 
 Files = str | os.PathLike[str]
@@ -91,6 +92,9 @@ class UpdateOptions(CompareOptions, total=False):
     "40:+Z=-1.25". ``mass_sigma``, ``centre_of_gravity_sigma`` and ``deflection_sigma`` are their
     standard deviations, of the mass, of the structure's size, and of the largest reading of a case.
     "damping" moves the ratios of complex modes to the test's; ``damping_sigma`` is of a ratio.
+
+    ``configurations`` of the structure that are updated together, in place of one deck and test:
+    each a mapping with ``deck``, ``test``, a ``name``, and of the keys of a study what is another.
     """
 
     residuals: str | None
@@ -108,6 +112,7 @@ class UpdateOptions(CompareOptions, total=False):
     measured_mass: float | None
     measured_centre_of_gravity: Sequence[float] | None
     load_cases: Sequence[LoadRequest | Mapping[str, object]] | None
+    configurations: Sequence[ConfigurationRequest | Mapping[str, object]] | None
 
 
 class ParametersOptions(CompareOptions, total=False):

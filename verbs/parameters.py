@@ -33,7 +33,7 @@ from ..core.updating.parameter_choice import Choice, forward_selection, indistin
 from ..core.updating.residuals import residuals_named
 from ..core.updating.residuals.frequencies import FREQUENCIES
 from ..core.updating.updating_numbers import UPDATING
-from .analysis import placed, target_of
+from .analysis import placed, require_one, target_of
 from .folder import Folder
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
 from .sources import Measured, Source, measured, read_deck
@@ -131,6 +131,7 @@ def parameters(
     accepted = {**ParametersOptions.__annotations__, "parameters": None, "modes": None}
     asked = study_of("parameters", study, {**options, "parameters": parameters}, accepted)
     said_to(progress)
+    require_one(asked)
     deck = asked.deck if deck is None else deck
     test = (asked.test or None) if test is None else test
     spoken = [key for key, value in options.items() if value is not None]

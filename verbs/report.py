@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.data.modes import Modes
-from ..core.errors import InputError, Place, path_of
+from ..core.errors import InputError, Place, naming, path_of
 from ..core.results.correlation import CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
 from ..core.results.modes import IdentifyTables, SolveTables
+from ..core.results.together import TogetherTables
 from ..core.results.update import UpdateTables
 from .open_run import read_content, read_diff, read_result
 from .study import Study, read_study
@@ -40,6 +41,8 @@ def report(run: Path | str) -> Path:
     if page := _OWN_PAGES.get(str(result["schema"])):
         verb = str(result["schema"]).split("/")[1]
         raise Place(run).fault(f"is the run folder of {verb}, which makes its page itself: {page}")
+    if result["schema"] == TogetherTables.schema:
+        return _together(run, result)
     try:
         answer = answer_of(result)
     except InputError as error:
@@ -48,6 +51,18 @@ def report(run: Path | str) -> Path:
     imprint = imprint_of(read_study(asked)) if asked.is_file() else None
     page = render(answer, read_content(run), read_diff(run), imprint)
     write_text(run / "report.html", page)
+    return run / "report.html"
+
+
+def _together(run: Path, result: Mapping[str, Any]) -> Path:
+    from ..adapters.report.together_page import together_page
+    from ..adapters.run_folder.write_run import write_text
+
+    with naming(run / "result.json"):
+        found = TogetherTables.from_dict(result)
+    for one in found.configurations:
+        report(run / one.folder)
+    write_text(run / "report.html", together_page(found))
     return run / "report.html"
 
 

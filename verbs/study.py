@@ -9,14 +9,16 @@ import numbers
 import os
 import sys
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from types import NoneType
 from typing import TYPE_CHECKING, Any, cast, get_args, get_origin, get_type_hints
 
 from ..core.errors import InputError, Place
+from .study_tables import ConfigurationRequest, LoadRequest, StageRequest
 from .taking_part import READERS
 
 if TYPE_CHECKING:
@@ -28,30 +30,6 @@ Hertz = tuple[float, float]
 """A band of frequencies; written as "15:60", too."""
 UNITS = ("m", "mm", "in", "ft")
 ADOPT = ("significant", "all", "none")
-
-
-@dataclass(frozen=True)
-class StageRequest:
-    """One ``[[stages]]`` table of a study: parameters move on the named residuals."""
-
-    parameters: tuple[str, ...] = ()
-    residuals: str = "both"
-    max_iterations: int = 10
-
-
-@dataclass(frozen=True)
-class LoadRequest:
-    """One ``[[load_cases]]`` table: forces as "1187:-Z=100", what was read as "40:+Z=-1.25"."""
-
-    loads: tuple[str, ...] = ()
-    readings: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for said in ("loads", "readings"):
-            if not getattr(self, said):
-                raise InputError(f"a load case says no {said}; give some, as in '1187:-Z=100'")
-            for text in getattr(self, said):
-                value_at(text)
 
 
 @dataclass(frozen=True)
@@ -86,6 +64,7 @@ class Study:
     intervals: bool = False
     stages: tuple[StageRequest, ...] = ()
     load_cases: tuple[LoadRequest, ...] = ()
+    configurations: tuple[ConfigurationRequest, ...] = ()
     measured_mass: float | None = None
     measured_centre_of_gravity: tuple[float, ...] = ()
     fmin: float | None = None
@@ -132,6 +111,7 @@ class Study:
             raise InputError(f"adopt is '{self.adopt}'; give one of {', '.join(ADOPT)}")
         if any(m < 1 for m in self.test_modes):
             raise InputError("test_modes are mode numbers in the test file and count from 1")
+        self._require_apart()
         self._require_accepted()
 
     def __repr__(self) -> str:
@@ -164,6 +144,21 @@ class Study:
             raise InputError(f"starts is {self.starts}; give 0 or more")
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
             raise InputError("max_iterations must be at least 1")
+
+    def _require_apart(self) -> None:
+        """Refuse configurations that cannot be told from one another, or from a deck and test."""
+        names = [c.name for c in self.configurations]
+        if names and (self.deck is not None or self.test):
+            raise InputError("each of the configurations has its deck and test; give none beside")
+        if len(set(names)) < len(names):
+            raise InputError("two configurations have one name; give each its own")
+
+    def of(self, one: ConfigurationRequest) -> Study:
+        """Return the study of one of its configurations alone."""
+        given = {f.name: getattr(one, f.name) for f in dataclasses.fields(one) if f.name != "name"}
+        own = {key: value for key, value in given.items() if value not in (None, ())}
+        own["parameters"] = (*self.parameters, *one.parameters)
+        return dataclasses.replace(self, configurations=(), **own)
 
     @property
     def criteria(self) -> Criteria:
@@ -212,7 +207,11 @@ _HINTS = get_type_hints(Study)
 _FIELDS = {
     f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
 }
-_TABLES: dict[str, type] = {"stages": StageRequest, "load_cases": LoadRequest}
+_TABLES: dict[str, type] = {
+    "stages": StageRequest,
+    "load_cases": LoadRequest,
+    "configurations": ConfigurationRequest,
+}
 """Keys that hold tables, and what each is."""
 
 
@@ -258,10 +257,19 @@ def read_study(path: Path) -> Study:
         if values.get(name) is not None:
             values[name] = _under(path.parent, values[name])
     values["test"] = tuple(_under(path.parent, t) for t in values.get("test", ()))
+    values["configurations"] = tuple(
+        _moved(c, partial(_under, path.parent)) for c in values.get("configurations", ())
+    )
     try:
         return Study(**values, source=path)
     except InputError as error:
         raise here.about(str(error)) from None
+
+
+def _moved(one: ConfigurationRequest, to: Callable[[Path], Path]) -> ConfigurationRequest:
+    """Return a configuration with its paths elsewhere."""
+    deck = one.deck and to(one.deck)
+    return dataclasses.replace(one, deck=deck, test=tuple(map(to, one.test)))
 
 
 def _under(folder: Path, path: Path) -> Path:
@@ -305,7 +313,10 @@ def seen_from(folder: Path, study: Study) -> Study:
     """Return the study with its paths as seen from a folder, so that both can be moved together."""
     deck, modes, logo = (p and _seen_from(folder, p) for p in (study.deck, study.modes, study.logo))
     test = tuple(_seen_from(folder, p) for p in study.test)
-    return dataclasses.replace(study, deck=deck, test=test, modes=modes, logo=logo)
+    every = tuple(_moved(c, partial(_seen_from, folder)) for c in study.configurations)
+    return dataclasses.replace(
+        study, deck=deck, test=test, modes=modes, logo=logo, configurations=every
+    )
 
 
 def _seen_from(folder: Path, path: Path) -> Path:
@@ -327,13 +338,16 @@ def study_toml(study: Study) -> str:
     for name, kind in _TABLES.items():
         for table in getattr(study, name):
             lines += ["", f"[[{name}]]"]
-            lines += [f"{n} = {_toml(getattr(table, n))}" for n in get_type_hints(kind)]
+            held = {n: getattr(table, n) for n in get_type_hints(kind)}
+            lines += [f"{n} = {_toml(v)}" for n, v in held.items() if v not in (None, ())]
     return "\n".join(lines) + "\n"
 
 
 def _toml(value: Any) -> str:
     if isinstance(value, tuple | list):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
+    if isinstance(value, LoadRequest):
+        return f"{{loads = {_toml(value.loads)}, readings = {_toml(value.readings)}}}"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int | float):
@@ -409,18 +423,3 @@ def _table(kind: type, value: object, who: Place, wrong: InputError) -> object:
     if not isinstance(value, Mapping):
         raise wrong
     return kind(**_checked(value, get_type_hints(kind), who))
-
-
-def value_at(text: str) -> tuple[str, float]:
-    """Return the place and the value of "1187:-Z=100".
-
-    Raises
-    ------
-    InputError
-        It is none.
-    """
-    place, _, value = text.rpartition("=")
-    try:
-        return place, float(value)
-    except ValueError:
-        raise InputError(f"'{text}' cannot be read; write it as in '1187:-Z=100'") from None

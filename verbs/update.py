@@ -4,29 +4,40 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Unpack
+from typing import Unpack, overload
 
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError
-from ..core.results.correlation import compared
-from ..core.results.plain import Table
-from ..core.results.update import (
-    damping_rows,
-    parameter_rows,
-    posterior_table,
-    start_rows,
-    weights_table,
-)
-from .analysis import both_given, correlated, named, read_analysis
-from .made_of import made_of
+from .analysis import both_given, correlated, read_analysis
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
-from .run import Updated, content_of
+from .run import Updated
 from .sources import Source, measured
 from .study import Study
+from .update_together import UpdatedTogether, update_together
+from .updated import updated
 from .updating_ways import by_itself, by_solver
 
 
+@overload
+def update(
+    deck: Source,
+    test: Source,
+    parameters: str | Sequence[str] | None = None,
+    *,
+    study: Study | Files | None = None,
+    progress: Say = unheard,
+    **options: Unpack[UpdateOptions],
+) -> Updated: ...
+@overload
+def update(
+    deck: None = None,
+    test: None = None,
+    parameters: str | Sequence[str] | None = None,
+    *,
+    study: Study | Files | None = None,
+    progress: Say = unheard,
+    **options: Unpack[UpdateOptions],
+) -> Updated | UpdatedTogether: ...
 def update(
     deck: Source | None = None,
     test: Source | None = None,
@@ -35,7 +46,7 @@ def update(
     study: Study | Files | None = None,
     progress: Say = unheard,
     **options: Unpack[UpdateOptions],
-) -> Updated:
+) -> Updated | UpdatedTogether:
     """Move named parameters so that the analysis meets the test, by sensitivities.
 
     Parameters
@@ -57,6 +68,8 @@ def update(
     Returns
     -------
     Updated
+        Of several `configurations` of the structure, with a deck and a test each,
+        `UpdatedTogether`.
 
     Raises
     ------
@@ -71,6 +84,10 @@ def update(
     accepted = {**UpdateOptions.__annotations__, "parameters": None, "modes": None}
     asked = study_of("update", study, {**options, "parameters": parameters}, accepted)
     said_to(progress)
+    if asked.configurations:
+        if deck is not None or test is not None:
+            raise InputError("each of the configurations has its deck and test; give none beside")
+        return update_together(asked, progress)
     deck, test = both_given(deck, test, asked)
     if not asked.parameters:
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
@@ -86,30 +103,4 @@ def update(
     placed = correlated(analysis, side, asked).placed
     found = by_solver if asked.solver else by_itself
     way = found(analysis, placed, side, asked, progress)
-    done, starts, intervals = way.moved
-    before, after, (changed, values) = way.before, way.after, way.written
-    history = Table(done.history)
-    told, final = compared(before), replace(compared(after), warnings=())
-    assert analysis.deck is not None
-    return Updated(
-        **made_of(analysis.given, side),
-        deck_file=f"deck/{changed.name}",
-        input_deck=analysis.deck.told,
-        test_files=tuple(map(str, side.files)),
-        parameters=parameter_rows(analysis.model.parameters, done, values, intervals),
-        history=history,
-        before=replace(told, warnings=()),
-        after=final,
-        weights=weights_table(placed.errors),
-        eigensolutions=done.eigensolutions,
-        starts=start_rows(starts),
-        posterior=posterior_table(analysis.model.parameters, done),
-        solver=way.solver,
-        damping=damping_rows(done),
-        stopped=done.stopped.sentence,
-        seconds=time.perf_counter() - start,
-        warnings=(*analysis.warnings, *told.warnings, *done.warnings, *way.warnings),
-        content=content_of(before, final, after, history),
-        study=named(asked, analysis.deck, side, None),
-        deck=changed,
-    )
+    return updated(analysis, side, placed, asked, way, time.perf_counter() - start)

@@ -15,7 +15,6 @@ from ..core.correlation.mode_pairing import Pair
 from ..core.data.parameter import Parameter
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import CheckError, InputError
-from ..core.reduction.eigenpair_derivatives import Spectral
 from ..core.results.update import SolverRow
 from ..core.updating import update as core
 from ..core.updating.determined import update_determined
@@ -37,6 +36,8 @@ _AGREES = 1e-4
 """Relative difference of eigenvalues, updated model and deck read back, that is none."""
 
 
+Moved = tuple[core.Updated, tuple[Start, ...], Floats | None]
+"""An update, those from other starts, and intervals of the factors."""
 _Written = tuple["ChangedDeck", list[list[float | None]]]
 """The updated deck, and the values of its parameters' fields."""
 
@@ -45,7 +46,7 @@ _Written = tuple["ChangedDeck", list[list[float | None]]]
 class Way:
     """An update, both states compared with the test, and the deck."""
 
-    moved: tuple[core.Updated, tuple[Start, ...], Floats | None]
+    moved: Moved
     before: Comparison
     after: Comparison
     written: _Written
@@ -56,17 +57,22 @@ class Way:
 def by_itself(analysis: Analysis, placed: Placed, _: Measured, asked: Study, progress: Say) -> Way:
     """Update, solved by the embedded solver alone."""
     progress("updating")
-    moved = _moved(analysis, placed, asked)
+    one = configuration(analysis, placed, asked)
+    found = moved([one], analysis.model.parameters, asked)
+    progress("writing the updated deck and solving it again")
+    return way_of(analysis, placed, asked, found)
 
-    def comparison(solution: Spectral) -> Comparison:
-        assert isinstance(solution, Eigensolution)
+
+def way_of(analysis: Analysis, placed: Placed, asked: Study, found: Moved) -> Way:
+    """Return what an update by the embedded solver did to a deck, both states compared."""
+
+    def comparison(solution: Eigensolution) -> Comparison:
         modes = modes_of(analysis.model, solution)
         rigid = solution.rigid_body_modes
         return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
 
-    before, after = (comparison(s.solution) for s in (moved[0].before, moved[0].after))
-    progress("writing the updated deck and solving it again")
-    return Way(moved, before, after, _written(analysis, moved[0]))
+    before, after = (comparison(at.solution) for at in (found[0].before, found[0].after))
+    return Way(found, before, after, _written(analysis, found[0]))
 
 
 def by_solver(
@@ -102,11 +108,12 @@ def by_solver(
             progress("updating")
             test = placed.test
             aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
-            moved = _moved(analysis, replace(placed, test=aim), asked)
-            written = _written(analysis, moved[0])
+            one = configuration(analysis, replace(placed, test=aim), asked)
+            found = moved([one], analysis.model.parameters, asked)
+            written = _written(analysis, found[0])
             progress("your solver solves the updated deck")
             after = judged(written[0])
-            last, factor = factor, _correction(after, moved[0].after.correlation.pairs)
+            last, factor = factor, _correction(after, found[0].after.correlation.pairs)
             left = _percent(factor / last)
             if left < _SETTLED:
                 break
@@ -119,7 +126,7 @@ def by_solver(
         left,
     )
     open_ = f"your solver and the embedded one still part by {left:.2g} % after {runs} runs"
-    return Way(moved, before, after, written, row, () if left < _SETTLED else (open_,))
+    return Way(found, before, after, written, row, () if left < _SETTLED else (open_,))
 
 
 def _correction(by_solver: Comparison, own: Sequence[Pair]) -> Floats:
@@ -138,17 +145,22 @@ def _percent(factor: Floats) -> float:
     return float(100.0 * np.abs(factor - 1.0).max(initial=0.0))
 
 
-def _moved(
-    analysis: Analysis, placed: Placed, asked: Study
-) -> tuple[core.Updated, tuple[Start, ...], Floats | None]:
+def configuration(
+    analysis: Analysis, placed: Placed, asked: Study, name: str = ""
+) -> core.Configuration:
+    """Return a model and its test as the core updates them."""
+    target, count = target_of(analysis.model, placed, asked), len(analysis.modes)
+    how = asked.criteria, asked.weights
+    return core.Configuration(analysis.model, target, *how, count, name)
+
+
+def moved(
+    every: Sequence[core.Configuration], parameters: Sequence[Parameter], asked: Study
+) -> Moved:
     """Return the update, those from other starts, and intervals where they are asked for."""
-    model, target = analysis.model, target_of(analysis.model, placed, asked)
-    count = len(analysis.modes)
-    every = [core.Configuration(model, target, asked.criteria, asked.weights, count)]
-    stages = _stages(asked, model.parameters)
-    done = (core.update_configurations if asked.write_undetermined else update_determined)(
-        every, stages
-    )
+    stages = _stages(asked, parameters)
+    update = core.update_configurations if asked.write_undetermined else update_determined
+    done = update(every, stages)
     best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed)
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
     if not asked.intervals:
@@ -167,11 +179,11 @@ def _written(analysis: Analysis, done: core.Updated) -> _Written:
     from ..adapters.nastran import read_value, set_values
     from ..adapters.nastran.assembly.read_back import read_back
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
-    from ..adapters.nastran.fields.parameter_references import moved
+    from ..adapters.nastran.fields.parameter_references import moved as moved_fields
 
     assert analysis.deck is not None
     assert analysis.given is not None
-    wanted = moved(analysis.specs, analysis.model.parameters, done.factors)
+    wanted = moved_fields(analysis.specs, analysis.model.parameters, done.factors)
     text, given = set_values(analysis.deck.text, wanted), analysis.given.text
     changed = ChangedDeck.of(given, text if wanted else given)
     target = done.after.solution.eigenvalues

@@ -20,16 +20,23 @@ def correlate(study: Study, output: Output) -> None:
 
 def update(study: Study, output: Output) -> None:
     """Move the named parameters to the test, by sensitivities."""
+    from ...verbs.run import Updated
     from ...verbs.update import update as move
 
-    if not study.parameters:
+    if not any((study.parameters, *(c.parameters for c in study.configurations))):
         raise typer.BadParameter(
             "no parameter is named; say what may move, for example -p 'PBAR 11 I1' (repeatable)"
         )
+    if study.configurations and output.in_place:
+        raise typer.BadParameter("--in-place changes one deck; take those of configurations "
+                                 "from the run folder")  # fmt: skip
     folder = new_folder(study, "update", output)
     with working("reading and correlating", output) as say:
         done = move(study=study, progress=say)
-    answer_changed(done, folder, output)
+    if isinstance(done, Updated):
+        answer_changed(done, folder, output)
+    else:
+        answer(done, done.save(folder, output.force), output)
 
 
 def discover(study: Study, output: Output) -> None:

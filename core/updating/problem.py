@@ -74,6 +74,11 @@ class Point:
         """Of the first configuration."""
         return self.states[0].correlation
 
+    def of(self, k: int) -> Self:
+        """Return one configuration alone."""
+        s = self.states[k]
+        return replace(self, factors=s.factors, states=(s,), objective=s.objective)
+
     def without_factors(self) -> Self:
         """Return the same without the factorised matrices of full solutions."""
         return replace(self, states=tuple(map(_without_factor, self.states)))
@@ -270,13 +275,18 @@ class Problem:
         data = sum(len(r.squared(s.seen)) for r in residuals for s in point.states)
         return float(np.sum(lin.values**2)) / max(data - active, 1)
 
+    @property
+    def tests(self) -> tuple[int, ...]:
+        """Number of test modes of each configuration."""
+        return tuple(len(part.objective.target.frequencies_hz) for part in self.parts)
+
     def deviations(self, point: Point) -> Floats:
         """Return the deviation of each test mode, %, one configuration after the other."""
         return frozen(np.concatenate([*self._deviations(point)]))
 
     def _deviations(self, point: Point) -> Iterator[Floats]:
-        for part, s in zip(self.parts, point.states, strict=True):
-            off = np.full(len(part.objective.target.frequencies_hz), np.nan)
+        for count, s in zip(self.tests, point.states, strict=True):
+            off = np.full(count, np.nan)
             for q in s.correlation.pairs:
                 off[q.test] = q.deviation_percent
             yield off

@@ -1,12 +1,16 @@
 """What an update is asked stage by stage, and what comes of it."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 from enum import Enum
+
+import numpy as np
 
 from ..arrays import Floats, Numbers
 from ..errors import InputError
 from ..noun import Noun
-from .problem import Point
+from .problem import Point, Problem
 from .residuals import Residual, residuals_named
 from .updating_numbers import UPDATING
 
@@ -98,3 +102,27 @@ class Updated(Noun):
     undetermined: tuple[int, ...] = ()
     doubts: tuple[str, ...] = ()
     covariance: Floats | None = None
+
+    def of(self, problem: Problem, k: int) -> Updated:
+        """Return what came of one of several configurations, with its own parameters alone."""
+        own, ends = problem.parts[k].own, np.cumsum([0, *problem.tests])
+        history = tuple(
+            replace(
+                i,
+                factors=i.factors[own],
+                deviations_percent=i.deviations_percent[ends[k] : ends[k + 1]],
+            )
+            for i in self.history
+        )
+        at = {int(n): position for position, n in enumerate(own)}
+        return replace(
+            self,
+            factors=self.factors[own],
+            standard_error=self.standard_error[own],
+            at_bound=self.at_bound[own],
+            before=self.before.of(k),
+            after=self.after.of(k),
+            history=history,
+            undetermined=tuple(at[n] for n in self.undetermined if n in at),
+            covariance=None if self.covariance is None else self.covariance[np.ix_(own, own)],
+        )

@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from .verbs.sources import read_deck as read_deck, read_test as read_test
     from .verbs.study import Study as Study
     from .verbs.update import update as update
+    from .verbs.update_together import UpdatedTogether as UpdatedTogether
     from .verbs.write_fmu import Converted as Converted, write_fmu as write_fmu
 
 __version__ = VERSION
@@ -104,6 +105,7 @@ __getattr__, __all__ = lazy_names(
         ".verbs.sources": "read_deck read_test",
         ".verbs.study": "Study",
         ".verbs.update": "update",
+        ".verbs.update_together": "UpdatedTogether",
         ".verbs.write_fmu": "Converted write_fmu",
     },
 )

@@ -53,6 +53,15 @@ def parameters_of(deck: Deck, texts: Sequence[str]) -> tuple[Deck, tuple[Paramet
     return deck, tuple(specs)
 
 
+def stands_in(deck: Deck, text: str) -> bool:
+    """Whether any of the cards that a parameter names is in a deck."""
+    for named in parse_request(text).values:
+        first, last = named.numbers or (0, np.inf)
+        if any(first <= n <= last for n in deck.bulk.table(named.card)):
+            return True
+    return False
+
+
 def _spec(deck: Deck, request: ParameterRequest) -> tuple[Deck, ParameterSpec]:
     fields: list[FieldRef] = []
     for named in request.values:

@@ -33,9 +33,13 @@ _LEFT = "The deck was left as it was; the factors are those of the best explanat
 
 
 def _tables(answer: ChangingTables) -> Sequence[Table]:
-    tables = [_moved(answer)] if answer.parameters else []
+    note = ""
+    if isinstance(answer, DiscoverTables):
+        note = _NOT_CLEAR if answer.adopted else _LEFT
+    tables = [parameters_table(answer.parameters, note)] if answer.parameters else []
     if isinstance(answer, UpdateTables) and answer.history:
-        tables.append(_iterations(answer))
+        names = [p.name for p in answer.parameters]
+        tables.append(iterations_table(answer.history, names, answer.stopped))
     if isinstance(answer, UpdateTables) and answer.solver is not None:
         tables.append(_solver(answer.solver))
     if isinstance(answer, UpdateTables) and answer.damping is not None:
@@ -69,15 +73,13 @@ def _off(s: SolverRow) -> tuple[float, float, float]:
     return s.off_before, s.off_after, s.left
 
 
-def _moved(answer: ChangingTables) -> Table:
+def parameters_table(moved: Sequence[ParameterRow], note: str = "") -> Table:
     """Return what was moved: cards, values before and after, factor, standard error, bounds."""
-    rows = [_row(p) for p in answer.parameters]
+    rows = [_row(p) for p in moved]
     numbers = ("initial", "updated", "factor", "std. error", "95 %")
     columns = [*left("parameter", "cards"), *numbers, *left("")]
     used = [k for k in range(len(columns)) if any(r[k].text for r in rows)]
-    note = "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
-    if isinstance(answer, DiscoverTables):
-        note = (_NOT_CLEAR if answer.adopted else _LEFT) + note
+    note += "The standard error is that of the factor." + _UNSURE * any(r[5].tone for r in rows)
     cells = [[r[k] for k in used] for r in rows]
     return Table.of("Parameters", [columns[k] for k in used], cells, note)
 
@@ -102,17 +104,17 @@ def _end(value: float | None) -> str:
     return "?" if value is None else fixed(value, 4)
 
 
-def _iterations(answer: UpdateTables) -> Table:
+def iterations_table(history: Sequence[Iteration], names: Sequence[str], stopped: str) -> Table:
     """Return the iterations: objective, mean and worst deviation, factors."""
     rows = []
-    for h in answer.history:
+    for h in history:
         off = np.abs(h.deviations_percent[np.isfinite(h.deviations_percent)])
         cells = [str(h.iteration), general(h.objective)]
         cells += [fixed(float(f(off)), 2) if len(off) else MISSING for f in (np.mean, np.max)]
         rows.append([*cells, *[fixed(f, 4) for f in h.factors]])
-    factors = [Column(p.name, "factors") for p in answer.parameters]
+    factors = [Column(name, "factors") for name in names]
     columns: list[Heading] = ["iteration", "objective", "mean |dev.| %", "worst |dev.| %"]
-    note = f"Ended: {answer.stopped}." if answer.stopped else ""
+    note = f"Ended: {stopped}." if stopped else ""
     return Table.of("Iterations", [*columns, *factors], rows, note)
 
 

@@ -141,8 +141,13 @@ def _sentence(text: str) -> str:
 
 
 def _of(now: Gap, n_test: int = 0) -> str:
-    modes = f"{now.pairs} of {n_test} test modes" if n_test else counted(now.pairs, "test mode")
-    return f"{modes} {'pairs' if now.pairs == 1 else 'pair'}"
+    return counted_pairs(now.pairs, n_test)
+
+
+def counted_pairs(pairs: int, n_test: int = 0) -> str:
+    """Say how many test modes pair, of how many where that is told."""
+    modes = f"{pairs} of {n_test} test modes" if n_test else counted(pairs, "test mode")
+    return f"{modes} {'pairs' if pairs == 1 else 'pair'}"
 
 
 def _change(old: Gap, new: Gap, what: str, n_test: int = 0) -> str:

@@ -1,0 +1,176 @@
+"""Several configurations of one structure, updated with one set of parameters."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Self
+
+from ..core.correlation.comparison import Placed
+from ..core.errors import InputError, naming
+from ..core.noun import BESIDE
+from ..core.results.plain import Table
+from ..core.results.together import TogetherTables, configuration_rows, pair_rows, shared_rows
+from ..core.results.update import posterior_table, start_rows
+from ..core.updating.problem import Problem
+from .analysis import Analysis, correlated, read_analysis
+from .folder import Folder
+from .options import Say
+from .run import Updated
+from .sources import Measured, measured, read_deck
+from .study import Study, read_study, seen_from, study_toml
+from .study_tables import ConfigurationRequest
+from .updated import updated
+from .updating_ways import configuration, moved, way_of
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class UpdatedTogether(TogetherTables, Folder):
+    """What `update` did to several configurations: the tables of result.json as fields.
+
+    `results` are those of each configuration by its name, as if it stood alone: its deck, its
+    tables, its run folder below this one. `study` is what was asked.
+    """
+
+    results: Mapping[str, Updated] = field(metadata=BESIDE)
+    study: Study = field(metadata=BESIDE)
+
+    def _line(self) -> str:
+        from ..adapters.report.together_page import headline
+
+        return f"{type(self).__name__}: {headline(self)}"
+
+    def fill(self, work: Path) -> None:
+        """Write everything that the run folder holds, those of the configurations included."""
+        from ..adapters.report.together_page import together_page
+
+        super().fill(work)
+        for name, result in self.results.items():
+            (work / name).mkdir()
+            result.fill(work / name)
+        (work / "study.toml").write_text(study_toml(seen_from(work, self.study)), encoding="utf-8")
+        (work / "report.html").write_text(together_page(self), encoding="utf-8")
+
+    @classmethod
+    def of_folder(cls, run: Path, result: Mapping[str, object]) -> Self:
+        """Return what `fill` wrote."""
+        from .open_run import open_run
+
+        with naming(run / "result.json"):
+            tables = TogetherTables.from_dict(result)
+        results = {c.name: open_run(run / c.folder) for c in tables.configurations}
+        own = {name: r for name, r in results.items() if isinstance(r, Updated)}
+        return cls(**vars(tables), results=own, study=read_study(run / "study.toml"))
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A configuration that was read: what of it was asked, its test, its model, the test on it."""
+
+    name: str
+    asked: Study
+    side: Measured
+    analysis: Analysis
+    placed: Placed
+
+
+def update_together(asked: Study, progress: Say) -> UpdatedTogether:
+    """Move one set of parameters so that every configuration of a study meets its test.
+
+    Each deck is read for itself; a parameter moves the cards it names in every deck that has them.
+    Residuals of all are stacked, and each updated deck is read back and solved.
+
+    Raises
+    ------
+    InputError
+        As `update`, of any configuration; a parameter whose cards no deck has, or that differ; a
+        configuration without any.
+    CheckError
+        As `update`.
+    """
+    start = time.perf_counter()
+    if not any((asked.parameters, *(c.parameters for c in asked.configurations))):
+        raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
+    if asked.solver is not None:
+        raise InputError("a solver of your own verifies one configuration; leave it out of several")
+    _require_one_meaning(asked)
+    states = []
+    for one in asked.configurations:
+        progress(f"reading and correlating {one.name}")
+        states.append(_read(asked, one))
+    every = [configuration(s.analysis, s.placed, s.asked, s.name) for s in states]
+    problem = Problem.of(every)
+    _require_all_used(asked, problem)
+    progress("updating")
+    found, starts, intervals = moved(every, problem.parameters, asked)
+    results: dict[str, Updated] = {}
+    for k, s in enumerate(states):
+        progress(f"writing the updated deck of {s.name} and solving it again")
+        own = intervals if intervals is None else intervals[problem.parts[k].own]
+        way = way_of(s.analysis, s.placed, s.asked, (found.of(problem, k), (), own))
+        seconds = time.perf_counter() - start
+        results[s.name] = updated(s.analysis, s.side, s.placed, s.asked, way, seconds)
+    told = [f"{name}: {w}" for name, r in results.items() for w in r.warnings]
+    of_all = [w for w in told if w.partition(": ")[2] not in found.warnings]
+    return UpdatedTogether(
+        configurations=configuration_rows(results),
+        parameters=shared_rows([q.name for q in problem.parameters], results),
+        pairs=pair_rows(results),
+        history=Table(found.history),
+        eigensolutions=found.eigensolutions,
+        stopped=found.stopped.sentence,
+        seconds=time.perf_counter() - start,
+        warnings=(*found.warnings, *of_all),
+        starts=start_rows(starts),
+        posterior=posterior_table(problem.parameters, found),
+        results=results,
+        study=asked,
+    )
+
+
+def _read(asked: Study, one: ConfigurationRequest) -> _State:
+    """Read a configuration with those of the parameters that its deck has."""
+    from ..adapters.nastran.assembly.wide_parameters import stands_in
+
+    own = asked.of(one)
+    assert own.deck is not None
+    deck = read_deck(own.deck)
+    there = tuple(text for text in own.parameters if stands_in(deck, text))
+    if not there:
+        raise InputError(
+            f"configuration '{one.name}': {own.deck} has none of the cards that the parameters name"
+        )
+    own = replace(own, parameters=there)
+    side = measured(own.test, own)
+    analysis = read_analysis(deck, own, side.highest(own.frequency_tolerance))
+    return _State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
+
+
+def _require_one_meaning(asked: Study) -> None:
+    """Refuse a name that stands for other cards in another configuration."""
+    from ..adapters.nastran.fields.parameter_references import parse_request
+
+    known: dict[str, str] = {}
+    for one in asked.configurations:
+        for text in asked.of(one).parameters:
+            request = parse_request(text)
+            meant = ", ".join(v.text for v in request.values)
+            before = known.setdefault(request.name, meant)
+            if before != meant:
+                raise InputError(
+                    f"parameter '{request.name}' is {before} in one configuration and {meant} in "
+                    f"'{one.name}'; one parameter moves one property: give each its own name"
+                )
+
+
+def _require_all_used(asked: Study, problem: Problem) -> None:
+    """Refuse a parameter of which no deck has a card."""
+    from ..adapters.nastran.fields.parameter_references import parse_request
+
+    known = {q.name for q in problem.parameters}
+    texts: Sequence[str] = [t for c in asked.configurations for t in asked.of(c).parameters]
+    for text in texts:
+        if parse_request(text).name not in known:
+            raise InputError(f"parameter '{text}': none of the decks has a card that it names")

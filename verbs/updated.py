@@ -1,0 +1,55 @@
+"""What an update of one deck answers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..core.correlation.comparison import Placed
+from ..core.results.correlation import compared
+from ..core.results.plain import Table
+from ..core.results.update import (
+    damping_rows,
+    parameter_rows,
+    posterior_table,
+    start_rows,
+    weights_table,
+)
+from .analysis import Analysis, named
+from .made_of import made_of
+from .run import Updated, content_of
+from .sources import Measured
+from .study import Study
+from .updating_ways import Way
+
+
+def updated(
+    analysis: Analysis, side: Measured, placed: Placed, asked: Study, way: Way, seconds: float
+) -> Updated:
+    """Return the result of an update that was made in some way."""
+    done, starts, intervals = way.moved
+    before, after, (changed, values) = way.before, way.after, way.written
+    history = Table(done.history)
+    told, final = compared(before), replace(compared(after), warnings=())
+    assert analysis.deck is not None
+    return Updated(
+        **made_of(analysis.given, side),
+        deck_file=f"deck/{changed.name}",
+        input_deck=analysis.deck.told,
+        test_files=tuple(map(str, side.files)),
+        parameters=parameter_rows(analysis.model.parameters, done, values, intervals),
+        history=history,
+        before=replace(told, warnings=()),
+        after=final,
+        weights=weights_table(placed.errors),
+        eigensolutions=done.eigensolutions,
+        starts=start_rows(starts),
+        posterior=posterior_table(analysis.model.parameters, done),
+        solver=way.solver,
+        damping=damping_rows(done),
+        stopped=done.stopped.sentence,
+        seconds=seconds,
+        warnings=(*analysis.warnings, *told.warnings, *done.warnings, *way.warnings),
+        content=content_of(before, final, after, history),
+        study=named(asked, analysis.deck, side, None),
+        deck=changed,
+    )
