@@ -163,7 +163,8 @@ class _Stage:
     def moved(self, read: Floats, near: Floats) -> Floats:
         """Return what places move that read so, (n_place, 3); `near` where nothing is read."""
         seen = np.einsum("sk,sk->s", self.axes, near[self.place])
-        return near + at_places(self.place, self.axes, (read - seen)[:, None], len(near))[0]
+        moved = at_places(self.place, self.axes, (read - seen)[:, None], len(near))[0]
+        return np.asarray(near + moved)
 
     def frame(self, of: Overlay, k: int, before: Frame | None = None) -> Frame:
         pair = of.pairs[k]
