@@ -1,0 +1,100 @@
+"""Samples of the posterior of the factors, on models reduced around the optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats
+from ..errors import InputError
+from ..noun import Noun
+from .metropolis import Chains, adaptive_metropolis
+from .problem import Configuration, Problem
+from .stages import Stage, Updated
+from .updating_numbers import UPDATING
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled(Noun):
+    """Samples of the factors that the test determines.
+
+    `parameters` (n,) are their positions; components of `chains` are in the same order.
+    """
+
+    parameters: tuple[int, ...]
+    chains: Chains
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against the samples."""
+        least, most = float(self.chains.effective.min()), float(self.chains.spread.max())
+        if least >= UPDATING.least_effective and most <= UPDATING.most_spread:
+            return ()
+        return (
+            f"the samples of the posterior are worth {least:.0f} independent ones (chains part by "
+            f"{most - 1.0:.1%}); ask for more",
+        )
+
+
+def sample_posterior(
+    configurations: Sequence[Configuration],
+    stage: Stage,
+    done: Updated,
+    count: int,
+    seed: int = 0,
+) -> Sampled | None:
+    """Sample exp(−J/2s), J being the objective and s the scatter of the residuals.
+
+    With the residual ``prior`` standard deviations are believed, s is 1 and this is the posterior
+    by them; without it nothing is known of the factors but their bounds. Samples stay within
+    these and within the reach of the reduced models.
+
+    Parameters
+    ----------
+    configurations : sequence of Configuration
+    stage : Stage
+        The residuals of the objective; of its parameters those move that `done` says are
+        determined.
+    done : Updated
+        Where the objective is least.
+    count : int
+        Samples, at least.
+    seed : int
+
+    Returns
+    -------
+    Sampled, or None where nothing is determined
+    """
+    problem, residuals = Problem.of(configurations), stage.minimised
+    active = [k for k in stage.parameters if k not in done.undetermined]
+    if not active:
+        return None
+    there = problem.at(problem.full, np.array(done.factors), residuals)
+    orders = problem.around(there, active)
+    top = problem.at(orders, there.factors, residuals)
+    lin = problem.linearise(orders, top, active, residuals)
+    scatter = problem.scatter(lin, top, len(active), residuals)
+    if not scatter > 0.0:
+        raise InputError("nothing is left of the residuals, so the posterior is a point")
+    centre = np.asarray(top.factors)[active]
+    lower, upper = (end[active] for end in problem.bounds)
+    lower = np.maximum(lower, centre / UPDATING.reach)
+    upper = np.minimum(upper, centre * UPDATING.reach)
+
+    def log_density(x: Floats) -> float:
+        if ((x < lower) | (x > upper)).any():
+            return -np.inf
+        p = np.array(top.factors)
+        p[active] = x
+        try:
+            found = problem.at(orders, p, residuals)
+        except InputError:
+            return -np.inf
+        return -found.objective / (2.0 * scatter)
+
+    normal = scatter * np.linalg.pinv(lin.gradient.T @ lin.gradient)
+    width = np.minimum(1.0, (upper - lower) / np.sqrt(np.maximum(12.0 * np.diag(normal), 1e-300)))
+    normal = normal * np.outer(width, width)
+    return Sampled(tuple(active), adaptive_metropolis(log_density, centre, normal, count, seed))
