@@ -52,7 +52,7 @@ def _register() -> None:
     app.command()(solve)
     app.command()(identify)
     app.command()(comparing(correlate, CORRELATE))
-    app.command()(comparing(update, UPDATE, changes_deck=True))
+    app.command()(comparing(update, UPDATE, changes_deck=True, goes_on=True))
     app.command()(comparing(discover, DISCOVER, changes_deck=True))
     app.command()(comparing(parameters, PARAMETERS, needs_test=False))
     app.command()(plan)

@@ -61,8 +61,10 @@ def speaks(output: Output) -> bool:
 
 
 @contextmanager
-def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
+def working(what: str, output: Output, keep: Path | None = None) -> Iterator[Callable[[str], None]]:
     """Show what is done and the elapsed time on standard error while the block runs.
+
+    `keep` is where the block leaves what it has done when it is interrupted.
 
     What the block is given takes further words; ``--verbose`` prints them, one a line.
     """
@@ -71,7 +73,7 @@ def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
         if output.verbose:
             stderr().print(what, markup=False)
 
-    with _interruptible(what):
+    with _interruptible(what, keep):
         if output.quiet or not sys.stderr.isatty():
             yield told
             return
@@ -85,13 +87,20 @@ def working(what: str, output: Output) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def _interruptible(what: str) -> Iterator[None]:
-    """Say of an interrupted piece of work that it left nothing."""
+def _interruptible(what: str, keep: Path | None) -> Iterator[None]:
+    """Say of an interrupted piece of work what it left."""
     try:
         yield
     except KeyboardInterrupt:
-        sys.stderr.write(f"trueup: interrupted while {what}; nothing was written\n")
+        left = what_is_left(keep) or "; nothing was written"
+        sys.stderr.write(f"trueup: interrupted while {what}{left}\n")
         raise SystemExit(_INTERRUPTED) from None
+
+
+def what_is_left(keep: Path | None) -> str:
+    """Say of work that was cut off where what was done is, and how to go on; "" of nothing."""
+    there = keep is not None and keep.is_dir()
+    return f"; what was done is in {keep}: --resume goes on from there" if there else ""
 
 
 @contextmanager

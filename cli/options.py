@@ -22,6 +22,9 @@ QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, n
 InPlaceOption = Annotated[
     bool, typer.Option("-ip", "--in-place", help="Change the deck itself as well; keeps backups.")
 ]
+ResumeOption = Annotated[
+    bool, typer.Option("--resume", help="Go on where this run was cut off (DIR.unfinished).")
+]
 VerboseOption = Annotated[bool, typer.Option("--verbose", "-v", help="Say more.")]
 
 StudyOption = Annotated[
@@ -69,6 +72,7 @@ class Output:
     quiet: bool = False
     verbose: bool = False
     in_place: bool = False
+    resume: bool = False
 
 
 def _option(kind: Any, said: str, *names: str, metavar: str | None = None) -> Any:
@@ -147,6 +151,10 @@ UPDATE: dict[str, Any] = {
     ),
     "solver_limit": _option(float, "Seconds that it may take. [default: 3600]"),
     "starts": _option(int, "Begin from so many other factors as well.", metavar="N"),
+    "executor": _option(
+        str, "Who does independent pieces of work. [default: processes, one a core]",
+        metavar="processes:N|dask:ADDRESS",
+    ),
     "intervals": _option(bool, "95 % intervals of the factors by profile.", "--intervals"),
     "write_undetermined": _option(
         bool, "Move what the test does not determine, too.", "--write-undetermined"
@@ -170,13 +178,15 @@ def comparing(
     extra: dict[str, Any] | None = None,
     *,
     changes_deck: bool = False,
+    goes_on: bool = False,
     needs_test: bool = True,
 ) -> Callable[..., None]:
     """Return a typer command for a verb that compares a deck with a test.
 
     The command takes DECK, TEST..., ``--study``, the shared options and `extra` ones (by key of
     `Study`), merges them (command line over study file) and calls `verb`. One that changes the
-    deck takes ``--in-place`` too; `needs_test` says whether it can do without TEST.
+    deck takes ``--in-place`` too, one that `goes_on` ``--resume``; `needs_test` says whether it can
+    do without TEST.
     """
     shared = {**_STUDY, **(extra or {})}
 
@@ -209,6 +219,7 @@ def comparing(
         keyword("study", StudyOption),
         *(keyword(name, annotation) for name, annotation in shared.items()),
         *([keyword("in_place", InPlaceOption, False)] if changes_deck else []),
+        *([keyword("resume", ResumeOption, False)] if goes_on else []),
         keyword("json", JsonOption),
         keyword("force", ForceOption, False),
         keyword("quiet", QuietOption, False),

@@ -81,6 +81,7 @@ class UpdateOptions(CompareOptions, total=False):
 
     ``starts`` (0): from how many other factors the update is made as well, to say whether the
     optimum is the only one; ``intervals`` (False): 95 % intervals of the factors by profile.
+    ``executor`` ("processes": one a core; "processes:4", "dask:ADDRESS"): who does them.
     ``residuals`` with "prior" and ``prior_sigma``: how far off the deck's values may be.
 
     ``solver``: the command of the user's own Nastran, "nastran {deck}", whose modes are then those
@@ -106,6 +107,7 @@ class UpdateOptions(CompareOptions, total=False):
     stages: Sequence[StageRequest | Mapping[str, object]] | None
     write_undetermined: bool | None
     starts: int | None
+    executor: str | None
     intervals: bool | None
     solver: str | None
     solver_limit: float | None

@@ -59,6 +59,7 @@ class Study:
     regularisation: float = 1e-2
     write_undetermined: bool = False
     starts: int = 0
+    executor: str = "processes"
     solver: str | None = None
     solver_limit: float = 3600.0
     intervals: bool = False
@@ -124,8 +125,10 @@ class Study:
         """Refuse what the core accepts in no run, before any file is read."""
         from ..core.reduction.model_at_sensors import require_method
         from ..core.updating.residuals import residuals_named
+        from .executors import require_executor
 
         _ = self.criteria, self.weights
+        require_executor(self.executor)
         if self.reduction is not None:
             require_method(self.reduction)
         for key, least in (("identify_modes", 1), ("max_order", 2)):

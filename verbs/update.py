@@ -9,6 +9,8 @@ from typing import Unpack, overload
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError
 from .analysis import both_given, correlated, read_analysis
+from .kept import kept_in
+from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated
 from .sources import Source, measured
@@ -25,6 +27,7 @@ def update(
     parameters: str | Sequence[str] | None = None,
     *,
     study: Study | Files | None = None,
+    keep: Files | None = None,
     progress: Say = unheard,
     **options: Unpack[UpdateOptions],
 ) -> Updated: ...
@@ -35,6 +38,7 @@ def update(
     parameters: str | Sequence[str] | None = None,
     *,
     study: Study | Files | None = None,
+    keep: Files | None = None,
     progress: Say = unheard,
     **options: Unpack[UpdateOptions],
 ) -> Updated | UpdatedTogether: ...
@@ -44,6 +48,7 @@ def update(
     parameters: str | Sequence[str] | None = None,
     *,
     study: Study | Files | None = None,
+    keep: Files | None = None,
     progress: Say = unheard,
     **options: Unpack[UpdateOptions],
 ) -> Updated | UpdatedTogether:
@@ -60,6 +65,11 @@ def update(
         PBAR 11 I2 [0.2, 5]"``. Default: those of `study`.
     study : path or Study, optional
         A study file; keyword arguments win.
+    keep : path, optional
+        A folder that what is done is kept in, piece by piece: the steps, what comes of each other
+        start, each run of the user's solver. An update that is given such a folder of the same
+        study, deck, test and version goes on where that ended. What is in it is run as code when it
+        is read: give only what you made yourself.
     progress : callable
         Told what is done, a few words at a time.
     **options
@@ -87,7 +97,7 @@ def update(
     if asked.configurations:
         if deck is not None or test is not None:
             raise InputError("each of the configurations has its deck and test; give none beside")
-        return update_together(asked, progress)
+        return update_together(asked, progress, keep)
     deck, test = both_given(deck, test, asked)
     if not asked.parameters:
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
@@ -102,5 +112,6 @@ def update(
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
     placed = correlated(analysis, side, asked).placed
     found = by_solver if asked.solver else by_itself
-    way = found(analysis, placed, side, asked, progress)
+    kept = kept_in(keep, asked, [made_of(analysis.given, side)])
+    way = found(analysis, placed, side, asked, progress, kept)
     return updated(analysis, side, placed, asked, way, time.perf_counter() - start)

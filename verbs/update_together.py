@@ -17,7 +17,9 @@ from ..core.results.update import posterior_table, start_rows
 from ..core.updating.problem import Problem
 from .analysis import Analysis, correlated, read_analysis
 from .folder import Folder
-from .options import Say
+from .kept import kept_in
+from .made_of import made_of
+from .options import Files, Say
 from .run import Updated
 from .sources import Measured, measured, read_deck
 from .study import Study, read_study, seen_from, study_toml
@@ -76,7 +78,7 @@ class _State:
     placed: Placed
 
 
-def update_together(asked: Study, progress: Say) -> UpdatedTogether:
+def update_together(asked: Study, progress: Say, keep: Files | None = None) -> UpdatedTogether:
     """Move one set of parameters so that every configuration of a study meets its test.
 
     Each deck is read for itself; a parameter moves the cards it names in every deck that has them.
@@ -103,8 +105,9 @@ def update_together(asked: Study, progress: Say) -> UpdatedTogether:
     every = [configuration(s.analysis, s.placed, s.asked, s.name) for s in states]
     problem = Problem.of(every)
     _require_all_used(asked, problem)
+    kept = kept_in(keep, asked, [made_of(s.analysis.given, s.side) for s in states])
     progress("updating")
-    found, starts, intervals = moved(every, problem.parameters, asked)
+    found, starts, intervals = moved(every, problem.parameters, asked, kept)
     results: dict[str, Updated] = {}
     for k, s in enumerate(states):
         progress(f"writing the updated deck of {s.name} and solving it again")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..core.updating import update as core
 from ..core.updating.determined import update_determined
 from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from .analysis import Analysis, placed as place, rigid_count, target_of
+from .kept import Kept
 from .options import Say
 from .outside_solver import outside_solver
 from .sources import Measured
@@ -54,11 +56,13 @@ class Way:
     warnings: tuple[str, ...] = ()
 
 
-def by_itself(analysis: Analysis, placed: Placed, _: Measured, asked: Study, progress: Say) -> Way:
+def by_itself(
+    analysis: Analysis, placed: Placed, _: Measured, asked: Study, progress: Say, kept: Kept
+) -> Way:
     """Update, solved by the embedded solver alone."""
     progress("updating")
     one = configuration(analysis, placed, asked)
-    found = moved([one], analysis.model.parameters, asked)
+    found = moved([one], analysis.model.parameters, asked, kept)
     progress("writing the updated deck and solving it again")
     return way_of(analysis, placed, asked, found)
 
@@ -76,7 +80,7 @@ def way_of(analysis: Analysis, placed: Placed, asked: Study, found: Moved) -> Wa
 
 
 def by_solver(
-    analysis: Analysis, placed: Placed, side: Measured, asked: Study, progress: Say
+    analysis: Analysis, placed: Placed, side: Measured, asked: Study, progress: Say, kept: Kept
 ) -> Way:
     """Update such that the user's own solver meets the test.
 
@@ -91,7 +95,7 @@ def by_solver(
     deck, began = analysis.deck, time.perf_counter()
 
     def judged(changed: ChangedDeck) -> Comparison:
-        modes = solver.modes(changed, deck)
+        modes = kept.once(partial(solver.modes, changed, deck))
         progress(f"{len(modes)} modes of your solver")
         at = place(analysis.model, deck, modes, side, asked)
         return compare(analysis.geometry, modes, at, asked.criteria, rigid_count(modes))
@@ -109,7 +113,7 @@ def by_solver(
             test = placed.test
             aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
             one = configuration(analysis, replace(placed, test=aim), asked)
-            found = moved([one], analysis.model.parameters, asked)
+            found = moved([one], analysis.model.parameters, asked, kept)
             written = _written(analysis, found[0])
             progress("your solver solves the updated deck")
             after = judged(written[0])
@@ -155,13 +159,20 @@ def configuration(
 
 
 def moved(
-    every: Sequence[core.Configuration], parameters: Sequence[Parameter], asked: Study
+    every: Sequence[core.Configuration], parameters: Sequence[Parameter], asked: Study, kept: Kept
 ) -> Moved:
     """Return the update, those from other starts, and intervals where they are asked for."""
     stages = _stages(asked, parameters)
-    update = core.update_configurations if asked.write_undetermined else update_determined
-    done = update(every, stages)
-    best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed)
+
+    def update() -> core.Updated:
+        if not asked.write_undetermined:
+            return update_determined(every, stages, kept.steps)
+        gone_on, progress = kept.steps()
+        return core.update_configurations(every, stages, progress=progress, gone_on=gone_on)
+
+    done = update()
+    each = kept.each(asked.executor)
+    best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed, each)
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
     if not asked.intervals:
         return best, starts, None

@@ -1,10 +1,13 @@
 """``trueup correlate``, ``update`` and ``discover DECK TEST``."""
 
+import shutil
+
 import typer
 
+from ...core.errors import CheckError
 from ...verbs.study import Study
 from ..answer import answer, answer_changed, new_folder
-from ..console import working
+from ..console import what_is_left, working
 from ..options import Output
 
 
@@ -31,12 +34,19 @@ def update(study: Study, output: Output) -> None:
         raise typer.BadParameter("--in-place changes one deck; take those of configurations "
                                  "from the run folder")  # fmt: skip
     folder = new_folder(study, "update", output)
-    with working("reading and correlating", output) as say:
-        done = move(study=study, progress=say)
+    keep = folder.with_name(f"{folder.name}.unfinished")
+    if not output.resume:
+        shutil.rmtree(keep, ignore_errors=True)
+    try:
+        with working("reading and correlating", output, keep) as say:
+            done = move(study=study, keep=keep, progress=say)
+    except CheckError as error:
+        raise CheckError(f"{error}{what_is_left(keep)}") from None
     if isinstance(done, Updated):
         answer_changed(done, folder, output)
     else:
         answer(done, done.save(folder, output.force), output)
+    shutil.rmtree(keep, ignore_errors=True)
 
 
 def discover(study: Study, output: Output) -> None:

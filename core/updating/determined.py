@@ -1,22 +1,36 @@
 """An update that moves no parameter that the test does not determine."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ..arrays import frozen
 from .problem import Configuration, Problem
-from .stages import Reason, Stage, Stop, Updated
+from .stages import Iteration, Reason, Stage, Stop, Updated
 from .update import update_configurations
 
+Steps = tuple[Sequence[Iteration], Callable[[Iteration], None]]
+"""Those that an update has taken already, and what is told of each further one."""
 
-def update_determined(configurations: Sequence[Configuration], stages: Sequence[Stage]) -> Updated:
+
+def update_determined(
+    configurations: Sequence[Configuration],
+    stages: Sequence[Stage],
+    steps: Callable[[], Steps] = lambda: ((), lambda _: None),
+) -> Updated:
     """Update as ever, and leave at the deck's value what the test does not determine.
 
     Where an update ends with parameters whose values the test leaves open, it is made again
     without them: of those that it cannot tell apart the one that moves the residuals most is kept
     (see `identifiability`).
+
+    Parameters
+    ----------
+    configurations, stages
+        As for `update_configurations`.
+    steps : callable
+        Asked for each update that is made.
 
     Returns
     -------
@@ -29,7 +43,12 @@ def update_determined(configurations: Sequence[Configuration], stages: Sequence[
         As `update_configurations`.
     """
     problem = Problem.of(configurations)
-    done = update_configurations(configurations, stages)
+
+    def updated(stages: Sequence[Stage]) -> Updated:
+        gone_on, progress = steps()
+        return update_configurations(configurations, stages, progress=progress, gone_on=gone_on)
+
+    done = updated(stages)
     solves, left, told = done.eigensolutions, set[int](), list[str]()
     while done.undetermined:
         told += done.doubts
@@ -38,7 +57,7 @@ def update_determined(configurations: Sequence[Configuration], stages: Sequence[
         if not moving:
             done = _as_it_was(done, tuple(problem.deck_point))
             break
-        done = update_configurations(configurations, moving)
+        done = updated(moving)
         solves += done.eigensolutions
     if not left:
         return done

@@ -2,15 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ..arrays import Floats
 from ..errors import CheckError, InputError
+from ..independent import Each, in_turn
 from ..noun import Noun
 from .problem import Configuration, Orders, Point, Problem
 from .residuals import Residual
-from .stages import Stage, Updated
+from .stages import Iteration, Stage, Updated
 from .update import update_configurations
 from .updating_numbers import UPDATING
 
@@ -143,6 +145,7 @@ def from_elsewhere(
     done: Updated,
     starts: int,
     seed: int = 0,
+    each: Each = in_turn,
 ) -> tuple[Updated, tuple[Start, ...]]:
     """Update from other factors as well, and say whether the optimum is the only one.
 
@@ -155,6 +158,8 @@ def from_elsewhere(
     starts : int
         How many more; factors are log-normal about the deck's, within their bounds.
     seed : int
+    each : Each
+        Does the updates.
 
     Returns
     -------
@@ -168,26 +173,43 @@ def from_elsewhere(
     best, told = done, list[Start]()
     solves = done.eigensolutions
     problem = Problem.of(configurations)
-    lowest, highest = problem.bounds
+    (lowest, highest), begins = problem.bounds, list[Floats]()
     for _ in range(starts if left else 0):
         begin = np.array(problem.deck_point)
         spread = np.exp(UPDATING.start_spread * rng.standard_normal(len(moving)))
         begin[moving] = np.clip(spread, lowest[moving], highest[moving])
-        try:
-            other = update_configurations(configurations, left, start=begin)
-        except (InputError, CheckError):
+        begins.append(begin)
+    ended = each(partial(_updated, configurations, left), begins)
+    for begin, other in zip(begins, ended, strict=True):
+        if other is None:
             told.append(Start(begin, np.full(len(begin), np.nan), np.nan, False))
             continue
-        solves += other.eigensolutions
-        told.append(Start(begin, other.factors, other.after.objective, False))
-        lower = other.after.objective < best.after.objective * (1.0 - UPDATING.least_gain)
-        if lower and not _same(other.factors, best):
-            history = (*done.history, *other.history[1:])
+        path, factors, objective, used = other
+        solves += used
+        told.append(Start(begin, factors, objective, False))
+        lower = objective < best.after.objective * (1.0 - UPDATING.least_gain)
+        if lower and not _same(factors, best):
+            better = update_configurations(configurations, left, start=begin, gone_on=path)
+            solves += better.eigensolutions
             best = replace(
-                other, before=done.before, history=history, undetermined=done.undetermined
+                better,
+                before=done.before,
+                history=(*done.history, *better.history[1:]),
+                undetermined=done.undetermined,
             )
     compared = tuple(replace(s, same=_same(s.factors, best)) for s in told)
     return replace(best, eigensolutions=solves), compared
+
+
+def _updated(
+    configurations: Sequence[Configuration], stages: Sequence[Stage], begin: Floats
+) -> tuple[tuple[Iteration, ...], Floats, float, int] | None:
+    """Update from factors: history, end, objective there and solves; None if nothing pairs."""
+    try:
+        done = update_configurations(configurations, stages, start=begin)
+    except (InputError, CheckError):
+        return None
+    return done.history, done.factors, done.after.objective, done.eigensolutions
 
 
 def _same(factors: Floats, best: Updated) -> bool:

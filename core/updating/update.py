@@ -84,6 +84,7 @@ def update_configurations(
     tolerance: float = UPDATING.tolerance,
     progress: Callable[[Iteration], None] = lambda _: None,
     start: Floats | None = None,
+    gone_on: Sequence[Iteration] = (),
 ) -> Updated:
     """Move one set of parameters so that each configuration meets its test, as `update` does.
 
@@ -96,6 +97,8 @@ def update_configurations(
     configurations : sequence of Configuration
     stages, tolerance, progress, start
         As for `update`; parameters are those of all configurations.
+    gone_on : sequence of Iteration
+        The history of an update that was cut off: it goes on from its last entry.
 
     Returns
     -------
@@ -116,21 +119,27 @@ def update_configurations(
     begin = np.array(problem.deck_point if start is None else start)
     before = problem.at(full, begin, stages[0].minimised)
     problem.require_pairs(before)
-    history: list[Iteration] = []
+    history: list[Iteration] = [*gone_on]
 
     def note(stage: int, at: Point) -> None:
         off = problem.deviations(at)
         history.append(Iteration(len(history), stage + 1, at.objective, at.factors, off))
         progress(history[-1])
 
-    note(0, before)
-    point, solves, stopped = before, 1, Stop(Reason.NO_STAGE, "no stage")
+    first, point, solves = 0, before, 1
+    if gone_on:
+        first, solves = gone_on[-1].stage - 1, 2
+        point = problem.at(full, gone_on[-1].factors, stages[first].minimised)
+    else:
+        note(0, before)
+    stopped = Stop(Reason.NO_STAGE, "no stage")
     near: Orders | None = None
     before = before.without_factors()
-    for number, stage in enumerate(stages):
+    for number, stage in list(enumerate(stages))[first:]:
         point = problem.valued(point, stage.minimised)
+        left = stage.max_iterations - sum(h.stage == number + 1 for h in gone_on[1:])
         point, near, used, stopped = _work_off(
-            problem, point, stage, tolerance, partial(note, number)
+            problem, point, stage, left, tolerance, partial(note, number)
         )
         solves += used
     active = sorted({k for s in stages for k in s.parameters})
@@ -159,16 +168,21 @@ def update_configurations(
 
 
 def _work_off(
-    problem: Problem, point: Point, stage: Stage, tolerance: float, note: Callable[[Point], None]
+    problem: Problem,
+    point: Point,
+    stage: Stage,
+    left: int,
+    tolerance: float,
+    note: Callable[[Point], None],
 ) -> tuple[Point, Orders | None, int, Stop]:
-    """Work off a stage.
+    """Work off a stage of which so many iterations are left.
 
     Returned are where it ends, in full, the reduced models that were last used, how many full
     solves of each configuration it took, and why it stopped.
     """
-    solves, left = 0, stage.max_iterations
+    solves = 0
     near: Orders | None = None
-    while left:
+    while left > 0:
         near = problem.around(point, stage.parameters)
         trail, stop = _walk(problem, near, point, stage, left, tolerance)
         if not trail:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -260,3 +261,34 @@ def test_a_property_of_some_elements_moves(call: Call, duct: Path, tmp_path: Pat
     assert {p for e, p in pids.items() if e <= 1860} == {number}
     assert {p for e, p in pids.items() if e > 1860} == {11}
     assert (duct / "duct.bdf").read_bytes() == before
+
+
+FRAIL = """
+import pathlib, subprocess, sys
+runs = pathlib.Path(sys.argv[1])
+runs.write_text(runs.read_text() + "x")
+if runs.read_text() == "xx":
+    sys.exit(9)
+subprocess.run([sys.executable, "-m", "trueup", "solve", sys.argv[2], "-n", "12", "--out",
+                "modes.h5"], check=True)
+"""
+"""A solver that dies in its second run."""
+
+
+@pytest.mark.slow
+def test_a_run_that_was_cut_off_goes_on(call: Call, duct: Path, tmp_path: Path) -> None:
+    runs, script, run = (tmp_path / n for n in ("runs", "frail.py", "run"))
+    runs.write_text("")
+    script.write_text(FRAIL)
+    solver = f"{sys.executable} {script} {runs} {{deck}}"
+    asked = ("update", duct / "duct.bdf", duct / "duct_test.unv", "-p", FLANGES[0], "--residuals",
+             "frequencies", "--fmax", "60", "--solver", solver, "--out", run)  # fmt: skip
+    kept = tmp_path / "run.unfinished"
+    first = call(*asked)
+    assert first.status == 3
+    assert f"what was done is in {kept}: --resume goes on from there" in first.err
+    assert not run.exists()
+    second = call(*asked, "--resume", "--json", "-")
+    assert second.status == 0, second.err
+    assert len(runs.read_text()) == json.loads(second.out)["solver"]["runs"] + 1
+    assert not kept.exists()

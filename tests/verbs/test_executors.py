@@ -1,0 +1,146 @@
+"""Independent pieces of work elsewhere: the same answer, whoever dies in the middle of them."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.verbs.test_measured_beside import TRUTH, E, cantilever
+
+import trueup
+from trueup.core.errors import CheckError, InputError
+from trueup.core.independent import in_turn
+from trueup.verbs import executors
+from trueup.verbs.executors import executor
+
+NUMBERS = [3.0, 1.0, 4.0, 1.5, 9.0]
+
+
+def root(of: float) -> float:
+    return float(np.sqrt(of))
+
+
+def root_of_a_survivor(mark: Path, of: float) -> float:
+    """End the process the first time that it comes to 4."""
+    if of == 4.0 and not mark.exists():
+        mark.write_text("")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return root(of)
+
+
+def deadly(of: float) -> float:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return of
+
+
+def refusing(of: float) -> float:
+    os.write(1, b"what a piece of work prints is no part of its answer")
+    if of == 4.0:
+        raise InputError("four is at fault")
+    return of
+
+
+@pytest.fixture(scope="module")
+def scheduler() -> Iterator[str]:
+    distributed = pytest.importorskip("distributed", reason="needs the extra dask")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        yield f"dask:{cluster.scheduler_address}"
+
+
+@pytest.fixture(params=["processes:2", "dask"])
+def asked(request: pytest.FixtureRequest) -> str:
+    if request.param == "dask":
+        return str(request.getfixturevalue("scheduler"))
+    return str(request.param)
+
+
+@pytest.mark.filterwarnings("default")
+def test_the_answer_is_the_same_where_one_is_killed_in_the_middle(asked: str, tmp_path: Path):
+    mark = tmp_path / "mark"
+    with executor(asked) as each:
+        assert list(each(partial(root_of_a_survivor, mark), NUMBERS)) == list(
+            in_turn(root, NUMBERS)
+        )
+    assert mark.exists()
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_what_a_piece_raises_is_raised_here(asked: str):
+    with executor(asked) as each, pytest.raises(InputError, match="four is at fault"):
+        list(each(refusing, NUMBERS))
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_a_piece_that_kills_whoever_does_it_is_given_up(asked: str):
+    with executor(asked) as each, pytest.raises(CheckError, match="is memory short"):
+        list(each(deadly, NUMBERS))
+
+
+@pytest.mark.parametrize("asked", ["threads", "processes:0", "dask:", "processes:two"])
+def test_what_is_no_executor_is_refused(asked: str):
+    with pytest.raises(InputError, match=r"give processes, processes:4 or dask:ADDRESS"):
+        trueup.update("deck.bdf", "test.unv", ["MAT1 1 E"], executor=asked)
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPatch):
+    pytest.importorskip("distributed", reason="needs the extra dask")
+    monkeypatch.setattr(executors, "_ANSWERS", 1)
+    with (
+        pytest.raises(InputError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"),
+        executor("dask:tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
+    deck.write_text(cantilever())
+    truth.write_text(cantilever(TRUTH[0] * E))
+    trueup.solve(truth, 6).save(tmp_path / "solved")
+    trueup.convert([tmp_path / "solved" / "result.h5"], test)
+    return deck, test
+
+
+def updated(files: tuple[Path, Path], **more: object) -> trueup.Updated:
+    return trueup.update(
+        *files, ["MAT1 1 E"], residuals="frequencies", deck_length_unit="mm", starts=3,
+        regularisation=0.0, **more,
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_starts_end_alike_wherever_they_run(files: tuple[Path, Path], asked: str):
+    here = updated(files, executor="processes:1")
+    there = updated(files, executor=asked)
+    assert [s.factors for s in there.starts] == [s.factors for s in here.starts]
+    assert [q.factor for q in there.parameters] == [q.factor for q in here.parameters]
+
+
+def test_an_update_goes_on_where_it_was_cut_off(files: tuple[Path, Path], tmp_path: Path):
+    keep = tmp_path / "keep"
+    whole = updated(files, keep=keep)
+    pieces = sorted(p.name for p in keep.iterdir())
+    assert pieces == ["0", "1", "2", "3", "made_of"]
+    (keep / "3").unlink()
+    before = {p: (keep / p).stat().st_mtime_ns for p in ("1", "2")}
+    again = updated(files, keep=keep)
+    assert {p: (keep / p).stat().st_mtime_ns for p in before} == before
+    assert [s.factors for s in again.starts] == [s.factors for s in whole.starts]
+    assert again.parameters[0].factor == pytest.approx(whole.parameters[0].factor, rel=1e-4)
+    assert [h.factors for h in again.history][: len(whole.history)] == [
+        h.factors for h in whole.history
+    ]
+    with pytest.raises(InputError, match="is not of this study, deck, test and version"):
+        updated(files, keep=keep, seed=7)
