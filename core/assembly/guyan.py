@@ -4,7 +4,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse import linalg as spla
 
-from ..arrays import Floats, Ints
+from ..arrays import Floats, Ints, Numbers
 from ..errors import InputError
 
 _ROUNDING = 1e-14
@@ -63,9 +63,19 @@ def static_condensation(K: sp.csr_matrix, kept: Ints, rigid: Floats) -> Floats:
 
 def without_strain(K: sp.csr_matrix, motions: Floats) -> Floats:
     """Those of some motions (n, k) whose forces K x are rounding."""
-    size = _magnitudes(K) @ np.abs(motions)
-    free = (np.abs(K @ motions) <= _ROUNDING * size).all(axis=0) & motions.any(axis=0)
-    return np.asarray(motions[:, free])
+    return np.asarray(motions[:, _free(K @ motions, _magnitudes(K), motions)])
+
+
+def _free(force: Floats, magnitudes: sp.csr_matrix | Floats, motions: Floats) -> Numbers:
+    """Which motions (n, k) make forces (n, k) that are rounding of stiffness times all of them.
+
+    A motion along an axis alone has rounding of the others' size across it.
+    """
+    largest = np.abs(motions).max(axis=0, initial=0.0)
+    moved = largest > 0.0
+    size = magnitudes @ (np.abs(motions[:, moved]) / largest[moved]).sum(axis=1)
+    small = np.abs(force) <= _ROUNDING * size[:, None] * largest
+    return np.asarray(small.all(axis=0) & moved)
 
 
 def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
@@ -77,8 +87,7 @@ def condensed(A: sp.csr_matrix, T: Floats, rigid: Floats) -> sp.csr_matrix:
     """
     found, size = T.T @ (A @ T), np.abs(T.T) @ (_magnitudes(A) @ np.abs(T))
     found = np.where(np.abs(found) > _ROUNDING * size, found, 0.0)
-    free = (np.abs(found @ rigid) <= _ROUNDING * (size @ np.abs(rigid))).all(axis=0)
-    rigid = rigid[:, free & rigid.any(axis=0)]
+    rigid = rigid[:, _free(found @ rigid, size, rigid)]
     if rigid.shape[1]:
         root = np.sqrt(np.maximum(found.diagonal(), 0.0))
         basis = np.linalg.qr(root[:, None] * rigid)[0]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ....core.errors import Place
 from ....core.noun import Noun
+from ..text.real_numbers import parse_real
 from .card_definition import Card, Values
 from .card_reading import read_card, read_columns
 from .continuations import in_order, wrong_labels
@@ -295,9 +296,23 @@ def _parts(card: Card, fields: Fields) -> int:
 
 
 def _check_repeated(first: Raw, number: int, raw: Raw, reader: CardReader) -> None:
-    """Accept a card repeated word for word, as Nastran does."""
-    if fields_of(first.lines) != fields_of(raw.lines):
+    """Accept a card repeated with the same values, as Nastran does."""
+    same = (_comparable(fields_of(lines), raw.name) for lines in (first.lines, raw.lines))
+    if next(same) != next(same):
         raise reader.at(raw).error(
             f"{raw.name} {number} is defined twice, first in {reader.at(first)}: keep one of them",
             f"{raw.name} {number}",
         )
+
+
+def _comparable(fields: Fields, name: str) -> list[float | str | None]:
+    """Numbers of fields where they are such; a blank one of a grid is 0."""
+    out: list[float | str | None] = []
+    for text in fields:
+        try:
+            out.append(parse_real(text or ("0" if name == "GRID" else "")))
+        except ValueError:
+            out.append(text)
+    while out and not out[-1]:
+        out.pop()
+    return out

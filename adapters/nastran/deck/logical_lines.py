@@ -32,6 +32,8 @@ class Sections:
         Lines of each section, without CEND, BEGIN BULK, ENDDATA and what follows it.
     parts : dict
         Lines of the superelements (BEGIN SUPER) by their numbers.
+    warnings : tuple of str
+        Files that INCLUDE names ahead of CEND and that are not there.
     """
 
     files: tuple[Path, ...]
@@ -39,6 +41,7 @@ class Sections:
     case: tuple[Line, ...]
     bulk: tuple[Line, ...]
     parts: dict[int, tuple[Line, ...]]
+    warnings: tuple[str, ...] = ()
 
 
 def read_sections(source: Path | DeckText) -> Sections:
@@ -81,7 +84,11 @@ def read_sections(source: Path | DeckText) -> Sections:
         number: tuple(lines[k + 1 : end]) for (k, number), end in zip(starts, ends[1:], strict=True)
     }
     bulk = lines[begin + 1 : ends[0]]
-    return Sections(tuple(files), tuple(executive), tuple(case), tuple(bulk), parts)
+    absent = tuple(
+        f"{place}: the INCLUDE file {name!r} does not exist; ahead of CEND nothing is needed"
+        for place, name in deck.absent
+    )
+    return Sections(tuple(files), tuple(executive), tuple(case), tuple(bulk), parts, absent)
 
 
 def _lines(deck: DeckText) -> Iterator[Line]:

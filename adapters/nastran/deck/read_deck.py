@@ -189,6 +189,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         counts[name] = counts.get(name, 0) + sum(raw.part == 0 for raw in raws)
     eigen = _eigen(bulk, case)
     warnings = [
+        *sections.warnings,
         *case_warnings,
         *bulk_warnings,
         *unit_warnings,

@@ -87,6 +87,11 @@ class DeckText(Noun):
         """The INCLUDE statements in the order met."""
         return tuple(self._walked.includes)
 
+    @property
+    def absent(self) -> tuple[tuple[Place, str], ...]:
+        """Files that INCLUDE names ahead of CEND and that are not there: place and name."""
+        return tuple(self._walked.absent)
+
     def place(self, file: int, row: int) -> Place:
         """``wing.bdf line 40``, for messages."""
         path = self.files[file].path
@@ -174,6 +179,7 @@ class _Walk:
         self._follow = follow
         self.stretches: list[Stretch] = []
         self.includes: list[Include] = []
+        self.absent: list[tuple[Place, str]] = []
         self._bulk: list[Segment] = []
         self._all: list[Segment] = []
         self._in_bulk = False
@@ -197,7 +203,8 @@ class _Walk:
                 continue
             mark = int(keys[row])
             if mark == _MARKS["INCLUDE"]:
-                done = self._include(k, row, done, (*parents, k))
+                executive = not self._has_control and bool((keys[row:] == _MARKS["CEND"]).any())
+                done = self._include(k, row, done, (*parents, k), executive)
             elif mark == _MARKS["ENDDATA"]:
                 self._take(k, done, row)
                 self._ended = True
@@ -234,7 +241,9 @@ class _Walk:
         written, used = parse_include(texts, where)
         return self._follow(k, written, where), written, used
 
-    def _include(self, k: int, row: int, done: int, parents: tuple[int, ...]) -> int:
+    def _include(
+        self, k: int, row: int, done: int, parents: tuple[int, ...], executive: bool
+    ) -> int:
         file = self._file(k)
         where = Place(file.path, row + 1)
         stop = min(row + 60, len(file.lines))
@@ -245,7 +254,13 @@ class _Walk:
         try:
             child = self._follow(k, written, where)
         except InputError:
-            child, written, used = self._over_lines(k, texts, where)
+            try:
+                child, written, used = self._over_lines(k, texts, where)
+            except InputError:
+                if not executive:
+                    raise
+                self.absent.append((where, written))
+                return done
         if child in parents:
             raise where.error(f"INCLUDE {written!r} includes itself")
         self._take(k, done, row)

@@ -1,5 +1,7 @@
 """A deck reduced to a boundary and component modes."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -84,3 +86,23 @@ def test_a_deck_that_is_reduced_is_refused(tmp_path):
         craig_bampton(read_deck(path), "1")
     with pytest.raises(InputError, match="give 1 or more"):
         trueup.convert(path, tmp_path / "cb.op4", boundary="1", modes=0)
+
+
+def test_an_external_superelement_is_made_as_nx_makes_it(deck, tmp_path):
+    """Boundary stiffness and mass of a free truss beside NX 9.1; all six rigid motions are free."""
+    data = Path(__file__).parents[5] / "shared" / "data"
+    if not data.is_dir():
+        pytest.skip("no shared data beside the repository")
+    (tmp_path / "part.dat").write_text(
+        "SOL 103\nINCLUDE 'some.dmap'\nCEND\nMETHOD = 1\nBEGIN BULK\nEIGRL,1,,50.\n"
+        "BSET1,123456,3,11,19,27\nSPOINT,101,THRU,108\nQSET1,,101,THRU,108\n"
+        f"INCLUDE '{data / 'nastran/space_truss/inboard.blk'}'\nENDDATA\n"
+    )
+    model = build_model(read_deck(tmp_path / "part.dat"))
+    by_nx = {m.name: m.matrix for m in read_matrices(data / "matrices/superelements/inboard.op4")}
+    for mine, name in ((model.K(), "KXX"), (model.M(), "MXX")):
+        A, B = np.asarray(mine.todense())[:24, :24], np.asarray(by_nx[name].todense())[:24, :24]
+        np.testing.assert_allclose(A, B, atol=1e-9 * abs(B).max())
+    found = solve(model, 12)
+    assert found.rigid_body_modes == 6
+    assert found.frequencies_hz[6] > 50.0

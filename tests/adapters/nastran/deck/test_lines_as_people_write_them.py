@@ -57,6 +57,35 @@ def test_replication_of_nothing_is_named(read, text, message):
         read(text)
 
 
+def test_a_card_may_take_fields_of_the_one_above(read):
+    found = read("PBAR,1,9,12.5,3.,4.,5. $ a\nPBAR,2,8,==  $ b\nPBAR,3,=,*(.5),==\nMAT1,9,1.,,.3\n")
+    bars = found.bulk.table("PBAR")
+    assert [(bars[k].mid, bars[k].a, bars[k].j) for k in (1, 2, 3)] == [
+        (9, 12.5, 5.0),
+        (8, 12.5, 5.0),
+        (8, 13.0, 5.0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("again", "fine"),
+    [("GRID*,1,0,1.0,0.", True), ("GRID,1,,.1+1,0.", True), ("GRID,1,,2.", False)],
+)
+def test_a_card_may_be_repeated_with_the_same_values(read, again, fine):
+    text = f"GRID,1,,1.,,\n{again}\n"
+    if fine:
+        assert list(read(text).bulk.table("GRID")) == [1]
+    else:
+        with pytest.raises(InputError, match="GRID 1 is defined twice"):
+            read(text)
+
+
+def test_a_file_ahead_of_cend_may_be_missing(read):
+    found = read("SOL 103\nINCLUDE 'alter.v9'\nCEND\nSPC = 3\nBEGIN BULK\nGRID,1,,0.\n")
+    assert (found.case.spc, found.counts) == (3, {"GRID": 1})
+    assert any("line 2: the INCLUDE file 'alter.v9' does not exist" in w for w in found.warnings)
+
+
 def test_wrong_labels_of_continuations_are_named(read):
     mass = "CONM2   7       1               2.".ljust(72)
     found = read(f"{mass}+AA\n+BB     0.5\n{mass.replace('7 ', '8 ')}+CC\n+CC     0.25\n")
