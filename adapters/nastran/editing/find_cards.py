@@ -16,6 +16,7 @@ from ..text.source_file import CONTINUATION, REPLICATION, Keys, name_of
 from .cells import CardLine
 
 MOST_DIGITS = 99_999_999
+_TAKEN = re.compile(rb"^[^$]*[\s,]==?(?=[\s,$]|$)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,12 +81,12 @@ def card_at(deck: DeckText, segment: Segment, row: int, name: str) -> Card:
     file = deck.files[segment.file]
     keys = file.lines.keys
     rows = [row]
-    for k in range(row + 1, segment.stop):
-        if keys[k] == REPLICATION:
+    for k in range(row, segment.stop):
+        if keys[k] == REPLICATION or (keys[k] == keys[row] and _TAKEN.search(file.line(k))):
             raise deck.place(segment.file, k).error(
-                f"the {name} above is replicated by '='; write the cards out"
+                f"the {name} {'above' if k > row else 'here'} is replicated by '='; write it out"
             )
-        if keys[k] > CONTINUATION:
+        if keys[k] > CONTINUATION and k > row:
             break
         if keys[k] == CONTINUATION:
             rows.append(k)

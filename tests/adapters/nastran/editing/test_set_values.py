@@ -298,6 +298,12 @@ FAULTS = {
     "replicated": (
         "PROD,3,1,1.\n=,*(1),==\n", ("PROD", 3, "A"), "line 2: the PROD above is replicated",
     ),
+    "fields taken by the next": (
+        "PROD,3,1,1.,2.\nPROD,4,2,==\n", ("PROD", 3, "A"), "line 2: the PROD above is replicated",
+    ),
+    "fields taken": (
+        "PROD,3,1,1.,2.\nPROD,4,2,==\n", ("PROD", 4, "A"), "line 2: the PROD here is replicated",
+    ),
     "a copy of one replicated": (
         "PROD,3,1,1.\n=,*(1),==\n", ("PROD", 4, "A"), "those that '=' replicates",
     ),
