@@ -11,7 +11,7 @@ _IGNORED = {
     "it belongs to response analyses": "FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 TSTEP TSTEP1 TSTEPNL "
     "TABLED1 TABLED2 TABLED3 TABLED4 TABRND1 TABRNDG TABLES1 TABLEST RANDPS RANDT1 NLPARM "
     "NLPCI NLCNTL NLCNTL2 EIGC EIGB EIGP TF NOLIN1 NOLIN2 NOLIN3 NOLIN4 RCROSS RSPINR "
-    "RSPINT ROTORG ROTORD ROTOR ROTHYBD UNBALNC CAMPBLL SDAMP HYBDAMP DTEMP RVDOF RVDOF1",
+    "RSPINT RGYRO ROTORG ROTORD ROTOR ROTHYBD UNBALNC CAMPBLL SDAMP HYBDAMP DTEMP RVDOF RVDOF1",
     "damping does not enter normal modes": "CDAMP5 PDAMP5 CVISC2 PDAMPT PELAST PBUSHT TABDMP2",
     "it belongs to heat transfer": "MAT4 MAT5 MATT4 MATT5 CHBDYE CHBDYG CHBDYP PHBDY CONV CONVM "
     "PCONV PCONVM QBDY1 QBDY2 QBDY3 QHBDY QVECT RADBC RADM RADMT RADSET RADCAV RADLST VIEW VIEW3D "
@@ -30,6 +30,9 @@ _IGNORED = {
     "CYSYM GMCURV GMSURF FEEDGE FEFACE OUTRCV TEMPG DMI DMIJ DMIJI DMIK SKIPON "
     "SKIPOFF ENDDATA SWLDPRM BSURF BSURFS BCPROP BCPROPS BLSEG NXSTRAT ITER CONTRLT "
     "NASTRAN",
+    "contact does not act in normal modes without loads before them": "BCTSET BCTADD BEDGE",
+    "modes are found without dynamic reduction": "DYNRED",
+    "it keeps points out of AUTOSPC, which holds what has no stiffness": "SPCOFF SPCOFF1",
     "superelements are solved whole, not condensed to their boundaries": "SESET SEELT SETREE "
     "SELABEL SELOAD SESUP SEMPLN SENQSET SEQSET SEQSET1 SECSET SECSET1 SEBSET SEBSET1 SEUSET "
     "SEUSET1 CSUPEXT",
@@ -47,22 +50,25 @@ _REFUSED = {
     "CIFQUAD CBELL CHEXCZ CPENTCZ CFLUID2 CFLUID3 CFLUID4 CAXIF2 CAXIF3 CAXIF4 CSLOT3 CSLOT4 "
     "CHACAB CHACBR CAABSF",
     "this rigid element or constraint is not supported":
-    "RSPLINE RSSCON RTRPLT RTRPLT1 RBE2F RJOINT",
-    "glue and contact are not supported":
-    "BGSET BGADD BEDGE BCTSET BCTADD BCTABLE BCTABL1 BCBODY BCBODY1 BCONP BOLT",
-    "this reduction is not supported: give the model without it": "DYNRED",
+    "RSSCON RBE2F",
+    "glue (where BGSET selects it) is not supported": "BGSET BGADD",
+    "bodies in contact (where BCONTACT selects them) are not supported":
+    "BCTABLE BCTABL1 BCBODY BCBODY1 BCONP",
+    "bolts are not supported": "BOLT",
     "copied and released superelements are not supported: give the assembled deck":
     "CSUPER RELEASE",
     "it defines or constrains points in a way that is not supported":
-    "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX SPCOFF SPCOFF1 RGYRO "
-    "CYJOIN CYAX ACMODL MFLUID",
+    "RINGAX POINTAX GRIDB GRIDF RINGFL CORD3G CORD3R GMCORD SPCAX MPCAX CYJOIN CYAX ACMODL MFLUID",
 }  # fmt: skip
 """Cards that carry stiffness, mass or constraint and are not supported: the sentence, the names."""
+
+_SELECTED = {"BGSET": "BGSET BGADD", "BCONTACT": "BCTABLE BCTABL1 BCBODY BCBODY1 BCONP"}
+"""Those that do something only where case control has a command: it, the names."""
 
 _SAID = ("CHBDY", "CONV", "CAERO", "CDAMP", "CVISC")
 """Those that connect grids: elements, and leaving them out is said in a warning too."""
 
-_CONDENSED = ("SESET", "SEELT", "SENQSET", "SEQSET")
+_CONDENSED = ("SESET", "SEELT", "SENQSET", "SEQSET", "BCTSET", "DYNRED", "SPCOFF")
 """Those without which frequencies are others than Nastran's, which is said too."""
 
 _LAYOUTS = {
@@ -83,7 +89,14 @@ CARDS = (
         for name in names.split()
     ),
     *(
-        Card(name, "EID:i" if "stiffness" in why or "rigid" in why else "", refused=why)
+        Card(
+            name,
+            "EID:i" if "stiffness" in why or "rigid" in why else "",
+            refused=why,
+            selected_by=next(
+                (command for command, those in _SELECTED.items() if name in those.split()), ""
+            ),
+        )
         for why, names in _REFUSED.items()
         for name in names.split()
     ),

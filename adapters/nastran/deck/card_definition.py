@@ -65,6 +65,8 @@ class Card:
         Attributes that hold numbers of grids or scalar points.
     ignored, refused : str
         Why a card is left out, or stops the assembly; "" where it is read.
+    selected_by : str
+        Command of case control without which a refused card is left out.
     warned : bool
         Whether leaving it out is said in a warning.
     elements : str
@@ -89,6 +91,7 @@ class Card:
     grids: str = "nodes scalars"
     ignored: str = ""
     refused: str = ""
+    selected_by: str = ""
     warned: bool = False
     elements: str = ""
     properties: str = ""

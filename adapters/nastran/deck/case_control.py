@@ -41,6 +41,8 @@ class CaseControl:
         The one that the subcase is for, 0 for the residual structure or all.
     of_parts : tuple of (superelement, (spc, mpc))
         Constraint sets that subcases of their own select for superelements.
+    commands : frozenset of str
+        Commands of all subcases, four letters of each.
     """
 
     subcase: int = 0
@@ -59,6 +61,7 @@ class CaseControl:
     sdamping: int | None = field(default=None, compare=False)
     superelement: int = field(default=0, compare=False)
     of_parts: tuple[tuple[int, tuple[int | None, int | None]], ...] = ()
+    commands: frozenset[str] = frozenset()
 
 
 def read_case_control(
@@ -74,10 +77,10 @@ def read_case_control(
     InputError
         A factor that is no number: file and line.
     """
-    above = CaseControl()
+    matches = [(line, _COMMAND.match(line.text.split("$", 1)[0])) for line in lines]
+    above = CaseControl(commands=frozenset(m["key"].upper()[:4] for _, m in matches if m))
     subcases: list[CaseControl] = []
-    for line in lines:
-        match = _COMMAND.match(line.text.split("$", 1)[0])
+    for line, match in matches:
         if not match:
             continue
         key, value = match["key"].upper(), match["value"].strip()

@@ -183,7 +183,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
     every_line = (*sections.executive, *sections.case, *sections.bulk)
     every_bulk = (bulk, *parts.values())
     unit, unit_warnings = find_length_unit(every_line, bulk)
-    skipped, refused, skip_warnings = _skipped(bulk, others)
+    skipped, refused, skip_warnings = _skipped(bulk, others, case)
     counts: dict[str, int] = {}
     for name, raws in (*(item for b in every_bulk for item in b.raw.items()), *others.items()):
         counts[name] = counts.get(name, 0) + sum(raw.part == 0 for raw in raws)
@@ -267,7 +267,7 @@ def _solution(sections: Any) -> tuple[str, ...]:
 
 
 def _skipped(
-    bulk: Bulk, others: dict[str, list[Raw]]
+    bulk: Bulk, others: dict[str, list[Raw]], case: CaseControl
 ) -> tuple[tuple[dict[str, Any], ...], tuple[InputError, ...], tuple[str, ...]]:
     skipped, refused, warnings = [], [], []
     for name, raws in others.items():
@@ -277,12 +277,15 @@ def _skipped(
         card = bulk.definitions.get(name) or _unknown(name)
         why = card.refused or card.ignored
         count = f"{len(raws)} cards" if len(raws) > 1 else "1 card"
-        if card.refused:
+        idle = bool(card.selected_by) and card.selected_by[:4] not in case.commands
+        if idle:
+            why = f"{card.selected_by} selects none"
+        if card.refused and not idle:
             named = " ".join([name, *filter(None, fields_of(first.lines)[1:2])])
             refused.append(bulk.at(first).error(f"{named}: {why}", named))
         elif card.ignored == _NOT_KNOWN:
             warnings.append(f"{file} line {first.line}: {name} is not known and was left out")
-        elif card.warned:
+        elif card.warned or idle:
             warnings.append(f"{file} line {first.line}: {name} ({count}) is left out: {why}")
         where = f", first in {seen}" if first.file else ""  # the deck itself goes without saying
         skipped.append({"what": f"{name} ({count}{where})", "line": first.line, "why": why})

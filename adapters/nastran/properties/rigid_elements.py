@@ -1,16 +1,18 @@
-"""Rigid elements as equations: RBE1, RBE2, RBE3, RBAR, RBAR1, RROD; a routine a card, one table."""
+"""Rigid elements as equations: a routine a card, one table."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ....core.arrays import Floats
+from ....core.elements.bar import bar_stiffness
 from ....core.errors import Place
 from ..deck.card_definition import Card, Known, Values
 from ..deck.field_values import FieldError, Fields, numbers, take
 from .grids import Points
 
 _ENDS = "EID:i! GA>nodes:i! GB>nodes:i!"
+_CORNERS = "EID:i! GA,GB,GC>nodes:i!"
 
 
 def _is_real(text: str | None) -> bool:
@@ -63,6 +65,14 @@ def _rbe3_grids(fields: Fields, _: Known) -> list[object]:
     return [*zip(*groups, strict=True), *_pairs("M", fields[:end], um + 1), alpha]
 
 
+def _rspline_grids(fields: Fields, _: Known) -> list[tuple[object, ...]]:
+    """Grids along the spline, and the components of each that follow it."""
+    at = range(4, len(fields), 2)
+    follow = (take(fields, k + 1, "C:c") for k in at)
+    first = take(fields, 3, "G1:i!")
+    return [(first, *(take(fields, k, "G:i!") for k in at)), ("", *(c or "" for c in follow))]
+
+
 CARDS = (
     Card("RBE1", "EID:i!", "eid", more=_rbe1_grids, extra="gn cn gm cm alpha", grids="gn gm"),
     Card(
@@ -78,7 +88,18 @@ CARDS = (
     ),
     Card("RBAR", f"{_ENDS} CNA:c CNB:c CMA:c CMB:c ALPHA:r=0. TREF:r=0.", "eid"),
     Card("RBAR1", f"{_ENDS} CB:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card("RJOINT", f"{_ENDS} CB:c", "eid"),
     Card("RROD", f"{_ENDS} CMA:c CMB:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card("RTRPLT", f"{_CORNERS} CNA:c CNB:c CNC:c CMA:c / CMB:c CMC:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card("RTRPLT1", f"{_CORNERS} CMB:c CMC:c ALPHA:r=0. TREF:r=0.", "eid"),
+    Card(
+        "RSPLINE",
+        "EID:i! DL:r=0.1 G1:i!",
+        "eid",
+        more=_rspline_grids,
+        extra="nodes dependent",
+        grids="nodes",
+    ),
 )
 
 
@@ -142,9 +163,32 @@ def rbe2(rows: Rows, card: Values, place: Place) -> None:
 
 def rbar(rows: Rows, card: Values, place: Place) -> None:
     """Two grids on a rigid bar; six components of either are independent."""
-    named = (card.cna, card.cnb) if card.cna or card.cnb else ("123456", None)
-    independent = list(zip(card.nodes, named, strict=True))
-    dependent = list(zip(card.nodes, (card.cma, card.cmb), strict=True))
+    _joined(rows, card.nodes, (card.cna, card.cnb), (card.cma, card.cmb), place)
+
+
+def rtrplt(rows: Rows, card: Values, place: Place) -> None:
+    """Three grids on a rigid plate; six components of them are independent."""
+    independent, dependent = (card.cna, card.cnb, card.cnc), (card.cma, card.cmb, card.cmc)
+    _joined(rows, card.nodes, independent, dependent, place)
+
+
+def rtrplt1(rows: Rows, card: Values, place: Place) -> None:
+    """Components of GB and GC follow the rigid motion of GA."""
+    follow = card.cmb or "123456", card.cmc or "123456"
+    _joined(rows, card.nodes, ("123456", None, None), (None, *follow), place)
+
+
+def _joined(
+    rows: Rows,
+    nodes: Sequence[int],
+    named: Sequence[str | None],
+    following: Sequence[str | None],
+    place: Place,
+) -> None:
+    """Grids on a rigid body; all components that are not independent follow where none is named."""
+    named = named if any(named) else ("123456", *[None] * (len(nodes) - 1))
+    independent = list(zip(nodes, named, strict=True))
+    dependent = list(zip(nodes, following, strict=True))
     if not any((c or "").strip("0") for _, c in dependent):
         dependent = [(n, "".join(sorted({*"123456"} - {*(c or "")}))) for n, c in independent]
     _rigid_body(rows, independent, dependent, place)
@@ -154,6 +198,46 @@ def rbar1(rows: Rows, card: Values, place: Place) -> None:
     """Components CB of GB follow the rigid motion of GA."""
     a, b = card.nodes
     _rigid_body(rows, [(a, "123456")], [(b, card.cb or "123456")], place)
+
+
+def rspline(rows: Rows, card: Values, place: Place) -> None:
+    """Interpolate grids between others as a thin tube would bend, stretch and twist through them.
+
+    Its diameter is DL times its length (Quick Reference Guide, RSPLINE); along a straight line the
+    displacements do not depend on it.
+    """
+    points = rows.points
+    at = np.array([points.row(int(grid), place) for grid in card.nodes])
+    follow = np.array(
+        [6 * k + c - 1 for k, digits in enumerate(card.dependent) for c in _components(digits)], int
+    )
+    if any(digits.strip("0") not in ("", "123456") for digits in card.dependent):
+        raise place.error("a grid must follow the spline with all its components (123456) or none")
+    if card.dependent[-1].strip("0") or len(at) < 3 or not len(follow):
+        raise place.error("its first and last grid must be independent, grids between them follow")
+    xyz = points.xyz[at]
+    lengths = np.linalg.norm(np.diff(xyz, axis=0), axis=1)
+    if not lengths.all():
+        raise place.fault("has no length: two of its grids coincide")
+    span = np.diff(xyz, axis=0) / lengths[:, None]
+    aside = np.cross(span, np.eye(3)[np.abs(span).argmin(axis=1)])
+    one, no_pins = np.ones(len(span)), np.zeros((len(span), 6), bool)
+    area = 8.0 / (card.dl * lengths.sum()) ** 2 * one
+    bars = bar_stiffness(
+        xyz[:-1], xyz[1:], aside, one, one / 2.6, area, one, one, 0 * one, 2 * one,
+        0 * one, 0 * one, no_pins, no_pins,
+    )  # fmt: skip
+    K = np.zeros((6 * len(at), 6 * len(at)))
+    for k, bar in enumerate(bars):
+        K[6 * k : 6 * k + 12, 6 * k : 6 * k + 12] += bar
+    for k, row in enumerate(at):
+        turn, own = rows.motion(int(row), xyz[k]), slice(6 * k, 6 * k + 6)
+        K[own], K[:, own] = turn @ K[own], K[:, own] @ turn.T
+    free = np.setdiff1d(np.arange(len(K)), follow)
+    dofs = (6 * at[:, None] + np.arange(6)).ravel()
+    moved = -np.linalg.solve(K[np.ix_(follow, follow)], K[np.ix_(follow, free)])
+    for dof, values in zip(dofs[follow], moved, strict=True):
+        rows.add(int(dof), dofs[free].tolist(), values, place, least=1e-12)
 
 
 def rbe1(rows: Rows, card: Values, place: Place) -> None:
@@ -307,5 +391,9 @@ RIGID: dict[str, Callable[[Rows, Values, Place], None]] = {
     "RBE1": rbe1,
     "RBE3": rbe3,
     "RROD": rrod,
+    "RJOINT": rbar1,
+    "RTRPLT": rtrplt,
+    "RTRPLT1": rtrplt1,
+    "RSPLINE": rspline,
 }
 """Rigid elements by card name."""

@@ -118,8 +118,6 @@ class TestWhatIsLeftOut:
             model(springs + "ASET,1,1\nQSET,77")
         with pytest.raises(InputError, match=r"77:0 .* is in ASET and in the q-set"):
             model(springs + "ASET,77\nQSET,77")
-        with pytest.raises(InputError, match=r"line \d+: DYNRED.* this reduction"):
-            model(springs + "DYNRED,7,1.")
 
 
 BAR = "GRID,1\nGRID,2,,1.\nCBAR,1,1,1,2,0.,0.,1.\nMAT1,1,2.6,,.3,1.\n"

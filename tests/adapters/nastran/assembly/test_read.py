@@ -113,7 +113,7 @@ class TestFacts:
         assert "FORCE (2 cards" in found.skipped[0]["what"]
         assert any("WHATEVER is not known" in w for w in found.warnings)
 
-    @pytest.mark.parametrize("card", ["CSEAM,9,9,1,2", "CQAUD4,9,9,1,2", "BGSET,1,1"])
+    @pytest.mark.parametrize("card", ["CSEAM,9,9,1,2", "CQAUD4,9,9,1,2", "RSSCON,1"])
     def test_what_carries_stiffness_or_constraint_is_refused_by_name(self, deck, card):
         name = card.split(",")[0]
         with pytest.raises(InputError, match=rf"deck.bdf line 10: {name}"):

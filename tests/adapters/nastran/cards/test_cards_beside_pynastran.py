@@ -33,6 +33,9 @@ APART_AS_A_WHOLE = (
     "EXTRN",
     "CTRIAX6",
     "MAT3",
+    "RJOINT",
+    "RTRPLT",
+    "RSPLINE",
 )
 READ = {
     n: c

@@ -123,3 +123,15 @@ def test_comments_and_statements_anywhere(read):
     )
     assert (found.case.spc, list(found.bulk.table("GRID"))) == (1, [1])
     assert not [w for w in found.warnings if "NASTRAN" in w]
+
+
+@pytest.mark.parametrize(
+    ("cards", "command"),
+    [("BGSET,1,1,2,.1\n", "BGSET = 1"), ("BCTABLE,1,,,1\nBCBODY,1,3D\n", "BCONT = 1")],
+)
+def test_glue_counts_where_it_is_selected(read, cards, command):
+    text = "SOL 103\nCEND\n{}\nBEGIN BULK\nGRID,1,,0.\n" + cards
+    left = read(text.format(""))
+    assert not left.refused
+    assert any("is left out: B" in w and "selects none" in w for w in left.warnings)
+    assert read(text.format(command)).refused
