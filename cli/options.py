@@ -156,6 +156,8 @@ UPDATE: dict[str, Any] = {
         metavar="processes:N|dask:ADDRESS",
     ),
     "intervals": _option(bool, "95 % intervals of the factors by profile.", "--intervals"),
+    "samples": _option(int, "Draw so many samples of the posterior.", metavar="N"),
+    "evidence": _option(bool, "For which prior_sigma the test speaks.", "--evidence"),
     "write_undetermined": _option(
         bool, "Move what the test does not determine, too.", "--write-undetermined"
     ),

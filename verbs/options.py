@@ -80,8 +80,10 @@ class UpdateOptions(CompareOptions, total=False):
     strategy; ``write_undetermined`` (False): parameters that the test does not determine move, too.
 
     ``starts`` (0): from how many other factors the update is made as well, to say whether the
-    optimum is the only one; ``intervals`` (False): 95 % intervals of the factors by profile.
-    ``executor`` ("processes": one a core; "processes:4", "dask:ADDRESS"): who does them.
+    optimum is the only one; ``intervals`` (False): 95 % intervals of the factors by profile;
+    ``samples`` (0): how many to draw of the posterior; ``evidence`` (False): for which
+    ``prior_sigma`` the test speaks. ``executor`` ("processes": one a core; "processes:4",
+    "dask:ADDRESS"): who does the starts.
     ``residuals`` with "prior" and ``prior_sigma``: how far off the deck's values may be.
 
     ``solver``: the command of the user's own Nastran, "nastran {deck}", whose modes are then those
@@ -109,6 +111,8 @@ class UpdateOptions(CompareOptions, total=False):
     starts: int | None
     executor: str | None
     intervals: bool | None
+    samples: int | None
+    evidence: bool | None
     solver: str | None
     solver_limit: float | None
     measured_mass: float | None

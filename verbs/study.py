@@ -63,6 +63,8 @@ class Study:
     solver: str | None = None
     solver_limit: float = 3600.0
     intervals: bool = False
+    samples: int = 0
+    evidence: bool = False
     stages: tuple[StageRequest, ...] = ()
     load_cases: tuple[LoadRequest, ...] = ()
     configurations: tuple[ConfigurationRequest, ...] = ()
@@ -131,7 +133,7 @@ class Study:
         require_executor(self.executor)
         if self.reduction is not None:
             require_method(self.reduction)
-        for key, least in (("identify_modes", 1), ("max_order", 2)):
+        for key, least in (("identify_modes", 1), ("max_order", 2), ("starts", 0), ("samples", 0)):
             value = getattr(self, key)
             if value is not None and value < least:
                 raise InputError(f"{key} is {value}; it must be {least} or more")
@@ -143,8 +145,6 @@ class Study:
             raise InputError("measured_centre_of_gravity is x, y, z; give three numbers")
         if not self.solver_limit > 0.0:
             raise InputError(f"solver_limit is {self.solver_limit:g} s; it must be above 0")
-        if self.starts < 0:
-            raise InputError(f"starts is {self.starts}; give 0 or more")
         if min(self.max_iterations, *(s.max_iterations for s in self.stages), 1) < 1:
             raise InputError("max_iterations must be at least 1")
 

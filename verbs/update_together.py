@@ -13,7 +13,7 @@ from ..core.errors import InputError, naming
 from ..core.noun import BESIDE
 from ..core.results.plain import Table
 from ..core.results.together import TogetherTables, configuration_rows, pair_rows, shared_rows
-from ..core.results.update import posterior_table, start_rows
+from ..core.results.update import drawn, posterior_table, sample_rows, start_rows
 from ..core.updating.problem import Problem
 from .analysis import Analysis, correlated, read_analysis
 from .folder import Folder
@@ -25,7 +25,7 @@ from .sources import Measured, measured, read_deck
 from .study import Study, read_study, seen_from, study_toml
 from .study_tables import ConfigurationRequest
 from .updated import updated
-from .updating_ways import configuration, moved, way_of
+from .updating_ways import Moved, configuration, moved, way_of
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -107,14 +107,16 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     _require_all_used(asked, problem)
     kept = kept_in(keep, asked, [made_of(s.analysis.given, s.side) for s in states])
     progress("updating")
-    found, starts, intervals = moved(every, problem.parameters, asked, kept)
+    way = moved(every, problem.parameters, asked, kept)
+    found, intervals = way.done, way.intervals
     results: dict[str, Updated] = {}
     for k, s in enumerate(states):
         progress(f"writing the updated deck of {s.name} and solving it again")
         own = intervals if intervals is None else intervals[problem.parts[k].own]
-        way = way_of(s.analysis, s.placed, s.asked, (found.of(problem, k), (), own))
+        alone = Moved(found.of(problem, k), intervals=own)
         seconds = time.perf_counter() - start
-        results[s.name] = updated(s.analysis, s.side, s.placed, s.asked, way, seconds)
+        changed = way_of(s.analysis, s.placed, s.asked, alone)
+        results[s.name] = updated(s.analysis, s.side, s.placed, s.asked, changed, seconds)
     told = [f"{name}: {w}" for name, r in results.items() for w in r.warnings]
     of_all = [w for w in told if w.partition(": ")[2] not in found.warnings]
     return UpdatedTogether(
@@ -126,8 +128,11 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
         stopped=found.stopped.sentence,
         seconds=time.perf_counter() - start,
         warnings=(*found.warnings, *of_all),
-        starts=start_rows(starts),
+        starts=start_rows(way.starts),
         posterior=posterior_table(problem.parameters, found),
+        samples=sample_rows(problem.parameters, way.sampled),
+        draws=drawn(problem.parameters, way.sampled),
+        evidence=Table(way.evidence) if way.evidence else None,
         results=results,
         study=asked,
     )

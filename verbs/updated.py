@@ -9,8 +9,10 @@ from ..core.results.correlation import compared
 from ..core.results.plain import Table
 from ..core.results.update import (
     damping_rows,
+    drawn,
     parameter_rows,
     posterior_table,
+    sample_rows,
     start_rows,
     weights_table,
 )
@@ -26,7 +28,8 @@ def updated(
     analysis: Analysis, side: Measured, placed: Placed, asked: Study, way: Way, seconds: float
 ) -> Updated:
     """Return the result of an update that was made in some way."""
-    done, starts, intervals = way.moved
+    moved, parameters = way.moved, analysis.model.parameters
+    done = moved.done
     before, after, (changed, values) = way.before, way.after, way.written
     history = Table(done.history)
     told, final = compared(before), replace(compared(after), warnings=())
@@ -36,16 +39,19 @@ def updated(
         deck_file=f"deck/{changed.name}",
         input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),
-        parameters=parameter_rows(analysis.model.parameters, done, values, intervals),
+        parameters=parameter_rows(parameters, done, values, moved.intervals),
         history=history,
         before=replace(told, warnings=()),
         after=final,
         weights=weights_table(placed.errors),
         eigensolutions=done.eigensolutions,
-        starts=start_rows(starts),
-        posterior=posterior_table(analysis.model.parameters, done),
+        starts=start_rows(moved.starts),
+        posterior=posterior_table(parameters, done),
         solver=way.solver,
         damping=damping_rows(done),
+        samples=sample_rows(parameters, moved.sampled),
+        draws=drawn(parameters, moved.sampled),
+        evidence=Table(moved.evidence) if moved.evidence else None,
         stopped=done.stopped.sentence,
         seconds=seconds,
         warnings=(*analysis.warnings, *told.warnings, *done.warnings, *way.warnings),

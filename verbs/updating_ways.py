@@ -20,6 +20,8 @@ from ..core.results.update import SolverRow
 from ..core.updating import update as core
 from ..core.updating.determined import update_determined
 from ..core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
+from ..core.updating.prior_evidence import PriorWeighed, weigh_prior
+from ..core.updating.sampling import Sampled, sample_posterior
 from .analysis import Analysis, placed as place, rigid_count, target_of
 from .kept import Kept
 from .options import Say
@@ -38,10 +40,19 @@ _AGREES = 1e-4
 """Relative difference of eigenvalues, updated model and deck read back, that is none."""
 
 
-Moved = tuple[core.Updated, tuple[Start, ...], Floats | None]
-"""An update, those from other starts, and intervals of the factors."""
 _Written = tuple["ChangedDeck", list[list[float | None]]]
 """The updated deck, and the values of its parameters' fields."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """An update, and what was asked of it besides."""
+
+    done: core.Updated
+    starts: tuple[Start, ...] = ()
+    intervals: Floats | None = None
+    sampled: Sampled | None = None
+    evidence: tuple[PriorWeighed, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +86,8 @@ def way_of(analysis: Analysis, placed: Placed, asked: Study, found: Moved) -> Wa
         rigid = solution.rigid_body_modes
         return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
 
-    before, after = (comparison(at.solution) for at in (found[0].before, found[0].after))
-    return Way(found, before, after, _written(analysis, found[0]))
+    before, after = (comparison(at.solution) for at in (found.done.before, found.done.after))
+    return Way(found, before, after, _written(analysis, found.done))
 
 
 def by_solver(
@@ -114,10 +125,10 @@ def by_solver(
             aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
             one = configuration(analysis, replace(placed, test=aim), asked)
             found = moved([one], analysis.model.parameters, asked, kept)
-            written = _written(analysis, found[0])
+            written = _written(analysis, found.done)
             progress("your solver solves the updated deck")
             after = judged(written[0])
-            last, factor = factor, _correction(after, found[0].after.correlation.pairs)
+            last, factor = factor, _correction(after, found.done.after.correlation.pairs)
             left = _percent(factor / last)
             if left < _SETTLED:
                 break
@@ -161,7 +172,7 @@ def configuration(
 def moved(
     every: Sequence[core.Configuration], parameters: Sequence[Parameter], asked: Study, kept: Kept
 ) -> Moved:
-    """Return the update, those from other starts, and intervals where they are asked for."""
+    """Return the update and what was asked of it."""
     stages = _stages(asked, parameters)
 
     def update() -> core.Updated:
@@ -174,9 +185,15 @@ def moved(
     each = kept.each(asked.executor)
     best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed, each)
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
-    if not asked.intervals:
-        return best, starts, None
-    return best, starts, profile_intervals(every, stages[-1], best)
+    last = stages[-1]
+    intervals = profile_intervals(every, last, best) if asked.intervals else None
+    sampled = (
+        sample_posterior(every, last, best, asked.samples, asked.seed) if asked.samples else None
+    )
+    evidence = weigh_prior(every, last, best) if asked.evidence else ()
+    if sampled:
+        best = replace(best, warnings=(*best.warnings, *sampled.doubts))
+    return Moved(best, starts, intervals, sampled, evidence)
 
 
 def _written(analysis: Analysis, done: core.Updated) -> _Written:

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ..noun import OPTIONAL
+from ..updating.prior_evidence import PriorWeighed
 from ..updating.update import Iteration
 from .correlation import PairRow
 from .parameters import LikenessTable
 from .plain import Table, Tables
-from .update import ParameterRow, StartRow, UpdateTables
+from .update import DrawsTable, ParameterRow, SampleRow, StartRow, UpdateTables
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,9 @@ class TogetherTables(Tables):
     warnings: tuple[str, ...]
     starts: Table[StartRow] = field(default_factory=lambda: Table((), StartRow))
     posterior: LikenessTable | None = field(default=None, metadata=OPTIONAL)
+    samples: Table[SampleRow] | None = field(default=None, metadata=OPTIONAL)
+    draws: DrawsTable | None = field(default=None, metadata=OPTIONAL)
+    evidence: Table[PriorWeighed] | None = field(default=None, metadata=OPTIONAL)
 
 
 def configuration_rows(results: Mapping[str, UpdateTables]) -> Table[ConfigurationRow]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -13,8 +14,11 @@ from ..data.parameter import Parameter
 from ..noun import OPTIONAL, Noun, key
 from ..reduction.damped_poles import ratios
 from ..updating.posterior import Start
+from ..updating.prior_evidence import PriorWeighed
 from ..updating.residuals import Seen
+from ..updating.sampling import Sampled
 from ..updating.update import Iteration, Updated
+from . import export
 from .correlation import Compared, PairRow, RunTables
 from .parameters import LikenessTable
 from .plain import Table, finite
@@ -64,6 +68,47 @@ class DampingRow:
     test_percent: float | None
     before: float | None
     after: float
+
+
+@dataclass(frozen=True)
+class SampleRow:
+    """A factor in samples of the posterior: mean, standard deviation, quantiles.
+
+    `effective` is how many independent samples would tell the mean as well, `spread` 1 where the
+    chains agree.
+    """
+
+    name: str
+    mean: float
+    standard_deviation: float
+    low: float
+    median: float
+    high: float
+    effective: float
+    spread: float
+
+
+@dataclass(frozen=True, eq=False)
+class DrawsTable(Noun):
+    """Samples of the factors, spread evenly over the chains: `values` (n_draw, n), by name."""
+
+    parameters: tuple[str, ...]
+    values: Floats
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def _wide(self) -> tuple[list[export.Column], list[dict[str, object]]]:
+        rows = [dict(zip(self.parameters, row, strict=True)) for row in self.values.tolist()]
+        return [export.Column.of(name) for name in self.parameters], rows
+
+    def to_csv(self, path: Path | str) -> None:
+        """Write a CSV file, one row a sample."""
+        export.write_csv(path, *self._wide)
+
+    def _repr_html_(self) -> str:
+        return export.html(*self._wide)
 
 
 @dataclass(frozen=True)
@@ -130,7 +175,8 @@ class UpdateTables(ChangingTables):
     """What ``update`` answers.
 
     `starts` are the updates from elsewhere that were asked for; `posterior` is the correlation of
-    the factors, None of less than two; `damping` are the ratios where that of the deck counts.
+    the factors, None of less than two; `damping` are the ratios where that of the deck counts;
+    `samples` and `draws` of the posterior and `evidence` for the prior where they are asked for.
     """
 
     verb = "update"
@@ -142,6 +188,9 @@ class UpdateTables(ChangingTables):
     posterior: LikenessTable | None = field(default=None, metadata=OPTIONAL)
     solver: SolverRow | None = field(default=None, metadata=OPTIONAL)
     damping: Table[DampingRow] | None = field(default=None, metadata=OPTIONAL)
+    samples: Table[SampleRow] | None = field(default=None, metadata=OPTIONAL)
+    draws: DrawsTable | None = field(default=None, metadata=OPTIONAL)
+    evidence: Table[PriorWeighed] | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def pairs(self) -> Table[PairRow]:
@@ -218,6 +267,40 @@ def _ratios(seen: Seen) -> dict[int, tuple[float, float]]:
     known = np.full(len(found), np.nan) if pairs.measured is None else pairs.measured
     both = zip(known.tolist(), found.tolist(), strict=True)
     return {q.test: pair for q, pair in zip(seen.pairs, both, strict=True)}
+
+
+_DRAWS = 1000
+"""Samples that are told one by one, at most."""
+
+
+def sample_rows(
+    parameters: Sequence[Parameter], sampled: Sampled | None
+) -> Table[SampleRow] | None:
+    """Return one row a sampled parameter; None without samples."""
+    if sampled is None:
+        return None
+    chains = sampled.chains
+    x = chains.samples
+    columns = (
+        x.mean(axis=0),
+        x.std(axis=0),
+        *np.quantile(x, (0.025, 0.5, 0.975), axis=0),
+        chains.effective,
+        chains.spread,
+    )
+    return Table(
+        SampleRow(parameters[k].name, *(float(c[i]) for c in columns))
+        for i, k in enumerate(sampled.parameters)
+    )
+
+
+def drawn(parameters: Sequence[Parameter], sampled: Sampled | None) -> DrawsTable | None:
+    """Return samples one by one; None without any."""
+    if sampled is None:
+        return None
+    x = sampled.chains.samples
+    at = np.linspace(0, len(x) - 1, min(len(x), _DRAWS)).astype(int)
+    return DrawsTable(tuple(parameters[k].name for k in sampled.parameters), x[at])
 
 
 def posterior_table(parameters: Sequence[Parameter], done: Updated) -> LikenessTable | None:

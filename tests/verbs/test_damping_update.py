@@ -95,6 +95,7 @@ def test_every_kind_of_damping_is_found_and_only_its_cards_change(
     after = (tmp_path / "run" / "deck" / "bar.bdf").read_text().splitlines()
     changed = {line.split(",")[0] for line in before if line not in after}
     assert changed == {"PARAM", "MAT1", "PDAMP", ""}
+    assert "Damping ratios" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     again = trueup.open_run(tmp_path / "run").damping
     assert [r.after for r in again] == [r.after for r in done.damping]
 

@@ -6,6 +6,7 @@ from ....core.errors import InputError, require_kind
 from .alignment import ALIGNMENT
 from .alternatives import ALTERNATIVES
 from .damping import DAMPING
+from .damping_ratios import DAMPING_RATIOS
 from .deck_changes import DECK_CHANGES
 from .disagreement import DISAGREEMENT
 from .findings import FINDINGS
@@ -16,6 +17,7 @@ from .moving_shapes import MOVING_SHAPES
 from .orthogonality import ORTHOGONALITY
 from .pairs import PAIRS
 from .parameters import PARAMETERS
+from .posterior import EVIDENCE, SAMPLES
 from .section import Section
 from .sensors import SENSORS
 from .unpaired_modes import UNPAIRED_MODES
@@ -35,6 +37,9 @@ SECTIONS: list[Section[Any]] = [
     UNPAIRED_MODES,
     SENSORS,
     PARAMETERS,
+    DAMPING_RATIOS,
+    SAMPLES,
+    EVIDENCE,
     ALTERNATIVES,
     ALIGNMENT,
     DECK_CHANGES,

@@ -1,6 +1,6 @@
 """What was moved, and how an update went."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -8,13 +8,7 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.results.discovery import DiscoverTables
-from ....core.results.update import (
-    ChangingTables,
-    DampingRow,
-    ParameterRow,
-    SolverRow,
-    UpdateTables,
-)
+from ....core.results.update import ChangingTables, ParameterRow, SolverRow, UpdateTables
 from ....core.updating.stages import Iteration
 from ..html.html_table import html_table
 from ..html.markup import tag
@@ -42,21 +36,7 @@ def _tables(answer: ChangingTables) -> Sequence[Table]:
         tables.append(iterations_table(answer.history, names, answer.stopped))
     if isinstance(answer, UpdateTables) and answer.solver is not None:
         tables.append(_solver(answer.solver))
-    if isinstance(answer, UpdateTables) and answer.damping is not None:
-        tables.append(_damping(answer.damping))
     return tables
-
-
-def _damping(rows: Iterable[DampingRow]) -> Table:
-    cells = [
-        (str(r.test), *(MISSING if v is None else fixed(v, 3) for v in _ratios(r))) for r in rows
-    ]
-    note = "Of critical damping; those of the analysis are of its complex modes."
-    return Table.of("Damping ratios", ["test mode", "test %", "before %", "after %"], cells, note)
-
-
-def _ratios(r: DampingRow) -> tuple[float | None, ...]:
-    return r.test_percent, r.before, r.after
 
 
 def _solver(s: SolverRow) -> Table:

@@ -19,7 +19,7 @@ def weighed(model, truth, sigmas, modes=slice(0, 1), residuals="frequencies, pri
 
 
 def test_one_spring_in_closed_form():
-    """r = (p/1.2 − 1)/2σ is one datum: Gaussian with mean (1/1.2 − 1)/2σ, variance 1 + (s/2.4σ)²."""
+    """r = (p/1.2 − 1)/2σ is a datum: Gaussian, mean (1/1.2 − 1)/2σ, variance 1 + (s/2.4σ)²."""
     sigma = 0.02
     rows = weighed(chain([range(1)], n=1), [1.2], {"frequency_sigma": sigma, "prior_sigma": 0.2})
     s = np.array([r.prior_sigma for r in rows])
