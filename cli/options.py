@@ -124,6 +124,10 @@ _STUDY: dict[str, Any] = {
         list[str], "A test node is at this grid, wherever it lies (repeatable).",
         "--node", metavar="TEST=GRID",
     ),
+    "mode_names": _option(
+        list[str], "What the report calls a test mode (repeatable).",
+        "--mode-name", metavar="TEST=NAME",
+    ),
     "out": _option(Path, "The run folder to write.", metavar="DIR"),
 }  # fmt: skip
 

@@ -12,7 +12,15 @@ from rich.table import Table
 from rich.text import Text
 
 from ..adapters.report.pictures.colour import STEPS, ramp
-from ..adapters.report.tables.number_formats import MISSING, fixed, general, hz, percent
+from ..adapters.report.tables.number_formats import (
+    MISSING,
+    fixed,
+    general,
+    hz,
+    percent,
+    placed,
+    weighed,
+)
 
 if TYPE_CHECKING:
     from ..adapters.report.tables import table as report_table
@@ -83,7 +91,7 @@ def brief_tables(answer: RunTables) -> Iterator[Table]:
     shown = (
         *FINDINGS.tables_of(answer),
         *PARAMETERS.tables_of(answer)[:1],
-        pairs_table([("", answer.final)]),
+        pairs_table([("", answer.final)], answer.named),
     )
     yield from (_rich(table) for table in shown if table is not None)
 
@@ -97,7 +105,7 @@ def pairs_tables(answer: RunTables, width: int = 110) -> list[Table]:
     if answer.initial is None or width >= _BOTH + _MORE * more:
         return [_rich(table) for table in tables]
     states = ((answer.initial, "before"), (answer.final, "after"))
-    made = [(pairs_table([("", c)]), state) for c, state in states]
+    made = [(pairs_table([("", c)], answer.named), state) for c, state in states]
     return [_rich(table, state) for table, state in made if table is not None]
 
 
@@ -155,11 +163,15 @@ def solve_table(answer: SolveTables) -> RenderableType:
         what = Text("rigid body", style="dim") if rigid else ""
         mass = general(mode.generalized_mass, 5)
         table.add_row(str(k + 1), _solved_hz(mode.frequency_hz, rigid), mass, what)
-    facts = [f"mass {general(answer.mass, 6)}"]
+    facts = []
+    if answer.mass is not None:
+        facts.append(f"mass {weighed(answer.mass, answer.kilograms)}")
     if answer.centre_of_gravity is not None:
-        centre = ", ".join(general(c, 6) for c in answer.centre_of_gravity)
-        facts.append(f"centre of gravity {centre}")
-    return Group(table, Text(f"{'; '.join(facts)} (deck units)\n"))
+        facts.append(f"centre of gravity {placed(answer.centre_of_gravity, answer.length_unit)}")
+    said = "; ".join(facts)
+    if answer.length_unit is None:
+        said = said.replace(" (deck units)", "") + " (deck units)"
+    return Group(table, Text(f"{said}\n"))
 
 
 def _solved_hz(f: float, rigid: bool) -> str:

@@ -9,7 +9,7 @@ from ..core.errors import InputError
 from ..core.results.correlation import compared
 from ..core.results.orthogonality import orthogonality_tables
 from .analysis import both_given, correlated, named, read_analysis
-from .made_of import made_of
+from .made_of import beside, made_of
 from .options import CorrelateOptions, Files, study_of
 from .run import Correlated, content_of
 from .sources import Source, measured
@@ -67,6 +67,7 @@ def correlate(
     return Correlated(
         **vars(tables),
         **made_of(analysis.deck, side, modes),
+        **beside(asked, found.placed.test_geometry.length_unit, deck=analysis.deck),
         deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
         orthogonality=told,

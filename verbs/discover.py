@@ -32,7 +32,7 @@ from ..core.results.evidence import damping_table, misfit_table, response_table
 from ..core.results.plain import Table
 from ..core.results.update import ParameterRow
 from .analysis import both_given, named, placed
-from .made_of import made_of
+from .made_of import beside, made_of
 from .options import DiscoverOptions, Files, Say, said_to, study_of, unheard
 from .run import Discovered, content_of
 from .sources import Measured, Source, geometry_of, measured, read_deck
@@ -134,6 +134,12 @@ def discover(
     own = SolvedModel(before, solution, structure.damping)
     return Discovered(
         **made_of(given, side),
+        **beside(
+            asked,
+            before.placed.test_geometry.length_unit,
+            before=given,
+            after=done.deck if done.deck.diff else None,
+        ),
         deck_file=f"deck/{done.deck.name}",
         input_deck=deck.told,
         test_files=tuple(map(str, side.files)),

@@ -28,9 +28,10 @@ from ..core.results.modes import (
     rejected_rows,
 )
 from .folder import Folder
+from .made_of import made_of_files
 from .options import Files, Say, checked_call, study_of, unheard
 from .sources import Source, existing, files_of
-from .study import Study, converted, read_study, seen_from, study_toml
+from .study import Study, converted, read_study, write_study
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function
@@ -99,8 +100,7 @@ class Identified(IdentifyTables, Folder):
         write_store(work / "result.h5", **vars(self.content))
         (work / "stabilisation.html").write_text(self.page, encoding="utf-8")
         if self.study is not None:
-            said = study_toml(seen_from(work, self.study))
-            (work / "study.toml").write_text(said, encoding="utf-8")
+            write_study(work, self.study)
 
     @classmethod
     def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
@@ -174,6 +174,7 @@ def identify(
     from ..adapters.universal.joining.time_records import time_records_of
     from ..core.identification import identify as find
     from ..core.identification.survey.time_records import faults_of_records
+    from .report import imprint_of
 
     given = {"fmin": fmin, "fmax": fmax, "max_order": max_order, "take": take, "refuse": refuse,
              "exponential_window": exponential_window, "bands": bands}  # fmt: skip
@@ -184,6 +185,7 @@ def identify(
     if frf is None and not asked.test:
         raise InputError("identify: no file of a test is given; give one, or a study that names it")
     progress("reading")
+    imprint = imprint_of(asked)
     files = asked.test if frf is None else _files(frf)
     read = read_responses(files) if files else _content(frf)
     assert read.frfs is not None
@@ -201,7 +203,8 @@ def identify(
     of_coherence = (*of_coherence, *(f.sentence for f in of_records))
     warnings = (*read.warnings, *_lost(read.skipped), *of_coherence, *found.warnings)
     name, hz = ", ".join(p.name for p in files), found.cmif.frequencies_hz
-    return Identified(
+    answer = Identified(
+        **made_of_files(files),
         frf=tuple(map(str, files)),
         modes=mode_rows(found),
         rejected=rejected_rows(found),
@@ -222,10 +225,12 @@ def identify(
             matrices={"shape_std": found.shape_std},
         ),
         units=read.units,
-        page=stabilisation_page(found, name, warnings, read.geometry),
+        page="",
         study=asked if files else None,
         skipped=read.skipped,
     )
+    page = stabilisation_page(found, name, warnings, read.geometry, answer, imprint)
+    return replace(answer, page=page)
 
 
 def _files(frf: Source) -> tuple[Path, ...]:

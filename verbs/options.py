@@ -36,6 +36,7 @@ class CompareOptions(TypedDict, total=False):
     directions of them ("1112, 40:Z"); ``pairs`` by hand, whatever their MAC ("3:5", test before
     analysis); ``mode_weights`` of test modes beside the others ({3: 0.2}); ``node_map``, test
     nodes to the grids that they are at ({1112: 40}). What has no effect on a verb is refused.
+    ``mode_names`` of test modes for tables and report ({3: "first bending"}).
     """
 
     deck_length_unit: str | None
@@ -58,6 +59,7 @@ class CompareOptions(TypedDict, total=False):
     pairs: str | Sequence[str | tuple[int, int]] | None
     mode_weights: str | Sequence[str] | Mapping[int, float] | None
     node_map: str | Sequence[str] | Mapping[int, int] | None
+    mode_names: str | Sequence[str] | Mapping[int, str] | None
 
 
 class CorrelateOptions(CompareOptions, total=False):

@@ -35,9 +35,10 @@ from ..core.updating.residuals.frequencies import FREQUENCIES
 from ..core.updating.updating_numbers import UPDATING
 from .analysis import placed, require_one, target_of
 from .folder import Folder
+from .made_of import made_of_files
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
 from .sources import Measured, Source, measured, read_deck
-from .study import Study
+from .study import Study, write_study
 from .taking_part import refuse_idle
 
 if TYPE_CHECKING:
@@ -56,13 +57,16 @@ class MovableParameters(ParametersTables, Folder):
 
     geometry: Geometry = field(metadata=BESIDE)
     places: dict[str, tuple[int, ...]] = field(metadata=BESIDE)
+    study: Study = field(metadata=BESIDE)
 
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
         from ..adapters.report.parameters_page import parameters_page
+        from .report import imprint_of
 
         super().fill(work)
-        page = parameters_page(self, self.geometry, self.places)
+        page = parameters_page(self, self.geometry, self.places, imprint_of(self.study))
+        write_study(work, self.study)
         (work / "report.html").write_text(page, encoding="utf-8")
 
 
@@ -149,10 +153,8 @@ def parameters(
             specs, more = candidates(given, _MOST)
         model = build_model(read, specs, asked.damped)
     progress("solving")
-    if test is None:
-        seen = _of_deck(given, model, asked)
-    else:
-        seen = _of_test(given, model, measured(test, asked), asked)
+    side = None if test is None else measured(test, asked)
+    seen = _of_test(given, model, side, asked) if side else _of_deck(given, model, asked)
     progress("weighing")
     said = identifiability(seen.gradient, 1.0, UPDATING.unsure)
     names = tuple(q.name for q in model.parameters)
@@ -160,9 +162,11 @@ def parameters(
     if seen.misfit is not None:
         choice = forward_selection(seen.gradient, seen.misfit, UPDATING.unsure)
     left = (f"{more} more values are in the deck: name those to look at with -p",) if more else ()
+    own = [*given.files] if given.on_disk else []
     return MovableParameters(
+        **made_of_files([*own, *(side.files if side else ())]),
         deck_file=given.told,
-        test_files=tuple(map(str, measured(test, asked).files)) if test is not None else (),
+        test_files=tuple(map(str, side.files)) if side else (),
         properties=Table(rows),
         candidates=Table(_candidates(model, seen, said, choice), CandidateRow),
         combinations=Table(_combinations(said, names), CombinationRow),
@@ -172,6 +176,11 @@ def parameters(
         warnings=(*given.warnings, *model.warnings, *seen.warnings, *left),
         geometry=model.geometry,
         places=_places(model),
+        study=replace(
+            asked,
+            deck=given.path if given.on_disk else None,
+            test=side.files if side else (),
+        ),
     )
 
 

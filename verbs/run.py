@@ -18,7 +18,7 @@ from ..core.results.plain import Table
 from ..core.results.update import ChangingTables, InPlace, UpdateTables
 from ..core.updating.stages import Iteration
 from .folder import Folder
-from .study import Study, read_study, seen_from, study_toml
+from .study import Study, read_study, write_study
 
 if TYPE_CHECKING:
     from .plots import Plots
@@ -71,7 +71,7 @@ class Run(RunTables, Folder):
             diff = self.deck.diff
             (work / "changes.diff").write_text(diff, encoding="utf-8", newline="")
         write_store(work / "result.h5", **vars(self.content))
-        (work / "study.toml").write_text(study_toml(seen_from(work, self.study)), encoding="utf-8")
+        write_study(work, self.study)
         page = render(self, self.content, diff, imprint_of(self.study))
         (work / "report.html").write_text(page, encoding="utf-8")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -16,9 +16,10 @@ from ..core.noun import BESIDE
 from ..core.results.modes import ModeRow, SolveTables
 from ..core.results.plain import Table
 from .folder import Folder
-from .options import Say, checked_call, unheard
+from .made_of import made_of_files
+from .options import Files, Say, checked_call, study_of, unheard
 from .sources import Source, geometry_of, read_deck
-from .study import converted
+from .study import Study, converted, read_study, write_study
 
 if TYPE_CHECKING:
     from ..adapters.store import StoreContent
@@ -38,11 +39,14 @@ class Solved(SolveTables, Folder):
         On all degrees of freedom, mass-normalised.
     parts : mapping of str to sequence of int
         Grids of the elements of each property of a deck, for the pictures of its page.
+    study : Study
+        What was asked.
     """
 
     geometry: Geometry = field(metadata=BESIDE)
     shapes: Modes = field(metadata=BESIDE)
     parts: Mapping[str, Sequence[int]] = field(default_factory=dict, metadata=BESIDE)
+    study: Study = field(default_factory=Study, metadata=BESIDE)
 
     @property
     def content(self) -> StoreContent:
@@ -74,10 +78,14 @@ class Solved(SolveTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that the run folder of a solution holds."""
         from ..adapters.report.solution_page import solution_page
+        from .report import imprint_of
 
-        page = solution_page(self, self.geometry, self.shapes, self.parts)
+        imprint = imprint_of(self.study)
+        page = solution_page(self, self.geometry, self.shapes, self.parts, imprint)
         (work / "report.html").write_text(page, encoding="utf-8")
         self.write(work / "result.h5")
+        if self.study.deck is not None:
+            write_study(work, self.study)
         super().fill(work)
 
     @classmethod
@@ -85,22 +93,33 @@ class Solved(SolveTables, Folder):
         """Return what `fill` wrote."""
         if content.geometry is None or "analysis" not in content.modes:
             raise Place(run / "result.h5").fault("holds no modes of an analysis")
-        return cls.from_dict(result, geometry=content.geometry, shapes=content.modes["analysis"])
+        asked = run / "study.toml"
+        study = read_study(asked) if asked.is_file() else Study()
+        shapes = content.modes["analysis"]
+        return cls.from_dict(result, geometry=content.geometry, shapes=shapes, study=study)
 
 
 @checked_call
 def solve(
-    deck: Source, number: int | None = None, fmax: float | None = None, *, progress: Say = unheard
+    deck: Source | None = None,
+    number: int | None = None,
+    fmax: float | None = None,
+    *,
+    study: Study | Files | None = None,
+    progress: Say = unheard,
 ) -> Solved:
     """Find the normal modes of a deck with the embedded solver.
 
     Parameters
     ----------
     deck : path, Deck, ChangedDeck or Model
+        Default: the deck of `study`.
     number : int, optional
         Modes to find, rigid-body ones included; default: what the deck asks for, or ten.
     fmax : float, optional
-        All modes up to here, Hz.
+        All modes up to here, Hz; default: that of `study`.
+    study : Study or path, optional
+        Of it the deck, ``fmax``, ``deck_length_unit``, and what stands on the report.
     progress : callable
         Told what is done, a few words at a time.
 
@@ -117,31 +136,44 @@ def solve(
     """
     from ..adapters.nastran import build_model, weight
     from ..adapters.nastran.assembly.candidate_parameters import grids_by_property
+    from ..adapters.nastran.discovery.mass_unit import mass_unit
+    from .report import imprint_of
 
     who = Place(shown="solve")
+    asked = study_of("solve", study, {}, {})
+    deck = asked.deck if deck is None else deck
+    if deck is None:
+        raise InputError("give a deck, or a study that names one")
+    imprint_of(asked)
+    fmax = asked.fmax if fmax is None else converted("fmax", fmax, float, who)
     number = converted("number", number, int | None, who)
-    fmax = converted("fmax", fmax, float | None, who)
     if number is not None and number < 1:
         raise InputError(f"number is {number!r}; ask for at least one mode")
     if fmax is not None and fmax <= 0.0:
         raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
     read = None if isinstance(deck, Model) else read_deck(deck)
-    asked = read.eigen.nd if read and read.eigen else None
+    sought = read.eigen.nd if read and read.eigen else None
     with naming(read.path if read else None):
         model = build_model(read) if read else deck
         assert isinstance(model, Model)
         progress("solving")
-        wanted = number if number or fmax else (asked or _FEW)
+        wanted = number if number or fmax else (sought or _FEW)
         solution = normal_modes.solve(model, n_modes=wanted, fmax=fmax)
     modes = normal_modes.modes_of(model, solution)
-    mass = weight(read) if read else None
+    mass, unit = weight(read) if read else None, asked.deck_length_unit
+    unit = unit or (read.length_unit if read else None)
+    each = mass_unit(read, unit).kilograms if read else None
+    own = [*read.files] if read and read.on_disk else []
     return Solved(
+        **made_of_files(own),
         deck_file=read.told if read else "",
         modes=Table(
             map(ModeRow, modes.frequencies_hz.tolist(), modes.generalized_mass.tolist()), ModeRow
         ),
         rigid_body_modes=solution.rigid_body_modes,
         mass=mass.mass if mass else None,
+        kilograms=mass.mass * each if mass and each else None,
+        length_unit=unit,
         centre_of_gravity=mass.centre_of_gravity if mass else None,
         checks=solution.checks,
         degrees_of_freedom=model.n_free,
@@ -151,4 +183,7 @@ def solve(
         geometry=geometry_of(model, read),
         shapes=modes,
         parts=grids_by_property(read) if read else {},
+        study=replace(
+            asked, deck=read.path if read and read.on_disk else None, fmax=fmax, fmin=None, bands=()
+        ),
     )

@@ -84,6 +84,7 @@ class Study:
     pairs: tuple[tuple[int, int], ...] = ()
     mode_weights: tuple[tuple[int, float], ...] = ()
     node_map: tuple[tuple[int, int], ...] = ()
+    mode_names: tuple[tuple[int, str], ...] = ()
     title: str | None = None
     author: str | None = None
     company: str | None = None
@@ -344,6 +345,12 @@ def study_toml(study: Study) -> str:
             held = {n: getattr(table, n) for n in get_type_hints(kind)}
             lines += [f"{n} = {_toml(v)}" for n, v in held.items() if v not in (None, ())]
     return "\n".join(lines) + "\n"
+
+
+def write_study(work: Path, study: Study) -> None:
+    """Write the study of a run folder, its paths as seen from there."""
+    text = study_toml(seen_from(work, study))
+    (work / "study.toml").write_text(text, encoding="utf-8", newline="\n")
 
 
 def _toml(value: Any) -> str:

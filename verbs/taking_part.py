@@ -54,6 +54,13 @@ def _node(item: object) -> list[tuple[int, int]]:
     return [(int(node), int(grid))]
 
 
+def _name(item: object) -> list[tuple[int, str]]:
+    mode, name = item.split("=", 1) if isinstance(item, str) else _two(item, "=")
+    if not str(name).strip():
+        raise ValueError
+    return [(int(mode), str(name).strip())]
+
+
 def _sensor(item: object) -> list[str]:
     found = _SENSOR.fullmatch(str(item).strip().upper())
     if found is None:
@@ -62,14 +69,21 @@ def _sensor(item: object) -> list[str]:
     return [f"{node}:{direction}" if direction else node]
 
 
+def _whole_items(value: object) -> list[object]:
+    """Return what a list or one value holds: names may have commas."""
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
 def _reader(
-    item: Callable[[object], list[Any]], example: str
+    item: Callable[[object], list[Any]],
+    example: str,
+    items: Callable[[object], list[object]] = _items,
 ) -> Callable[[str, object, Place], tuple[Any, ...]]:
     def read(name: str, value: object, who: Place) -> tuple[Any, ...]:
         if isinstance(value, Mapping):
             value = [*value.items()]
         found: list[Any] = []
-        for one in _items(value):
+        for one in items(value):
             try:
                 found += item(one)
             except (ValueError, TypeError):
@@ -86,6 +100,7 @@ READERS: dict[str, Callable[[str, object, Place], tuple[Any, ...]]] = {
     "pairs": _reader(_pair, "TEST:ANALYSIS, such as 3:5"),
     "mode_weights": _reader(_weight, "TEST=WEIGHT, such as 3=0.2"),
     "node_map": _reader(_node, "TEST=GRID, such as 1112=40"),
+    "mode_names": _reader(_name, "TEST=NAME, such as 3=first bending", _whole_items),
 }
 """By the key of a study: its value, as text, numbers or a list of them, to a tuple."""
 

@@ -17,7 +17,7 @@ from ..core.results.update import (
     weights_table,
 )
 from .analysis import Analysis, named
-from .made_of import made_of
+from .made_of import beside, made_of
 from .run import Updated, content_of
 from .sources import Measured
 from .study import Study
@@ -36,6 +36,12 @@ def updated(
     assert analysis.deck is not None
     return Updated(
         **made_of(analysis.given, side),
+        **beside(
+            asked,
+            placed.test_geometry.length_unit,
+            before=analysis.given,
+            after=changed if changed.diff else None,
+        ),
         deck_file=f"deck/{changed.name}",
         input_deck=analysis.deck.told,
         test_files=tuple(map(str, side.files)),

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...core.results.correlation import RunTables
+from ...core.results.made import MadeTables
 from .html.markup import esc, tag
 
 
@@ -30,7 +30,7 @@ def letterhead(imprint: Imprint | None) -> str:
     return tag("header", tag("div", said), logo, class_="letterhead")
 
 
-def colophon(answer: RunTables) -> str:
+def colophon(answer: MadeTables) -> str:
     """Return the foot of the page: version, what runs it again, the inputs with their hashes."""
     made = f"trueup {answer.version}".strip()
     again = f"trueup {answer.verb} --study study.toml, in the run folder, runs it again."

@@ -19,7 +19,7 @@
   const toggle = (node, on) => on ? node.removeAttribute('hidden') : node.setAttribute('hidden', '');
 
   for (const svg of document.querySelectorAll('svg.heat')) {
-    const d = svg.dataset, rows = d.rows.split('|'), cols = d.cols.split('|'), cell = +d.cell;
+    const d = svg.dataset, rows = d.rows.split('|'), cols = d.cols.split('|'), sides = d.sides.split('|'), cell = +d.cell;
     const cursor = svg.querySelector('.cursor'), left = 84, top = 8;
     let at = [0, 0];
     const pick = (r, c) => {
@@ -27,7 +27,7 @@
       const code = d.v.substr(2 * (r * cols.length + c), 2);
       const value = code === '--' ? 'unknown' : (parseInt(code, 36) / 10).toFixed(1) + ' %';
       cursor.setAttribute('x', c * cell); cursor.setAttribute('y', r * cell); toggle(cursor, true);
-      return `MAC ${value}\ntest ${rows[r]}\nanalysis ${cols[c]}`;
+      return `MAC ${value}\n${sides[0]} ${rows[r]}\n${sides[1]} ${cols[c]}`;
     };
     const leave = () => { hide(); toggle(cursor, false); };
     svg.addEventListener('pointermove', e => {
@@ -84,4 +84,42 @@
     hot.addEventListener('pointerleave', hide);
   }
   addEventListener('scroll', hide, { passive: true });
+
+  // Every picture as SVG or PNG, every table as CSV.
+  const make = (name, fields, ...children) => { const e = Object.assign(document.createElement(name), fields); e.append(...children); return e; };
+  const press = (text, title, act) => { const b = make('button', { type: 'button', title }, text); b.addEventListener('click', act); return b; };
+  const keep = (name, blob) => { const href = URL.createObjectURL(blob); make('a', { href, download: name }).click(); setTimeout(() => URL.revokeObjectURL(href), 9e3); };
+  const named = node => (node.closest('figure')?.querySelector('figcaption b')?.textContent || node.closest('section')?.querySelector('h2')?.textContent || 'trueup').replace(/[^\w.]+/g, '_');
+  const style = document.querySelector('style').textContent.replace(/@media screen and \(prefers-color-scheme:dark\)\{:root\{[^}]*\}\}/g, '');
+  const drawn = svg => {                     // in the colours of paper, by itself
+    const box = svg.viewBox.baseVal, copy = svg.cloneNode(true), own = document.createElementNS(svg.namespaceURI, 'style'), sheet = document.createElementNS(svg.namespaceURI, 'rect');
+    own.textContent = style + 'svg{font-family:Arial,Helvetica,sans-serif;overflow:hidden}';
+    for (const [k, v] of [['width', box.width], ['height', box.height], ['fill', '#fff']]) sheet.setAttribute(k, v);
+    copy.setAttribute('width', box.width); copy.setAttribute('height', box.height); copy.prepend(own, sheet);
+    return new Blob([new XMLSerializer().serializeToString(copy)], { type: 'image/svg+xml' });
+  };
+  const pixels = (svg, done) => {
+    const picture = new Image(), box = svg.viewBox.baseVal, href = URL.createObjectURL(drawn(svg));
+    picture.onload = () => { const c = make('canvas', { width: 2 * box.width, height: 2 * box.height }); c.getContext('2d').drawImage(picture, 0, 0, c.width, c.height); URL.revokeObjectURL(href); c.toBlob(done); };
+    picture.src = href;
+  };
+  const lines = table => {
+    const [above, heads] = [...table.tHead?.rows || []].length > 1 ? table.tHead.rows : [null, table.tHead?.rows[0]];
+    const groups = above ? [...above.cells].flatMap(c => Array(c.colSpan).fill(c.textContent)) : [];
+    const cell = (c, k) => '"' + [groups[k], c.textContent].filter(Boolean).join(' ').trim().replace(/"/g, '""') + '"';
+    const value = c => { const text = c.textContent.trim().replace(/\u2212/g, '-').replace(/^\u2013$/, ''); return /^[-+]?[\d.]+(e-?\d+)?$/.test(text) || !text ? text : '"' + text.replace(/"/g, '""') + '"'; };
+    const rows = heads ? [...table.tBodies[0].rows] : [...table.rows];
+    return [...heads ? [[...heads.cells].map(cell)] : [], ...rows.map(r => [...r.cells].map(value))].map(r => r.join(',')).join('\r\n') + '\r\n';
+  };
+  for (const figure of document.querySelectorAll('figure:not(.viewer)')) {
+    const pictures = [...figure.querySelectorAll('svg')], caption = figure.querySelector('figcaption') || figure.appendChild(make('figcaption', {}));
+    const each = act => () => pictures.forEach((svg, k) => act(svg, named(svg) + (k ? '_' + (k + 1) : '')));
+    if (pictures.length) caption.append(make('span', { className: 'keep' }, press('SVG', 'save as a drawing', each((svg, name) => keep(name + '.svg', drawn(svg)))), press('PNG', 'save as a picture', each((svg, name) => pixels(svg, blob => keep(name + '.png', blob))))));
+  }
+  for (const table of document.querySelectorAll('table')) {
+    const figure = table.closest('figure'), block = table.closest('.wide'), next = block?.nextElementSibling;
+    const place = figure ? figure.querySelector('.keep') : next?.matches('p.note') ? next : block?.parentNode.appendChild(make('p', { className: 'note' }));
+    const save = press('CSV', 'save the table', () => keep(named(table) + '.csv', new Blob(['\ufeff' + lines(table)], { type: 'text/csv' })));
+    place?.append(figure ? save : make('span', { className: 'keep' }, save));
+  }
 })();

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from ...core.data.geometry import Geometry
 from ...core.results.correlation import RunTables
 from ...core.results.discovery import DiscoverTables
+from ...core.results.made import MadeTables
 from .html.html_table import html_table
 from .html.markup import esc, tag
 from .imprint import Imprint, colophon, letterhead
@@ -21,6 +22,7 @@ from .tables.headline import VERDICTS, figures, story
 
 _FIRST = (FINDINGS, PAIRS, PARAMETERS)
 """Sections whose tables a notebook shows."""
+Fact = tuple[str, str, str]
 _VERBS = {"correlate": "Correlation", "update": "Update", "discover": "Discovery"}
 
 
@@ -69,35 +71,70 @@ def make_report(
     first, *rest = story(answer)
     links = tag("nav", *[tag("a", esc(s.title), href=f"#{s.anchor}") for s, _ in shown],
                 aria_label="Sections")  # fmt: skip
-    body = tag(
-        "main",
-        letterhead(imprint),
+    return sheet(
+        answer,
+        (kind, name),
         kicker,
         tag("h1", _unbroken(first)),
         tag("p", _unbroken(" ".join(rest)), class_="lede") if rest else "",
-        _strip(answer),
+        figures_strip(figures(answer)),
         warned(answer.all_warnings),
         links if len(shown) > 2 else "",
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
-        colophon(answer),
+        imprint=imprint,
+        scripts=["viewer.js"] * (shapes is not None),
     )
-    name = imprint.title if imprint and imprint.title else name
-    return html_page(name or kind, body + scripts(*["viewer.js"] * (shapes is not None)))
 
 
-def scripts(*further: str) -> str:
-    """Return what shows values under the pointer, and further scripts of this folder."""
-    tip = '<div id="tip" role="status" hidden></div>'
-    return f"{tip}<script>{''.join(map(_asset, ('page.js', *further)))}</script>"
+def sheet(
+    answer: MadeTables,
+    names: tuple[str, str],
+    *body: str,
+    imprint: Imprint | None,
+    scripts: Sequence[str] = (),
+) -> str:
+    """Return a page that needs nothing else, in the style of the reports, light and dark.
 
-
-def html_page(title: str, body: str) -> str:
-    """Return a page that needs nothing else, in the style of the reports, light and dark."""
+    Parameters
+    ----------
+    answer : MadeTables
+        What made it stands at its foot.
+    names : (str, str)
+        What it is and of what, for its title.
+    *body : str
+        Markup between letterhead and foot.
+    imprint : Imprint or None
+        Whose page it is.
+    scripts : sequence of str
+        Of this folder, besides what shows values under the pointer.
+    """
+    title = imprint.title if imprint and imprint.title else names[1] or names[0]
     head = (
         '<meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<title>trueup · {esc(title)}</title><style>{_style()}</style>"
     )
-    return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{body}</body></html>\n'
+    main = tag("main", letterhead(imprint), *body, colophon(answer))
+    tip = '<div id="tip" role="status" hidden></div>'
+    script = f"<script>{''.join(map(_asset, ('page.js', *scripts)))}</script>"
+    return (
+        f'<!doctype html>\n<html lang="en"><head>{head}</head><body>{main}{tip}{script}</body>'
+        "</html>\n"
+    )
+
+
+def titled(kind: str, name: str, heading: str, warnings: Sequence[str], *facts: Fact) -> str:
+    """Return the top of a page: what it is, the heading, key figures, warnings."""
+    return (
+        tag("p", esc(" · ".join(t for t in (kind, name) if t)), class_="kicker")
+        + tag("h1", esc(heading))
+        + figures_strip(facts)
+        + warned(warnings)
+    )
+
+
+def sections(*shown: tuple[str, str]) -> str:
+    """Return sections, each a title and its markup, without those that have none."""
+    return "".join(tag("section", tag("h2", title), body) for title, body in shown if body)
 
 
 def summary(answer: RunTables) -> str:
@@ -119,12 +156,13 @@ def _compared(answer: RunTables) -> str:
     return " against ".join(", ".join(PurePath(p).name for p in side) for side in sides if side)
 
 
-def _strip(answer: RunTables) -> str:
+def figures_strip(facts: Sequence[Fact]) -> str:
+    """Return key figures, each a name, a value, and what it was before or nothing."""
     items = ""
-    for what, now, then in figures(answer):
+    for what, now, then in facts:
         before = tag("small", esc(f"before {then}")) if then else ""
         items += tag("div", tag("dt", esc(what)), tag("dd", esc(now), before))
-    return tag("dl", items, class_="figures")
+    return tag("dl", items, class_="figures") if items else ""
 
 
 def warned(warnings: Sequence[str]) -> str:

@@ -8,8 +8,9 @@ import numpy as np
 from ...core.data.geometry import Geometry
 from ...core.results.parameters import CandidateRow, ParametersTables
 from .html.html_table import html_table
-from .html.markup import esc, tag
-from .page import html_page, scripts, warned
+from .html.markup import tag
+from .imprint import Imprint
+from .page import sections, sheet, titled
 from .pictures.named_matrix import named_matrix
 from .pictures.scene import scene
 from .tables.number_formats import counted, fixed, general, hz, listed, percent
@@ -22,7 +23,10 @@ _PARTS = 12
 
 
 def parameters_page(
-    found: ParametersTables, geometry: Geometry, places: Mapping[str, Sequence[int]]
+    found: ParametersTables,
+    geometry: Geometry,
+    places: Mapping[str, Sequence[int]],
+    imprint: Imprint | None = None,
 ) -> str:
     """Return what may be moved as one HTML page that needs nothing else.
 
@@ -32,6 +36,8 @@ def parameters_page(
     geometry : Geometry
     places : mapping of str to sequence of int
         Grids that each parameter moves something at, by its name.
+    imprint : Imprint, optional
+        Whose page it is.
     """
     name = PurePath(found.deck_file).name
     first = sorted(found.candidates, key=lambda c: (c.recommended or np.inf, -c.sensitivity))
@@ -41,22 +47,21 @@ def parameters_page(
     note = (
         "The darker, the more its modes move with the parameter; touched are its elements' grids."
     )
-    sections = (
+    shown_in = (
         ("Parameters", html_table(candidates_table(first))),
         ("Sensitivity", _sensitivity(found)),
         ("Likeness", _likeness(found)),
         ("On the structure", tag("div", pictures, class_="maps") + tag("p", note, class_="note")),
     )
     chosen = listed(found.recommended) or "none: no parameter is determined"
-    body = tag(
-        "main",
-        tag("p", esc(" · ".join(t for t in ("What may be moved", name) if t)), class_="kicker"),
-        tag("h1", esc(f"{counted(len(found.candidates), 'parameter')}; recommended: {chosen}")),
-        warned(found.warnings),
-        *[tag("section", tag("h2", title), text) for title, text in sections if text],
-        tag("footer", esc(f"trueup · {found.schema}")),
+    heading = f"{counted(len(found.candidates), 'parameter')}; recommended: {chosen}"
+    return sheet(
+        found,
+        ("parameters", name),
+        titled("What may be moved", name, heading, found.warnings),
+        sections(*shown_in),
+        imprint=imprint,
     )
-    return html_page(name or "parameters", body + scripts())
 
 
 def candidates_table(rows: Sequence[CandidateRow]) -> Table:

@@ -9,13 +9,14 @@ from ...core.data.geometry import Geometry
 from ...core.data.modes import Modes
 from ...core.results.modes import SolveTables
 from .html.html_table import html_table
-from .html.markup import esc, tag
-from .page import html_page, scripts, warned
+from .html.markup import tag
+from .imprint import Imprint
+from .page import Fact, sections, sheet, titled
 from .pictures.film import one_side
 from .pictures.moving_figure import moving_figure
 from .pictures.scene import scene
 from .pictures.shape_overlay import model_shapes
-from .tables.number_formats import counted, general, hz
+from .tables.number_formats import counted, general, hz, placed, weighed
 from .tables.table import Cell, Table, left
 
 _SHOWN = 40
@@ -26,7 +27,11 @@ _PARTS = 12
 
 
 def solution_page(
-    found: SolveTables, geometry: Geometry, shapes: Modes, parts: Mapping[str, Sequence[int]]
+    found: SolveTables,
+    geometry: Geometry,
+    shapes: Modes,
+    parts: Mapping[str, Sequence[int]],
+    imprint: Imprint | None = None,
 ) -> str:
     """Return normal modes as one HTML page that needs nothing else.
 
@@ -36,6 +41,8 @@ def solution_page(
     geometry, shapes : Geometry, Modes
     parts : mapping of str to sequence of int
         Grids of the elements of each property, by what the page calls it.
+    imprint : Imprint, optional
+        Whose page it is.
     """
     n, rigid = len(found.modes), found.rigid_body_modes
     last = found.modes[-1].frequency_hz if n else 0.0
@@ -45,33 +52,27 @@ def solution_page(
     pictures = "".join(_part(geometry, what, grids) for what, grids in [*parts.items()][:_PARTS])
     more = len(parts) - _PARTS
     note = tag("p", _NOTE + f" {more} more are not shown." * (more > 0), class_="note")
-    sections = (
-        ("Modes", html_table(modes_table(found))),
-        ("Shapes", _moving(geometry, shapes, rigid)),
-        ("Properties", tag("div", pictures, class_="maps") + note if pictures else ""),
+    return sheet(
+        found,
+        ("solution", name),
+        titled("Solution", name, heading, found.warnings, *_facts(found)),
+        sections(
+            ("Modes", html_table(modes_table(found))),
+            ("Shapes", _moving(geometry, shapes, rigid)),
+            ("Properties", tag("div", pictures, class_="maps") + note if pictures else ""),
+        ),
+        imprint=imprint,
+        scripts=["viewer.js"],
     )
-    body = tag(
-        "main",
-        tag("p", esc(" · ".join(t for t in ("Solution", name) if t)), class_="kicker"),
-        tag("h1", esc(heading)),
-        tag("dl", *[tag("div", tag("dt", esc(k)), tag("dd", esc(v))) for k, v in _facts(found)],
-            class_="figures"),
-        warned(found.warnings),
-        *[tag("section", tag("h2", title), shown) for title, shown in sections if shown],
-        tag("footer", esc(f"trueup · {found.schema}")),
-    )  # fmt: skip
-    return html_page(name or "solution", body + scripts("viewer.js"))
 
 
-def _facts(found: SolveTables) -> list[tuple[str, str]]:
-    centre = found.centre_of_gravity
-    at = "" if centre is None else ", ".join(general(float(c), 4) for c in centre)
-    facts = [
-        ("mass, deck units", general(found.mass, 5)),
-        ("centre of gravity, deck units", at),
-        ("degrees of freedom", str(found.degrees_of_freedom)),
-    ]
-    return [(what, value) for what, value in facts if value]
+def _facts(found: SolveTables) -> list[Fact]:
+    facts: list[Fact] = []
+    if found.mass is not None:
+        facts.append(("mass", weighed(found.mass, found.kilograms), ""))
+    if found.centre_of_gravity is not None:
+        facts.append(("centre of gravity", placed(found.centre_of_gravity, found.length_unit), ""))
+    return [*facts, ("degrees of freedom", str(found.degrees_of_freedom), "")]
 
 
 def modes_table(found: SolveTables) -> Table:

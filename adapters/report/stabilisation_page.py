@@ -6,9 +6,11 @@ import numpy as np
 
 from ...core.data.geometry import Geometry
 from ...core.identification import Identification
+from ...core.results.made import MadeTables
 from .html.html_table import html_table
 from .html.markup import esc, key, tag
-from .page import html_page, scripts, warned
+from .imprint import Imprint
+from .page import sections, sheet, titled
 from .pictures.film import one_side
 from .pictures.function_overlay import function_overlay
 from .pictures.moving_figure import moving_figure
@@ -26,6 +28,8 @@ def stabilisation_page(
     title: str = "",
     warnings: Sequence[str] | None = None,
     geometry: Geometry | None = None,
+    made: MadeTables | None = None,
+    imprint: Imprint | None = None,
 ) -> str:
     """Return what an identification found as one HTML page that needs nothing else.
 
@@ -38,6 +42,10 @@ def stabilisation_page(
         Default: those of `found`.
     geometry : Geometry, optional
         Of the test, on which its shapes move.
+    made : MadeTables, optional
+        The answer of the verb, which the foot of the page tells of.
+    imprint : Imprint, optional
+        Whose page it is.
     """
     n = len(found.modes)
     said = found.warnings if warnings is None else warnings
@@ -48,23 +56,28 @@ def stabilisation_page(
         f"{counted(len(found.references), 'reference')}"
     )
     drivers = n and found.driving_points
-    sections = (
+    shown = (
         ("Modes", html_table(modes_table(found)) if n else ""),
         ("Shapes", _shapes(found, geometry)),
         ("Functions", function_overlay(found) + _assurance(found)),
         ("Rejected", html_table(rejected_table(found)) if found.rejected else ""),
         ("Driving points and reciprocity", html_table(driving_table(found)) if drivers else ""),
     )
-    body = tag(
-        "main",
-        tag("p", esc(" · ".join(t for t in ("Identification", title) if t)), class_="kicker"),
-        tag("h1", esc(heading)),
-        warned(said),
+    return sheet(
+        made or _Unmade(),
+        ("identification", title),
+        titled("Identification", title, heading, said),
         stabilisation_chart(found),
-        *[tag("section", tag("h2", name), shown) for name, shown in sections if shown],
-        tag("footer", "trueup · trueup/identify/1"),
+        sections(*shown),
+        imprint=imprint,
+        scripts=["viewer.js", "functions.js"],
     )
-    return html_page(title or "identification", body + scripts("viewer.js", "functions.js"))
+
+
+class _Unmade(MadeTables):
+    """An identification of which no more is known."""
+
+    verb = "identify"
 
 
 def _shapes(found: Identification, geometry: Geometry | None) -> str:

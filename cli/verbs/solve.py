@@ -6,14 +6,16 @@ from typing import Annotated
 import typer
 
 from ...core.errors import InputError
+from ...verbs.study import Study, read_study
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import ForceOption, JsonOption, Output, QuietOption, VerboseOption
+from ..options import ForceOption, JsonOption, Output, QuietOption, StudyOption, VerboseOption
 
 _FILES = (".h5", ".unv", ".uff")
 
 
 def solve(
-    deck: Annotated[Path, typer.Argument(metavar="DECK")],
+    deck: Annotated[Path | None, typer.Argument(metavar="DECK")] = None,
+    study: StudyOption = None,
     number: Annotated[
         int | None, typer.Option("-n", "--number", help="Modes, rigid-body ones included.")
     ] = None,
@@ -31,9 +33,13 @@ def solve(
     from ...verbs.solve import solve as find
 
     output = Output(json=json, force=force, quiet=quiet, verbose=verbose)
+    asked = read_study(study) if study else Study()
+    deck, out = deck or asked.deck, out or asked.out
+    if deck is None:
+        raise typer.BadParameter("give DECK, or a study file (--study) that names it")
     _check(number, fmax, out, force)
     with working(f"reading {deck.name}", output) as say:
-        found = find(deck, number, fmax, progress=say)
+        found = find(deck, number, fmax, study=asked, progress=say)
     if out and out.suffix in _FILES:
         found.write(out)
     elif out:

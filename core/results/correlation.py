@@ -20,6 +20,7 @@ from ..noun import OPTIONAL, Noun, key
 from . import export
 from .agreement import AgreementRow, AutoMacTable, agreement_table
 from .doubts import doubts
+from .made import MadeTables, ModeNameRow, WeightRow
 from .orthogonality import OrthogonalityTables
 from .plain import Table, Tables, finite
 
@@ -155,7 +156,8 @@ class SensorRow:
 class AlignmentTable(Noun):
     """How the test was laid onto the model: x_analysis = rotation · (scale · x_test) + translation.
 
-    Shapes: `rotation` (3, 3), `translation` (3,) and `rms` in the deck length unit.
+    Shapes: `rotation` (3, 3), `translation` (3,) and `rms` in the deck length unit, which is
+    `length_unit` as stated or taken; None where nothing tells it.
     """
 
     rotation: Floats
@@ -163,6 +165,7 @@ class AlignmentTable(Noun):
     scale: float
     rms: float
     sensors: Table[SensorRow]
+    length_unit: str | None = field(default=None, metadata=OPTIONAL)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -202,20 +205,15 @@ class Compared(Tables):
         return tuple(sorted((*(p.test for p in self.pairs), *self.unpaired_test)))
 
 
-@dataclass(frozen=True)
-class InputRow:
-    """A file that was read, and the SHA-256 of its bytes."""
-
-    path: str
-    sha256: str
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RunTables(Tables):
-    """Base of what a verb that compares answers; `version` of trueup made it of `inputs`."""
+class RunTables(MadeTables):
+    """Base of what a verb that compares answers.
 
-    version: str = ""
-    inputs: Table[InputRow] = field(default_factory=lambda: Table((), InputRow))
+    `weight` of the decks, as they came and changed; `mode_names` that the user gave test modes.
+    """
+
+    weight: Table[WeightRow] = field(default_factory=lambda: Table((), WeightRow))
+    mode_names: Table[ModeNameRow] = field(default_factory=lambda: Table((), ModeNameRow))
 
     if TYPE_CHECKING:
         warnings: tuple[str, ...]
@@ -229,6 +227,11 @@ class RunTables(Tables):
     def states(self) -> tuple[Compared, ...]:
         """The correlations in turn: of the deck as it came, and as changed where it was."""
         raise NotImplementedError
+
+    @property
+    def named(self) -> dict[int, str]:
+        """Names of test modes by their numbers."""
+        return {row.test: row.name for row in self.mode_names}
 
     @property
     def final(self) -> Compared:
@@ -378,4 +381,5 @@ def _alignment(c: Comparison) -> AlignmentTable:
         for node, way, axis, xyz, grid, off in zip(*columns, strict=True)
     )
     scale = c.placed.length_factor
-    return AlignmentTable(move.rotation, move.translation, scale, move.rms, sensors)
+    unit = c.placed.test_geometry.length_unit
+    return AlignmentTable(move.rotation, move.translation, scale, move.rms, sensors, unit)

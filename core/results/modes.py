@@ -11,7 +11,8 @@ from ..arrays import Floats
 from ..data.dofs import Dofs
 from ..eigen.normal_modes import Checks
 from ..noun import key
-from .plain import Table, Tables, finite
+from .made import MadeTables
+from .plain import Table, finite
 
 if TYPE_CHECKING:
     from ..identification.result import Identification
@@ -104,7 +105,7 @@ class FunctionRow:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class IdentifyTables(Tables):
+class IdentifyTables(MadeTables):
     """What ``identify`` answers; `lines` were used, from `range_hz`[0] to `range_hz`[1]."""
 
     verb = "identify"
@@ -211,14 +212,19 @@ class ModeRow:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SolveTables(Tables):
-    """What ``solve`` answers; `mass` and `centre_of_gravity` (3,) are those of a deck."""
+class SolveTables(MadeTables):
+    """What ``solve`` answers; `mass` and `centre_of_gravity` (3,) are those of a deck.
+
+    `kilograms` where the deck states its length unit and its densities leave no doubt.
+    """
 
     verb = "solve"
     deck_file: str = field(metadata=key("deck"))
     modes: Table[ModeRow]
     rigid_body_modes: int
     mass: float | None
+    kilograms: float | None = None
+    length_unit: str | None = None
     centre_of_gravity: Floats | None
     checks: Checks
     degrees_of_freedom: int

@@ -10,7 +10,8 @@ from typing import Any
 from ..arrays import Floats
 from ..noun import Noun, key
 from . import export
-from .plain import Table, Tables
+from .made import MadeTables
+from .plain import Table
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ class LikenessTable(Noun):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ParametersTables(Tables):
+class ParametersTables(MadeTables):
     """What ``parameters`` answers.
 
     `recommended` are parameters as ``update -p`` takes them. `sensitivities` rows are test modes

@@ -50,3 +50,40 @@ def test_a_logo_that_is_none_is_said_before_the_work(duct, call, tmp_path):
         assert answer.status == 1
         assert said in answer.sentence
     assert not (tmp_path / "run").exists()
+
+
+def test_what_modes_are_called_by_hand_and_what_the_deck_weighs(duct, call, tmp_path):
+    run = tmp_path / "run"
+    files = [duct / "duct.bdf", duct / "duct_test.unv"]
+    named = ["--mode-name", "1=oval, upright", "--mode-name", "7=third ring"]
+    unit = ["--deck-length-unit", "mm"]
+    answer = call("correlate", *files, *named, *unit, "--out", run)
+    assert answer.status == 0
+    page = (run / "report.html").read_text(encoding="utf-8")
+    found = trueup.open_run(run)
+    assert found.mode_names.to_dict() == [
+        {"test": 1, "name": "oval, upright"}, {"test": 7, "name": "third ring"},
+    ]  # fmt: skip
+    (weight,) = found.weight
+    assert weight.kilograms == 1000.0 * weight.mass
+    solved = trueup.solve(files[0], 7)
+    assert weight.mass == solved.mass
+    for said in ("oval, upright", "third ring", f"{weight.kilograms:.5g} kg"):
+        assert said in page, said
+        assert said in answer.out, said
+    assert call("correlate", *files, "--mode-name", "first", *unit).status == 2
+
+
+def test_pages_of_one_side_carry_the_letterhead_and_can_be_made_again(duct, call, tmp_path):
+    study = tmp_path / "study.toml"
+    deck = str(duct / "duct.bdf")
+    study.write_text(f"deck = {deck!r}\ntitle = 'Modes of the duct'\n", encoding="utf-8")
+    run, again = tmp_path / "run", tmp_path / "again"
+    assert call("solve", "--study", study, "-n", 8, "--out", run, "-q").status == 0
+    assert call("solve", "--study", run / "study.toml", "-n", 8, "--out", again, "-q").status == 0
+    for folder in (run, again):
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        for said in ("Modes of the duct", f"trueup {trueup.__version__}", "solve --study"):
+            assert said in page, said
+    assert len(trueup.open_run(run).inputs) == 3
+    assert call("solve", "-q").status == 2

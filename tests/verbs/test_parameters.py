@@ -73,7 +73,14 @@ def test_the_answer_is_plain(told, tmp_path):
     assert again["schema"] == "trueup/parameters/1"
     assert {p.name for p in (tmp_path / "run" / "tables").iterdir()} == {
         f"{name}.csv"
-        for name in ("properties", "candidates", "combinations", "sensitivities", "likeness")
+        for name in (
+            "properties",
+            "candidates",
+            "combinations",
+            "sensitivities",
+            "likeness",
+            "inputs",
+        )
     }
 
 

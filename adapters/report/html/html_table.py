@@ -25,7 +25,7 @@ def html_table(table: Table) -> str:
     both = "both" if any(groups) else None
     body = tag("table", tag("thead", head), tag("tbody", *rows), class_=both)
     note = tag("p", esc(table.note), class_="note") if table.note else ""
-    return tag("div", body, class_="wide") + note
+    return tag("div", tag("div", body, class_="wide"), note, class_="tabled")
 
 
 def _cell(cell: Cell, classes: str | None) -> str:

@@ -1,7 +1,7 @@
 """MAC matrices as heat maps: one path per colour class, values for the pointer and the reader."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from .colour import STEPS
 
 _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 _LEFT, _BOTTOM, _PAD = 84, 88, 8
+_ACROSS, _DOWN = 56, 60
+"""Modes of one picture, at most: numbers stay readable, and it fits on a sheet of paper."""
 
 
 def heatmap(
@@ -77,9 +79,22 @@ def heatmap(
         data_rows="|".join(labels[0]),
         data_cols="|".join(labels[1]),
         data_v=_packed(matrix.values),
+        data_sides="|".join(sides),
     )
     caption = tag("figcaption", tag("b", esc(title)))
     return tag("figure", caption, picture, _values_table(matrix, sides), class_="mac")
+
+
+def readable(matrix: MacTable) -> Iterator[tuple[MacTable, str]]:
+    """Yield a matrix in parts whose cells have room for numbers, each with what it holds."""
+    rows, cols = matrix.values.shape
+    whole = rows <= _DOWN and cols <= _ACROSS
+    for r in range(0, rows, _DOWN):
+        for c in range(0, cols, _ACROSS):
+            test, analysis = matrix.test[r : r + _DOWN], matrix.analysis[c : c + _ACROSS]
+            said = f", modes {test[0]} to {test[-1]} and {analysis[0]} to {analysis[-1]}"
+            values = matrix.values[r : r + _DOWN, c : c + _ACROSS]
+            yield MacTable(test, analysis, values), "" if whole else said
 
 
 def legend(what: str = "MAC %") -> str:

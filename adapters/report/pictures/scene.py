@@ -43,9 +43,10 @@ def scene(
     *,
     marks: Sequence[Mark] = (),
     values: Floats | None = None,
-    width: int = 540,
+    width: int = 510,
     height: int = 480,
     most: int = 1500,
+    behind: bool = True,
 ) -> str:
     """Return a figure of the structure from the front, and from behind where that shows more.
 
@@ -62,6 +63,8 @@ def scene(
         Pixels of one view.
     most : int
         Faces and lines drawn at most in one view, about.
+    behind : bool
+        Whether there may be a view from behind.
     """
     if not len(geometry.ids):
         return ""
@@ -69,7 +72,7 @@ def scene(
     marks = _nearby(marks, fine)
     told = f"{title}: {len(geometry.ids)} nodes, {len(marks)} marks"
     shots = [_shot(fine, isometric(), marks, most)]
-    if not shots[0].visible.all():
+    if behind and not shots[0].visible.all():
         shots.append(_shot(fine, isometric(behind=True), marks, most))
     elsewhere = np.any([s.visible for s in shots], axis=0)
     names = ["from the front", "from behind"] if len(shots) > 1 else [""]

@@ -50,14 +50,23 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
         for f in found.findings
     ]
     words = left("side", "what", "where", "size (95 % interval)")
-    return [Table.of("Findings", (*words, "confidence %", "places as good"), rows)] if rows else []
+    note = "Sizes without a unit are in deck units."
+    columns = (*words, "confidence %", "places as good")
+    return [Table.of("Findings", columns, rows, note)] if rows else []
 
 
 def _magnitude(finding: Finding) -> str:
-    """Return the magnitudes, the first with its 95 % interval."""
-    said = [f"{k.replace('_', ' ')} {_value(v)}" for k, v in finding.magnitude.items()]
+    """Return the magnitudes, the first with its 95 % interval; masses in kilograms if known."""
+    sizes = dict(finding.magnitude)
+    kilograms, mass = sizes.pop("kilograms", None), sizes.get("mass")
+    each = kilograms / mass if isinstance(mass, float) and isinstance(kilograms, float) else None
+    told = {k: _value(v) for k, v in sizes.items()}
+    if each is not None:
+        told["mass"] = f"{general(kilograms, 3)} kg"
+    said = [f"{k.replace('_', ' ')} {v}" for k, v in told.items()]
     if said and finding.interval is not None:
-        low, high = finding.interval
+        scale = each if each is not None and next(iter(told)) == "mass" else 1.0
+        low, high = (scale * v for v in finding.interval)
         said[0] += f" ({general(low, 3)} to {general(high, 3)})"
     return "; ".join(said) or MISSING
 

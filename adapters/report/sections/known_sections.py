@@ -13,6 +13,7 @@ from .findings import FINDINGS
 from .frequency_responses import FREQUENCY_RESPONSES
 from .gap import GAP
 from .mac_matrices import MAC_MATRICES
+from .mass import MASS
 from .moving_shapes import MOVING_SHAPES
 from .orthogonality import ORTHOGONALITY
 from .pairs import PAIRS
@@ -36,6 +37,7 @@ SECTIONS: list[Section[Any]] = [
     MOVING_SHAPES,
     UNPAIRED_MODES,
     SENSORS,
+    MASS,
     PARAMETERS,
     DAMPING_RATIOS,
     SAMPLES,

@@ -23,8 +23,8 @@ def _render(run: ReportedRun[RunTables]) -> str:
     narrow = max(len(m.analysis) for _, m, _ in shown) <= 13
     figures = [
         heatmap.heatmap(
-            matrix,
-            title,
+            part,
+            title + which,
             test_hz=c.test_hz,
             analysis_hz=c.analysis_hz,
             pairs=[(p.test, p.analysis) for p in c.pairs] if matrix is c.mac_rotated else [],
@@ -32,21 +32,23 @@ def _render(run: ReportedRun[RunTables]) -> str:
             width=500 if narrow else 1050,
         )
         for c, matrix, title in shown
+        for part, which in heatmap.readable(matrix)
     ]
     figures += [
         heatmap.heatmap(
-            MacTable(table.modes, table.modes, table.values),
-            f"AutoMAC of the {side} modes at the sensors",
+            part,
+            f"AutoMAC of the {side} modes at the sensors{which}",
             test_hz=hz,
             analysis_hz=hz,
             sides=(side, side),
-            width=500,
+            width=max(500, 92 + 19 * len(part.analysis)),
         )
         for side, table, hz in (
             ("test", first.auto_mac_test, first.test_hz),
             ("analysis", first.auto_mac_analysis, first.analysis_hz),
         )
         if table is not None
+        for part, which in heatmap.readable(MacTable(table.modes, table.modes, table.values))
     ]
     keys = key("pair", "ring") + key("cluster of close modes", "frame")
     top = tag("div", heatmap.legend(), tag("span", keys, class_="note"), class_="row")

@@ -1,5 +1,7 @@
 """The moving shapes: pairs, analysis over test or beside it, and modes without a partner."""
 
+from collections.abc import Mapping
+
 from ....core.results.correlation import PairRow, RunTables
 from ..html.markup import key, tag
 from ..pictures.film import Frame
@@ -12,11 +14,12 @@ def _render(run: ReportedRun[RunTables]) -> str:
     film = run.shapes
     if film is None:
         return ""
-    labels = [_label(f) for f in film.frames]
-    labels += [f"{_label(f)}, before turning" for f in film.all_frames[len(film.frames) :]]
+    names = run.tables.named
+    labels = [_label(f, names) for f in film.frames]
+    labels += [f"{_label(f, names)}, before turning" for f in film.all_frames[len(film.frames) :]]
     figure = moving_figure(film, labels, [_brief(f) for f in film.frames])
     keys = key("where the model puts a sensor", "model")
-    keys += key("where the test puts it, to the same scale", "measured")
+    keys += key("where the test puts it, to the same scale.", "measured")
     told = (
         " Thin lines are the directions measured; in others a sensor follows the model, or rests "
         "where the test is alone."
@@ -26,10 +29,12 @@ def _render(run: ReportedRun[RunTables]) -> str:
     return figure + tag("p", keys, told, class_="note")
 
 
-def _label(frame: Frame) -> str:
+def _label(frame: Frame, names: Mapping[int, str]) -> str:
+    name = "" if frame.side == "analysis" else names.get(frame.mode, "")
+    called = f", {name}".replace("|", "/") if name else ""
     if frame.pair is None:
-        return f"{frame.side} {frame.mode} ({hz(frame.hz)} Hz), no partner"
-    return _paired(frame.pair)
+        return f"{frame.side} {frame.mode} ({hz(frame.hz)} Hz), no partner{called}"
+    return _paired(frame.pair) + called
 
 
 def _brief(frame: Frame) -> str:

@@ -1,6 +1,6 @@
 """The paper's table of pairs, with what is known of damping, and deviations and MAC by mode."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ....core.results.plain import finite
 from ..html.html_table import html_table
 from ..pictures import charts
 from ..tables.number_formats import fixed, hz, percent, signed
-from ..tables.table import Cell, Column, Heading, Table
+from ..tables.table import Cell, Column, Heading, Table, left
 from .section import ReportedRun, Section
 
 _PAIR = (
@@ -24,8 +24,13 @@ _PAIR = (
 )
 
 
-def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
-    """Return every test mode with its partner, one group of columns a state; None without any."""
+def pairs_table(
+    states: Sequence[tuple[str, Compared]], names: Mapping[int, str] | None = None
+) -> Table | None:
+    """Return every test mode with its partner, one group of columns a state; None without any.
+
+    `names` of test modes, where the user gave some.
+    """
     last = states[-1][1]
     if not last.test_modes:
         return None
@@ -43,11 +48,12 @@ def pairs_table(states: Sequence[tuple[str, Compared]]) -> Table | None:
         )
         if np.isfinite(of_test).any()
     }
-    columns: list[Heading] = ["test mode", "Hz", *known]
+    names = names or {}
+    columns: list[Heading] = ["test mode", *left(*["name"] * bool(names)), "Hz", *known]
     columns += [Column(_PAIR[k], group) for group, _ in states for k in keep]
     rows = []
     for n in last.test_modes:
-        row: list[Cell | str] = [str(n), hz(last.test_hz[n - 1])]
+        row: list[Cell | str] = [str(n), *[names.get(n, "")] * bool(names), hz(last.test_hz[n - 1])]
         row += [percent(finite(of_test[n - 1]), digits) for of_test, digits in known.values()]
         for of in partners:
             cells = _cells(of.get(n))
@@ -88,7 +94,7 @@ def _states(answer: RunTables) -> list[tuple[str, Compared]]:
 
 
 def _tables(answer: RunTables) -> Sequence[Table]:
-    table = pairs_table(_states(answer))
+    table = pairs_table(_states(answer), answer.named)
     return [] if table is None else [table]
 
 

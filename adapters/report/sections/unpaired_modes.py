@@ -28,7 +28,9 @@ def _tables(answer: RunTables) -> Sequence[Table]:
             if side == "analysis" and n in beyond:
                 continue
             like, mac = _closest(found.mac_rotated, side, n)
-            rows.append((side, str(n), hz(frequencies[n - 1]), f"{other} {like}", percent(mac, 1)))
+            called = answer.named.get(n, "") if side == "test" else ""
+            number = f"{n} {called}".rstrip()
+            rows.append((side, number, hz(frequencies[n - 1]), f"{other} {like}", percent(mac, 1)))
     note = f"Above the test's range: {counted(len(beyond), 'analysis mode')}." if beyond else ""
     columns = [*left("side"), "mode", "Hz", "most alike", "MAC %"]
     return [Table.of("Modes without a partner", columns, rows, note)] if rows else []

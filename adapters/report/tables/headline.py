@@ -8,7 +8,7 @@ from ....core.discovery.findings import Finding
 from ....core.discovery.narrative.sentences import effects_said
 from ....core.results.correlation import Compared, Gap, RunTables
 from ....core.results.discovery import DiscoverTables
-from ....core.results.update import UpdateTables
+from ....core.results.update import ChangingTables, UpdateTables
 from .number_formats import counted, fixed, general, listed
 
 VERDICTS = {
@@ -71,7 +71,7 @@ def _update(answer: UpdateTables) -> list[str]:
     text = f"After updating {counted(len(moved), 'parameter')}, " if moved else ""
     old, new = answer.before, answer.after
     change = _change(old.summary, new.summary, "model", len(new.test_modes))
-    told = [_sentence(text + change)]
+    told = [_sentence(text + change), *_lost(answer)]
     at_bound = [p.name for p in moved if p.at_bound]
     if at_bound:
         noun = "One parameter" if len(at_bound) == 1 else f"{len(at_bound)} parameters"
@@ -119,7 +119,7 @@ def _found(findings: Sequence[Finding]) -> str:
     return ", and ".join(said)
 
 
-def _lost(answer: DiscoverTables) -> list[str]:
+def _lost(answer: ChangingTables) -> list[str]:
     """Name the test modes that paired with the deck as it came and no longer do."""
     lost = sorted({p.test for p in answer.before.pairs} - {p.test for p in answer.after.pairs})
     if not lost:

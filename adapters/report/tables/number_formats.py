@@ -1,7 +1,7 @@
 """Numbers as an engineer writes them; a missing one (None or not finite) is a dash."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 MISSING = "–"
 
@@ -50,6 +50,21 @@ def general(value: float | None, digits: int = 4) -> str:
         mantissa, exponent = text.split("e")
         text = f"{mantissa}e{int(exponent)}"
     return text.replace("-", "−")
+
+
+def weighed(mass: float, kilograms: float | None) -> str:
+    """Return a mass in kilograms, or as the deck has it where its unit is not known."""
+    if kilograms is None:
+        return f"{general(mass, 5)} (deck units)"
+    return f"{general(kilograms, 5)} kg"
+
+
+def placed(xyz: Iterable[float], unit: str | None) -> str:
+    """Return coordinates with their unit; `None` are deck units."""
+    size = max(map(abs, xyz := list(xyz)), default=0.0)
+    return ", ".join(general(0.0 if abs(v) < 1e-6 * size else float(v), 4) for v in xyz) + (
+        f" {unit}" if unit else " (deck units)"
+    )
 
 
 def counted(count: int, noun: str, plural: str | None = None) -> str:

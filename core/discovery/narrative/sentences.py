@@ -62,6 +62,8 @@ def magnitude_of(
     for k, (m, size, interval) in enumerate(zip(c.kind.magnitudes, sizes, intervals, strict=True)):
         unit = masses.card if m.is_mass else 1.0
         said[m.word] = float(size) * unit
+        if m.word == "mass" and masses.kilograms is not None:
+            said["kilograms"] = float(size) * masses.kilograms
         if k:
             said[f"{m.word}_interval"] = (interval * unit).tolist()
     where = c.where[row]

@@ -11,6 +11,7 @@ import pytest
 from trueup.core.correlation.criteria import Criteria
 from trueup.core.correlation.mode_pairing import correlate
 from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
 from trueup.core.data.parameter import Parameter
 from trueup.core.errors import InputError
@@ -41,7 +42,8 @@ def correlation_tables(c, test, analysis):
         sensors=test.dofs, xyz=np.zeros((24, 3)), nearest_grid=np.arange(24),
         distance=np.zeros(24), matrix=np.eye(24),
     )  # fmt: skip
-    placed = SimpleNamespace(length_factor=1000.0, mpc=None, test_geometry=None)
+    at = Geometry(np.zeros(0, int), np.zeros((0, 3)), "mm")
+    placed = SimpleNamespace(length_factor=1000.0, mpc=None, test_geometry=at)
     move = SimpleNamespace(rotation=np.eye(3), translation=np.zeros(3), rms=0.1)
     tables = compared(
         SimpleNamespace(
