@@ -62,7 +62,9 @@ def _together(run: Path, result: Mapping[str, Any]) -> Path:
         found = TogetherTables.from_dict(result)
     for one in found.configurations:
         report(run / one.folder)
-    write_text(run / "report.html", together_page(found))
+    asked = run / "study.toml"
+    imprint = imprint_of(read_study(asked)) if asked.is_file() else None
+    write_text(run / "report.html", together_page(found, imprint))
     return run / "report.html"
 
 

@@ -15,6 +15,7 @@ from ..core.results.plain import Table
 from ..core.results.together import TogetherTables, configuration_rows, pair_rows, shared_rows
 from ..core.results.update import drawn, posterior_table, sample_rows, start_rows
 from ..core.updating.problem import Problem
+from ..core.version import VERSION
 from .analysis import Analysis, correlated, read_analysis
 from .folder import Folder
 from .kept import kept_in
@@ -22,7 +23,7 @@ from .made_of import made_of
 from .options import Files, Say
 from .run import Updated
 from .sources import Measured, measured, read_deck
-from .study import Study, read_study, seen_from, study_toml
+from .study import Study, read_study, write_study
 from .study_tables import ConfigurationRequest
 from .updated import updated
 from .updating_ways import Moved, configuration, moved, way_of
@@ -47,13 +48,15 @@ class UpdatedTogether(TogetherTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that the run folder holds, those of the configurations included."""
         from ..adapters.report.together_page import together_page
+        from .report import imprint_of
 
         super().fill(work)
         for name, result in self.results.items():
             (work / name).mkdir()
             result.fill(work / name)
-        (work / "study.toml").write_text(study_toml(seen_from(work, self.study)), encoding="utf-8")
-        (work / "report.html").write_text(together_page(self), encoding="utf-8")
+        write_study(work, self.study)
+        page = together_page(self, imprint_of(self.study))
+        (work / "report.html").write_text(page, encoding="utf-8")
 
     @classmethod
     def of_folder(cls, run: Path, result: Mapping[str, object]) -> Self:
@@ -119,7 +122,10 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
         results[s.name] = updated(s.analysis, s.side, s.placed, s.asked, changed, seconds)
     told = [f"{name}: {w}" for name, r in results.items() for w in r.warnings]
     of_all = [w for w in told if w.partition(": ")[2] not in found.warnings]
+    inputs = dict.fromkeys(row for r in results.values() for row in r.inputs)
     return UpdatedTogether(
+        version=VERSION,
+        inputs=Table(inputs),
         configurations=configuration_rows(results),
         parameters=shared_rows([q.name for q in problem.parameters], results),
         pairs=pair_rows(results),

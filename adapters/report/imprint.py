@@ -33,7 +33,9 @@ def letterhead(imprint: Imprint | None) -> str:
 def colophon(answer: MadeTables) -> str:
     """Return the foot of the page: version, what runs it again, the inputs with their hashes."""
     made = f"trueup {answer.version}".strip()
-    again = f"trueup {answer.verb} --study study.toml, in the run folder, runs it again."
+    again = (
+        f"trueup {answer.verb.split('-')[0]} --study study.toml, in the run folder, runs it again."
+    )
     rows = "".join(
         tag("li", esc(row.path), " ", tag("code", esc(row.sha256[:16]))) for row in answer.inputs
     )

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from ...core.results.together import ConfigurationPairRow, TogetherTables
 from .html.html_table import html_table
 from .html.markup import esc, tag
-from .page import html_page, warned
+from .imprint import Imprint
+from .page import sections, sheet, titled
 from .sections.parameters import iterations_table, parameters_table
 from .tables.headline import counted_pairs
 from .tables.number_formats import counted, fixed, hz, percent, signed
@@ -45,27 +46,26 @@ def together_tables(found: TogetherTables) -> list[Table]:
     ]
 
 
-def together_page(found: TogetherTables) -> str:
+def together_page(found: TogetherTables, imprint: Imprint | None = None) -> str:
     """Return the page; it leads to those of the configurations, which lie in folders beside it."""
     links = [
         tag("li", tag("a", esc(c.name), href=f"{c.folder}/report.html"))
         for c in found.configurations
     ]
     history = iterations_table(found.history, [p.name for p in found.parameters], found.stopped)
-    body = tag(
-        "main",
-        tag(
-            "p", esc(f"Update · {', '.join(c.name for c in found.configurations)}"), class_="kicker"
-        ),
-        tag("h1", esc(headline(found))),
-        warned(found.warnings),
+    name = ", ".join(c.name for c in found.configurations)
+    return sheet(
+        found,
+        ("update", name),
+        titled("Update", name, headline(found), found.warnings),
         tag("p", "The page of each configuration:"),
         tag("ul", *links),
-        *(tag("section", tag("h2", esc(t.title)), html_table(t)) for t in together_tables(found)),
-        tag("section", tag("h2", "Iterations"), html_table(history)),
-        tag("footer", esc(f"trueup · {found.schema}")),
+        sections(
+            *((esc(t.title), html_table(t)) for t in together_tables(found)),
+            ("Iterations", html_table(history)),
+        ),
+        imprint=imprint,
     )
-    return html_page("update", body)
 
 
 def _configurations(found: TogetherTables) -> Table:

@@ -9,8 +9,9 @@ from ..noun import OPTIONAL
 from ..updating.prior_evidence import PriorWeighed
 from ..updating.update import Iteration
 from .correlation import PairRow
+from .made import MadeTables
 from .parameters import LikenessTable
-from .plain import Table, Tables
+from .plain import Table
 from .update import DrawsTable, ParameterRow, SampleRow, StartRow, UpdateTables
 
 
@@ -53,7 +54,7 @@ class ConfigurationPairRow:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TogetherTables(Tables):
+class TogetherTables(MadeTables):
     """What ``update`` answers of several configurations; each has a result of its own beside.
 
     `history` holds the deviations of one configuration after the other.
