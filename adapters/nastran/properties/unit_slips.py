@@ -51,6 +51,18 @@ _OTHERS = (
 """Magnesium, brass, nickel, cast iron, concrete, wood, composites, plastics, glass, lead, ..."""
 _METAL = (1.15, 1.08)
 """Factors by which E and density of a recognised metal may differ."""
+_ORTHOTROPIC = {
+    "MAT8": ("a fibre laminate", (8e10, 1750.0), (5.0, 1.3)),
+    "MAT9": ("a solid", (8e10, 3500.0), (5.0, 2.7)),
+}
+"""First modulus and density of other materials, and factors by which they may differ."""
+_Kind = tuple[str, tuple[float, float], tuple[float, float]]
+_DECADES = (0.1, 10.0, 0.01, 100.0)
+"""Factors that a slip of the exponent makes."""
+_OTHER_MASS = {"mm, t, N": ("kg", 1000.0), "in, lbf s²/in, lbf": ("lb", 386.0886)}
+"""Unit of mass that is often taken for that of a system, and how many of it that is."""
+_STEEL = 7850.0
+"""Density [kg/m³] by which the size of a concentrated mass is judged."""
 _LIKE = (1.6, 1.35)
 """The same of any material that makes sense in a system."""
 _SIZE = (3e-3, 500.0)
@@ -79,44 +91,63 @@ def unit_slips(deck: Deck, size: float) -> tuple[str, ...]:
     no consistent system has both, one of them was typed in another, or PARAM WTMASS is wrong.
     Where time is in ms, frequencies are not in Hz. Then the length unit that goes with the
     materials is held against the one declared and the size of the structure, `size` in deck
-    units, and the thickest shell against that.
+    units, and the thickest shell and the concentrated masses against that.
     """
     wtmass = deck.param("WTMASS", 1.0)
     systems: list[_System] = []
-    for mid, card in deck.bulk.table("MAT1").items():
-        E, rho = card.e or 0.0, (card.rho or 0.0) * wtmass
-        if not (E > 0.0 and rho > 0.0):
-            continue
-        fitting = [s for s in _SYSTEMS if _makes_sense(E * s.stress, rho * s.density)]
-        told = _wtmass_slip(f"MAT1 {mid}", E, rho / wtmass, wtmass, size, fitting)
+    for card, E, rho in _materials(deck):
+        kind = _ORTHOTROPIC.get(card.split()[0])
+        rho *= wtmass
+        fitting = [s for s in _SYSTEMS if _makes_sense(E * s.stress, rho * s.density, kind)]
+        told = "" if kind else _wtmass_slip(card, E, rho / wtmass, wtmass, size, fitting)
         if told:
             return (told,)
         if not fitting:
-            slip = min(_slips(E, rho, size), key=lambda s: s.cost, default=None)
+            slip = min(_slips(E, rho, size, kind), key=lambda s: s.cost, default=None)
             if slip:
-                return (_said(f"MAT1 {mid}", E, rho / wtmass, wtmass, slip),)
+                return (_said(card, E, rho / wtmass, wtmass, slip),)
+            if not kind and (told := _decade_slip(card, E, rho)):
+                return (told,)
         elif all(s.time < 1.0 for s in fitting):
-            return (_not_in_hertz(f"MAT1 {mid}", fitting[0]),)
+            return (_not_in_hertz(card, fitting[0]),)
         systems += fitting
-    return _length_slip(deck.length_unit, size, systems) or _thickness_slip(deck, size)
+    return (
+        _length_slip(deck.length_unit, size, systems)
+        or _thickness_slip(deck, size)
+        or _mass_slip(deck, size, systems, wtmass)
+    )
+
+
+def _materials(deck: Deck) -> Iterator[tuple[str, float, float]]:
+    """Name, first modulus and density of the materials that have both."""
+    table = deck.bulk.table
+    read = [(f"MAT1 {mid}", card.e, card.rho) for mid, card in table("MAT1").items()]
+    read += [(f"MAT8 {mid}", card.e1, card.rho) for mid, card in table("MAT8").items()]
+    read += [(f"MAT9 {mid}", card.g[0], card.rho) for mid, card in table("MAT9").items()]
+    yield from ((name, E, rho) for name, E, rho in read if (E or 0.0) > 0.0 < (rho or 0.0))
 
 
 def _near(a: float, b: float, factor: float) -> bool:
     return 1.0 / factor < a / b < factor
 
 
-def _makes_sense(E: float, rho: float) -> bool:
+def _makes_sense(E: float, rho: float, kind: _Kind | None = None) -> bool:
+    if kind:
+        _, (modulus, density), (wide, heavy) = kind
+        return _near(E, modulus, wide) and _near(rho, density, heavy)
     known = (*_METALS.values(), *_OTHERS)
     return any(_near(E, e, _LIKE[0]) and _near(rho, r, _LIKE[1]) for e, r in known)
 
 
-def _slips(E: float, rho: float, size: float) -> Iterator[_Slip]:
-    for metal, (modulus, density) in _METALS.items():
+def _slips(E: float, rho: float, size: float, kind: _Kind | None = None) -> Iterator[_Slip]:
+    known = {kind[0]: kind[1]} if kind else _METALS
+    wide, heavy = kind[2] if kind else _METAL
+    for metal, (modulus, density) in known.items():
         for stress, pascals in _STRESS.items():
-            if not _near(E * pascals, modulus, _METAL[0]):
+            if not _near(E * pascals, modulus, wide):
                 continue
             for unit, kilograms in _DENSITY.items():
-                if not _near(rho * kilograms, density, _METAL[1]):
+                if not _near(rho * kilograms, density, heavy):
                     continue
                 read = f"{metal} in {stress} and {unit}"
                 for s in _SYSTEMS:
@@ -171,6 +202,20 @@ def _off(mass: float) -> str:
     return f"all frequencies come out {max(times, 1.0 / times):.3g} times too {high_or_low}"
 
 
+def _decade_slip(card: str, E: float, rho: float) -> str:
+    """Say that a metal is recognised by E and the digits of its density; else ""."""
+    for s in (s for s in _SYSTEMS if s.usual == 0.0):
+        for metal, (modulus, density) in _METALS.items():
+            for factor in _DECADES if _near(E * s.stress, modulus, _METAL[0]) else ():
+                if _near(rho * s.density * factor, density, _METAL[1]):
+                    return (
+                        f"the units of {card} do not go together: by its E it is {metal} in "
+                        f"{s.name}, and its density is {1.0 / factor:g} times too large: a slip of "
+                        f"the exponent? {_off(factor)}"
+                    )
+    return ""
+
+
 def _not_in_hertz(card: str, system: _System) -> str:
     usual = _SYSTEMS[0]
     return (
@@ -210,4 +255,24 @@ def _length_slip(declared: str | None, size: float, systems: list[_System]) -> t
     return (
         f"the structure is {size * usual.length:.3g} m long by its materials ({usual.name}): its "
         f"coordinates seem to be in {likely}; multiply them by {METRES[likely] / usual.length:.3g}",
+    )
+
+
+def _mass_slip(deck: Deck, size: float, systems: list[_System], wtmass: float) -> tuple[str, ...]:
+    """Name a concentrated mass that would not fit into the structure, but would in another unit."""
+    usual = min(systems, key=lambda s: s.usual, default=None)
+    masses = deck.bulk.table("CONM2").items()
+    mass, eid = max(((card.m, eid) for eid, card in masses), default=(0.0, 0))
+    if not usual or usual.name not in _OTHER_MASS or not (mass > 0.0 and size > 0.0):
+        return ()
+    unit, number = _OTHER_MASS[usual.name]
+    kilograms = mass * wtmass * usual.density * usual.length**3
+    edge, extent = (kilograms / _STEEL) ** (1.0 / 3.0), size * usual.length
+    seismic = log10(mass).is_integer()  # a base that is made heavy on purpose
+    if wtmass != 1.0 or seismic or not extent < edge < 0.5 * extent * number ** (1.0 / 3.0):
+        return ()
+    return (
+        f"the units of CONM2 {eid} do not go together with the size of the structure, {extent:.3g} "
+        f"m: its mass {mass:g} is {kilograms:.3g} kg in {usual.name}; if it is {mass:g} {unit}, "
+        f"write {mass / number:.4g}",
     )

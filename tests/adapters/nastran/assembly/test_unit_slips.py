@@ -111,6 +111,65 @@ def test_frequencies_by_the_millisecond_are_not_in_hertz(said, E, rho, words):
         assert word in sentence
 
 
+@pytest.mark.parametrize(
+    ("E", "rho", "words"),
+    [
+        (2.1e5, 7.85e-8, ["steel in mm, t, N", "10 times too large", "3.16 times too low"]),
+        (7e10, 270.0, ["aluminium in m, kg, N", "0.1 times too large", "3.16 times too high"]),
+        (1.05e7, 2.59e-3, ["aluminium in in,", "10 times too large"]),
+        (2.1e5, 4e-8, []),
+    ],
+)
+def test_a_slip_of_the_exponent_of_a_density(said, E, rho, words):
+    told = said(E, rho, 2.0 if rho > 1.0 else 80.0)
+    assert len(told) == bool(words)
+    assert all(word in told[0] for word in words)
+
+
+@pytest.mark.parametrize(
+    ("card", "words"),
+    [
+        ("MAT8,7,1.3+5,9.+3,.3,5.+3,,,1600.", ["fibre laminate in MPa and kg/m³", "by 1e-12"]),
+        ("MAT8,7,130.,9.,.3,5.,,,1.6-9", ["in GPa and t/mm³", "its E", "by 1e+03"]),
+        (
+            "MAT9,7,2.8+5,1.2+5,1.2+5,,,,2.8+5\n,1.2+5,,,,2.8+5\n,8.+4,,,8.+4,,8.+4,7850.",
+            ["MAT9 7", "by 1e-12"],
+        ),
+        ("MAT8,7,1.3+5,9.+3,.3,5.+3,,,1.6-9", []),
+        ("MAT8,7,6.+10,6.+10,.05,4.+9,,,1900.", []),
+        ("MAT8,7,1.,1.,.3,60.,,,4.8-11", []),
+    ],
+)
+def test_orthotropic_materials_alone(model, card, words):
+    plate = "GRID,1,,0.,0.,0.,,123456\nGRID,2,,500.,0.,0.\nCELAS2,1,1.,2,1\nCONM2,2,2,,1.\n"
+    told = [w for w in model(plate + card).warnings if "units of" in w]
+    assert len(told) == bool(words)
+    assert all(word in told[0] for word in words)
+
+
+@pytest.mark.parametrize(
+    ("E", "rho", "mass", "size", "write"),
+    [
+        (2.1e5, 7.85e-9, 2.5, 500.0, "write 0.0025"),
+        (1.07e7, 2.59e-4, 55.0, 20.0, "write 0.1425"),
+        (2.1e5, 7.85e-9, 0.4, 500.0, None),
+        (2.1e5, 7.85e-9, 1e6, 500.0, None),
+        (2.1e5, 7.85e-9, 100.0, 500.0, None),
+        (2.1e5, 7.85e-9, 3.3e5, 500.0, None),
+        (2.1e11, 7850.0, 900.0, 0.3, None),
+    ],
+)
+def test_a_mass_in_another_unit_does_not_fit_into_the_structure(said, E, rho, mass, size, write):
+    told = said(E, rho, size, f"CONM2,5,2,,{mass}\n")
+    assert len(told) == bool(write)
+    assert all(write in sentence for sentence in told)
+
+
+def test_a_gravity_of_the_wrong_exponent(said):
+    (sentence,) = said(2.9e7, 0.283, 60.0, "PARAM,WTMASS,.0259\n")
+    assert "to be 0.00259" in sentence
+
+
 @pytest.mark.parametrize(("thickness", "told"), [(5.0, 1), (0.5, 0)])
 def test_a_shell_thicker_than_the_structure_is_large(said, thickness, told):
     shell = f"PSHELL,9,1,{thickness!r}\n"
