@@ -89,7 +89,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
             searcher, found, verdict = _searched(trial, progress)
             tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
     progress("weighing what was found against the error of the model")
-    found, verdict, whole = _completed(trial, searcher, found, verdict)
+    searcher, found, verdict, whole = _completed(trial, searcher, found, verdict)
     known = for_deck(trial.own, searcher.problem, found.levels[verdict.accepted])
     found = found.with_level(known)
     out = modes_out, sensors_out
@@ -349,14 +349,14 @@ def _contested(
 
 def _completed(
     trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Found, Judgement, Completeness]:
+) -> tuple[Searcher, Found, Judgement, Completeness]:
     """Keep the effects that are likelier than an error of the model without any place.
 
     Their magnitudes are those at which the test is likeliest beside such an error.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, careful = found.levels, verdict.accepted
-    found, kept, whole = completeness(searcher, found, verdict, deck)
+    searcher, found, kept, whole = completeness(searcher, found, verdict, deck)
     best = found.levels[kept]
     if kept:
         if best is not old[kept] or kept > careful:
@@ -364,7 +364,7 @@ def _completed(
                 best = polished(trial.own, searcher.problem, best)
         best = replace(best, suspects=whole.best.fit.suspects)
     found = Found((*found.levels[:kept], best), found.rivals[: kept + 1])
-    return found, replace(judge(searcher, found), accepted=kept), whole
+    return searcher, found, replace(judge(searcher, found), accepted=kept), whole
 
 
 def _searcher(trial: _Trial) -> Searcher:

@@ -146,7 +146,10 @@ class Scale:
         """Trial masses, ln, (count, 1)."""
         return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
 
-    def springs(self, count: int = EFFECTS.trials) -> Floats:
-        """Trial stiffnesses, ln, (count, 1)."""
-        stiffness = self.mass * self.omega2 * np.geomspace(*EFFECTS.spring_trials, count)
-        return np.asarray(np.log(stiffness))[:, None]
+    def springs(self) -> Floats:
+        """Trial stiffnesses, ln, (n, 1): at steps, down to what the lowest mode would notice."""
+        first, last = np.log(self.mass * self.omega2 * np.array(EFFECTS.spring_trials))
+        step = (last - first) / (EFFECTS.trials - 1)
+        noticed = np.log(EFFECTS.spring * self.mass * (2.0 * np.pi * self.band_hz[0]) ** 2)
+        below = max(0, int(np.ceil((first - noticed) / step)))
+        return np.asarray(last - step * np.arange(EFFECTS.trials + below)[::-1])[:, None]

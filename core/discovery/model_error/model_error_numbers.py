@@ -21,6 +21,7 @@ class ModelErrorNumbers:
     flat: float = number(0.05, "-", "what a polynomial must have of its own beside the others", "thin structures have no fields across")
     most: float = number(0.4, "rms", "of a smooth field, at most")
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03), "rms", "of each smooth field, sizes that are tried", "all of them together make a tenth: more is no drift but another structure")
+    seen: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of, and for a model to lack something")
     folds: int = number(5, "parts", "of the test modes, each of which is foretold by the others")
     usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)
     usual_noise: float = number(0.1, "of K a relative noise of readings", "what it is beside that in a poor test", BY_HAND)

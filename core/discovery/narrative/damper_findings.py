@@ -50,6 +50,10 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
             f"the same test with the dashpot taken off: it is heavy enough to move modes {which} "
             f"as the {beside_it} beside it would",
         )
+    if verdict == "undecided":
+        finding = replace(finding, confidence=sure * NARRATIVE.doubted)
+    if len(shaken):
+        model = [replace(f, confidence=min(f.confidence, NARRATIVE.doubted)) for f in model]
     every = (*model, finding, *rest)
     proposal = said.proposal and not len(shaken)
     return replace(said, verdict=verdict, findings=every, would_decide=decide, proposal=proposal)

@@ -5,9 +5,9 @@ import numpy as np
 from ...arrays import Ints
 from ..effects.sentence_parts import mode_ranges
 from ..model_error.diffuse_fit import Drift
+from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.smooth_fields import SUSPENSION
 from ..search.completeness import Completeness
-from .narrative_numbers import NARRATIVE
 
 
 def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
@@ -20,7 +20,7 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
     if whole.unexplained:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
-    if best.drifts and best.evidence - best.plain > NARRATIVE.looks_like:
+    if best.drifts and best.evidence - best.plain > MODEL_ERROR.seen:
         said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)

@@ -12,7 +12,6 @@ CALIBRATED = "frozen cases 8000 to 8121 by `benchmarks.discovery.calibrate`"
 class NarrativeNumbers:
     off_one: float = number(4.0, "standard deviations", "that a factor is off 1, at most, by the likelihood without it")
     matters: float = number(3.0, "ln L", "what known parameters must gain")
-    looks_like: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of")
     claimed: float = number(0.74, "-", "share of findings that are right where an effect is claimed", CALIBRATED)
     proposed: float = number(0.6, "-", "the same where one is proposed", CALIBRATED)
     doubted: float = number(0.2, "-", "the same where neither is", CALIBRATED)

@@ -21,6 +21,7 @@ from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
+from .last_look import looked_again
 from .model_selection import Judgement, Scored, by_such_a_test, contenders, needed, scored
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -111,10 +112,14 @@ class Completeness:
     def lacks_nothing(self) -> bool:
         """Whether what the deck leaves is usual for a good model before a good test.
 
-        Or the known parameters, moved, leave no more than that and are no likelier than the deck:
-        the test's own scatter hides what the deck is off by.
+        Or the known parameters, moved, leave no more than that and are no likelier than the deck,
+        nor is any smooth field: the test's own scatter hides what the deck is off by.
         """
-        return _lacks_nothing(self.deck) or (self.moved <= 0.0 and _lacks_nothing(self.alone))
+        if _lacks_nothing(self.deck):
+            return True
+        drift = self.alone.evidence - self.alone.plain
+        hidden = max(self.moved, drift - MODEL_ERROR.seen) <= 0.0
+        return hidden and _lacks_nothing(self.alone)
 
     @property
     def unexplained(self) -> tuple[int, ...]:
@@ -127,8 +132,10 @@ def completeness(
     found: Found,
     verdict: Judgement,
     deck: Judged,
-) -> tuple[Found, int, Completeness]:
+) -> tuple[Searcher, Found, int, Completeness]:
     """Return the best of what was found, the number of its suspects, and how well it explains.
+
+    The searcher that comes with it knows the places that were tried on the way.
 
     The levels up to the accepted one compete, one suspect where the known parameters alone leave
     something; of each the likeliest, its rivals and the richer one less a suspect among them.
@@ -142,9 +149,12 @@ def completeness(
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
-        tried = (scored(searcher, f) for f in (*_near(found, k), *poorer))
-        fields[k] = sorted(tried, key=lambda s: -s.score)
-        found = _led(found.with_rivals(poorer), fields[k][0].fit)
+        tried = [scored(searcher, f) for f in (*_near(found, k), *poorer)]
+        first = max(tried, key=lambda s: s.score)
+        searcher, again = looked_again(searcher, first)
+        found = found.with_rivals((*poorer, *(s.fit for s in again if s is not first)))
+        fields[k] = sorted((*tried, *again), key=lambda s: -s.score)
+        found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     kept = 0
@@ -160,7 +170,7 @@ def completeness(
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
     whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), agree)
-    return found, kept, whole
+    return searcher, found, kept, whole
 
 
 def _near(found: Found, k: int) -> list[Fit]:

@@ -62,10 +62,15 @@ class Searcher:
         kinds = zip(self.problem.catalogue, self.coarse, strict=True)
         return sum(len(rows) for c, rows in kinds if c.tunings == 1) < SEARCH.few_places
 
-    def branches(self, state: Fit, count: int) -> list[tuple[float, Suspect]]:
-        """Return the most promising further suspects of every kind by exact evaluation."""
+    def branches(
+        self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
+    ) -> list[tuple[float, Suspect]]:
+        """Return the most promising further suspects of every kind by exact evaluation.
+
+        ``by(problem)`` has the noise by which they promise.
+        """
         small, here = self.local(state)
-        small = softened(small)
+        small = by(small)
         out: list[tuple[float, Suspect]] = []
         for kind in range(len(small.catalogue)):
             c, rows = small.catalogue[kind], self.coarse[kind]
@@ -79,7 +84,7 @@ class Searcher:
             )
             done = set(seen.rows.tolist())
             for i in coarse:
-                near = self._around(kind, int(seen.rows[i]))
+                near = self.around(kind, int(seen.rows[i]))
                 near = near[~self._taken(state, kind, near)]
                 near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
                 if not len(near):
@@ -97,7 +102,7 @@ class Searcher:
                 out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
         return sorted(out, key=lambda b: b[0])
 
-    def _around(self, kind: int, row: int) -> Ints:
+    def around(self, kind: int, row: int) -> Ints:
         """Places next to one, nearest first."""
         spots = self.problem.catalogue[kind].spots
         distance = np.linalg.norm(spots - spots[row], axis=1)

@@ -49,15 +49,15 @@ def nearby(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     away = np.linalg.norm(c.xyz - c.xyz[s.row], axis=1)
     rows = np.flatnonzero(away < SEARCH.patch_beside * searcher.size)
     options = [replace(s, row=int(row)) for row in rows if row != s.row]
-    tried = _promising(searcher, state, q, options)[: SEARCH.reshape_beside]
+    tried = promising(searcher, state, q, options)[: SEARCH.reshape_beside]
     return [_with(searcher, state, q, option) for option in tried]
 
 
 def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
-    wide, options = _options(searcher, state.suspects[q])
+    wide, options = options_beside(searcher, state.suspects[q])
     worth = 2.0 * scale * np.log(1.0 + len(options))
-    for option in _promising(wide, state, q, options)[: SEARCH.reshape_tried]:
+    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
         trial = _with(wide, state, q, option)
         if trial.objective < state.objective - worth:
             return wide, trial
@@ -69,7 +69,13 @@ def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
     return searcher.fitted(state, beside, SEARCH.steps_new)
 
 
-def _promising(searcher: Searcher, state: Fit, q: int, options: Sequence[Suspect]) -> list[Suspect]:
+def promising(
+    searcher: Searcher,
+    state: Fit,
+    q: int,
+    options: Sequence[Suspect],
+    sizes: Sequence[float] = SEARCH.reshape_sizes,
+) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
     small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
@@ -77,7 +83,7 @@ def _promising(searcher: Searcher, state: Fit, q: int, options: Sequence[Suspect
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
         c = searcher.problem.catalogue[kind]
-        trials = c.around(state.suspects[q].theta, np.array(SEARCH.reshape_sizes))
+        trials = c.around(state.suspects[q].theta, np.array(sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))
@@ -85,7 +91,7 @@ def _promising(searcher: Searcher, state: Fit, q: int, options: Sequence[Suspect
     return [s for _, s in sorted(tried, key=lambda t: t[0])]
 
 
-def _options(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspect]]:
+def options_beside(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspect]]:
     """Return the shapes next to that of a suspect, and a searcher whose catalogue has them."""
     c = searcher.problem.catalogue[suspect.kind]
     if isinstance(c, PatchCandidates):

@@ -65,6 +65,17 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
     assert not found(before=0.01).lacks_nothing
 
 
+def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
+    def with_fields(gain):
+        deck = judged(np.zeros(10), error=0.01)
+        alone = judged(np.zeros(10), error=0.0005, evidence=gain)
+        alone.plain = -1.0
+        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0)
+
+    assert with_fields(0.0).lacks_nothing
+    assert not with_fields(17.0).lacks_nothing
+
+
 def test_two_places_that_are_as_good_are_not_clear():
     assert not found(ahead=1.0).clear
     assert not found(error=0.02, gain=50.0, ahead=20.0).clear
@@ -89,6 +100,7 @@ def hypothesis(objective, *rows):
 
 def weighed(monkeypatch, found, evidence):
     """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows."""
+    monkeypatch.setattr(room, "looked_again", lambda searcher, first: (searcher, [first]))
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
     monkeypatch.setattr(
         room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
@@ -103,7 +115,8 @@ def weighed(monkeypatch, found, evidence):
         judged=lambda _, f: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1
-    return completeness(searcher, found, Some(accepted=accepted, scale=1.0), judged(np.zeros(10)))
+    deck = judged(np.zeros(10))
+    return completeness(searcher, found, Some(accepted=accepted, scale=1.0), deck)[1:]
 
 
 def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):

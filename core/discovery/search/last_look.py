@@ -1,0 +1,93 @@
+"""Is there a better place, by what the claim is weighed by.
+
+The search goes by a robust misfit at known parameters that have already taken up a part of what is
+missing, and moves a suspect to its neighbours alone. A wrong place with other parameters may be the
+best there is nearby, while elsewhere, with another size, the test is far likelier by the error of
+the model. So what is to be claimed is looked for anew with that measure: every suspect in turn is
+taken out, every place of every kind and size is tried beside the others, and the best is moved to
+the next places and shapes for as long as this makes the test likelier.
+"""
+
+from collections.abc import Sequence
+
+from ..effects.candidates import Suspect
+from ..likelihood.hypothesis import Fit
+from ..likelihood.map_fit import evaluate
+from .model_selection import Scored, needed, says_else, scored
+from .moves import Searcher
+from .patch_reshaping import options_beside, promising
+from .search_numbers import SEARCH
+
+
+def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scored]]:
+    """Return all that was tried instead of a hypothesis, itself among it, the likeliest first.
+
+    What comes next elsewhere is moved as far as the best, if it may get ahead. The searcher that
+    comes with it knows the shapes that were tried.
+    """
+    tried = [first]
+    for q in range(len(first.fit.suspects)):
+        tried += _scored(searcher, _elsewhere(searcher, first.fit, q))
+    best = max(tried, key=_score)
+    searcher, moved = _moved(searcher, best)
+    tried += moved
+    others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
+    if others:
+        rival = max(others, key=_score)
+        if best.judged and best.score - rival.score < needed(best.judged):
+            searcher, moved = _moved(searcher, rival)
+            tried += moved
+    return searcher, sorted(tried, key=_score, reverse=True)
+
+
+def _score(s: Scored) -> float:
+    return s.score
+
+
+def _scored(searcher: Searcher, fits: Sequence[Fit]) -> list[Scored]:
+    return [scored(searcher, f) for f in fits]
+
+
+def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
+    """Return fits with another suspect anywhere in place of one."""
+    others = state.suspects[:q] + state.suspects[q + 1 :]
+    without = evaluate(searcher.problem, state.nuisance, others)
+    small, _ = searcher.local(without)
+    branches = searcher.branches(without, SEARCH.look_each, lambda problem: problem)
+    tried = [
+        searcher.fitted(without, (*others, s), SEARCH.steps_new, small, True)
+        for _, s in branches[: SEARCH.look_fitted]
+    ]
+    return _best(tried, SEARCH.look_judged)
+
+
+def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
+    """Return the hypotheses that come of one whose suspects move to the next places and shapes."""
+    tried: list[Scored] = []
+    for _ in range(SEARCH.look_moves):
+        before = best.score
+        for q in range(len(best.fit.suspects)):
+            searcher, fits = _beside(searcher, best.fit, q)
+            tried += _scored(searcher, fits)
+            best = max((best, *tried), key=_score)
+        if best.score < before + SEARCH.look_gain:
+            break
+    return searcher, tried
+
+
+def _beside(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, list[Fit]]:
+    """Return fits with a suspect at the next places and of the next shapes."""
+    s = state.suspects[q]
+    near = [Suspect(s.kind, int(r), s.theta) for r in searcher.around(s.kind, s.row) if r != s.row]
+    searcher, options = options_beside(searcher, s)
+    options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
+    before, after = state.suspects[:q], state.suspects[q + 1 :]
+    tried = [
+        searcher.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        for option in options[: SEARCH.look_beside]
+    ]
+    return searcher, _best(tried, SEARCH.look_beside_judged)
+
+
+def _best(fits: Sequence[Fit], count: int) -> list[Fit]:
+    return sorted(fits, key=lambda f: f.objective)[:count]

@@ -1,0 +1,34 @@
+"""What is to be claimed is looked for anew, by what the claim is weighed by."""
+
+from dataclasses import replace
+from types import SimpleNamespace as Some
+
+import numpy as np
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.search.last_look import looked_again
+from trueup.core.discovery.search.model_selection import scored
+
+MASS, SPRING, ABSORBER = range(3)
+
+
+def by_misfit(_, f):
+    """Judge by half the objective."""
+    left = Some(error=0.001, noise=0.02, each=np.zeros(12))
+    return Some(evidence=-0.5 * f.objective, diffuse=left)
+
+
+def test_a_suspect_far_off_its_place_and_size_is_found_there():
+    s = searcher(hidden(tension=1.1, masses=[(9, 2.0)], springs=[(25, 20.0)]))
+    s = replace(s, judged=by_misfit)
+    wrong = Suspect(MASS, 9, (np.log(2.0),)), Suspect(SPRING, 4, (np.log(2000.0),))
+    state = fit(s.problem, np.zeros(2), wrong, s.active, 20)
+    _, tried = looked_again(s, scored(s, state))
+    best = tried[0].fit
+    places = {(t.kind, t.row) for t in best.suspects}
+    assert best.objective < 0.5 * state.objective
+    assert places == {(MASS, 9), (SPRING, 25)}
+    assert np.exp([t.theta[0] for t in best.suspects if t.kind == SPRING]) < 40.0
+    assert any(t.fit is state for t in tried)
