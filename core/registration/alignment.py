@@ -13,7 +13,7 @@ from ..sensors.closest_point import place
 from ..sensors.outer_surface import Surface, surface_of
 from ..sensors.rigid_transform import Transform
 from ..sensors.sensor_map import default_tolerance
-from .pose_score import scorer_of
+from .pose_score import Scorer, scorer_of
 from .pose_selection import choose
 from .poses import Poses
 from .registration_numbers import ALIGN
@@ -130,8 +130,9 @@ def align(
     best = choice.candidates[0]
     better = ALIGN.good if score is None else max(ALIGN.good, score + ALIGN.ahead)
     if lies and (score is None or best.score is None or best.score < better):
-        return _as_it_is(surface, points, here, score, scale)
-    warnings = choice.warnings
+        kept = _as_it_is(surface, points, here, score, scale)
+        return replace(kept, warnings=kept.warnings + _said_of_signs(scorer, here, score))
+    warnings = choice.warnings + _said_of_signs(scorer, here, best.score)
     if lies:
         warnings += (
             f"the test lies on the model as it is, but its shapes fit poorly there (score "
@@ -213,6 +214,28 @@ def _said_of_mirrored(
     return (
         f"; mirrored, {other:.0%} of the nodes would lie on it: one axis of the test's frame "
         "points the wrong way, or it is the other hand of the structure"
+    )
+
+
+def _said_of_signs(scorer: Scorer | None, here: Poses, score: float | None) -> tuple[str, ...]:
+    """Say that the shapes fit where one axis of the test has the other sign, where they do.
+
+    The geometry alone cannot tell where the structure is symmetric.
+    """
+    if scorer is None or score is None or score >= ALIGN.good:
+        return ()
+    tried = []
+    for k, name in enumerate("xyz"):
+        sign = 1.0 - 2.0 * np.eye(3)[k]
+        for axis, what in ((scorer.axis, "of its positions"), (scorer.axis * sign, "")):
+            other = replace(scorer, node_xyz=scorer.node_xyz * sign, axis=axis)
+            tried.append((float(other.score(here)[0]), " ".join((name, what)).strip()))
+    best, what = max(tried)
+    if best < max(ALIGN.good, score + ALIGN.ahead):
+        return ()
+    return (
+        f"the shapes of the test fit poorly (score {score:.2f}) and would fit with {what} of the "
+        f"other sign ({best:.2f}): the geometry of the test seems mirrored",
     )
 
 

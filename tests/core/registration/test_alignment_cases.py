@@ -96,6 +96,16 @@ def test_rotated_frame_of_the_tower_is_found():
     assert found.candidates[1].score < 0.95
 
 
+def test_a_mirrored_geometry_is_said_where_the_structure_is_symmetric():
+    model, modes, geometry, test_modes, _ = case("tower_joint")
+    sign = np.array([-1.0, 1.0, 1.0])
+    other = replace(geometry, xyz=geometry.xyz * sign)
+    (said,) = (
+        w for w in align(model.geometry, other, modes, test_modes).warnings if "mirrored" in w
+    )
+    assert "with x of its positions of the other sign" in said
+
+
 @pytest.mark.parametrize("name", ["tower_joint", "tower_frame"])
 def test_towers_in_any_frame_are_found(name):
     model, modes, geometry, test_modes, frame = case(name)
