@@ -34,6 +34,7 @@ from ..core.updating.residuals import residuals_named
 from ..core.updating.residuals.frequencies import FREQUENCIES
 from ..core.updating.updating_numbers import UPDATING
 from .analysis import placed, require_one, target_of
+from .design_variables import optimised, with_design_variables
 from .folder import Folder
 from .made_of import made_of_files
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
@@ -43,6 +44,7 @@ from .taking_part import refuse_idle
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck
+    from ..adapters.nastran.editing.changed_deck import ChangedDeck
 
 _MOST = 200
 """Candidates that are looked at where none is named."""
@@ -52,12 +54,16 @@ _MOST = 200
 class MovableParameters(ParametersTables, Folder):
     """What `parameters` found: the tables of result.json as fields.
 
-    `geometry` is of the deck; `places` are the grids that each parameter moves something at.
+    `geometry` is of the deck; `places` are the grids that each parameter moves something at;
+    `sol200` is the deck as one of SOL 200 whose design variables are the parameters that were
+    named, or else those that are recommended, and whose objective is the test's frequencies; None
+    without a test.
     """
 
     geometry: Geometry = field(metadata=BESIDE)
     places: dict[str, tuple[int, ...]] = field(metadata=BESIDE)
     study: Study = field(metadata=BESIDE)
+    sol200: ChangedDeck | None = field(default=None, metadata=BESIDE)
 
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
@@ -68,13 +74,16 @@ class MovableParameters(ParametersTables, Folder):
         page = parameters_page(self, self.geometry, self.places, imprint_of(self.study))
         write_study(work, self.study)
         (work / "report.html").write_text(page, encoding="utf-8")
+        if self.sol200 is not None:
+            self.sol200.write(work / "sol200")
 
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
     """Derivatives by the parameters: of ln f, and of residuals over their standard deviations.
 
-    `misfit` (n_residual,) are the residuals, None without a test.
+    `misfit` (n_residual,) are the residuals, None without a test; `analysis_modes` are those that
+    pair with its `modes`.
     """
 
     modes: tuple[int, ...]
@@ -83,6 +92,7 @@ class _Seen:
     gradient: Floats
     misfit: Floats | None = None
     warnings: tuple[str, ...] = ()
+    analysis_modes: tuple[int, ...] = ()
 
 
 def parameters(
@@ -107,8 +117,8 @@ def parameters(
         Sensitivities are then of the modes that pair with it; default: the test of `study`, or the
         elastic modes of the deck.
     parameters : str or sequence of str
-        Candidates, as for `update`. Default: those of `study`, or each modulus, density, thickness,
-        area, inertia, spring and mass by itself.
+        Candidates, as for `update`. Default: those of `study`, or the design variables of the deck,
+        or each modulus, density, thickness, area, inertia, spring and mass by itself.
     study : path or Study, optional
         A study file; keyword arguments win.
     progress : callable
@@ -128,7 +138,7 @@ def parameters(
     CheckError
         The eigensolution does not meet its own check.
     """
-    from ..adapters.nastran import build_model
+    from ..adapters.nastran import ParameterSpec, build_model
     from ..adapters.nastran.assembly.candidate_parameters import candidates, properties_of
     from ..adapters.nastran.assembly.wide_parameters import parameters_of
 
@@ -145,6 +155,7 @@ def parameters(
     if isinstance(deck, Model):
         raise InputError("parameters looks at the cards of a deck, and a model has none")
     given = read_deck(deck)
+    asked, remarks = with_design_variables(asked, given)
     with naming(given.path):
         rows = properties_of(given)
         read, specs = parameters_of(given, asked.parameters)
@@ -161,6 +172,15 @@ def parameters(
     choice = Choice(said.determined, ())
     if seen.misfit is not None:
         choice = forward_selection(seen.gradient, seen.misfit, UPDATING.unsure)
+    sol200: ChangedDeck | None = None
+    if seen.analysis_modes:
+        both = list(zip(specs, model.parameters, strict=True))
+        if not asked.parameters:  # whose bounds are none
+            chosen = (both[k] for k in choice.chosen)
+            both = [(ParameterSpec(s.name, s.fields), p) for s, p in chosen]
+        aims = list(zip(seen.analysis_modes, seen.hz.tolist(), strict=True))
+        sol200, why = optimised(given, read, both, aims, asked)
+        remarks += why
     left = (f"{more} more values are in the deck: name those to look at with -p",) if more else ()
     own = [*given.files] if given.on_disk else []
     return MovableParameters(
@@ -173,7 +193,7 @@ def parameters(
         sensitivities=SensitivityTable(seen.modes, seen.hz, names, seen.slopes),
         likeness=LikenessTable(names, said.correlation),
         recommended=tuple((asked.parameters or names)[k] for k in choice.chosen),
-        warnings=(*given.warnings, *model.warnings, *seen.warnings, *left),
+        warnings=(*given.warnings, *model.warnings, *seen.warnings, *left, *remarks),
         geometry=model.geometry,
         places=_places(model),
         study=replace(
@@ -181,6 +201,7 @@ def parameters(
             deck=given.path if given.on_disk else None,
             test=side.files if side else (),
         ),
+        sol200=sol200,
     )
 
 
@@ -240,6 +261,7 @@ def _of_test(deck: Deck, model: Model, side: Measured, asked: Study) -> _Seen:
         all_residuals.gradient,
         all_residuals.values,
         (*solution.warnings, *on_model.warnings),
+        tuple(q.analysis + 1 for q in state.seen.pairs),
     )
 
 

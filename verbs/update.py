@@ -9,11 +9,12 @@ from typing import Unpack, overload
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError
 from .analysis import both_given, correlated, read_analysis
+from .design_variables import NOT_NAMED, with_design_variables
 from .kept import kept_in
 from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .run import Updated
-from .sources import Source, measured
+from .sources import Source, measured, read_deck
 from .study import Study
 from .update_together import UpdatedTogether, update_together
 from .updated import updated
@@ -62,7 +63,7 @@ def update(
         Default: the test of `study`.
     parameters : str or sequence of str
         What may move, as the analyst reads the deck: ``"PBAR 11 I1"``, ``"front = PBAR 11 I1,
-        PBAR 11 I2 [0.2, 5]"``. Default: those of `study`.
+        PBAR 11 I2 [0.2, 5]"``. Default: those of `study`, or the design variables of the deck.
     study : path or Study, optional
         A study file; keyword arguments win.
     keep : path, optional
@@ -99,14 +100,17 @@ def update(
             raise InputError("each of the configurations has its deck and test; give none beside")
         return update_together(asked, progress, keep)
     deck, test = both_given(deck, test, asked)
+    if isinstance(deck, Model):
+        raise InputError("update changes a deck, and a model has none; give the deck")
+    remarks: tuple[str, ...] = ()
     if not asked.parameters:
-        raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
+        asked, remarks = with_design_variables(asked, read_deck(deck))
+    if not asked.parameters:
+        raise InputError("; ".join((NOT_NAMED, *remarks)))
     if asked.modes is not None:
         raise InputError(
             "modes= gives fixed modes, which no parameter can move; leave it out to update"
         )
-    if isinstance(deck, Model):
-        raise InputError("update changes a deck, and a model has none; give the deck")
     progress("reading and correlating")
     side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))

@@ -26,10 +26,6 @@ def update(study: Study, output: Output) -> None:
     from ...verbs.run import Updated
     from ...verbs.update import update as move
 
-    if not any((study.parameters, *(c.parameters for c in study.configurations))):
-        raise typer.BadParameter(
-            "no parameter is named; say what may move, for example -p 'PBAR 11 I1' (repeatable)"
-        )
     if study.configurations and output.in_place:
         raise typer.BadParameter("--in-place changes one deck; take those of configurations "
                                  "from the run folder")  # fmt: skip

@@ -1,0 +1,1 @@
+"""Optimisation by Nastran itself (SOL 200): parameters as design variables, and back."""
