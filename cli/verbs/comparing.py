@@ -4,7 +4,8 @@ import shutil
 
 import typer
 
-from ...core.errors import CheckError
+from ...core.errors import CheckError, InputError
+from ...verbs.design_variables import NOT_NAMED
 from ...verbs.study import Study
 from ..answer import answer, answer_changed, new_folder
 from ..console import what_is_left, working
@@ -38,6 +39,10 @@ def update(study: Study, output: Output) -> None:
             done = move(study=study, keep=keep, progress=say)
     except CheckError as error:
         raise CheckError(f"{error}{what_is_left(keep)}") from None
+    except InputError as error:
+        if str(error).startswith(NOT_NAMED):
+            raise typer.BadParameter(str(error)) from None
+        raise
     if isinstance(done, Updated):
         answer_changed(done, folder, output)
     else:
