@@ -5,7 +5,6 @@ import shutil
 import typer
 
 from ...core.errors import CheckError, InputError
-from ...verbs.design_variables import NOT_NAMED
 from ...verbs.study import Study
 from ..answer import answer, answer_changed, new_folder
 from ..console import what_is_left, working
@@ -24,6 +23,7 @@ def correlate(study: Study, output: Output) -> None:
 
 def update(study: Study, output: Output) -> None:
     """Move the named parameters to the test, by sensitivities."""
+    from ...verbs.design_variables import NOT_NAMED
     from ...verbs.run import Updated
     from ...verbs.update import update as move
 
