@@ -22,7 +22,11 @@ from .study_tables import value_at
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec
-    from ..core.updating.residuals import Beside, Target
+    from ..core.updating.residuals import Beside, Responses, Target
+
+
+_ALONG = 0.99
+"""Cosine from which on a sensor and a force at one node are along one direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +171,29 @@ def target_of(model: Model, placed: Placed, study: Study) -> Target:
         _beside(model, study),
         placed.test.damping,
         placed.damping_std,
+        _responses(model, placed) if study.hears else None,
     )
+
+
+def _responses(model: Model, placed: Placed) -> Responses | None:
+    """Return the frequency responses of a test on the free degrees of freedom of a model."""
+    from ..core.discovery.likelihood.frf_evidence import place_responses
+    from ..core.updating.residuals import Responses
+
+    found, why = place_responses(placed.frfs, placed, model.geometry, model.dofs, model.expansion)
+    if why:
+        raise InputError("; ".join(why))
+    if found is None:
+        return None
+    frfs, points = found.frfs, []
+    for by in range(len(frfs.references)):
+        same = frfs.responses.node == frfs.references.node[by]
+        along = np.abs(frfs.responses.axis @ frfs.references.axis[by]) > _ALONG
+        of_kind = (frfs.responses.component > 3) == (frfs.references.component[by] > 3)
+        points += [(int(out), by) for out in np.flatnonzero(same & along & of_kind)]
+    onto = model.expansion
+    rows = (found.observed @ onto).tocsr(), (found.driven @ onto).tocsr()
+    return Responses(frfs.frequencies_hz, frfs.values, frfs.order, *rows, tuple(points))
 
 
 def _beside(model: Model, study: Study) -> Beside:

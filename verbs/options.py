@@ -97,6 +97,8 @@ class UpdateOptions(CompareOptions, total=False):
     "40:+Z=-1.25". ``mass_sigma``, ``centre_of_gravity_sigma`` and ``deflection_sigma`` are their
     standard deviations, of the mass, of the structure's size, and of the largest reading of a case.
     "damping" moves the ratios of complex modes to the test's; ``damping_sigma`` is of a ratio.
+    "frfs" moves the log magnitudes of frequency responses (``frf_sigma``), "antiresonances" the
+    dips of driving points (``antiresonance_sigma`` of a frequency).
 
     ``configurations`` of the structure that are updated together, in place of one deck and test:
     each a mapping with ``deck``, ``test``, a ``name``, and of the keys of a study what is another.

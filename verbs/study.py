@@ -24,7 +24,7 @@ from .taking_part import READERS
 if TYPE_CHECKING:
     from ..core.correlation.criteria import Criteria
     from ..core.identification.measured_modes import IdentifyOptions
-    from ..core.updating.residuals import Weights
+    from ..core.updating.residuals import Residual, Weights
 
 Hertz = tuple[float, float]
 """A band of frequencies; written as "15:60", too."""
@@ -201,10 +201,19 @@ class Study:
     @property
     def damped(self) -> bool:
         """Whether the damping of the deck counts."""
+        return any(r.damped for r in self._residuals)
+
+    @property
+    def hears(self) -> bool:
+        """Whether frequency responses count."""
+        return any(r.hears for r in self._residuals)
+
+    @property
+    def _residuals(self) -> list[Residual]:
         from ..core.updating.residuals import residuals_named
 
         every = (self.residuals, *(s.residuals for s in self.stages))
-        return any(r.damped for words in every for r in residuals_named(words))
+        return [r for words in every for r in residuals_named(words)]
 
 
 _HINTS = get_type_hints(Study)

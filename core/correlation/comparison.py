@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import Floats, Numbers
+from ..data.frfs import Frfs
 from ..data.geometry import Geometry
 from ..data.length_units import to_length_unit
 from ..data.measurement import Measurement
@@ -51,6 +52,8 @@ class Placed(Noun):
         What the user says that each test mode counts beside the others; all the same without.
     damping_std : (n_test,) float, optional
         Standard errors of damping ratios that were identified here.
+    frfs : Frfs, optional
+        Frequency responses of the test, in its own frame and units.
     """
 
     alignment: Alignment
@@ -63,6 +66,7 @@ class Placed(Noun):
     mpc: Floats | None = None
     weights: Floats | None = None
     damping_std: Floats | None = None
+    frfs: Frfs | None = None
 
     def take(self, rows: Numbers) -> Placed:
         """Return the test at some of its sensors (indices or mask)."""
@@ -211,6 +215,7 @@ def place_test(
         units.factor,
         measurement.mpc,
         damping_std=measurement.damping_std,
+        frfs=measurement.frfs,
     )
 
 

@@ -15,11 +15,15 @@ from .reduced_model import ReducedModel, ReducedModes, build_reduced
 
 @dataclass(frozen=True, eq=False)
 class FullOrder:
-    """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`."""
+    """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`.
+
+    The static answers to `forces` (n_force, n_free) are in what is reduced of it.
+    """
 
     model: Model
     sensors: sp.csr_matrix
     n_modes: int
+    forces: sp.csr_matrix | None = None
 
     def solve(self, p: Floats) -> Eigensolution:
         """Find and check the modes; the factor is kept."""
@@ -98,5 +102,7 @@ def reduce_around(
     """
     count = len(solution.eigenvalues)
     elastic = np.arange(min(solution.rigid_body_modes, count - 1), count)
-    reduced = build_reduced(full.model, p, elastic, tuple(active), solution=solution)
+    reduced = build_reduced(
+        full.model, p, elastic, tuple(active), solution=solution, forces=full.forces
+    )
     return ReducedOrder(reduced, reduced.project(full.sensors.T).T, count)

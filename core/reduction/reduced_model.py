@@ -181,6 +181,7 @@ def build_reduced(
     parameters: Sequence[int],
     *,
     solution: Eigensolution | None = None,
+    forces: sp.csr_matrix | None = None,
     more_modes: int = DERIVATIVES.more_modes,
     max_static: int = DERIVATIVES.most_static,
     least_energy: float = DERIVATIVES.least_energy,
@@ -198,6 +199,8 @@ def build_reduced(
         Positions in ``model.parameters`` that will move.
     solution : Eigensolution, optional
         At `p0` with ``keep_factor``; made here otherwise.
+    forces : (n_force, n_free) sparse, optional
+        Whose static answers are in the basis, too.
     more_modes : int
         Modes in the basis beyond the last target, when `solution` is not given.
     max_static : int
@@ -234,10 +237,22 @@ def build_reduced(
         model, p0, solution, factor, targets, parameters, max_static, least_energy
     )
     Q = np.hstack([modes, answers])
+    if forces is not None:
+        Q = np.hstack([Q, _answers_to(forces, factor, Q)])
     K, M, D, H = (
         reduced_sum(terms, Q) for terms in (model.stiffness, model.mass, model.damping, model.loss)
     )
     return ReducedModel(model, Q, K, M, solution, D, H)
+
+
+def _answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
+    """Find the static answers to forces beside those in a basis, A^-1 f, A-orthonormal."""
+    F = np.ascontiguousarray(forces.T.toarray())
+    known = Q.T @ F
+    S = np.asarray(factor.solve(F)) - Q @ known
+    value, W = np.linalg.eigh(S.T @ F)
+    kept = value > DERIVATIVES.dependent * np.max(np.sum(known**2, axis=0), initial=0.0)
+    return np.asarray(S @ (W[:, kept] / np.sqrt(value[kept])))
 
 
 def static_answers(

@@ -53,7 +53,10 @@ class Objective:
         quotients = solution.eigenvalues @ T**2 / np.sum(T**2, axis=0)
         ratios, taken = self.target.damping, [q.test for q in pairs]
         damped = DampedPairs(
-            Damped(order, frozen(p), solution), T, None if ratios is None else ratios[taken]
+            Damped(order, frozen(p), solution),
+            T,
+            None if ratios is None else ratios[taken],
+            self.target.responses,
         )
         seen = Seen(
             order.model,

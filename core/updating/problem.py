@@ -134,7 +134,7 @@ class Problem:
                 Part(
                     c.name,
                     Objective(c.target, c.criteria, c.weights),
-                    FullOrder(model, c.target.sensors, c.n_modes),
+                    FullOrder(model, c.target.sensors, c.n_modes, c.target.forces),
                     np.array([at[q.name] for q in own], np.int64),
                 )
             )

@@ -54,6 +54,31 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
+class Responses:
+    """Measured frequency responses laid onto a model.
+
+    Parameters
+    ----------
+    frequencies_hz : (n_line,) float
+    values : (n_out, n_in, n_line) complex
+        Receptance, mobility or accelerance per force; NaN what was not measured.
+    order : int
+        How often displacement is differentiated by time to give them.
+    observed, driven : (n_out, n_free), (n_in, n_free) sparse
+        What sensors and forces read of the model.
+    points : tuple of (int, int)
+        Positions of sensors and forces that are one degree of freedom: driving points.
+    """
+
+    frequencies_hz: Floats
+    values: Numbers
+    order: int
+    observed: sp.csr_matrix
+    driven: sp.csr_matrix
+    points: tuple[tuple[int, int], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Target:
     """The test at its sensors: what the update aims at.
 
@@ -71,6 +96,7 @@ class Target:
     damping, damping_std : (n_test,) float, optional
         Ratios of the test, NaN where unknown, and their standard errors.
     beside : Beside
+    responses : Responses, optional
     """
 
     frequencies_hz: Floats
@@ -82,6 +108,12 @@ class Target:
     beside: Beside = Beside()
     damping: Floats | None = None
     damping_std: Floats | None = None
+    responses: Responses | None = None
+
+    @property
+    def forces(self) -> sp.csr_matrix | None:
+        """What the forces of the responses are, (n_in, n_free)."""
+        return None if self.responses is None else self.responses.driven
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,11 +127,14 @@ class DampedPairs:
         Coefficients of the analysis' modes that the pairs are of.
     measured : (n_pair,) float, optional
         Damping ratios of the test, NaN where unknown.
+    responses : Responses, optional
+        Those of the test.
     """
 
     model: Damped
     turned: Floats
     measured: Floats | None = None
+    responses: Responses | None = None
 
     def take(self, at: Ints) -> DampedPairs:
         """Return the same of some of the pairs."""
@@ -214,6 +249,8 @@ class Residual:
         residuals is that which is left.
     damped : bool
         Whether the damping of the model counts.
+    hears : bool
+        Whether it looks at frequency responses.
     """
 
     name: str
@@ -228,6 +265,7 @@ class Residual:
     tells_pairs: bool = False
     believes_sigmas: bool = False
     damped: bool = False
+    hears: bool = False
 
     def squared(self, seen: Seen) -> Floats:
         """Squared length of each row of the value, (n_row,)."""

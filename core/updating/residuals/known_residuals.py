@@ -10,10 +10,12 @@ import numpy as np
 from ...arrays import Floats
 from ...errors import InputError, require_kind
 from ..updating_numbers import UPDATING
+from .antiresonances import ANTIRESONANCES
 from .damping import DAMPING
 from .declaration import Residual
 from .deflections import DEFLECTIONS
 from .frequencies import FREQUENCIES
+from .frfs import FRFS
 from .prior import PRIOR
 from .shapes import SHAPES
 from .weight import CENTRE_OF_GRAVITY, MASS
@@ -25,6 +27,8 @@ RESIDUALS: list[Residual] = [
     CENTRE_OF_GRAVITY,
     DEFLECTIONS,
     DAMPING,
+    FRFS,
+    ANTIRESONANCES,
     PRIOR,
 ]
 """What an update may minimise; `register_residual` adds to it."""
