@@ -102,15 +102,36 @@ def read_analysis(
 
 
 def analysis_modes(source: Source, deck: Deck | None) -> Modes:
-    """Return analysis modes of the user's own Nastran run."""
+    """Return analysis modes of the user's own Nastran run, or those that a store holds."""
     from ..adapters.nastran import read_modes
+    from ..adapters.store import is_store
     from .solve import Solved
 
     if isinstance(source, Solved):
         return source.shapes
     if isinstance(source, Modes):
         return source
-    return read_modes(file_or_pynastran(source, "modes"), deck)
+    path = file_or_pynastran(source, "modes")
+    stored = isinstance(path, Path) and is_store(path)
+    return _stored_modes(path, deck) if stored else read_modes(path, deck)
+
+
+def _stored_modes(path: Path, deck: Deck | None) -> Modes:
+    """Return the modes of a model that a store holds: those of the analysis, or the only ones."""
+    from ..adapters.nastran import drawn_model
+    from ..adapters.store import read_store
+
+    held = read_store(path).modes
+    chosen = [*held] if len(held) == 1 else [name for name in held if name == "analysis"]
+    if not chosen:
+        named = ", ".join(held) or "none"
+        raise InputError(f"{path} holds no modes of an analysis (its modes: {named})", file=path)
+    found = held[chosen[0]]
+    there = found.dofs.node if deck is None else drawn_model(deck).dofs.node
+    strange = np.setdiff1d(found.dofs.node, there)
+    if len(strange):
+        raise InputError(f"{path}: grid {strange[0]} is not in the deck", file=path)
+    return found
 
 
 def placed(model: Model, deck: Deck | None, modes: Modes, test: Measured, study: Study) -> Placed:

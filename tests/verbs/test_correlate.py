@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import trueup
+from trueup.adapters.store import write_store
 from trueup.adapters.universal import read_universal
 
 DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
@@ -48,6 +49,25 @@ def test_a_run_is_run_again_wherever_it_is_moved_with_its_inputs(
     again = trueup.correlate(study=tmp_path / "there/runs/first/study.toml")
     assert again.pairs == found.pairs
     assert again.study.deck == tmp_path.resolve() / "there" / FILES[0].name
+
+
+def test_modes_of_the_model_may_stand_in_a_store(tmp_path: Path) -> None:
+    solved = trueup.solve(FILES[0], 12)
+    write_store(tmp_path / "modes.h5", geometry=solved.geometry, modes={"found": solved.shapes})
+    of_file, of_object = (
+        trueup.correlate(*FILES, deck_length_unit="mm", modes=m)
+        for m in (tmp_path / "modes.h5", solved)
+    )
+    assert of_file.pairs == of_object.pairs
+    strange = replace(
+        solved.shapes, dofs=replace(solved.shapes.dofs, node=solved.shapes.dofs.node + 9)
+    )
+    write_store(tmp_path / "others.h5", geometry=None, modes={"analysis": strange})
+    with pytest.raises(trueup.InputError, match=r"others\.h5: grid \d+ is not in the deck"):
+        trueup.correlate(*FILES, deck_length_unit="mm", modes=tmp_path / "others.h5")
+    write_store(tmp_path / "two.h5", geometry=None, modes={"a": solved.shapes, "b": strange})
+    with pytest.raises(trueup.InputError, match=r"no modes of an analysis \(its modes: a, b\)"):
+        trueup.correlate(*FILES, deck_length_unit="mm", modes=tmp_path / "two.h5")
 
 
 def test_what_is_known_of_damping_stands_beside_the_pairs(found: trueup.Correlated) -> None:

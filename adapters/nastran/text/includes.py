@@ -29,7 +29,7 @@ def parse_include(lines: list[str], where: Place, more: int = 0) -> tuple[str, i
     InputError
         A quote that is never closed, or no name.
     """
-    body = lines[0].strip()[len("INCLUDE") :].strip()
+    body = lines[0].strip()[len("INCLUDE") :].strip().lstrip(",= \t")
     used = 1
     if body[:1] in ("'", '"') and body:
         while not _QUOTED.match(body):

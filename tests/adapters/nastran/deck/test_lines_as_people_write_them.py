@@ -104,6 +104,12 @@ def test_a_name_without_quotes_may_go_on(read, tmp_path, name):
     assert b"".join(file.data for file in found.text.files[:1]) == (tmp_path / "a.bdf").read_bytes()
 
 
+@pytest.mark.parametrize("form", ["INCLUDE,'x.bdf'", "INCLUDE='x.bdf'", "include = x.bdf $ c"])
+def test_signs_ahead_of_a_name_are_no_part_of_it(read, tmp_path, form):
+    (tmp_path / "x.bdf").write_text("GRID,1,,0.,0.,0.\n")
+    assert read(f"{form}\nGRID,2,,1.,0.,0.\n").counts == {"GRID": 2}
+
+
 def test_a_file_that_is_not_there_is_named_as_it_is_written(read):
     with pytest.raises(InputError, match=r"a\.bdf line 1: the INCLUDE file 'absent\.bdf' does not"):
         read("INCLUDE absent.bdf\nGRID,2,,1.,0.,0.\n")
