@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
+from ..core.errors import InputError
 from ..core.files import reading
 from ..core.results.made import InputRow, ModeNameRow, WeightRow
 from ..core.results.plain import Table
@@ -49,9 +51,10 @@ class Beside(TypedDict):
 
 def beside(study: Study, unit: str | None, **decks: Deck | ChangedDeck | None) -> Beside:
     """Return what decks weigh, in the deck's length unit, and the names that modes were given."""
-    rows = [
-        _weighed(name, read_deck(deck), unit) for name, deck in decks.items() if deck is not None
-    ]
+    rows: list[WeightRow] = []
+    for name, deck in decks.items():
+        with suppress(InputError):  # cards that cannot be assembled are told elsewhere
+            rows += [] if deck is None else [_weighed(name, read_deck(deck), unit)]
     names = Table((ModeNameRow(*named) for named in study.mode_names), ModeNameRow)
     return {"weight": Table(rows, WeightRow), "mode_names": names}
 
