@@ -37,6 +37,10 @@ FminOption = Annotated[
 FmaxOption = Annotated[
     float | None, typer.Option("--fmax", help="Lines and test modes up to here [Hz] take part.")
 ]
+UpToOption = Annotated[float | None, typer.Option("--fmax", help="Modes up to here [Hz].")]
+NumberOption = Annotated[
+    int | None, typer.Option("-n", "--number", help="Modes of a deck, rigid-body ones too.")
+]
 BandsOption = Annotated[
     list[str] | None,
     typer.Option("--band", metavar="A:B", help="Those in this band only [Hz] (repeatable)."),

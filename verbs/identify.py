@@ -31,7 +31,8 @@ from .folder import Folder
 from .made_of import made_of_files
 from .options import Files, Say, checked_call, study_of, unheard
 from .sources import Source, existing, files_of
-from .study import Study, converted, read_study, write_study
+from .study import Study, converted, read_study
+from .study_text import write_study
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function

@@ -19,7 +19,8 @@ from ..core.updating.stages import Iteration
 from ..core.version import VERSION
 from .executors import executor
 from .made_of import MadeOf
-from .study import Study, study_toml
+from .study import Study
+from .study_text import study_toml
 
 if TYPE_CHECKING:
     from .options import Files

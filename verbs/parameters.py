@@ -39,7 +39,8 @@ from .folder import Folder
 from .made_of import made_of_files
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
 from .sources import Measured, Source, measured, read_deck
-from .study import Study, write_study
+from .study import Study
+from .study_text import write_study
 from .taking_part import refuse_idle
 
 if TYPE_CHECKING:

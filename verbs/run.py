@@ -18,7 +18,8 @@ from ..core.results.plain import Table
 from ..core.results.update import ChangingTables, InPlace, UpdateTables
 from ..core.updating.stages import Iteration
 from .folder import Folder
-from .study import Study, read_study, write_study
+from .study import Study, read_study
+from .study_text import write_study
 
 if TYPE_CHECKING:
     from .plots import Plots

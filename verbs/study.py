@@ -97,7 +97,7 @@ class Study:
     source: Path | None = field(default=None, metadata={"file_key": False})
 
     def __post_init__(self) -> None:
-        for name, kind in _FIELDS.items():
+        for name, kind in FIELDS.items():
             if getattr(self, name) is not None:
                 own = converted(name, getattr(self, name), kind, Place(shown="Study"))
                 object.__setattr__(self, name, own)
@@ -217,10 +217,10 @@ class Study:
 
 
 _HINTS = get_type_hints(Study)
-_FIELDS = {
+FIELDS = {
     f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
 }
-_TABLES: dict[str, type] = {
+TABLES: dict[str, type] = {
     "stages": StageRequest,
     "load_cases": LoadRequest,
     "configurations": ConfigurationRequest,
@@ -230,7 +230,7 @@ _TABLES: dict[str, type] = {
 
 def study_keys() -> tuple[str, ...]:
     """Return every key of a study file."""
-    return (*_FIELDS, *_sigma_fields())
+    return (*FIELDS, *_sigma_fields())
 
 
 def _sigma_fields() -> dict[str, Any]:
@@ -265,13 +265,13 @@ def read_study(path: Path) -> Study:
         raise here.fault("is not UTF-8 text") from error
     except tomllib.TOMLDecodeError as error:
         raise here.fault(f"is not valid TOML: {error}") from error
-    values = _study_values(table, {**_FIELDS, **_sigma_fields()}, here)
+    values = _study_values(table, {**FIELDS, **_sigma_fields()}, here)
     for name in ("deck", "modes", "logo", "out"):
         if values.get(name) is not None:
             values[name] = _under(path.parent, values[name])
     values["test"] = tuple(_under(path.parent, t) for t in values.get("test", ()))
     values["configurations"] = tuple(
-        _moved(c, partial(_under, path.parent)) for c in values.get("configurations", ())
+        moved(c, partial(_under, path.parent)) for c in values.get("configurations", ())
     )
     try:
         return Study(**values, source=path)
@@ -279,7 +279,7 @@ def read_study(path: Path) -> Study:
         raise here.about(str(error)) from None
 
 
-def _moved(one: ConfigurationRequest, to: Callable[[Path], Path]) -> ConfigurationRequest:
+def moved(one: ConfigurationRequest, to: Callable[[Path], Path]) -> ConfigurationRequest:
     """Return a configuration with its paths elsewhere."""
     deck = one.deck and to(one.deck)
     return dataclasses.replace(one, deck=deck, test=tuple(map(to, one.test)))
@@ -311,7 +311,7 @@ def merge(
     InputError
         A key that is not known, a value of the wrong type or that no run accepts.
     """
-    fields = {name: kind for name, kind in _FIELDS.items() if name in known}
+    fields = {name: kind for name, kind in FIELDS.items() if name in known}
     if "residuals" in known:
         fields |= _sigma_fields()
     there = {k: v for k, v in given.items() if k not in fields or v is not None}
@@ -320,59 +320,6 @@ def merge(
         raise InputError(f"{who}: test_modes is empty; give mode numbers, or None for all modes")
     values["sigmas"] = {**study.sigmas, **values.get("sigmas", {})}
     return dataclasses.replace(study, **values)
-
-
-def seen_from(folder: Path, study: Study) -> Study:
-    """Return the study with its paths as seen from a folder, so that both can be moved together."""
-    deck, modes, logo = (p and _seen_from(folder, p) for p in (study.deck, study.modes, study.logo))
-    test = tuple(_seen_from(folder, p) for p in study.test)
-    every = tuple(_moved(c, partial(_seen_from, folder)) for c in study.configurations)
-    return dataclasses.replace(
-        study, deck=deck, test=test, modes=modes, logo=logo, configurations=every
-    )
-
-
-def _seen_from(folder: Path, path: Path) -> Path:
-    try:
-        return Path(os.path.relpath(path.parent.resolve() / path.name, folder.resolve()))
-    except ValueError:  # on another drive
-        return path.absolute()
-
-
-def study_toml(study: Study) -> str:
-    """Write the study as TOML that runs it again, defaults included."""
-    lines = ["# trueup study: run it again with  trueup VERB --study study.toml"]
-    for name in _FIELDS:
-        value = getattr(study, name)
-        if name in {*_TABLES, "out"} or value is None or (name == "test" and not value):
-            continue
-        lines.append(f"{name} = {_toml(value)}")
-    lines += [f"{key} = {sigma!r}" for key, sigma in study.weights.all.items()]
-    for name, kind in _TABLES.items():
-        for table in getattr(study, name):
-            lines += ["", f"[[{name}]]"]
-            held = {n: getattr(table, n) for n in get_type_hints(kind)}
-            lines += [f"{n} = {_toml(v)}" for n, v in held.items() if v not in (None, ())]
-    return "\n".join(lines) + "\n"
-
-
-def write_study(work: Path, study: Study) -> None:
-    """Write the study of a run folder, its paths as seen from there."""
-    text = study_toml(seen_from(work, study))
-    (work / "study.toml").write_text(text, encoding="utf-8", newline="\n")
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, tuple | list):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    if isinstance(value, LoadRequest):
-        return f"{{loads = {_toml(value.loads)}, readings = {_toml(value.readings)}}}"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int | float):
-        return repr(value)
-    text = str(value).replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{text}"'
 
 
 def _checked(table: Mapping[str, object], fields: Mapping[str, Any], who: Place) -> dict[str, Any]:
@@ -403,10 +350,10 @@ def converted(name: str, value: object, kind: Any, who: Place) -> Any:
     of = get_args(kind)
     if value is None and NoneType in of:
         return None
-    if name in _TABLES:
+    if name in TABLES:
         if not isinstance(value, list | tuple):
             raise wrong
-        return tuple(_table(_TABLES[name], v, who, wrong) for v in value)
+        return tuple(_table(TABLES[name], v, who, wrong) for v in value)
     if kind == Hertz:
         ends = value.split(":") if isinstance(value, str) else value
         try:

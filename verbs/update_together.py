@@ -23,8 +23,9 @@ from .made_of import made_of
 from .options import Files, Say
 from .run import Updated
 from .sources import Measured, measured, read_deck
-from .study import Study, read_study, write_study
+from .study import Study, read_study
 from .study_tables import ConfigurationRequest
+from .study_text import write_study
 from .updated import updated
 from .updating_ways import Moved, configuration, moved, way_of
 

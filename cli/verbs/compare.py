@@ -6,15 +6,13 @@ from typing import Annotated
 import typer
 
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import ForceOption, JsonOption, Output, QuietOption
+from ..options import ForceOption, JsonOption, NumberOption, Output, QuietOption, UpToOption
 
 
 def compare(
     sources: Annotated[list[Path], typer.Argument(metavar="RUN|DECK|MODES...")],
-    number: Annotated[
-        int | None, typer.Option("-n", "--number", help="Modes of a deck, rigid-body ones too.")
-    ] = None,
-    fmax: Annotated[float | None, typer.Option("--fmax", help="Modes up to here [Hz].")] = None,
+    number: NumberOption = None,
+    fmax: UpToOption = None,
     mac_min: Annotated[float, typer.Option("--mac-min", help="Smallest MAC of a pair.")] = 0.7,
     frequency_tolerance: Annotated[
         float, typer.Option("--frequency-tolerance", help="Largest relative difference of a pair.")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import ForceOption, JsonOption, Output, QuietOption, VerboseOption
+from ..options import ForceOption, JsonOption, Output, QuietOption, UpToOption, VerboseOption
 
 
 def plan(
@@ -17,7 +17,7 @@ def plan(
     modes: Annotated[
         list[str] | None, typer.Option("--modes", metavar="7:14", help="Modes the test is for.")
     ] = None,
-    fmax: Annotated[float | None, typer.Option("--fmax", help="Modes up to here [Hz].")] = None,
+    fmax: UpToOption = None,
     exciters: Annotated[int, typer.Option("--exciters", help="Places to drive.")] = 2,
     method: Annotated[str, typer.Option("--method", metavar="independence|mac")] = "independence",
     directions: Annotated[str, typer.Option("--directions", help="Axes of sensors.")] = "XYZ",

@@ -8,7 +8,16 @@ import typer
 from ...core.errors import InputError
 from ...verbs.study import Study, read_study
 from ..console import emit_json, speaks, stdout, tell, working
-from ..options import ForceOption, JsonOption, Output, QuietOption, StudyOption, VerboseOption
+from ..options import (
+    ForceOption,
+    JsonOption,
+    NumberOption,
+    Output,
+    QuietOption,
+    StudyOption,
+    UpToOption,
+    VerboseOption,
+)
 
 _FILES = (".h5", ".unv", ".uff")
 
@@ -16,10 +25,8 @@ _FILES = (".h5", ".unv", ".uff")
 def solve(
     deck: Annotated[Path | None, typer.Argument(metavar="DECK")] = None,
     study: StudyOption = None,
-    number: Annotated[
-        int | None, typer.Option("-n", "--number", help="Modes, rigid-body ones included.")
-    ] = None,
-    fmax: Annotated[float | None, typer.Option("--fmax", help="All modes up to here [Hz].")] = None,
+    number: NumberOption = None,
+    fmax: UpToOption = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="FILE|DIR", help="Modes as .h5 or .unv; or a run folder."),

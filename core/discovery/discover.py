@@ -16,9 +16,8 @@ from ..reduction.reduced_sum import ReducedSum, reduced_sum
 from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
 from .effects import KINDS
-from .effects.candidates import Candidates
+from .effects.candidates import Candidates, factors_of
 from .effects.effect_kind import Scale
-from .effects.twins import factors_of
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem

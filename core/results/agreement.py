@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 from ..arrays import Floats, Numbers
 from ..correlation.mac import mac
 from ..localisation.sensor_agreement import SensorAgreement
-from ..noun import Noun
 from . import export
-from .plain import Table, finite
+from .plain import Matrix, Table, finite
 
 
 @dataclass(frozen=True)
@@ -31,7 +28,7 @@ class AgreementRow:
 
 
 @dataclass(frozen=True, eq=False)
-class AutoMacTable(Noun):
+class AutoMacTable(Matrix):
     """MAC `values` (n, n), 0..1, of the modes of one side among themselves, from 1."""
 
     values: Floats
@@ -55,17 +52,6 @@ class AutoMacTable(Noun):
         rows = zip(self.modes, self.values.tolist(), strict=True)
         records = [dict(zip(names, (n, *row), strict=True)) for n, row in rows]
         return [export.Column(name) for name in names], records
-
-    def to_csv(self, path: Path | str) -> None:
-        """Write a CSV file."""
-        export.write_csv(path, *self._wide)
-
-    def to_pandas(self) -> Any:
-        """Return a pandas DataFrame; `InputError` where pandas is not installed."""
-        return export.frame(*self._wide)
-
-    def _repr_html_(self) -> str:
-        return export.html(*self._wide)
 
 
 def agreement_table(found: SensorAgreement | None, labels: Sequence[str]) -> Table[AgreementRow]:

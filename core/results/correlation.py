@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from .agreement import AgreementRow, AutoMacTable, agreement_table
 from .doubts import doubts
 from .made import MadeTables, ModeNameRow, WeightRow
 from .orthogonality import OrthogonalityTables
-from .plain import Table, Tables, finite
+from .plain import Matrix, Table, Tables, finite
 
 _SHOWN = 12
 """Modes of either side of a MAC matrix on a page."""
@@ -94,7 +93,7 @@ class AxisRow:
 
 
 @dataclass(frozen=True, eq=False)
-class MacTable(Noun):
+class MacTable(Matrix):
     """MAC `values` (n_test, n_analysis), 0..1, of the modes whose numbers stand beside."""
 
     test: tuple[int, ...]
@@ -111,18 +110,10 @@ class MacTable(Noun):
         records = [dict(zip(names, (t, *row), strict=True)) for t, row in rows]
         return [export.Column(name) for name in names], records
 
-    def to_csv(self, path: Path | str) -> None:
-        """Write a CSV file, test modes down, analysis modes across."""
-        export.write_csv(path, *self._wide)
-
-    def to_pandas(self) -> Any:
-        """Return a pandas DataFrame likewise; `InputError` where pandas is not installed."""
-        return export.frame(*self._wide)
-
     def _repr_html_(self) -> str:
         rows, columns = len(self.test), len(self.analysis)
         if max(rows, columns) <= _SHOWN:
-            return export.html(*self._wide)
+            return super()._repr_html_()
         part = MacTable(self.test[:_SHOWN], self.analysis[:_SHOWN], self.values[:_SHOWN, :_SHOWN])
         return (
             f"{part._repr_html_()}<p>… the first of {rows} test modes and {columns} analysis "

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
 
 from ..arrays import Floats
-from ..noun import Noun, key
+from ..noun import key
 from . import export
 from .made import MadeTables
-from .plain import Table
+from .plain import Matrix, Table
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ class CombinationRow:
 
 
 @dataclass(frozen=True, eq=False)
-class SensitivityTable(Noun):
+class SensitivityTable(Matrix):
     """`values` (n_mode, n_parameter): d ln f / d ln p of each mode, by name of the parameter."""
 
     modes: tuple[int, ...]
@@ -79,20 +77,9 @@ class SensitivityTable(Noun):
         records = [dict(zip(names, (m, f, *row), strict=True)) for m, f, row in rows]
         return [*columns, *map(export.Column, self.parameters)], records
 
-    def to_csv(self, path: Path | str) -> None:
-        """Write a CSV file, modes down, parameters across."""
-        export.write_csv(path, *self._wide)
-
-    def to_pandas(self) -> Any:
-        """Return a pandas DataFrame likewise; `InputError` where pandas is not installed."""
-        return export.frame(*self._wide)
-
-    def _repr_html_(self) -> str:
-        return export.html(*self._wide)
-
 
 @dataclass(frozen=True, eq=False)
-class LikenessTable(Noun):
+class LikenessTable(Matrix):
     """`values` (n, n): cosines of what two parameters do to the modes, by name."""
 
     parameters: tuple[str, ...]
@@ -107,17 +94,6 @@ class LikenessTable(Noun):
         rows = zip(self.parameters, self.values.tolist(), strict=True)
         records = [dict(zip(names, (name, *row), strict=True)) for name, row in rows]
         return [export.Column(name) for name in names], records
-
-    def to_csv(self, path: Path | str) -> None:
-        """Write a CSV file, parameters down and across."""
-        export.write_csv(path, *self._wide)
-
-    def to_pandas(self) -> Any:
-        """Return a pandas DataFrame likewise; `InputError` where pandas is not installed."""
-        return export.frame(*self._wide)
-
-    def _repr_html_(self) -> str:
-        return export.html(*self._wide)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -88,6 +88,26 @@ class Tabular(typing.Protocol):
     def _repr_html_(self) -> str: ...
 
 
+class Matrix(Noun):
+    """Base of numbers under two headings, one down and one across."""
+
+    @property
+    def _wide(self) -> tuple[list[export.Column], list[dict[str, object]]]:
+        """Columns, and a record of each row."""
+        raise NotImplementedError
+
+    def to_csv(self, path: Path | str) -> None:
+        """Write a CSV file, a row a line."""
+        export.write_csv(path, *self._wide)
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame likewise; `InputError` where pandas is not installed."""
+        return export.frame(*self._wide)
+
+    def _repr_html_(self) -> str:
+        return export.html(*self._wide)
+
+
 class Tables(Noun):
     """Base of what a verb answers; `schema` names it in result.json."""
 

@@ -14,10 +14,9 @@ import scipy.sparse as sp
 
 from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
-from .candidates import Candidates
+from .candidates import Candidates, places_of, together
 from .effect_kind import Words
 from .structure_points import rotations, translations
-from .twins import places_of, together
 
 
 @dataclass(frozen=True)

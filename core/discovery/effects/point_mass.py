@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 
 from ..reduction.elements_and_supports import Structure
-from .candidates import Candidates
+from .candidates import Candidates, with_twins
 from .effect_kind import MASS, EffectKind, Scale
 from .effect_laws import MassLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
 from .equipment import further
 from .structure_points import points_of, translations
-from .twins import with_twins
 
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:

@@ -55,4 +55,5 @@ KIND = EffectKind(
     across=EFFECTS.springs_across,
     directed=True,
     limits=_limits,
+    late=True,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,7 +37,8 @@ class Problem:
     the flexibility of each that the basis lacks, (n, q), where it matters; `modes` eigenpairs are
     computed, of which the first `columns` may match a test mode. `evidence` is the part of the
     test that hypotheses are fitted to, at the rows `sensors` of the basis; `whole` is all of it,
-    at the rows `everywhere`. `heard` is what frequency responses say, where there are any.
+    at the rows `everywhere`. `heard` is what frequency responses say, where there are any. `known`
+    are the rows of single candidates that were asked for.
     """
 
     evidence: Evidence
@@ -57,6 +58,9 @@ class Problem:
     rest: Floats | None = None
     held: tuple[Suspect, ...] = ()
     heard: Heard | None = None
+    known: dict[tuple[int, int] | None, tuple[Floats, Floats | None]] = field(
+        default_factory=dict, init=False
+    )
 
     def turned(
         self, T: Floats, rest: Floats | None = None, held: Sequence[Suspect] = ()
@@ -84,20 +88,30 @@ class Problem:
 
     def part(self, kind: int, rows: Ints, nuisance: Floats) -> tuple[Floats, Law]:
         """Return rows (n, q, r) of some candidates on the basis, and their law at `nuisance`."""
-        log_p, _ = taken_apart(nuisance)
-        c, U = self.catalogue[kind], self.factors[kind][rows]
+        U, missing = self._rows(kind, rows)
+        top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
+        law = self.catalogue[kind].law.on_basis(rows, missing, taken_apart(nuisance)[0], top)
+        return U if law.turn is None else np.matmul(law.turn, U), law
+
+    def _rows(self, kind: int, rows: Ints) -> tuple[Floats, Floats | None]:
+        """Return rows of some candidates and the flexibility they lack; of a single one kept."""
+        one = (kind, int(rows[0])) if len(rows) == 1 else None
+        if one in self.known:
+            return self.known[one]
+        U = self.factors[kind][rows]
         known = self.missing[kind] if self.missing else None
         missing = None if known is None else known[rows]
+        c = self.catalogue[kind]
         if self.rest is not None and c.rows_each:
             held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
             lost = _flexibility(U @ self.rest, c.law.shared)
             lost[held] = 0.0
             if not held.all():
                 missing = lost if missing is None else missing + lost
-        top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        law = c.law.on_basis(rows, missing, log_p, top)
-        U = U if law.turn is None else np.matmul(law.turn, U)
-        return U if self.turn is None else U @ self.turn, law
+        found = U if self.turn is None else U @ self.turn, missing
+        if one is not None:
+            self.known[one] = found
+        return found
 
 
 def _flexibility(F: Floats, shared: bool) -> Floats:

@@ -16,7 +16,7 @@ class Effort:
     neighbours: int = number(60, "places", "that a suspect may move to at once, at most")
     of_each_kind: int = number(2, "suspects", "of a kind that are fitted, whatever the others gain")
     most: int = number(4, "suspects", "of a hypothesis, at most")
-    search_modes: int = number(48, "modes", "of a hypothesis on which places are scanned")
+    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
     near: float = number(0.12, SIZE, "how far a suspect moves at once")
     twice: int = number(8000, "degrees of freedom", "models up to it are searched a second time, with all kinds at once", "time")

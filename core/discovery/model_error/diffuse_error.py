@@ -127,9 +127,12 @@ def _noises(seen: Seen) -> Floats:
 def _at(seen: Seen, error: float, noises: Floats | None = None) -> Diffuse:
     """Return the best over the noise at one error."""
     noises = _noises(seen) if noises is None else noises
-    logs = _frequencies(seen, error)[None] + _shapes(seen, error, noises)
-    astray = _stray(seen)
-    both = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)
+    frequencies, astray = _frequencies(seen, error), _stray(seen)
+    most = 0.5 * _weight(seen) * len(seen.shapes) * np.log(len(seen.shapes) / noises.min() ** 2)
+    near = np.flatnonzero(np.any(frequencies + most > astray - MODEL_ERROR.nil, axis=0))
+    logs = frequencies[:, near] + _shapes(seen, error, noises, near)
+    both = np.full((len(noises), *frequencies.shape), astray)
+    both[:, :, near] = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)
     best = None
     for noise, L in zip(noises, both, strict=True):
         rows, match = linear_sum_assignment(-L)
@@ -174,13 +177,13 @@ def _roots(seen: Seen, error: float, columns: Ints) -> Floats:
     return np.asarray(np.sqrt(share / np.maximum(length, np.finfo(float).tiny)[:, None]))
 
 
-def _shapes(seen: Seen, error: float, noises: Floats) -> Floats:
-    """Return ln of the likelihood of each shape by each mode, (n_noise, n_test, columns).
+def _shapes(seen: Seen, error: float, noises: Floats, columns: Ints) -> Floats:
+    """Return ln of the likelihood of each shape by some modes, (n_noise, n_test, len(columns)).
 
     But for (2π)^(-n/2). Shapes have the covariance c² A Δ Aᵀ + s² I; c² makes their length that of
     the mode.
     """
-    n, columns = len(seen.shapes), np.arange(seen.columns)
+    n = len(seen.shapes)
     A, T = seen.modes, seen.shapes
     G, X = A.T @ A, A.T @ T
     root = _roots(seen, error, columns)

@@ -15,6 +15,7 @@ class ModelErrorNumbers:
     frequency: float = number(0.001, "of f", "standard deviation of a measured frequency, at least")
     reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
     stray: float = number(0.03, "-", "chance that a test mode is none of the model's")
+    nil: float = number(20.0, "ln L", "less than the likelihood of a stray mode, below which a pair is not looked at", "double precision")
     independent: float = number(24.0, "readings", "of a shape that count as independent, at most")
     cells: int = number(8, "boxes", "along the longest side, in each of which a smooth field is one value")
     degree: int = number(2, "-", "of the polynomials that smooth fields are made of, at most")

@@ -9,8 +9,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats
 from ...registration.alignment import Alignment
-from ..effects.candidates import Candidates, Suspect
-from ..effects.twins import places_of
+from ..effects.candidates import Candidates, Suspect, places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit

@@ -19,7 +19,7 @@ class NarrativeNumbers:
     like_model: float = number(0.57, "-", "share of sensors said to be turned or to read too much or little that are", CALIBRATED)
     interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")
     hardly: float = number(20.0, "-", "quotient of the ends of an interval from which on a magnitude is hardly known")
-    alternatives: int = number(8, "alternatives", "that are told, at most", READER)
+    alternatives: int = number(5, "alternatives", "that are told, at most", READER)
     rivals: int = number(3, "hypotheses", "that further data should tell from the best, at most", READER)
     rival: float = number(14.0, "2 ln L", "how far behind the best they are, at most", "a thousand times less likely")
 

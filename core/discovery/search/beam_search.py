@@ -81,15 +81,11 @@ def grown(
             levels.append(chosen[0])
             rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
             break
-        plain, tuned = _leagues(searcher, chosen)
-        before, _ = _leagues(searcher, beam)
-        base = min((f.objective for f in before), default=levels[-1].objective)
-        followed = _leading(searcher, plain, base) if plain else []
-        followed += [f for f in tuned if any(f is g for g in chosen[: SEARCH.tuned_followed])]
+        base = beam[0].objective
+        followed = _leading(searcher, chosen, base)
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
         if depth > 1:
-            firsts = [id(league[0]) for league in _leagues(searcher, beam) if league]
-            beam = [searcher.reconsidered(f) if id(f) in firsts else f for f in beam]
+            beam[0] = searcher.reconsidered(beam[0])
         beam = _distinct(searcher, sorted(beam, key=_objective))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
@@ -99,9 +95,7 @@ def grown(
         levels.append(best)
         if enough(previous, best, 1.0):
             break
-        plain, tuned = _leagues(searcher, beam)
-        beam = [*_near(searcher, plain, base), *(tuned[:1] if tuned and tuned[0] is best else ())]
-        beam = sorted(beam, key=_objective)
+        beam = sorted(_near(searcher, beam, base), key=_objective)
     return Found(tuple(levels), tuple(rivals))
 
 
@@ -116,8 +110,6 @@ def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     One that changes the other matrix, where none of these does, comes along: while several
     effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
     """
-    if not fits:
-        return []
     near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
     kept = close[: searcher.effort.beam - 1]
@@ -131,16 +123,6 @@ def _changed(searcher: Searcher, f: Fit) -> set[str]:
     return {searcher.problem.catalogue[s.kind].law.on for s in f.suspects}
 
 
-def _leagues(searcher: Searcher, fits: Sequence[Fit]) -> tuple[list[Fit], list[Fit]]:
-    """Return the fits without a tuned suspect, and those with one.
-
-    Before the rest is right a tuned kind imitates the others; what has none is followed as if
-    there were no tuned kinds.
-    """
-    plain = [f for f in fits if not any(map(searcher.tuned, f.suspects))]
-    return plain, [f for f in fits if any(map(searcher.tuned, f.suspects))]
-
-
 def _objective(f: Fit) -> float:
     return f.objective
 
@@ -150,22 +132,19 @@ def _varied(
 ) -> list[Suspect]:
     """Keep the best branches of all and the best of every kind, if they gain enough.
 
-    A kind that is tuned can imitate the others before they are at their right place, so these
-    are held against each other alone. Stretches of an edge are a kind by each way they give.
+    Stretches of an edge are a kind by each way they give.
     """
-    number: Counter[bool | tuple[str, int]] = Counter()
+    number: Counter[tuple[str, int]] = Counter()
     kept: list[Suspect] = []
-    simple = next((b for b in branches if not searcher.tuned(b[1])), branches[0])
+    best = branches[0][0] if branches else 0.0
     for score, s in branches:
         c = searcher.problem.catalogue[s.kind]
-        tuned, kind = searcher.tuned(s), (c.kind.name, s.kind if c.ends else -1)
-        best = (branches[0] if tuned else simple)[0]
+        kind = (c.kind.name, s.kind if c.ends else -1)
         if base - score < SEARCH.worth_fitting * (base - best) and kept and not searcher.small:
             continue
-        number[tuned] += 1
         number[kind] += 1
         each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)
-        if number[tuned] <= searcher.effort.branches or number[kind] <= each:
+        if number.total() <= searcher.effort.branches or number[kind] <= each:
             kept.append(s)
     return kept
 

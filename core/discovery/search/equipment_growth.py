@@ -11,9 +11,8 @@ import numpy as np
 
 from ...arrays import Floats
 from ..effects import point_mass
-from ..effects.candidates import Candidates, Suspect
+from ..effects.candidates import Candidates, Suspect, places_of
 from ..effects.equipment import Body, Stand, equipment, stand
-from ..effects.twins import places_of
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure

@@ -39,7 +39,6 @@ class SearchNumbers:
     hopeless: float = number(0.3, "of its price", "a further suspect that gains less before it is moved to better neighbours is given up")
     other_kind: float = number(0.5, GAIN, "a kind whose best place gains this is followed too")
     worth_fitting: float = number(0.35, GAIN, "a branch that gains less is not fitted")
-    tuned_followed: int = number(2, "hypotheses", "with a tuned suspect that are followed beside the others, if they lead")
     grown_too: float = number(0.35, GAIN, "a hypothesis that gained less than all but this is not grown")
     rivals_kept: int = number(12, "hypotheses", "that are kept as rivals of each number of suspects")
     same_place: float = number(0.5, "of Effort.apart", "hypotheses whose suspects are nearer are one")
@@ -62,9 +61,8 @@ class SearchNumbers:
     every_most: int = number(3000, "grids", "that it looks at one by one, at most", "time")
 
     clearly: float = number(1.3, "of a simple effect's gain", "what a tuned one must gain")
-    tuned_tried: int = number(3, "places", "of an absorber that are tried beside what was found")
+    late_tried: int = number(3, "places", "of an absorber or a link that are tried beside what was found")
     second_opinion: float = number(2.5, "of the assumed variance", "what a best hypothesis leaves that asks for a search by a wider noise")
-    unexplained: float = number(4.0, "of the assumed variance", "what nothing explains, that asks for a search with all kinds")
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")

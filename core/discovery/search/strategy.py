@@ -1,10 +1,9 @@
-"""Simple explanations first; kinds that are tuned where these do clearly worse.
+"""Simple explanations first; kinds that imitate others where these leave much.
 
 A mass on a spring has one magnitude more than a mass or a spring and can imitate either until all
-that is missing stands where it should. So the search runs without tuned kinds first. Then one of
-them is put beside every level of what was found; where it gains clearly more than the next simple
-effect did, the search runs again with all kinds, and the likelier of the two outcomes counts. It
-does so too where something was found in a model small enough for a second opinion.
+that is missing stands where it should; a spring may join any two places. So the search runs
+without such kinds first. Then one of them is put beside every level of what was found; from the
+best of these the search goes on with the others, and the likelier of the two outcomes counts.
 """
 
 from collections.abc import Callable
@@ -25,49 +24,32 @@ from .search_numbers import SEARCH
 def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
     """Search with all kinds but the late ones, and with these where much is left.
 
-    One of these is put beside every level of what was found; from the best of them the search goes
-    on with the others.
+    A tuned one is not looked for where an adequate explanation was found: it would imitate what
+    that leaves.
     """
-    late = [c.kind.late for c in searcher.problem.catalogue]
-    simple = _with(searcher, [not x for x in late])
-    found = _by_tuning(simple, progress)
+    kinds = [c.kind.late for c in searcher.problem.catalogue]
+    simple = _with(searcher, [not late for late in kinds])
+    found = _simple(simple, progress)
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
     best = int(np.argmin(costs))
-    if not any(late) or usual(searcher, found.levels[best]):
+    if not any(kinds) or usual(searcher, found.levels[best]):
         return found
-    progress("looking for springs between two places")
-    alone = _with(searcher, late)
-    beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
-    tried = [(cost(searcher, f, scale), f) for f in beside if f is not None]
+    stands = bool(best) and adequate(searcher, found.levels[best])
+    if stands or complete(searcher, found.levels[-1]):
+        tuned = (c.tunings > 1 for c in searcher.problem.catalogue)
+        kinds = [late and not t for late, t in zip(kinds, tuned, strict=True)]
+    progress("looking for absorbers and for springs between two places")
+    alone = _with(searcher, kinds)
+    poorer = best - 1 if stands else 0
+    beside = [f for level in found.levels[poorer : best + 1] for f in _beside(alone, level)]
+    tried = [(cost(searcher, f, scale), f) for f in beside]
     price, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
     if top is None or price > costs[best]:
-        return found.with_rivals(f for _, f in tried[:best])
+        return found.with_rivals(f for _, f in tried if len(f.suspects) <= best)
     levels = [*found.levels[: len(top.suspects)], top]
-    return _better(searcher, found, grown(simple, enough(searcher), progress, levels))
-
-
-def _by_tuning(searcher: Searcher, progress: Callable[[str], None]) -> Found:
-    """Search with simple kinds, and with all where a tuned one does clearly better."""
-    tuned = [c.tunings > 1 for c in searcher.problem.catalogue]
-    found = _simple(_with(searcher, [not t for t in tuned]), progress)
-    costs = _costs(searcher, found, found)
-    best = int(np.argmin(costs))
-    if not any(tuned) or complete(searcher, found.levels[-1]):
-        return found
-    if best and adequate(searcher, found.levels[best]):
-        return found
-    progress("looking for absorbers beside what was found")
-    alone = _with(searcher, tuned)
-    beside = [_best_beside(alone, f) for f in found.levels[: best + 1]]
-    scale = _scale(searcher, found, found)
-    top = beside[best]
-    better = top is not None and cost(searcher, top, scale) < costs[best]
-    small = _small(searcher)
-    clearly = (_clearly(found, k, f) for k, f in enumerate(beside[:-1]) if f is not None)
-    if better or any(clearly) or (small and (best or scale > SEARCH.unexplained)):
-        other = grown(searcher, enough(searcher), progress)
-        return _better(searcher, found, simplified(searcher, other))
-    return found.with_rivals(f for f in beside[:-1] if f is not None)
+    return _better(
+        searcher, found, simplified(searcher, grown(simple, enough(searcher), progress, levels))
+    )
 
 
 def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
@@ -162,21 +144,15 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
     return replace(searcher, coarse=coarse)
 
 
-def _best_beside(searcher: Searcher, state: Fit) -> Fit | None:
-    """Return the best fit of a state with one more suspect, None where there is no place."""
-    fits = [
-        searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
-        for _, branch in searcher.branches(state, SEARCH.tuned_tried)[: SEARCH.tuned_tried]
-    ]
-    if not fits:
-        return None
-    return searcher.refined(min(fits, key=lambda f: f.objective))
-
-
-def _clearly(found: Found, k: int, f: Fit) -> bool:
-    """Whether a tuned kind beside a level does clearly better than the simple one that came."""
-    here = found.levels[k].objective
-    return here - f.objective > SEARCH.clearly * (here - found.levels[k + 1].objective)
+def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
+    """Return the best fit of a state with one more suspect of each kind."""
+    best: dict[int, Fit] = {}
+    for _, branch in searcher.branches(state, SEARCH.late_tried):
+        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        kind = branch.kind
+        if kind not in best or new.objective < best[kind].objective:
+            best[kind] = new
+    return [searcher.refined(f) for f in best.values()]
 
 
 def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:

@@ -3,7 +3,7 @@
 import numpy as np
 from tests.core.discovery.strings import N, hidden, searcher
 
-from trueup.core.discovery.effects.twins import factors_of, places_of, with_twins
+from trueup.core.discovery.effects.candidates import factors_of, places_of, with_twins
 
 
 def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():

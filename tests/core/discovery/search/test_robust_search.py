@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import K, N, hidden, searcher
 
-from trueup.core.discovery.effects.twins import factors_of, with_twins
+from trueup.core.discovery.effects.candidates import factors_of, with_twins
 from trueup.core.discovery.likelihood.estimated_noise import WIDE, by_noise, estimated
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.search.model_selection import judge
