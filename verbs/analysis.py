@@ -146,11 +146,13 @@ def placed(model: Model, deck: Deck | None, modes: Modes, test: Measured, study:
             seed=study.seed,
             node_map=dict(study.node_map),
         )
+        there = len(found.test)
+        for key in ("mode_weights", "mode_names"):
+            named = max((m for m, _ in getattr(study, key)), default=0)
+            if named > there:
+                raise InputError(f"{key} names test mode {named}; the test has {there}")
         if not study.mode_weights:
             return found
-        named, there = max(m for m, _ in study.mode_weights), len(found.test)
-        if named > there:
-            raise InputError(f"mode_weights names test mode {named}; the test has {there}")
         return replace(found, weights=study.weights.of(range(there)))
 
 

@@ -108,7 +108,7 @@ def convert(
         raise InputError("boundary= reduces a deck alone; there is none among the sources")
     names = ", ".join(p.name for p in files) or type(sources).__name__
     if is_empty(cargo, target):
-        nothing = f"{names}: nothing that a {target.name} can hold ({_told(cargo)})"
+        nothing = f"{names}: nothing that {target.name} can hold ({_told(cargo)})"
         nothing += f"; {cargo.no_matrices}" * bool(cargo.no_matrices)
         raise InputError(nothing, file=files[0] if files else None)
     lost = losses(cargo, target)

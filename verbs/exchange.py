@@ -104,10 +104,7 @@ def load(
         if k == RESULTS:
             _results(path, deck, subcase, cargo)
         elif k in (OP4, PUNCH):
-            from ..adapters.nastran import read_matrices
-
-            for m in read_matrices(path, deck):
-                cargo.add("matrices", m.name, m)
+            _matrices(path, deck, cargo)
         elif k == RUNS:
             from ..adapters.nastran import terms_of_runs
 
@@ -119,6 +116,17 @@ def load(
 
             _stored(read_store(path), path, cargo)
     return cargo
+
+
+def _matrices(path: Path, deck: Any, cargo: Cargo) -> None:
+    """Add the matrices of an OP4 or a punch; where a list of dofs stands beside an OP4, modes."""
+    from ..adapters.nastran import dof_list, read_matrices, read_op4_modes
+
+    if dof_list(path) is not None:
+        return cargo.add("modes", "analysis", read_op4_modes(path, deck))
+    for m in read_matrices(path, deck):
+        cargo.add("matrices", m.name, m)
+    return None
 
 
 def cargo_of(source: object, boundary: Boundary | None = None) -> Cargo:

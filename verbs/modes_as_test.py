@@ -12,16 +12,19 @@ from ..adapters.universal import ModalTest
 from ..core.data.modes import Modes
 from ..core.errors import InputError, Place
 from .exchange import load
-from .read import DECK, RESULTS, STORE, kind_of_file
+from .read import DECK, OP4, RESULTS, STORE, kind_of_file
 
 _GRIDS = 1000
 """Grids of a model that stand for a test, at most: many more than sensors ever are."""
 
 
 def holds_modes(files: Sequence[Path]) -> bool:
-    """Whether some of the files are results of a Nastran run or stores."""
+    """Whether some of the files are results of a Nastran run, stores, or OP4 with modes."""
+    from ..adapters.nastran import dof_list
+
     try:
-        return any(kind_of_file(f) in (RESULTS, STORE) for f in files)
+        kinds = {f: kind_of_file(f) for f in files}
+        return any(k in (RESULTS, STORE) or (k is OP4 and dof_list(f)) for f, k in kinds.items())
     except InputError:
         return False
 

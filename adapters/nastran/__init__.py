@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         is_runs as is_runs,
     )
     from .op4.op4 import is_op4 as is_op4, read_op4 as read_op4
+    from .results.op4_modes import dof_list as dof_list, read_op4_modes as read_op4_modes
     from .results.read_modes import read_modes as read_modes
     from .results_contents import describe_results as describe_results
     from .text.deck_text import DeckText as DeckText, read_deck_text as read_deck_text
@@ -75,6 +76,7 @@ __getattr__, __all__ = lazy_names(
         ".matrices.run_terms": "describe_runs terms_of_runs",
         ".matrices.write_matrices": "write_dmig write_op4",
         ".deck_reader": "read_deck",
+        ".results.op4_modes": "dof_list read_op4_modes",
         ".results.read_modes": "read_modes",
         ".text.deck_text": "DeckText read_deck_text",
         ".text.real_numbers": "writable",

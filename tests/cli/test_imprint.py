@@ -72,6 +72,8 @@ def test_what_modes_are_called_by_hand_and_what_the_deck_weighs(duct, call, tmp_
         assert said in page, said
         assert said.split()[-1] in answer.out, "a long name is folded in the terminal"
     assert call("correlate", *files, "--mode-name", "first", *unit).status == 2
+    said = call("correlate", *files, "--mode-name", "99=far", *unit)
+    assert "mode_names names test mode 99; the test has 24" in said.sentence
 
 
 def test_pages_of_one_side_carry_the_letterhead_and_can_be_made_again(duct, call, tmp_path):

@@ -49,7 +49,7 @@ def test_a_deck_is_converted_like_its_file(tmp_path: Path) -> None:
         ("nowhere.bdf", "a.unv", "does not exist"),
         (DUCT / "duct_test.unv", 3, "the destination is given as int"),
         (DUCT / "duct_test.unv", "a.xyz", "no format that can be written"),
-        (DUCT / "duct_test.unv", "a.op4", "nothing that a OP4 can hold"),
+        (DUCT / "duct_test.unv", "a.op4", "nothing that OP4 can hold"),
         ([DUCT / "duct_test.unv", 3], "a.unv", "files and objects"),
     ],
 )

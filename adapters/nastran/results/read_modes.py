@@ -13,12 +13,14 @@ from ....core.errors import Place
 from ....core.files import reading
 from ..deck.pynastran_bridge import file_of
 from ..deck.read_deck import Deck
+from ..op4.op4 import is_op4
 from ..properties.grids import Points, point_dofs, read_points
 from . import hdf5_modes, op2_modes
 from .eigenvector_table import ModeHead, ModeTable
 from .f06_modes import is_f06, read_f06_tables
 from .hdf5_modes import read_hdf5_heads, read_hdf5_tables
 from .op2_modes import read_op2_heads, read_op2_tables
+from .op4_modes import full_op4_modes, read_op4_modes
 from .punch_modes import is_punched_result, read_punch_tables
 
 Reader = Callable[[Path], tuple[list[ModeTable], tuple[str, ...]]]
@@ -51,7 +53,9 @@ def read_modes(
     subcase: int | None = None,
     modes: Collection[int] | None = None,
 ) -> Modes:
-    """Read normal or complex modes from an OP2, a Nastran HDF5, a punch or an F06 file.
+    """Read normal or complex modes from an OP2, a Nastran HDF5, a punch, an F06 or an OP4 file.
+
+    An OP4 holds shapes and eigenvalues, on the g-set of the deck or as a list beside it says.
 
     Punch and F06 hold seven digits: take them only where there is no OP2 or HDF5.
 
@@ -84,6 +88,8 @@ def read_modes(
         that tells of displacement systems but no deck.
     """
     path = Path(file_of(path))
+    if is_op4(path):
+        return read_op4_modes(path) if deck is None else full_op4_modes(path, deck)
     kind = kind_of_results(path)
     tables, names = _tables(path, kind, modes)
     if not tables:
