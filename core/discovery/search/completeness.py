@@ -138,7 +138,8 @@ def completeness(
     The searcher that comes with it knows the places that were tried on the way.
 
     The levels up to the accepted one compete, one suspect where the known parameters alone leave
-    something; of each the likeliest, its rivals and the richer one less a suspect among them.
+    something; of each the likeliest, its rivals and the richer one less a suspect among them, and
+    what another look finds where that may change what is said.
     `deck` is how likely the test is by the deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
@@ -151,16 +152,18 @@ def completeness(
     for k in range(most, 0, -1):
         tried = [scored(searcher, f) for f in (*_near(found, k), *poorer)]
         first = max(tried, key=lambda s: s.score)
-        searcher, again = looked_again(searcher, first)
-        found = found.with_rivals((*poorer, *(s.fit for s in again if s is not first)))
-        fields[k] = sorted((*tried, *again), key=lambda s: -s.score)
+        if _unsettled(first, fields[k + 1][0] if k < most else None):
+            searcher, again = looked_again(searcher, first)
+            tried += (s for s in again if s is not first)
+            found = found.with_rivals(s.fit for s in again if s is not first)
+        found = found.with_rivals(poorer)
+        fields[k] = sorted(tried, key=lambda s: -s.score)
         found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
-        least = needed(level.judged) if kept and level.judged else SEARCH.suspect
-        if level.score - levels[kept].score > least:
+        if _earned(level, levels[kept]):
             kept = k
     best, others = levels[kept], contenders(searcher, found, kept)
     elsewhere = [s.score for s in fields[kept] if any(s.fit is f for f in others)]
@@ -171,6 +174,27 @@ def completeness(
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
     whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), agree)
     return searcher, found, kept, whole
+
+
+def _earned(richer: Scored, poorer: Scored) -> bool:
+    """Whether a richer hypothesis is likelier than a poorer one by what an effect more needs."""
+    gain = richer.score - poorer.score
+    if richer.judged is None or not poorer.fit.suspects:
+        return gain > SEARCH.suspect
+    return gain > needed(richer.judged)
+
+
+def _unsettled(best: Scored, richer: Scored | None) -> bool:
+    """Whether another look at a hypothesis may change what is said.
+
+    Not where a richer one earns its place anyway, nor at several suspects that leave more error
+    than a right model does.
+    """
+    if richer is not None and _earned(richer, best):
+        return False
+    several = len(best.fit.suspects) > 1
+    adequate = best.judged is not None and by_such_a_test(best.judged) > MODEL_ERROR.adequate
+    return adequate or not several
 
 
 def _near(found: Found, k: int) -> list[Fit]:

@@ -28,9 +28,9 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
     tried = [first]
     for q in range(len(first.fit.suspects)):
         tried += _scored(searcher, _elsewhere(searcher, first.fit, q))
-    best = max(tried, key=_score)
-    searcher, moved = _moved(searcher, best)
+    searcher, moved = _moved(searcher, max(tried, key=_score))
     tried += moved
+    best = max(tried, key=_score)
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
     if others:
         rival = max(others, key=_score)
@@ -49,7 +49,7 @@ def _scored(searcher: Searcher, fits: Sequence[Fit]) -> list[Scored]:
 
 
 def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
-    """Return fits with another suspect anywhere in place of one."""
+    """Return fits with another suspect anywhere in place of one, if they gain nearly as much."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
     without = evaluate(searcher.problem, state.nuisance, others)
     small, _ = searcher.local(without)
@@ -58,7 +58,8 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
         searcher.fitted(without, (*others, s), SEARCH.steps_new, small, True)
         for _, s in branches[: SEARCH.look_fitted]
     ]
-    return _best(tried, SEARCH.look_judged)
+    far = SEARCH.rival_gain * (without.objective - state.objective)
+    return _best([f for f in tried if f.objective - state.objective < far], SEARCH.look_judged)
 
 
 def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
