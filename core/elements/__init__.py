@@ -5,22 +5,22 @@ An element is one file that declares its facts in an `Element`, and one line her
 """
 
 from ..errors import InputError, require_kind
-from .axisymmetric import QUADX4, QUADX8, TRIAX3, TRIAX6
-from .bar import BAR, ROD
-from .beam import BEAM
-from .beam3 import BEAM3
-from .bend import BEND
-from .curved_shell import QUAD8, TRIA6
+from .connectors.lumped import BUSH, GENERAL, GROUNDED_BUSH, MASS, SPRING
+from .connectors.patches import PATCH_CONNECTOR
 from .element import Element
-from .hexa import HEXA8, HEXA20
-from .lumped import BUSH, GENERAL, GROUNDED_BUSH, MASS, SPRING
-from .patches import PATCH_CONNECTOR
-from .penta import PENTA6, PENTA15
-from .pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
-from .quad4 import QUAD4
-from .quadr import QUADR, TRIAR
-from .shear import SHEAR_PANEL
-from .tria3 import TRIA3
+from .lines.bar import BAR, ROD
+from .lines.beam import BEAM
+from .lines.beam3 import BEAM3
+from .lines.bend import BEND
+from .surfaces.axisymmetric import QUADX4, QUADX8, TRIAX3, TRIAX6
+from .surfaces.curved_shell import QUAD8, TRIA6
+from .surfaces.quad4 import QUAD4
+from .surfaces.quadr import QUADR, TRIAR
+from .surfaces.shear import SHEAR_PANEL
+from .surfaces.tria3 import TRIA3
+from .volumes.hexa import HEXA8, HEXA20
+from .volumes.penta import PENTA6, PENTA15
+from .volumes.pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
 
 __all__ = ["ELEMENTS", "Element", "register_element"]
 

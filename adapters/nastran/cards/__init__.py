@@ -26,25 +26,12 @@ from ..properties import (
     superelements,
     thermal,
 )
-from . import (
-    axisymmetric,
-    bars,
-    beams,
-    bends,
-    bushes,
-    dashpots,
-    fasteners,
-    general_elements,
-    masses,
-    not_read,
-    panels,
-    rods,
-    shells,
-    solids,
-    springs,
-    three_node_beams,
-)
+from . import not_read
+from .connectors import bushes, dashpots, fasteners, general_elements, masses, springs
 from .element_group import Context, Group, Key, Settings, property_groups
+from .lines import bars, beams, bends, rods, three_node_beams
+from .surfaces import axisymmetric, panels, shells
+from .volumes import solids
 
 
 class Family(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....core.arrays import Floats
-from ....core.elements.solid import isotropic_solid
+from ....core.elements.volumes.solid import isotropic_solid
 from ....core.errors import Place
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ....core.arrays import Floats
-from ....core.elements.bar import bar_stiffness
+from ....core.elements.lines.bar import bar_stiffness
 from ....core.errors import Place
 from ..deck.card_definition import Card, Known, Values
 from ..deck.field_values import FieldError, Fields, numbers, take

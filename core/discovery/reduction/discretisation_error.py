@@ -16,7 +16,7 @@ import scipy.sparse as sp
 
 from ...arrays import Bools, Floats, Ints
 from ...data.parametric_model import Term
-from ...elements.bar import bar_mass
+from ...elements.lines.bar import bar_mass
 from .elements_and_supports import Members, Structure
 from .reduction_numbers import REDUCTION
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trueup.core.elements.section import ShellSection
+from trueup.core.elements.surfaces.section import ShellSection
 
 
 def isotropic_section(E, nu, G, t, bending_ratio=1.0, shear_ratio=0.833333):

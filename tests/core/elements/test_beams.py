@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from trueup.core.elements.bar import bar_mass, bar_stiffness
-from trueup.core.elements.beam import BeamSections, beam_mass, beam_stiffness
-from trueup.core.elements.lumped import bush_stiffness
+from trueup.core.elements.connectors.lumped import bush_stiffness
+from trueup.core.elements.lines.bar import bar_mass, bar_stiffness
+from trueup.core.elements.lines.beam import BeamSections, beam_mass, beam_stiffness
 
 E, G, L = 2.0e5, 8.0e4, 30.0
 XA, XB, V = np.zeros((1, 3)), np.array([[L, 0.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])

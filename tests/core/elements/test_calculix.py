@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.elements.hexa import HEXA20
-from trueup.core.elements.penta import PENTA15
-from trueup.core.elements.pointed import TETRA10
 from trueup.core.elements.quadrature import gauss_wedge
-from trueup.core.elements.solid import isotropic_solid
+from trueup.core.elements.volumes.hexa import HEXA20
+from trueup.core.elements.volumes.penta import PENTA15
+from trueup.core.elements.volumes.pointed import TETRA10
+from trueup.core.elements.volumes.solid import isotropic_solid
 
 CORNERS = {
     20: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],

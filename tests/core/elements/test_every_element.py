@@ -5,7 +5,7 @@ import pytest
 from tests.core.elements.plates_and_volumes import isotropic_section
 
 from trueup.core.elements import ELEMENTS, register_element
-from trueup.core.elements.solid import isotropic_solid
+from trueup.core.elements.volumes.solid import isotropic_solid
 from trueup.core.errors import InputError
 
 CORNERS = {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.elements.bar import (
+from trueup.core.elements.lines.bar import (
     bar_axes,
     bar_mass,
     bar_stiffness,

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from trueup.core.elements.curved_shell import TRIA6
-from trueup.core.elements.hexa import HEXA20
 from trueup.core.elements.middle_nodes import to_middle_nodes
-from trueup.core.elements.penta import PENTA15
-from trueup.core.elements.pointed import PYRAMID13, TETRA10
-from trueup.core.elements.solid import solid_mass
+from trueup.core.elements.surfaces.curved_shell import TRIA6
+from trueup.core.elements.volumes.hexa import HEXA20
+from trueup.core.elements.volumes.penta import PENTA15
+from trueup.core.elements.volumes.pointed import PYRAMID13, TETRA10
+from trueup.core.elements.volumes.solid import solid_mass
 
 CORNERS = {
     20: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],

@@ -5,11 +5,11 @@ import pytest
 import scipy.linalg
 from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements.curved_shell import QUAD8, TRIA6
 from trueup.core.elements.middle_nodes import spread
-from trueup.core.elements.quadr import QUADR, TRIAR
-from trueup.core.elements.section import ShellSection
-from trueup.core.elements.shear import SHEAR_PANEL, shear_panel_stiffness
+from trueup.core.elements.surfaces.curved_shell import QUAD8, TRIA6
+from trueup.core.elements.surfaces.quadr import QUADR, TRIAR
+from trueup.core.elements.surfaces.section import ShellSection
+from trueup.core.elements.surfaces.shear import SHEAR_PANEL, shear_panel_stiffness
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
 WARPED = np.array([[0, 0, 0.1], [1.6, 0.2, 0], [1.4, 1.1, 0.2], [-0.1, 0.9, -0.1]])

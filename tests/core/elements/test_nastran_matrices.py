@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements.bar import bar_mass, bar_stiffness, rod_mass, rod_stiffness
-from trueup.core.elements.hexa import HEXA8
-from trueup.core.elements.penta import PENTA6
-from trueup.core.elements.pointed import TETRA4
-from trueup.core.elements.quad4 import QUAD4
-from trueup.core.elements.solid import isotropic_solid
-from trueup.core.elements.tria3 import TRIA3
+from trueup.core.elements.lines.bar import bar_mass, bar_stiffness, rod_mass, rod_stiffness
+from trueup.core.elements.surfaces.quad4 import QUAD4
+from trueup.core.elements.surfaces.tria3 import TRIA3
+from trueup.core.elements.volumes.hexa import HEXA8
+from trueup.core.elements.volumes.penta import PENTA6
+from trueup.core.elements.volumes.pointed import TETRA4
+from trueup.core.elements.volumes.solid import isotropic_solid
 
 E, NU, G, RHO = 2.9e7, 0.32, 1.1e7, 0.283
 THICKNESS = {**dict.fromkeys((6, 7, 8, 9, 10, 11), 0.25), **dict.fromkeys((16, 18, 19), 1.0)}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tests.core.elements.plates_and_volumes import isotropic_section
 
-from trueup.core.elements.normals import corner_normals, grid_normals
-from trueup.core.elements.quad4 import QUAD4, quad4_axes, quad4_corner_jacobians
-from trueup.core.elements.section import ShellSection, rotate_section
-from trueup.core.elements.tria3 import TRIA3, tria3_area, tria3_axes
+from trueup.core.elements.surfaces.normals import corner_normals, grid_normals
+from trueup.core.elements.surfaces.quad4 import QUAD4, quad4_axes, quad4_corner_jacobians
+from trueup.core.elements.surfaces.section import ShellSection, rotate_section
+from trueup.core.elements.surfaces.tria3 import TRIA3, tria3_area, tria3_axes
 
 QUADS = [
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],

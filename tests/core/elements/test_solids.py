@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from tests.core.elements.plates_and_volumes import volume
 
-from trueup.core.elements.hexa import HEXA8, HEXA20
-from trueup.core.elements.penta import PENTA6, PENTA15
-from trueup.core.elements.pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
-from trueup.core.elements.solid import isotropic_solid, rotate_material, solid_mass, strains
+from trueup.core.elements.volumes.hexa import HEXA8, HEXA20
+from trueup.core.elements.volumes.penta import PENTA6, PENTA15
+from trueup.core.elements.volumes.pointed import PYRAMID5, PYRAMID13, TETRA4, TETRA10
+from trueup.core.elements.volumes.solid import isotropic_solid, rotate_material, solid_mass, strains
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 TRIANGLE = SQUARE[[0, 1, 3]]

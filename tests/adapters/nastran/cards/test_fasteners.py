@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck
-from trueup.core.elements.patches import foot
+from trueup.core.elements.connectors.patches import foot
 from trueup.core.errors import InputError
 
 SHELLS = """GRID,1,,0.,0.,0.

@@ -9,8 +9,8 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.discovery.effects.bar_members import _chains, _stretches, bars_of
 from trueup.core.discovery.effects.effect_numbers import EFFECTS
 from trueup.core.discovery.reduction.elements_and_supports import Members, Structure
-from trueup.core.elements.bar import BAR
-from trueup.core.elements.lumped import MASS
+from trueup.core.elements.connectors.lumped import MASS
+from trueup.core.elements.lines.bar import BAR
 
 
 def test_elements_between_two_joints_are_one_bar():

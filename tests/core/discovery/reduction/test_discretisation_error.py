@@ -8,9 +8,9 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from trueup.core.discovery.reduction.discretisation_error import consistent_bars, lumping
-from trueup.core.elements.bar import BAR, bar_mass, bar_stiffness
-from trueup.core.elements.curved_shell import QUAD8
-from trueup.core.elements.quad4 import QUAD4
+from trueup.core.elements.lines.bar import BAR, bar_mass, bar_stiffness
+from trueup.core.elements.surfaces.curved_shell import QUAD8
+from trueup.core.elements.surfaces.quad4 import QUAD4
 from trueup.core.reduction.reduced_sum import reduced_sum
 
 

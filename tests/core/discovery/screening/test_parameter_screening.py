@@ -14,7 +14,7 @@ from trueup.core.discovery.reduction.elements_and_supports import Members, Struc
 from trueup.core.discovery.screening.parameter_screening import noticeable, shifts, tied
 from trueup.core.discovery.screening.screening_numbers import SCREENING
 from trueup.core.eigen.normal_modes import Eigensolution
-from trueup.core.elements.lumped import SPRING
+from trueup.core.elements.connectors.lumped import SPRING
 
 BOUNDS = (0.25, 4.0)
 

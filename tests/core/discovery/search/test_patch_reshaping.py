@@ -20,7 +20,7 @@ from trueup.core.discovery.reduction.elements_and_supports import Structure
 from trueup.core.discovery.reduction.search_basis import Basis
 from trueup.core.discovery.search.moves import Searcher
 from trueup.core.discovery.search.patch_reshaping import reshaped, variants
-from trueup.core.elements.quad4 import QUAD4
+from trueup.core.elements.surfaces.quad4 import QUAD4
 from trueup.core.reduction.reduced_sum import ReducedSum
 
 NX, NY = 11, 8

@@ -1,0 +1,1 @@
+"""Cards of springs, bushings, dashpots, masses and fasteners."""

@@ -1,0 +1,1 @@
+"""Cards of bars, rods and beams."""

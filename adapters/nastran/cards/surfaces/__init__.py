@@ -1,0 +1,1 @@
+"""Cards of shells, panels and bodies of revolution."""

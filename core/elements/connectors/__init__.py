@@ -1,0 +1,1 @@
+"""Springs, bushings, masses, and what joins patches."""

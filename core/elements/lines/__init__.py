@@ -1,0 +1,1 @@
+"""Bars, rods and beams."""

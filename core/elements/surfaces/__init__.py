@@ -1,0 +1,1 @@
+"""Shells, panels, and sections of bodies of revolution."""

@@ -1,0 +1,1 @@
+"""Bricks, wedges, tetrahedra, pyramids and what they share."""
