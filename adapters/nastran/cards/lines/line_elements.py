@@ -173,11 +173,14 @@ def _pins(context: Context, name: str, cards: Sequence[Values]) -> Any:
 
 
 def _check(context: Context, name: str, ids: Ints, lines: Lines) -> None:
-    x = lines.xb - lines.xa
     check_shape(context, name, BAR, ids, np.stack([lines.xa, lines.xb], axis=1))
-    length = np.linalg.norm(x, axis=1)
-    across = np.linalg.norm(np.cross(x, lines.v), axis=1)
-    along = across <= 1e-9 * length * np.linalg.norm(lines.v, axis=1)
+    check_orientation(context, name, ids, lines.xb - lines.xa, lines.v)
+
+
+def check_orientation(context: Context, name: str, ids: Ints, x: Floats, v: Floats) -> None:
+    """Raise `InputError` where orientation vectors v (n, 3) run along the elements x (n, 3)."""
+    length = np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1)
+    along = np.linalg.norm(np.cross(x, v), axis=1) <= 1e-9 * length
     if along.any():
         bad = int(ids[np.flatnonzero(along)[0]])
         raise context.bulk.place(name, bad).error(
