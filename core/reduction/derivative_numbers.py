@@ -22,6 +22,7 @@ class DerivativeNumbers:
     more_modes: int = number(12, "modes", "in a basis beyond the last that must be good", CHECK)
     most_static: int = number(250, "static vectors", "at most", "time")
     least_energy: float = number(1e-4, "of a mode's", "energy of a static vector, for a factor moved by one", CHECK)
+    known_already: float = number(1e-9, "of its energy", "part of a mode of another point outside a basis that is left out", CHECK)
     dependent: float = number(1e-10, "of the largest energy", "of a direction that depends on the others", ROUNDING)
     told_apart: float = number(1e-6, "of the largest singular value", "of modes at the sensors that these tell apart", CHECK)
     held_already: float = number(1e-6, "of its mass", "part of a mode of a component beside the constraint modes that is rounding", ROUNDING)

@@ -123,14 +123,17 @@ def sensitivities(
     if shapes_at is not None:
         static = ShapeDerivatives(model, p, solution, tolerance)
         change_of = partial(static.of, changes=changes)
-    return differentiate(T, by_position, solution, changes, shapes_at, change_of)
+    matrices_of = partial(_derivative_matrices, changes, solution)
+    size = len(changes)
+    return differentiate(T, by_position, solution, size, matrices_of, shapes_at, change_of)
 
 
 def differentiate(
     T: Floats,
     by_position: bool,
     solution: Spectral,
-    changes: Sequence[tuple[Any, Any]],
+    n_parameter: int,
+    matrices_of: Callable[[Ints], Floats],
     shapes_at: Any | None,
     change_of: Callable[[Ints], Floats] | None,
 ) -> Sensitivities:
@@ -144,8 +147,9 @@ def differentiate(
         Whether each column of `T` is one mode.
     solution : Eigensolution or the like
         ``eigenvalues``, ``vectors`` and ``rigid_body_modes``.
-    changes : sequence of (K', M')
-        By each parameter, sparse or dense.
+    n_parameter : int
+    matrices_of : callable
+        Derivative matrices of a cluster, (n_parameter, n_cluster, n_cluster).
     shapes_at : (n_sensor, n) sparse or dense, or None
     change_of : callable or None
         Derivative of the vectors of a cluster, (n, n_cluster, n_parameter).
@@ -155,12 +159,12 @@ def differentiate(
     Sensitivities
     """
     size = np.sum(T**2, axis=0)
-    slopes = np.zeros((T.shape[1], len(changes)))
+    slopes = np.zeros((T.shape[1], n_parameter))
     shapes = None if shapes_at is None else np.zeros((shapes_at.shape[0], *slopes.shape))
     for cluster in clusters(T, solution):
         columns = np.flatnonzero(T[cluster].any(axis=0))
         t = T[np.ix_(cluster, columns)]
-        G = _derivative_matrices(changes, solution, cluster)
+        G = matrices_of(cluster)
         if by_position and len(cluster) > 1:
             rank = np.searchsorted(cluster, np.argmax(T[:, columns], axis=0))
             slopes[columns] = np.linalg.eigvalsh(G)[:, rank].T
@@ -169,7 +173,7 @@ def differentiate(
         if shapes_at is not None and shapes is not None and change_of is not None:
             change = change_of(cluster)
             seen = np.asarray(shapes_at @ change.reshape(len(change), -1))
-            seen = seen.reshape(-1, len(cluster), len(changes))
+            seen = seen.reshape(-1, len(cluster), n_parameter)
             shapes[:, columns] = np.einsum("sai,ac->sci", seen, t)
     return Sensitivities(solution.eigenvalues @ T**2 / size, slopes, shapes)
 

@@ -53,6 +53,29 @@ def modal_part(
     return z, b, along
 
 
+def modal_change(lam: Floats, cluster: Ints, K: Floats, M: Floats) -> Floats:
+    """Differentiate a cluster of modes that span everything, in their own coordinates.
+
+    Parameters
+    ----------
+    lam : (n_mode,) float
+    cluster : (n_cluster,) int
+    K, M : (n_parameter, n_mode, n_cluster) float
+        Phi^T K' Phi_c and Phi^T M' Phi_c.
+
+    Returns
+    -------
+    (n_mode, n_cluster, n_parameter) float
+        As `modal_part`.
+    """
+    along = (M * lam[cluster] - K).transpose(1, 2, 0)
+    others = np.setdiff1d(np.arange(len(lam)), cluster)
+    z = np.empty_like(along)
+    z[others] = along[others] / (lam[others, None] - lam[cluster])[:, :, None]
+    z[cluster] = -0.5 * M[:, cluster].transpose(1, 2, 0)
+    return z
+
+
 class ShapeDerivatives:
     """Derivatives of the mass-normalised shapes of clusters of one solution.
 

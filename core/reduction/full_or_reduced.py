@@ -1,7 +1,9 @@
 """A model to be solved again and again: in full, or reduced around one parameter point."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -64,6 +66,11 @@ class ReducedOrder:
     def model(self) -> Model:
         """The full model that is reduced."""
         return self.reduced.model
+
+    def with_modes(self, full: FullOrder, p: Floats, found: Eigensolution) -> ReducedOrder:
+        """Return it with the modes of another point, found in full, in its basis."""
+        reduced = self.reduced.with_modes(p, found)
+        return replace(self, reduced=reduced, sensors=reduced.project(full.sensors.T).T)
 
     def solve(self, p: Floats) -> ReducedModes:
         """Find the modes within the basis."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain
 
 import numpy as np
 import scipy.linalg as sl
@@ -17,8 +18,8 @@ from ..errors import InputError
 from ..noun import Noun
 from ..numerics.factorisation import Factorisation, factorise
 from .derivative_numbers import DERIVATIVES
-from .eigenpair_derivatives import Sensitivities, coefficients, differentiate
-from .eigenvector_derivatives import modal_part
+from .eigenpair_derivatives import Sensitivities, clusters, coefficients, differentiate
+from .eigenvector_derivatives import modal_change
 from .reduced_sum import ReducedSum, reduced_sum
 
 
@@ -115,8 +116,9 @@ class ReducedModel(Noun):
         n = self.size
         wanted = min(n, len(self.solution.eigenvalues) if n_modes is None else n_modes)
         sigma = self.solution.sigma
+        part = None if wanted == n else (n - wanted, n - 1)  # all of them come faster
         try:
-            theta, q = sl.eigh(M, K - sigma * M, subset_by_index=(n - wanted, n - 1))
+            theta, q = sl.eigh(M, K - sigma * M, subset_by_index=part)
         except np.linalg.LinAlgError as error:
             raise InputError(
                 "the reduced model is not positive definite at these parameter values"
@@ -125,6 +127,21 @@ class ReducedModel(Noun):
         theta = np.maximum(theta, np.finfo(float).tiny)
         rigid = min(self.solution.rigid_body_modes, wanted)
         return ReducedModes(sigma + 1.0 / theta, q / np.sqrt(theta), rigid)
+
+    def with_modes(self, p: Floats, found: Eigensolution) -> ReducedModel:
+        """Return the model with the modes of another parameter point in its basis: exact there."""
+        free = slice(found.rigid_body_modes, None)
+        X, span = found.vectors[:, free], found.eigenvalues[free] - self.solution.sigma
+        AX = np.asarray(self.model.M(p) @ X) * span
+        A = self.stiffness.at(p) - self.solution.sigma * self.mass.at(p)
+        W = X - self.Q @ sl.solve(A, self.Q.T @ AX, assume_a="pos")
+        W /= np.sqrt(span)
+        size, turn = np.linalg.eigh(W.T @ (AX / np.sqrt(span)))
+        new = size > DERIVATIVES.known_already
+        W = W @ (turn[:, new] / np.sqrt(size[new]))
+        sums = (self.stiffness, self.mass, self.damping, self.loss)
+        K, M, D, H = (terms.with_vectors(self.Q, W) for terms in sums)
+        return replace(self, Q=np.hstack([self.Q, W]), stiffness=K, mass=M, damping=D, loss=H)
 
     def vectors(self, modes: ReducedModes) -> Floats:
         """Return the shapes on the free degrees of freedom, (n_free, n_mode), unit modal mass."""
@@ -164,14 +181,28 @@ class ReducedModel(Noun):
         if given.ndim == 2:
             given = np.vstack([given, np.zeros((max(count - len(given), 0), given.shape[1]))])
         T, by_position = coefficients(given, count)
-        slopes = self.stiffness.slopes(p, parameters), self.mass.slopes(p, parameters)
-        changes = list(zip(*slopes, strict=True))
+        X, lam = everything.vectors, everything.eigenvalues
+        near = np.flatnonzero(np.isin(np.arange(count), [*chain(*clusters(T, everything))]))
+        K, M = (
+            np.matmul(X.T, np.matmul(terms.slopes(p, parameters), X[:, near]))
+            for terms in (self.stiffness, self.mass)
+        )
+
+        def part(cluster: Ints) -> tuple[Floats, Floats]:
+            at = np.searchsorted(near, cluster)
+            return K[:, :, at], M[:, :, at]
+
+        def matrices_of(cluster: Ints) -> Floats:
+            dK, dM = (change[:, cluster] for change in part(cluster))
+            G = dK - dM * lam[cluster]
+            return (G + G.swapaxes(1, 2)) / 2.0
 
         def change_of(cluster: Ints) -> Floats:
-            z, _, _ = modal_part(everything.vectors, everything.eigenvalues, cluster, changes)
-            return z.reshape(len(z), len(cluster), len(changes))
+            return modal_change(lam, cluster, *part(cluster))
 
-        return differentiate(T, by_position, everything, changes, sensors, change_of)
+        at_modes = None if sensors is None else sensors @ X
+        size = len(parameters)
+        return differentiate(T, by_position, everything, size, matrices_of, at_modes, change_of)
 
 
 def build_reduced(
@@ -282,8 +313,12 @@ def static_answers(
     ends = np.cumsum([0] + [m * len(g) for g in groups])
 
     def loads(members: Sequence[int]) -> Floats:
-        parts = [model.dK(i, p0) @ X - (model.dM(i, p0) @ X) * lam for i in members]
-        return np.hstack([part * weight for part in parts])
+        F = np.zeros((n, m * len(members)), order="F")
+        for k, i in enumerate(members):
+            dK, dM = model.dK(i, p0), model.dM(i, p0)
+            rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
+            F[rows, k * m : (k + 1) * m] = (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
+        return F
 
     S = np.empty((n, ends[-1]), order="F")
     energy = np.zeros((ends[-1],) * 2)

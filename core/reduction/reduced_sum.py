@@ -78,6 +78,22 @@ class ReducedSum:
                 whole[some, n:, n:] = (W.T @ X).reshape(s, len(some), s).swapaxes(0, 1)
         return ReducedSum(self.terms, whole)
 
+    def with_vectors(self, V: Floats, W: Floats) -> ReducedSum:
+        """Return the sum on the vectors V, on which it is made, and few more, W (n_free, s).
+
+        Term by term, each on the rows that it has: of many terms of a part of the structure each.
+        """
+        (n, s), t = (V.shape[1], W.shape[1]), len(self.terms)
+        whole = np.zeros((t, n + s, n + s))
+        whole[:, :n, :n] = self.whole
+        for out, term in zip(whole, self.terms, strict=True):
+            rows = np.flatnonzero(np.diff(term.matrix.indptr))
+            X = np.asarray(term.matrix[rows] @ W)
+            out[:n, n:] = V[rows].T @ X
+            out[n:, :n] = out[:n, n:].T
+            out[n:, n:] = W[rows].T @ X
+        return ReducedSum(self.terms, whole)
+
     def and_also(self, other: ReducedSum) -> ReducedSum:
         """Return the sum with the terms of another, both on the basis as it was made."""
         return ReducedSum(self.terms + other.terms, np.concatenate([self.whole, other.whole]))

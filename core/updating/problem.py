@@ -18,7 +18,7 @@ from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
 from ..errors import InputError
 from ..noun import Noun
-from ..reduction.full_or_reduced import FullOrder, Order, reduce_around
+from ..reduction.full_or_reduced import FullOrder, Order, ReducedOrder, reduce_around
 from .identifiability import Identifiability, identifiability
 from .objective import Objective, State
 from .residuals import Linearisation, Residual, Target, Weights
@@ -163,6 +163,15 @@ class Problem:
         return [
             reduce_around(part.full, s.factors, _in_full(s), part.moving(active)[0])
             for part, s in zip(self.parts, point.states, strict=True)
+        ]
+
+    def widened(self, orders: Orders, point: Point) -> Orders:
+        """Take the modes of a point where every configuration was solved in full into the bases."""
+        return [
+            order.with_modes(part.full, s.factors, _in_full(s))
+            if isinstance(order, ReducedOrder)
+            else order
+            for part, order, s in zip(self.parts, orders, point.states, strict=True)
         ]
 
     def at(self, orders: Orders, p: Floats, residuals: Sequence[Residual]) -> Point:

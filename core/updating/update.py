@@ -43,7 +43,8 @@ def update(
     does not stop a step that brings the frequencies of the other pairs closer.
 
     The iterations run on a reduced model, made around the point where they start. Where they
-    end the full model is solved; unless both agree there, a reduced model is made anew.
+    end the full model is solved; unless both agree there, its modes widen the reduced model, or
+    far from where that was made it is made anew.
 
     Parameters
     ----------
@@ -182,9 +183,16 @@ def _work_off(
     """
     solves = 0
     near: Orders | None = None
+    centre = point
     while left > 0:
-        near = problem.around(point, stage.parameters)
+        if near is not None and _apart(point, centre) < UPDATING.rebuild:
+            near = problem.widened(near, point)
+        else:
+            near, centre = problem.around(point, stage.parameters), point
         trail, stop = _walk(problem, near, point, stage, left, tolerance)
+        if not trail and centre is not point:
+            near = None
+            continue
         if not trail:
             assert stop is not None
             return point, near, solves, stop
@@ -223,9 +231,14 @@ def _walk(
         trail.append(trial)
         if moved < tolerance:
             return trail, Stop(Reason.SETTLED, f"factors moved less than {tolerance:g}")
-        if np.max(np.abs(np.log(point.factors / start.factors))) > np.log(UPDATING.reach):
+        if _apart(point, start) > UPDATING.reach:
             break
     return trail, None
+
+
+def _apart(a: Point, b: Point) -> float:
+    """Return the largest ratio of two factors of one parameter, either way."""
+    return float(np.exp(np.max(np.abs(np.log(a.factors / b.factors)))))
 
 
 def _descend(

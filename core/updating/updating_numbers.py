@@ -37,6 +37,7 @@ class UpdatingNumbers:
     slack: float = number(1e-12, "-", "between the bounds of a step that would fall together", ROUNDING)
 
     reach: float = number(2.0, "times", "or part of, the factors of a reduced model, beyond which it is left", CHECK)
+    rebuild: float = number(4.0, "times", "or part of, the factors that a reduced model was made at, beyond which it is made anew", CHECK)
     agree: float = number(0.1, "of the tolerance", "difference of eigenvalues, full and reduced, that ends an update", CHECK)
     agree_least: float = number(1e-9, "of λ", "the same, at least", ROUNDING)
     balance: float = number(1e-6, "of the load", "unbalanced force at which a static solution holds", ROUNDING)

@@ -164,3 +164,23 @@ def test_bad_input_is_refused_in_words(grid):
     model = grid(3)
     with pytest.raises(InputError, match="is a target"):
         build_reduced(model, model.deck_point, [10], [0], solution=solve(model, 8))
+
+
+def test_modes_of_another_point_make_it_exact_there(grid):
+    model = grid()
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS, max_static=7)
+    far = shifted(model.deck_point, 1.9, 0.6)
+    full = solve(model, len(reduced.solution.eigenvalues), p=far)
+    elastic = slice(full.rigid_body_modes, None)
+
+    def off(by, p, truth):
+        return np.abs(by.solve(p).eigenvalues[elastic] / truth.eigenvalues[elastic] - 1.0).max()
+
+    wide = reduced.with_modes(far, full)
+    assert off(reduced, far, full) > 1e-4
+    assert off(wide, far, full) < 1e-8
+    assert off(wide, model.deck_point, reduced.solution) < 1e-8
+    near = shifted(far, 2.0, 0.57)
+    there = solve(model, len(reduced.solution.eigenvalues), p=near)
+    assert off(wide, near, there) < 0.1 * off(reduced, near, there)
+    assert wide.with_modes(far, full).size == wide.size
