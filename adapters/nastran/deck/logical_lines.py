@@ -10,6 +10,8 @@ from ....core.errors import Place
 from ..text.deck_text import DeckText, read_deck_text
 
 _PART = re.compile(r"BEGIN (?:BULK )?SUPER ?=? ?(\d+)")
+_AUXILIARY = re.compile(r"BEGIN (?:BULK )?(?:AUXMODEL|ARBMODEL) ?=? ?(\d+)")
+_LEFT_OUT = -1
 
 
 class Line(NamedTuple):
@@ -33,7 +35,7 @@ class Sections:
     parts : dict
         Lines of the superelements (BEGIN SUPER) by their numbers.
     warnings : tuple of str
-        Files that INCLUDE names ahead of CEND and that are not there.
+        Files that INCLUDE names ahead of CEND and that are not there; parts left out.
     """
 
     files: tuple[Path, ...]
@@ -60,6 +62,7 @@ def read_sections(source: Path | DeckText) -> Sections:
     files = [f.path for f in deck.files]
     marks = {"CEND": -1, "BEGIN": -1}
     starts: list[tuple[int, int]] = []
+    told: list[str] = []
     for k, line in enumerate(lines):
         if line.text.lstrip()[:4].upper() not in ("CEND", "BEGI"):
             continue
@@ -70,6 +73,12 @@ def read_sections(source: Path | DeckText) -> Sections:
             marks["BEGIN"] = k
         if part := _PART.match(" ".join(head)):
             starts.append((k, int(part[1])))
+        elif _AUXILIARY.match(" ".join(head)):
+            starts.append((k, _LEFT_OUT))
+            told.append(
+                f"{Place(files[line.file], line.number)}: {line.text.strip()!r} starts a model "
+                "of its own (auxiliary, of shapes or a cross section); it is left out"
+            )
         elif head[:1] == ["BEGIN"] and head[1:] and not (head[1][:4] == "BULK" and not head[2:]):
             raise Place(files[line.file], line.number).error(
                 f"{line.text.strip()!r} starts a part of the deck that trueup does not read "
@@ -81,14 +90,16 @@ def read_sections(source: Path | DeckText) -> Sections:
     executive, case = lines[: max(cend, 0)], lines[cend + 1 : max(begin, 0)]
     ends = [*(k for k, _ in starts), len(lines)]
     parts = {
-        number: tuple(lines[k + 1 : end]) for (k, number), end in zip(starts, ends[1:], strict=True)
+        number: tuple(lines[k + 1 : end])
+        for (k, number), end in zip(starts, ends[1:], strict=True)
+        if number != _LEFT_OUT
     }
     bulk = lines[begin + 1 : ends[0]]
-    absent = tuple(
+    told += [
         f"{place}: the INCLUDE file {name!r} does not exist; ahead of CEND nothing is needed"
         for place, name in deck.absent
-    )
-    return Sections(tuple(files), tuple(executive), tuple(case), tuple(bulk), parts, absent)
+    ]
+    return Sections(tuple(files), tuple(executive), tuple(case), tuple(bulk), parts, tuple(told))
 
 
 def _lines(deck: DeckText) -> Iterator[Line]:

@@ -57,3 +57,14 @@ def test_numbers_that_mean_two_things(tmp_path: Path, one: str, other: str) -> N
     (tmp_path / "a.bdf").write_text(f"{one}\n{other}\n")
     with pytest.raises(InputError, match=r"a\.bdf line \d: \w+ 1 has the number of \w+ 1 \("):
         read_deck(tmp_path / "a.bdf")
+
+
+def test_an_auxiliary_model_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "a.bdf").write_text(
+        "SOL 200\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nBEGIN BULK AUXMODEL = 1\nGRID,1,,5.\n"
+        "GRID,7,,1.\nENDDATA\n"
+    )
+    deck = read_deck(tmp_path / "a.bdf")
+    assert list(deck.bulk.table("GRID")) == [1]
+    assert deck.bulk.table("GRID")[1].xyz == (0.0, 0.0, 0.0)
+    assert any("a.bdf line 5" in w and "auxiliary" in w for w in deck.warnings)
