@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..core.data.modes import Modes
 from ..core.errors import InputError, Place, naming, path_of
 from ..core.results.correlation import CorrelateTables, RunTables
@@ -18,7 +20,7 @@ from .open_run import read_content, read_diff, read_result
 from .study import Study, read_study
 
 if TYPE_CHECKING:
-    from ..adapters.report import Film, Imprint, Overlay
+    from ..adapters.report import Curves, Film, Imprint, Overlay
     from ..adapters.store import StoreContent
 
 
@@ -117,7 +119,9 @@ def render(
 
     geometry = content.geometry if content else None
     shapes = _film(answer, content)
-    return make_report(answer, diff, geometry=geometry, shapes=shapes, imprint=imprint)
+    return make_report(
+        answer, diff, geometry=geometry, shapes=shapes, imprint=imprint, curves=_curves(content)
+    )
 
 
 def paired_shapes(answer: RunTables, content: StoreContent | None) -> Overlay | None:
@@ -129,6 +133,19 @@ def paired_shapes(answer: RunTables, content: StoreContent | None) -> Overlay | 
         return None
     observation, transformation = map(content.matrices.get, ("observation", "transformation"))
     return overlay(answer.final, content.geometry, *held, observation, transformation)
+
+
+def _curves(content: StoreContent | None) -> Curves | None:
+    """Return the measured frequency responses of a run and those of its model."""
+    from ..adapters.report import Curves
+
+    if content is None or not {"measured", "model"} <= set(content.frfs):
+        return None
+    measured, model = content.frfs["measured"], content.frfs["model"]
+    hz = content.modes["test"].frequencies_hz
+    frac = np.asarray(content.matrices["frac"])
+    return Curves(measured, lambda lines: model.values[..., lines], frac, 2j * np.pi * hz, hz,
+                  "the model")  # fmt: skip
 
 
 def _film(answer: RunTables, content: StoreContent | None) -> Film | None:

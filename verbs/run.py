@@ -11,6 +11,7 @@ from ..adapters.nastran.editing.changed_deck import ChangedDeck
 from ..adapters.store import StoreContent
 from ..core.correlation.comparison import Comparison
 from ..core.data.modes import Modes
+from ..core.discovery.likelihood.model_responses import model_responses
 from ..core.noun import BESIDE
 from ..core.results.correlation import Compared, CorrelateTables, RunTables
 from ..core.results.discovery import DiscoverTables
@@ -151,7 +152,10 @@ def content_of(
     modes = {"test": before.test, "analysis": before.analysis}
     if expanded is not None:
         modes["test expanded"] = expanded
+    heard = model_responses(last)
+    frfs = {} if heard is None else {"measured": heard.measured, "model": heard.model}
     return StoreContent(
+        frfs=frfs,
         geometry=before.geometry,
         test_geometry=before.placed.test_geometry,
         modes=modes if after is None else {**modes, "updated": after.analysis},
@@ -160,6 +164,7 @@ def content_of(
         matrices={
             "observation": last.observation.matrix,
             "transformation": last.correlation.transformation,
+            **({} if heard is None else {"frac": heard.frac}),
         },
         history=Table(history).to_dict(),
     )

@@ -27,7 +27,7 @@
     let k = 0; x.forEach((a, j) => { if (Math.abs(a - u) < Math.abs(x[k] - u)) k = j; });
     const told = j => { const at = n * (2 * shown + j) + k; return (10 ** (low + (high - low) * size[at] / 255)).toPrecision(2) + ', ' + Math.round(180 * angle[at] / 127) + '°'; };
     cursor.setAttribute('transform', `translate(${x[k]} 0)`); cursor.removeAttribute('hidden');
-    tip.textContent = `${f[k]} Hz\nmeasured ${told(0)}\nmade of the modes ${told(1)}`; tip.hidden = false;
+    tip.textContent = `${f[k]} Hz\nmeasured ${told(0)}\n${d.made} ${told(1)}`; tip.hidden = false;
     tip.style.left = Math.min(e.clientX + 14, innerWidth - tip.offsetWidth - 4) + 'px'; tip.style.top = e.clientY + 16 + 'px';
   });
   svg.addEventListener('pointerleave', () => { tip.hidden = true; cursor.setAttribute('hidden', ''); });

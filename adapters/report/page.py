@@ -13,6 +13,7 @@ from .html.markup import esc, tag
 from .imprint import Imprint, colophon, letterhead
 from .pictures import colour
 from .pictures.film import Film
+from .pictures.function_overlay import Curves
 from .sections.findings import FINDINGS
 from .sections.known_sections import SECTIONS
 from .sections.pairs import PAIRS
@@ -33,6 +34,7 @@ def make_report(
     title: str | None = None,
     shapes: Film | None = None,
     imprint: Imprint | None = None,
+    curves: Curves | None = None,
 ) -> str:
     """Return the report of a run as one HTML page that needs nothing else.
 
@@ -53,13 +55,15 @@ def make_report(
         Of pairs and single modes (`paired_film` makes them), shown moving.
     imprint : Imprint, optional
         Whose report it is.
+    curves : Curves, optional
+        Measured frequency responses with those of the model over them.
 
     Returns
     -------
     str
         The page, UTF-8 when written.
     """
-    run = ReportedRun(answer, geometry, shapes, diff or "")
+    run = ReportedRun(answer, geometry, shapes, diff or "", curves)
     shown = [(section, body) for section in SECTIONS if (body := section.body(run))]
     kind = _VERBS[answer.verb]
     name = title or _compared(answer)
@@ -82,7 +86,7 @@ def make_report(
         links if len(shown) > 2 else "",
         *[tag("section", tag("h2", esc(s.title), id=s.anchor), body) for s, body in shown],
         imprint=imprint,
-        scripts=["viewer.js"] * (shapes is not None),
+        scripts=["viewer.js"] * (shapes is not None) + ["functions.js"] * (curves is not None),
     )
 
 

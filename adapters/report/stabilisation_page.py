@@ -12,7 +12,7 @@ from .html.markup import esc, key, tag
 from .imprint import Imprint
 from .page import sections, sheet, titled
 from .pictures.film import one_side
-from .pictures.function_overlay import function_overlay
+from .pictures.function_overlay import function_overlay, identified_curves
 from .pictures.moving_figure import moving_figure
 from .pictures.sensor_shapes import sensor_shapes
 from .pictures.stabilisation_chart import stabilisation_chart
@@ -59,7 +59,7 @@ def stabilisation_page(
     shown = (
         ("Modes", html_table(modes_table(found)) if n else ""),
         ("Shapes", _shapes(found, geometry)),
-        ("Functions", function_overlay(found) + _assurance(found)),
+        ("Functions", function_overlay(identified_curves(found)) + _assurance(found)),
         ("Rejected", html_table(rejected_table(found)) if found.rejected else ""),
         ("Driving points and reciprocity", html_table(driving_table(found)) if drivers else ""),
     )

@@ -1,8 +1,12 @@
 """Measured functions and what the modes make of them: data for the script, the first without it."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints, Numbers
+from ....core.data.frfs import Frfs
 from ....core.identification import Identification
 from ..html.markup import centred, esc, key, short, svg, svg_text, tag
 from ..tables.number_formats import counted, general, percent
@@ -17,7 +21,44 @@ _AMPLITUDE = (34.0, 230.0)  # top and height
 _PHASE = (306.0, 98.0)
 
 
-def function_overlay(found: Identification) -> str:
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Measured functions and what stands over them.
+
+    Parameters
+    ----------
+    measured : Frfs
+    made : callable
+        ``made(lines)``: the others at some lines, (n_response, n_reference, n_line).
+    frac : (n_response, n_reference) float
+        Assurance, NaN where nothing was measured.
+    roots : (n,) complex
+        rad/s, about which lines are drawn closest.
+    marks : (n,) float
+        Frequencies that are marked, Hz.
+    said : str
+        What the others are made of.
+    """
+
+    measured: Frfs
+    made: Callable[[Ints], Numbers]
+    frac: Floats
+    roots: Numbers
+    marks: Floats
+    said: str = "made of the modes"
+
+
+def identified_curves(found: Identification) -> Curves:
+    """Return the functions of an identification and what its modes make of them."""
+    f = found.measured.frequencies_hz
+    roots = np.concatenate([found.poles, *(b.poles for b in found.bands)])
+    marks = found.modes.frequencies_hz
+    return Curves(
+        found.measured, lambda lines: found.synthesised(f[lines]).values, found.frac, roots, marks
+    )
+
+
+def function_overlay(found: Curves) -> str:
     """Return a figure of magnitude and phase, of the function that its menu names."""
     rows, columns = np.nonzero(np.isfinite(found.frac))
     f = found.measured.frequencies_hz
@@ -30,7 +71,7 @@ def function_overlay(found: Identification) -> str:
     lines = _chosen(f, found, most)
     both = np.stack(
         [found.measured.values[rows, columns][:, lines],
-         found.synthesised(f[lines]).values[rows, columns]], axis=1
+         found.made(lines)[rows, columns]], axis=1
     )  # fmt: skip
     size = np.abs(both)
     high = float(np.log10(size.max()))
@@ -48,7 +89,7 @@ def function_overlay(found: Identification) -> str:
     x = [amplitude.x(float(v)) for v in f[lines]]
     gaps = np.flatnonzero(_gap(f)[lines[1:]]) + 1
     body = amplitude.frame() + phase.frame() + _modes(amplitude, phase, found)
-    body += _axis(phase, found.quantity)
+    body += _axis(phase, found.measured.quantity)
     for k, kind in enumerate(("measured", "made")):
         y = amplitude.top + amplitude.height * (1.0 - codes[0, k] / 255.0)
         body += tag("path", class_=f"{kind} size", d=_path(x, y, gaps, np.inf))
@@ -64,7 +105,7 @@ def function_overlay(found: Identification) -> str:
         for k, (name, said) in enumerate(zip(names, assured, strict=True))
     )
     menu = tag("label", tag("b", "Function "), tag("select", options))
-    keys = key("measured", "measured") + key("made of the modes", "made")
+    keys = key("measured", "measured") + key(found.said, "made")
     picture = svg("functions", _SIZE, f"Magnitude and phase of {names[0]}, {assured[0]}.", body)
     note = _note(len(f), len(lines), left_out)
     return tag(
@@ -82,7 +123,7 @@ def function_overlay(found: Identification) -> str:
         data_panels=f"{short(amplitude.top)} {short(amplitude.height)} "
         f"{short(phase.top)} {short(phase.height)}",
         data_names="|".join(names),
-        data_unit=found.quantity,
+        data_made=found.said,
     )
 
 
@@ -98,11 +139,11 @@ def _note(of: int, shown: int, left_out: int) -> str:
     return esc(said)
 
 
-def _chosen(f: Floats, found: Identification, most: int) -> Ints:
+def _chosen(f: Floats, found: Curves, most: int) -> Ints:
     """Lines to draw, closer the nearer a root of the fit stands in its own half-power widths."""
     if len(f) <= most:
         return np.arange(len(f))
-    roots = np.concatenate([found.poles, *(b.poles for b in found.bands)]) / (2.0 * np.pi)
+    roots = found.roots / (2.0 * np.pi)
     hz, half = np.abs(roots), np.maximum(-roots.real, np.median(np.diff(f)))
     near = (half / (np.abs(f[:, None] - hz) + half)).max(axis=1, initial=0.0)
     weight = np.cumsum(near + 0.06)
@@ -127,11 +168,10 @@ def _path(x: list[float], y: Numbers, gaps: Ints, jump: float) -> str:
     )
 
 
-def _modes(amplitude: Plot, phase: Plot, found: Identification) -> str:
+def _modes(amplitude: Plot, phase: Plot, found: Curves) -> str:
     bottom = short(phase.top + phase.height)
     d = "".join(
-        f"M{short(amplitude.x(float(v)))} {short(amplitude.top)}V{bottom}"
-        for v in found.modes.frequencies_hz
+        f"M{short(amplitude.x(float(v)))} {short(amplitude.top)}V{bottom}" for v in found.marks
     )
     return tag("path", class_="at", d=d) if d else ""
 

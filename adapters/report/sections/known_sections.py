@@ -14,6 +14,7 @@ from .frequency_responses import FREQUENCY_RESPONSES
 from .gap import GAP
 from .mac_matrices import MAC_MATRICES
 from .mass import MASS
+from .measured_functions import MEASURED_FUNCTIONS
 from .moving_shapes import MOVING_SHAPES
 from .orthogonality import ORTHOGONALITY
 from .pairs import PAIRS
@@ -36,6 +37,7 @@ SECTIONS: list[Section[Any]] = [
     ORTHOGONALITY,
     MOVING_SHAPES,
     UNPAIRED_MODES,
+    MEASURED_FUNCTIONS,
     SENSORS,
     MASS,
     PARAMETERS,

@@ -8,6 +8,7 @@ from ....core.data.geometry import Geometry
 from ....core.results.correlation import RunTables
 from ..html.html_table import html_table
 from ..pictures.film import Film
+from ..pictures.function_overlay import Curves
 from ..tables.table import Table
 
 T = TypeVar("T", bound=RunTables)
@@ -27,12 +28,15 @@ class ReportedRun(Generic[T]):
         Shapes of the pairs and of modes without a partner.
     diff : str
         Unified diff of the deck; empty where it was not changed.
+    curves : Curves or None
+        Measured frequency responses and those of the model.
     """
 
     tables: T
     geometry: Geometry | None = None
     shapes: Film | None = None
     diff: str = ""
+    curves: Curves | None = None
 
 
 def no_tables(tables: RunTables) -> Sequence[Table]:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from trueup.adapters.report.pictures.function_overlay import function_overlay
+from trueup.adapters.report.pictures.function_overlay import function_overlay, identified_curves
 from trueup.adapters.report.pictures.stabilisation_chart import stabilisation_chart
 from trueup.adapters.report.stabilisation_page import modes_table, stabilisation_page
 from trueup.core.data.dofs import Dofs
@@ -161,7 +161,7 @@ def codes(page: str, name: str, kind: type[np.generic]) -> np.ndarray:
 
 
 def test_measured_and_synthesised_functions_lie_over_each_other(found: Identification) -> None:
-    page = function_overlay(found)
+    page = function_overlay(identified_curves(found))
     low, high = map(float, re.findall(r'data-decades="(\S+) (\S+)"', page)[0])
     size = codes(page, "size", np.uint8).reshape(4, 2, 600)
     angle = codes(page, "angle", np.int8).reshape(4, 2, 600)
@@ -179,7 +179,7 @@ def test_measured_and_synthesised_functions_lie_over_each_other(found: Identific
 
 def test_many_long_functions_are_thinned_but_not_at_the_modes() -> None:
     found = identify(survey(8000))
-    page = function_overlay(found)
+    page = function_overlay(identified_curves(found))
     f = np.array([float(v) for v in re.findall(r'data-f="([^"]+)"', page)[0].split()])
     assert f"Drawn are {len(f)} of 8000 lines" in page
     assert len(f) < 900
@@ -206,7 +206,7 @@ def test_what_was_not_measured_has_no_assurance() -> None:
     values[2, 1] = np.nan
     found = identify(replace(whole, values=values))
     assert np.argwhere(np.isnan(found.frac)).tolist() == [[2, 1]]
-    assert function_overlay(found).count("<option") == 7
+    assert function_overlay(identified_curves(found)).count("<option") == 7
 
 
 def test_shapes_of_the_test_move_on_its_page(found: Identification) -> None:
