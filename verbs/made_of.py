@@ -50,7 +50,7 @@ class Beside(TypedDict):
 
 
 def beside(study: Study, unit: str | None, **decks: Deck | ChangedDeck | None) -> Beside:
-    """Return what decks weigh, in the deck's length unit, and the names that modes were given."""
+    """Return what decks weigh that can be assembled, and the names that modes were given."""
     rows: list[WeightRow] = []
     for name, deck in decks.items():
         with suppress(InputError):  # cards that cannot be assembled are told elsewhere

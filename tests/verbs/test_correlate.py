@@ -226,7 +226,7 @@ def test_what_is_not_assembled_stands_in_no_ones_way(odd: Path, tmp_path: Path) 
     np.testing.assert_array_equal(ours.xyz, theirs.xyz)
     drawn, known = (sum(len(v) for v in g.elements.values()) for g in (ours, theirs))
     assert drawn == known + 1  # the quadrilateral without a property
-    with pytest.raises(trueup.InputError, match=r"nothing that a OP4 can hold.*CSEAM 990001"):
+    with pytest.raises(trueup.InputError, match=r"nothing that OP4 can hold.*CSEAM 990001"):
         trueup.convert(odd, tmp_path / "odd.op4")
     changed = trueup.read_deck(odd)
     assert changed.text.files[0].data == odd.read_bytes()
