@@ -213,7 +213,7 @@ def _request(
 ) -> tuple[core.Request, tuple[str, ...]]:
     """Return what discovery is asked, and what of the responses cannot be used."""
     from ..adapters.nastran import weight
-    from ..adapters.nastran.discovery.mass_unit import mass_unit
+    from ..adapters.nastran.discovery.mass_unit import densest, mass_unit
 
     model, on_model = structure.model, before.placed
     responses, unplaced = place_responses(
@@ -227,6 +227,7 @@ def _request(
         weight(deck).mass,
         mass_unit(deck, on_model.test_geometry.length_unit),
         responses=responses,
+        densest=densest(deck),
         modes=np.flatnonzero(elastic) + 1,
     )
     return request, tuple(unplaced)

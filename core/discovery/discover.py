@@ -33,7 +33,7 @@ from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
-from .search.equipment_growth import equipped
+from .search.equipment_growth import as_blocks, equipped
 from .search.footprints import footed, settled
 from .search.merge_neighbours import merged
 from .search.model_selection import (
@@ -351,13 +351,20 @@ def _completed(
 ) -> tuple[Searcher, Found, Judgement, Completeness]:
     """Keep the effects that are likelier than an error of the model without any place.
 
-    Their magnitudes are those at which the test is likeliest beside such an error.
+    Their magnitudes are those at which the test is likeliest beside such an error; in a poor
+    model masses are blocks.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, careful = found.levels, verdict.accepted
     searcher, found, kept, whole = completeness(searcher, found, verdict, deck)
     best = found.levels[kept]
     if kept:
+        structure, densest = trial.request.structure, trial.request.densest
+        if densest and not adequate(searcher, best):
+            searcher, solid = as_blocks(structure, searcher, best, densest)
+            judged = trial.judged(searcher.problem, solid)
+            if judged is not None:
+                best, whole = solid, replace(whole, best=judged)
         if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)

@@ -17,6 +17,11 @@ _SOLID = (4e2, 2.5e4)
 """Densities of what structures are made of [kg/m³]: balsa panels and below are left out."""
 
 
+def densest(deck: Deck) -> float:
+    """Return the largest density of what a deck is made of, as in its mass matrix; 0 if unknown."""
+    return max(_densities(deck), default=0.0)
+
+
 def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
     """Return what masses are counted in, in kilograms where the densities leave no doubt.
 
@@ -26,8 +31,7 @@ def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
     length_unit : {"m", "mm", "in", "ft"} or None
     """
     wtmass = deck.param("WTMASS", 1.0)
-    rho = [c.rho for c in deck.bulk.table("MAT1").values()]
-    rho = [r * wtmass for r in rho if r > 0.0]
+    rho = _densities(deck)
     if length_unit is None or not rho:
         return MassUnit(1.0 / wtmass)
     volume = METRES[length_unit] ** 3
@@ -35,3 +39,8 @@ def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
         kg for kg in _KILOGRAMS[length_unit] if _SOLID[0] < np.median(rho) * kg / volume < _SOLID[1]
     ]
     return MassUnit(1.0 / wtmass, likely[0] if len(likely) == 1 else None)
+
+
+def _densities(deck: Deck) -> list[float]:
+    wtmass = deck.param("WTMASS", 1.0)
+    return [c.rho * wtmass for c in deck.bulk.table("MAT1").values() if c.rho > 0.0]

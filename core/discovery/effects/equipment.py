@@ -35,6 +35,12 @@ class Body:
     radius: float
 
 
+def block(mass: float, density: float) -> Body:
+    """Return a solid block, twice as long as wide and high, its radius the rms about its axes."""
+    width = (0.5 * mass / density) ** (1.0 / 3.0)
+    return Body((0.0, 0.0, 0.0), float(width / np.sqrt(3.0)))
+
+
 @dataclass(frozen=True, eq=False)
 class Equipment(Candidates):
     """Masses at places, each with its body."""

@@ -35,6 +35,8 @@ class Request(Noun):
     effort : Effort
     responses : Responses, optional
         Frequency responses of the test: further evidence.
+    densest : float
+        Largest density of what the structure is made of, as in the mass matrix; 0 if unknown.
     modes : (n_test,) int, optional
         Numbers by which to speak of the modes in `placed`; otherwise 1, 2, ...
     """
@@ -47,6 +49,7 @@ class Request(Noun):
     masses: MassUnit = field(default_factory=MassUnit)
     effort: Effort = EFFORT
     responses: Responses | None = None
+    densest: float = 0.0
     modes: Ints | None = None
 
     @property

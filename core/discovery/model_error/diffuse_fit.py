@@ -73,13 +73,14 @@ def with_drift(problem: Problem, state: Fit, fields: Callable[[], Fields]) -> Ju
     """Return a hypothesis as it is likeliest: without smooth fields, or with fields of some size.
 
     `fields` on the basis are made when they are asked for. All of them have one size, which is
-    tried from small to large.
+    tried from small to large, from that on which could make a part of the error that is left.
     """
     plain = best = judged(problem, state, everything(problem))
     known = fields()
     n, k = len(problem.prior.spread) - 1, len(known.names)
     start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
-    for size in MODEL_ERROR.drifts:
+    least = min(MODEL_ERROR.drift_part * plain.diffuse.error, MODEL_ERROR.drifts[-1])
+    for size in (s for s in MODEL_ERROR.drifts if s >= least):
         moved = with_fields(problem, known, size)
         tried = judged(moved, start, everything(moved), best.diffuse)
         if tried.evidence < best.evidence:

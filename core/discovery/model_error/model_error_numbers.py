@@ -22,6 +22,7 @@ class ModelErrorNumbers:
     flat: float = number(0.05, "-", "what a polynomial must have of its own beside the others", "thin structures have no fields across")
     most: float = number(0.4, "rms", "of a smooth field, at most")
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03), "rms", "of each smooth field, sizes that are tried", "all of them together make a tenth: more is no drift but another structure")
+    drift_part: float = number(0.15, "of the diffuse error", "below which a size of smooth fields is not tried: it could not make it", "fits from three starts on a measured aeroplane find the same then")
     seen: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of, and for a model to lack something")
     folds: int = number(5, "parts", "of the test modes, each of which is foretold by the others")
     usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)

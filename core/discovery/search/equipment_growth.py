@@ -3,6 +3,9 @@
 A mass on a stand of 60 mm looks like a heavier one, or like one with an absorber beside it. So each
 mass of a hypothesis that earned its place is tried with its centre off the structure and with radii
 of gyration, in steps that get smaller, which have to gain more than four more unknowns are worth.
+Where the model is off by more than right ones are, the test does not tell a heavy mass from a less
+heavy one that resists being turned; there a mass is a solid block of what the structure is made
+of: equipment is rarely more compact.
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +15,7 @@ import numpy as np
 from ...arrays import Floats
 from ..effects import point_mass
 from ..effects.candidates import Candidates, Suspect, places_of
-from ..effects.equipment import Body, Stand, equipment, stand
+from ..effects.equipment import Body, Equipment, Stand, block, equipment, stand
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure
@@ -35,6 +38,27 @@ def equipped(
             better = _one(structure, searcher, state, q, scale)
             searcher, state = better or (searcher, state)
     return searcher, state
+
+
+def as_blocks(
+    structure: Structure, searcher: Searcher, state: Fit, density: float
+) -> tuple[Searcher, Fit]:
+    """Return a hypothesis whose masses at points are blocks, and a searcher that knows them."""
+    for q, s in enumerate(state.suspects):
+        c = searcher.problem.catalogue[s.kind]
+        own, _ = places_of(c, s.row)[0]
+        stands = _stands(structure, c, s.row) if _at_point(own) else []
+        if stands:
+            made = equipment(c, stands, [block(float(np.exp(s.theta[0])), density)])
+            searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
+            new = Suspect(kind, 0, s.theta)
+            suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
+            state = searcher.fitted(state, suspects, SEARCH.steps_moved)
+    return searcher, state
+
+
+def _at_point(c: Candidates) -> bool:
+    return c.kind is point_mass.KIND and bool(c.rows_each) and not isinstance(c, Equipment)
 
 
 def _one(structure: Structure, searcher: Searcher, state: Fit, q: int, scale: float) -> Better:

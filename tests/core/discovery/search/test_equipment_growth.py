@@ -6,7 +6,7 @@ import pytest
 import trueup
 from trueup.core.discovery import discover as core
 from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.search.equipment_growth import equipped
+from trueup.core.discovery.search.equipment_growth import as_blocks, equipped
 
 FRAME = (
     "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n"
@@ -57,3 +57,25 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     (x, y, z) = c.bodies[found.row].offset
     assert np.linalg.norm((x - 0.08, y, z)) < 0.03
     assert grown.objective < point.objective - 15.0
+
+
+def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_path, monkeypatch):
+    request = asked(tmp_path, monkeypatch)
+    assert request.densest == pytest.approx(7850.0)
+    every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
+    nothing = ~every[1]
+    trial = core._Trial(request, core._ground(request, every[0]), nothing, 0.01, ~every[0], nothing)
+    s = core._searcher(trial)
+    row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
+    point = s.fitted(s.null(), (Suspect(0, row, (float(np.log(0.5)),)),))
+    mass = float(np.exp(point.suspects[0].theta[0]))
+    wide, solid = as_blocks(request.structure, s, point, request.densest)
+    (found,) = solid.suspects
+    c = wide.problem.catalogue[found.kind]
+    width = (mass / 7850.0 / 2.0) ** (1.0 / 3.0)
+    own = np.array([1.0 + 1.0, 1.0 + 4.0, 1.0 + 4.0]) * width**2 / 12.0
+    assert c.bodies[found.row].radius ** 2 == pytest.approx(own.mean())
+    assert c.where[found.row]["grids"] == [6]
+    again, same = as_blocks(request.structure, wide, solid, request.densest)
+    assert again is wide
+    assert same is solid
