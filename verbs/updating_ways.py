@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -14,8 +14,10 @@ from ..core.arrays import Floats
 from ..core.correlation.comparison import Comparison, Placed, compare
 from ..core.correlation.mode_pairing import Pair
 from ..core.data.parameter import Parameter
+from ..core.data.parametric_model import Model
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import CheckError, InputError
+from ..core.reduction.eigenpair_derivatives import sensitivities
 from ..core.results.update import SolverRow
 from ..core.updating import update as core
 from ..core.updating.determined import update_determined
@@ -30,7 +32,9 @@ from .sources import Measured
 from .study import Study, meant
 
 if TYPE_CHECKING:
+    from ..adapters.nastran.assembly.read_back import ReadBack
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
+    from ..adapters.nastran.fields.parameter_references import FieldRef
 
 _MOST_RUNS = 4
 """Updates that the user's solver verifies, at most."""
@@ -40,6 +44,8 @@ _AGREES = 1e-4
 """Relative difference of eigenvalues, updated model and deck read back, that is none."""
 
 
+_CURVED = 10.0
+"""Relative change of an eigenvalue by the square of that of a factor: a thickness bends by 3."""
 _Written = tuple["ChangedDeck", list[list[float | None]]]
 """The updated deck, and the values of its parameters' fields."""
 
@@ -81,13 +87,14 @@ def by_itself(
 def way_of(analysis: Analysis, placed: Placed, asked: Study, found: Moved) -> Way:
     """Return what an update by the embedded solver did to a deck, both states compared."""
 
-    def comparison(solution: Eigensolution) -> Comparison:
-        modes = modes_of(analysis.model, solution)
+    def comparison(model: Model, solution: Eigensolution) -> Comparison:
+        modes = modes_of(model, solution)
         rigid = solution.rigid_body_modes
         return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
 
-    before, after = (comparison(at.solution) for at in (found.done.before, found.done.after))
-    return Way(found, before, after, _written(analysis, found.done))
+    written, again = _written(analysis, found.done)
+    before = comparison(analysis.model, found.done.before.solution)
+    return Way(found, before, comparison(again.model, again.solution), written)
 
 
 def by_solver(
@@ -125,7 +132,7 @@ def by_solver(
             aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
             one = configuration(analysis, replace(placed, test=aim), asked)
             found = moved([one], analysis.model.parameters, asked, kept)
-            written = _written(analysis, found.done)
+            written, _ = _written(analysis, found.done)
             progress("your solver solves the updated deck")
             after = judged(written[0])
             last, factor = factor, _correction(after, found.done.after.correlation.pairs)
@@ -196,8 +203,8 @@ def moved(
     return Moved(best, starts, intervals, sampled, evidence)
 
 
-def _written(analysis: Analysis, done: core.Updated) -> _Written:
-    """Return the updated deck and the values of its parameters' fields, read back and solved.
+def _written(analysis: Analysis, done: core.Updated) -> tuple[_Written, ReadBack]:
+    """Return the updated deck and the values of its parameters' fields; and it read back, solved.
 
     Raises
     ------
@@ -207,23 +214,46 @@ def _written(analysis: Analysis, done: core.Updated) -> _Written:
     from ..adapters.nastran import read_value, set_values
     from ..adapters.nastran.assembly.read_back import read_back
     from ..adapters.nastran.editing.changed_deck import ChangedDeck
-    from ..adapters.nastran.fields.parameter_references import moved as moved_fields
+    from ..adapters.nastran.fields.parameter_references import moved_as_known
 
     assert analysis.deck is not None
     assert analysis.given is not None
-    wanted = moved_fields(analysis.specs, analysis.model.parameters, done.factors)
+    parameters = analysis.model.parameters
+    wanted = moved_as_known(analysis.specs, parameters, done.factors, done.standard_error)
     text, given = set_values(analysis.deck.text, wanted), analysis.given.text
     changed = ChangedDeck.of(given, text if wanted else given)
-    target = done.after.solution.eigenvalues
-    again = read_back(changed, len(target)).solution
-    elastic = slice(again.rigid_body_modes, None)
-    off = np.max(np.abs(again.eigenvalues[elastic] / target[elastic] - 1.0), initial=0.0)
-    if not off < _AGREES:
+    target, unsure = _as_written(analysis, done, wanted)
+    again = read_back(changed, len(target))
+    elastic = slice(again.solution.rigid_body_modes, None)
+    found = again.solution.eigenvalues[elastic]
+    off = np.max(np.abs(found / target[elastic] - 1.0), initial=0.0)
+    if not off < _AGREES + unsure:
         raise CheckError(
             f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
             "updated model's; nothing was written"
         )
-    return changed, [[read_value(text, r) for r in s.fields] for s in analysis.specs]
+    values = [[read_value(text, r) for r in s.fields] for s in analysis.specs]
+    return (changed, values), again
+
+
+def _as_written(
+    analysis: Analysis, done: core.Updated, wanted: Mapping[FieldRef, float]
+) -> tuple[Floats, float]:
+    """Return the eigenvalues of the updated model at the values that are written, first order.
+
+    Beside them a bound of what is left out, relative.
+    """
+    found = done.after.solution
+    off = np.zeros(len(done.factors))
+    for k, (spec, q) in enumerate(zip(analysis.specs, analysis.model.parameters, strict=True)):
+        if spec.fields[0] in wanted:
+            off[k] = wanted[spec.fields[0]] / q.deck_values[0] - done.factors[k]
+    modes = np.arange(found.rigid_body_modes, len(found.eigenvalues))
+    moved = np.flatnonzero(off)
+    slopes = sensitivities(analysis.model, done.factors, found, modes, moved.tolist()).slopes
+    out = np.array(found.eigenvalues)
+    out[modes] += slopes @ off[moved]
+    return out, _CURVED * float(np.max(np.abs(off / done.factors), initial=0.0)) ** 2
 
 
 def _stages(study: Study, parameters: Sequence[Parameter]) -> tuple[core.Stage, ...]:

@@ -62,7 +62,9 @@ def test_the_result_says_what_the_interface_promises(updated: Any) -> None:
             "name", "cards", "initial", "updated", "factor", "standard_error", "at_bound",
         }  # fmt: skip
         for old, new in zip(row["initial"], row["updated"], strict=True):
-            assert new == pytest.approx(old * row["factor"], rel=1e-12)
+            rounded = 0.051 * row["standard_error"] * old + 1e-5 * old
+            assert new == pytest.approx(old * row["factor"], abs=rounded)
+            assert len(f"{new:.15g}".replace(".", "")) <= 8
         assert 0.0 < row["standard_error"] < 0.2
         assert row["at_bound"] is False
     assert [r["name"] for r in result["parameters"]] == ["PBAR 11 I1, PBAR 11 I2", "rear flange"]
@@ -83,7 +85,7 @@ def test_the_history_leads_from_the_deck_to_the_result(updated: Any) -> None:
     assert history[-1]["factors"] == [p["factor"] for p in result["parameters"]]
     assert all(a["objective"] > b["objective"] for a, b in pairwise(history))
     last = {m + 1: d for m, d in enumerate(history[-1]["deviations_percent"]) if d is not None}
-    assert last == pytest.approx(deviations(result["after"]), abs=1e-6)
+    assert last == pytest.approx(deviations(result["after"]), abs=0.02)  # values are rounded
 
 
 def test_changes_touch_the_named_cards_only(updated: Any, duct: Path) -> None:
@@ -92,7 +94,7 @@ def test_changes_touch_the_named_cards_only(updated: Any, duct: Path) -> None:
     touched = [x for x in changes.splitlines() if re.match(r"[-+](?![-+])", x)]
     gone = [x for x in touched if x[0] == "-"]
     assert [x.split()[:2] for x in gone] == [["-PBAR", "11"], ["-PBAR", "12"]]
-    assert {x.split()[0].rstrip("*") for x in touched if x[0] == "+"} == {"+PBAR", "+"}
+    assert {x.split()[0].rstrip("*") for x in touched if x[0] == "+"} == {"+PBAR"}
     for name in ("duct.bdf", "mesh.bdf"):
         assert (folder / "deck" / name).read_bytes() == (duct / name).read_bytes()
     old = (duct / "properties.bdf").read_text().splitlines()
@@ -116,10 +118,10 @@ def test_the_deck_read_back_holds_the_updated_values_and_all_others(
     old, new = build_model(before), build_model(after)
     assert (old.M() != new.M()).nnz == 0
     assert (old.K() != new.K()).nnz > 0
-    factors = np.array([p["factor"] for p in result["parameters"]])
+    factors = np.array([p["updated"][0] / p["initial"][0] for p in result["parameters"]])
     moved = build_model(before, [parse_parameter(p) for p in FLANGES])
     np.testing.assert_allclose(
-        (new.K() - moved.K(factors)).data, 0.0, atol=1e-9 * abs(new.K()).max()
+        (new.K() - moved.K(factors)).data, 0.0, atol=1e-6 * abs(new.K()).max()
     )
 
 
@@ -133,7 +135,7 @@ def test_the_run_folder_is_whole(updated: Any) -> None:
     assert set(read_store(folder / "result.h5").modes) == {"test", "analysis", "updated"}
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "rear flange" in page
-    assert "PBAR*" in page
+    assert "PBAR" in page
     assert not [p for p in folder.parent.iterdir() if p.name.startswith(".")]
 
 

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 from ....core.data.parameter import Parameter
 from ....core.errors import InputError
+from ..text.real_numbers import SMALL, format_real, justified, parse_real
 from .layouts import canonical_field
 
 DEFAULT_BOUNDS = (0.2, 5.0)
 PARAM = "PARAM"
+_FEWEST = 0.05
+"""Of a value: the largest error that figures are left out by, so that three stay."""
 
 _FORM = re.compile(r"(?:(?P<name>[^=\[\]]*)=)?(?P<cards>[^=\[\]]*)(?:\[(?P<bounds>[^\[\]]*)\])?\s*")
 _EXAMPLE = "write it like 'PSHELL 3 T' or 'front flange = PBAR 11 I1, PBAR 11 I2 [0.2, 5]'"
@@ -102,6 +105,30 @@ def moved(
         for ref, value in zip(spec.fields, parameter.deck_values, strict=True)
         if abs(factor - 1.0) > 1e-12
     }
+
+
+def moved_as_known(
+    specs: Iterable[ParameterSpec],
+    parameters: Iterable[Parameter],
+    factors: Iterable[float],
+    errors: Iterable[float],
+) -> dict[FieldRef, float]:
+    """Return what `moved` does with the figures that eight columns hold and errors justify.
+
+    `errors` are the standard errors of the factors, NaN where unknown; three figures stay whatever
+    they are. Where a parameter moves several values it is the factor that is rounded, so that they
+    stay together.
+    """
+    out: dict[FieldRef, float] = {}
+    for spec, q, factor, error in zip(specs, parameters, factors, errors, strict=True):
+        alone = len(spec.fields) == 1
+        error = min(float(error), _FEWEST * abs(factor)) if error == error else math.nan
+        if not alone:
+            factor = justified(float(factor), error)
+        for ref, value in moved([spec], [q], [factor]).items():
+            kept = justified(value, error * abs(q.deck_values[0])) if alone else value
+            out[ref] = parse_real(format_real(kept, SMALL))
+    return out
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,17 @@ def writable(value: float) -> float:
     return parse_real(format_real(value, LARGE))
 
 
+def justified(value: float, error: float) -> float:
+    """Return a value with as many figures as its standard error justifies.
+
+    That error has two figures then, and the value no more decimals than it (Guide to the expression
+    of uncertainty in measurement, JCGM 100:2008, 7.2.6). An error that is not known says nothing.
+    """
+    if not (math.isfinite(error) and error > 0.0):
+        return value
+    return round(value, 1 - math.floor(math.log10(error))) or value
+
+
 def format_field(value: float | int | str | None, width: int) -> str | None:
     """Return a field's text, or None where a real does not fit in `width` without loss.
 

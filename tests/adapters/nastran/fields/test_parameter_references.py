@@ -5,8 +5,10 @@ import pytest
 from trueup.adapters.nastran.fields.parameter_references import (
     FieldRef,
     ParameterSpec,
+    moved_as_known,
     parse_parameter,
 )
+from trueup.core.data.parameter import Parameter
 from trueup.core.errors import InputError
 
 
@@ -95,3 +97,18 @@ def test_malformed_parameters_are_one_clear_sentence(text, says):
 def test_a_weight_must_be_positive():
     with pytest.raises(InputError, match="weight"):
         ParameterSpec("t", (FieldRef("PSHELL", 1, "T"),), weight=0.0)
+
+
+def test_values_that_move_together_stay_so_in_eight_columns():
+    """One value is rounded by its error, of several the factor."""
+    specs = [parse_parameter(t) for t in ("MAT1 1 E", "PBAR 11 I1, PBAR 11 I2", "PSHELL 3 T")]
+    values = ((71234.5,), (3.3333, 6.6666), (1.0,))
+    parameters = [
+        Parameter(s.name, tuple(map(str, s.fields)), v) for s, v in zip(specs, values, strict=True)
+    ]
+    found = moved_as_known(specs, parameters, [1.23456789, 0.87654, 1.0], [0.01, 0.1, 0.1])
+    assert {str(k): v for k, v in found.items()} == {
+        "MAT1 1 E": 87940.0,
+        "PBAR 11 I1": 2.923304,
+        "PBAR 11 I2": 5.846608,
+    }

@@ -9,6 +9,7 @@ from trueup.adapters.nastran.text.real_numbers import (
     format_exact,
     format_field,
     format_real,
+    justified,
     parse_real,
     writable,
 )
@@ -109,3 +110,20 @@ def test_text_longer_than_a_field_is_refused():
         format_field("ABCDEFGHI", 16)
     with pytest.raises(InputError, match="eight columns"):
         format_field(123456789, 16)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "written"),
+    [
+        (15982.890983, 412.3, 15980.0),
+        (15982.890983, 0.0412, 15982.891),
+        (1.0234567891, 1e-9, 1.0234567891),
+        (0.0123456, 0.00098, 0.01235),
+        (-3.14159, 0.05, -3.142),
+        (0.004, 0.3, 0.004),
+        (2.5, float("nan"), 2.5),
+        (2.5, 0.0, 2.5),
+    ],
+)
+def test_a_value_has_the_figures_that_its_error_justifies(value, error, written):
+    assert justified(value, error) == pytest.approx(written, rel=1e-14)
