@@ -61,7 +61,7 @@ class CaseControl:
     sdamping: int | None = field(default=None, compare=False)
     superelement: int = field(default=0, compare=False)
     of_parts: tuple[tuple[int, tuple[int | None, int | None]], ...] = ()
-    commands: frozenset[str] = frozenset()
+    commands: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 def read_case_control(
@@ -70,7 +70,8 @@ def read_case_control(
     """Return the facts of the first normal modes subcase, and warnings.
 
     A subcase that asks for modes is the first with METHOD (its own or the one above all
-    subcases) and no other ANALYSIS; subcases that select other constraints are named in a warning.
+    subcases) and no other ANALYSIS; without one it is the first that is not for heat. Subcases
+    that select other constraints are named in a warning.
 
     Raises
     ------
@@ -100,8 +101,9 @@ def read_case_control(
     parts = tuple((c.superelement, (c.spc, c.mpc)) for c in subcases if c.superelement)
     whole = [c for c in subcases if not c.superelement] or subcases
     modal = [c for c in whole if c.method is not None and c.analysis in ("", "MODES")]
-    chosen = replace(modal[0] if modal else whole[0], of_parts=parts)
-    others = [c.subcase for c in modal[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
+    candidates = modal or [c for c in whole if c.analysis != "HEAT"] or whole
+    chosen = replace(candidates[0], of_parts=parts)
+    others = [c.subcase for c in candidates[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
     before = [c for c in subcases if c.subcase < chosen.subcase]
     steps = chosen.analysis == "MODES" and any(c.analysis == "STATICS" for c in before)
     loaded = _LOADED * (chosen.loaded or steps)
@@ -131,8 +133,9 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         return replace(case, superelement=number or 0)
     if key.startswith("STATS"):
         return replace(case, loaded=True)
-    if key.startswith("ANAL"):
-        return replace(case, analysis=value.upper())
+    if key.startswith(("ANAL", "THER")):  # THERMAL is the output of heat transfer
+        named = value.upper() if key.startswith("ANAL") else case.analysis or "HEAT"
+        return replace(case, analysis=named)
     if key in _MATRICES:
         names = tuple(
             (m["name"].upper(), parse_real(m["factor"] or "1")) for m in _WEIGHTED.finditer(value)

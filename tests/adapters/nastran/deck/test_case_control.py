@@ -44,3 +44,11 @@ def test_loads_that_would_stiffen_the_structure_are_said(text):
     assert any("unloaded structure" in w for w in warnings)
     _, quiet = read_all("SUBCASE 1\nANALYSIS = MODES\nMETHOD = 1\nSUBCASE 2\nANALYSIS = STATICS")
     assert not quiet
+
+
+def test_of_subcases_without_modes_the_first_of_structure_is_taken_and_said():
+    text = "SUBCASE 1\nSPC = 1\nTHERMAL = ALL\nSUBCASE 2\nSPC = 2\nSUBCASE 3\nSPC = 3\n"
+    case, (told,) = read_all(text)
+    assert (case.subcase, case.spc) == (2, 2)
+    assert told.startswith("subcase 2 is used; subcases 3 select other constraints")
+    assert read_all("THERMAL = ALL\nSPC = 4\nSUBCASE 1\nLOAD = 2\n")[0].spc == 4
