@@ -19,7 +19,7 @@ def is_op4(path: Path) -> bool:
 
 
 def _head(path: Path) -> bytes:
-    with path.open("rb") as stream:
+    with reading(path), path.open("rb") as stream:
         return stream.read(_HEAD)
 
 
