@@ -18,6 +18,7 @@ from ...errors import CheckError
 from ...reduction.reduced_sum import ReducedSum
 from ..effects import support_flexibility
 from ..effects.candidates import Candidates, Suspect
+from ..effects.effect_numbers import EFFECTS
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
@@ -82,6 +83,11 @@ class Ground:
     def fields(self) -> Fields:
         """Smooth fields on the basis."""
         return smooth_fields(self.structure, self.basis.vectors)
+
+    @cached_property
+    def readings(self) -> Floats:
+        """What sensors read on the basis, (n_sensor, r)."""
+        return np.asarray(self.observation @ self.basis.vectors)
 
     @cached_property
     def mass(self) -> sp.csr_matrix:
@@ -195,18 +201,19 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
         for c, row in places
     ]
     stiffness, mass, mesh, bars = sums
+    seen, W = ground.readings, V[:, :0]
     if loads:
         X = ground.compliance.responses(np.hstack(loads))
         W = beside(X, V, ground.mass, REDUCTION.dependent)
         stiffness, mass, mesh, bars = (s.widened(V, W) for s in sums)
-        V = np.hstack([V, W])
-    none = V[:0]
+        seen = np.hstack([seen, ground.observation @ W])
+    none = np.zeros((0, seen.shape[1]))
     return Own(
         Basis(none, none, stiffness, mass),
         Basis(none, none, stiffness, mass.and_also(bars)),
-        np.asarray(ground.observation @ V),
+        seen,
         mesh.matrices[0],
-        tuple(_factor(c, row, V)[None] for c, row in places),
+        tuple(_factor(c, row, V, W)[None] for c, row in places),
     )
 
 
@@ -214,12 +221,16 @@ def _root(c: Candidates, row: int) -> sp.csr_matrix:
     return c.root[row * c.rows_each : (row + 1) * c.rows_each]
 
 
-def _factor(c: Candidates, row: int, V: Floats) -> Floats:
-    """Return rows (q, r) whose outer products are the matrix of one place on a basis."""
+def _factor(c: Candidates, row: int, V: Floats, W: Floats) -> Floats:
+    """Return rows (q, r + s) whose outer products are the matrix of one place on V and W."""
     if c.rows_each:
-        return np.asarray(_root(c, row) @ V)
-    values, vectors = np.linalg.eigh(V.T @ (c.full(row) @ V))
-    return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))).T)
+        return np.hstack([_root(c, row) @ V, _root(c, row) @ W])
+    A = c.full(row)
+    own = np.unique(A.indices)
+    X = np.hstack([V[own], W[own]])
+    values, vectors = np.linalg.eigh(X.T @ (A[own][:, own] @ X))
+    there = values > EFFECTS.patch_rounding * values[-1]
+    return np.asarray((vectors[:, there] * np.sqrt(values[there])).T)
 
 
 def _alone(c: Candidates, row: int, state: Fit) -> Candidates:
