@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 _TONES = {"muted": "dim", "good": "green", "poor": "red"}
 _BOTH = 98  # columns that pairs before and after need side by side
 _MORE = 6  # and for each thing that is known of damping
+_WAVES = 24  # and for the harmonics of a body of revolution
 _BRIEF = {
     "damping %": "damp.\n%",
     "MPC %": "MPC\n%",
@@ -102,7 +103,8 @@ def pairs_tables(answer: RunTables, width: int = 110) -> list[Table]:
 
     tables = PAIRS.tables_of(answer)
     more = sum(c.heading in ("damping %", "MPC %") for table in tables for c in table.columns)
-    if answer.initial is None or width >= _BOTH + _MORE * more:
+    waves = sum(c.heading == "waves" for table in tables for c in table.columns)
+    if answer.initial is None or width >= _BOTH + _MORE * more + _WAVES * waves:
         return [_rich(table) for table in tables]
     states = ((answer.initial, "before"), (answer.final, "after"))
     made = [(pairs_table([("", c)], answer.named), state) for c, state in states]

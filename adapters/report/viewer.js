@@ -69,15 +69,16 @@
     }
     const put = (of, out) => { for (let i = 0; i < 3 * spots; i += 3) project(...[0, 1, 2].map(k => 2 * places[i + k] / 32767 + s * 2 * of[from + i + k] / 127), out, i); };
     put(model, Q); put(test, R);
+    const mark = w > 400 && h > 300 ? 3 : 1.5;
     ctx.strokeStyle = ink.test; ctx.lineWidth = detail ? 1.6 : 0.9;
     for (let l = 0; l < traced.length; l += 2) { const a = 3 * traced[l], b = 3 * traced[l + 1]; ctx.beginPath(); ctx.moveTo(R[a], R[a + 1]); ctx.lineTo(R[b], R[b + 1]); ctx.stroke(); }
     if (detail) for (let i = 0; i < 3 * spots; i += 3) {
       ctx.globalAlpha = Math.min(1, Math.max(0.25, 0.7 - 1.1 * R[i + 2])); ctx.strokeStyle = ink.page; ctx.lineWidth = 0.8;
       if (who === 'both') {
         ctx.beginPath(); ctx.moveTo(Q[i], Q[i + 1]); ctx.lineTo(R[i], R[i + 1]); ctx.strokeStyle = ink.line; ctx.stroke(); ctx.strokeStyle = ink.page;
-        ctx.beginPath(); ctx.arc(Q[i], Q[i + 1], 3, 0, 7); ctx.fillStyle = ink.model; ctx.fill(); ctx.stroke();
+        ctx.beginPath(); ctx.arc(Q[i], Q[i + 1], mark, 0, 7); ctx.fillStyle = ink.model; ctx.fill(); ctx.stroke();
       }
-      ctx.fillStyle = ink.test; ctx.fillRect(R[i] - 3, R[i + 1] - 3, 6, 6); ctx.strokeRect(R[i] - 3, R[i + 1] - 3, 6, 6);
+      ctx.fillStyle = ink.test; ctx.fillRect(R[i] - mark, R[i + 1] - mark, 2 * mark, 2 * mark); ctx.strokeRect(R[i] - mark, R[i + 1] - mark, 2 * mark, 2 * mark);
     }
     ctx.restore();
   };

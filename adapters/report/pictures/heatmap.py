@@ -86,15 +86,22 @@ def heatmap(
 
 
 def readable(matrix: MacTable) -> Iterator[tuple[MacTable, str]]:
-    """Yield a matrix in parts whose cells have room for numbers, each with what it holds."""
+    """Yield a matrix in parts alike whose cells have room for numbers, each with what it holds."""
     rows, cols = matrix.values.shape
     whole = rows <= _DOWN and cols <= _ACROSS
-    for r in range(0, rows, _DOWN):
-        for c in range(0, cols, _ACROSS):
-            test, analysis = matrix.test[r : r + _DOWN], matrix.analysis[c : c + _ACROSS]
+    down, across = _alike(rows, _DOWN), _alike(cols, _ACROSS)
+    for r in range(0, rows, down):
+        for c in range(0, cols, across):
+            test, analysis = matrix.test[r : r + down], matrix.analysis[c : c + across]
             said = f", modes {test[0]} to {test[-1]} and {analysis[0]} to {analysis[-1]}"
-            values = matrix.values[r : r + _DOWN, c : c + _ACROSS]
+            values = matrix.values[r : r + down, c : c + across]
             yield MacTable(test, analysis, values), "" if whole else said
+
+
+def _alike(count: int, most: int) -> int:
+    """Return the size of parts alike, none larger than `most`."""
+    parts = -(-count // most)
+    return -(-count // max(parts, 1)) or 1
 
 
 def legend(what: str = "MAC %") -> str:

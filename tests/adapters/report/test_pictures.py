@@ -176,3 +176,16 @@ def test_bars_are_as_high_as_their_values() -> None:
 
 def test_ramp_has_a_class_every_five_percent() -> None:
     assert STEPS == 20
+
+
+def test_a_large_matrix_is_shown_in_parts_with_numbers() -> None:
+    from trueup.adapters.report.pictures.heatmap import readable
+
+    values = np.arange(70.0 * 60).reshape(70, 60)
+    whole = MacTable(tuple(range(1, 71)), tuple(range(1, 61)), values)
+    parts = list(readable(whole))
+    assert [p.values.shape for p, _ in parts] == [(35, 30)] * 4
+    assert parts[1][1] == ", modes 1 to 35 and 31 to 60"
+    np.testing.assert_array_equal(np.hstack([p.values for p, _ in parts[:2]]), values[:35])
+    small = MacTable((1, 2), (1,), values[:2, :1])
+    assert [(p.test, said) for p, said in readable(small)] == [((1, 2), "")]
