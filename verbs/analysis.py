@@ -222,6 +222,7 @@ def _responses(model: Model, placed: Placed) -> Responses | None:
 def _beside(model: Model, study: Study) -> Beside:
     from ..core.statespace.channels import read_channels, rows_of
     from ..core.updating.residuals import Beside, LoadCase
+    from .relations import read_relation
 
     def rows(told: Sequence[str]) -> tuple[sp.csr_matrix, Floats]:
         places, values = zip(*(value_at(text) for text in told), strict=True)
@@ -234,7 +235,8 @@ def _beside(model: Model, study: Study) -> Beside:
         loaded, forces = rows(case.loads)
         cases.append(LoadCase(np.asarray(loaded.T @ forces), *rows(case.readings)))
     centre = study.measured_centre_of_gravity
-    return Beside(study.measured_mass, np.array(centre) if centre else None, tuple(cases))
+    known = tuple(read_relation(text, model.parameters) for text in study.relations)
+    return Beside(study.measured_mass, np.array(centre) if centre else None, tuple(cases), known)
 
 
 def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[Source, Source]:

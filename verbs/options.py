@@ -99,6 +99,8 @@ class UpdateOptions(CompareOptions, total=False):
     "damping" moves the ratios of complex modes to the test's; ``damping_sigma`` is of a ratio.
     "frfs" moves the log magnitudes of frequency responses (``frf_sigma``), "antiresonances" the
     dips of driving points (``antiresonance_sigma`` of a frequency).
+    "relations" holds ratios and sums of parameters to what is known: ``relations`` such as
+    "skin / web = 2 ± 0.1" or "front + rear = 12.5 ± 0.2", by their names, in the deck's units.
 
     ``configurations`` of the structure that are updated together, in place of one deck and test:
     each a mapping with ``deck``, ``test``, a ``name``, and of the keys of a study what is another.
@@ -119,6 +121,7 @@ class UpdateOptions(CompareOptions, total=False):
     evidence: bool | None
     solver: str | None
     solver_limit: float | None
+    relations: str | Sequence[str] | None
     measured_mass: float | None
     measured_centre_of_gravity: Sequence[float] | None
     load_cases: Sequence[LoadRequest | Mapping[str, object]] | None
@@ -132,6 +135,7 @@ class ParametersOptions(CompareOptions, total=False):
     test_modes: int | Sequence[int] | None
     frequency_sigma: float | None
     shape_sigma: float | None
+    relations: str | Sequence[str] | None
     measured_mass: float | None
     measured_centre_of_gravity: Sequence[float] | None
     load_cases: Sequence[LoadRequest | Mapping[str, object]] | None

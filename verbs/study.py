@@ -68,6 +68,7 @@ class Study:
     stages: tuple[StageRequest, ...] = ()
     load_cases: tuple[LoadRequest, ...] = ()
     configurations: tuple[ConfigurationRequest, ...] = ()
+    relations: tuple[str, ...] = ()
     measured_mass: float | None = None
     measured_centre_of_gravity: tuple[float, ...] = ()
     fmin: float | None = None

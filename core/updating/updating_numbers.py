@@ -20,6 +20,7 @@ class UpdatingNumbers:
     functions: int = number(24, "responses", "of each reference that count, at most, spread evenly", "time")
     deflection: float = number(0.02, "of the largest of its load case", "standard deviation of a static reading, unless said otherwise", "static tests")
     prior: float = number(0.2, "of a factor", "standard deviation of the deck's values, unless said otherwise", "practice of updating")
+    relation: float = number(1.0, "of its own", "standard deviation of a relation, unless said otherwise", "as it is stated")
     regularisation: float = number(1e-2, "-", "on steps of the factors, unless said otherwise", CHECK)
     iterations: int = number(10, "iterations", "of a stage, unless said otherwise", CHECK)
     modes: int = number(40, "modes", "of an eigensolution, unless said otherwise", "time")

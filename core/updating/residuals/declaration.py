@@ -36,6 +36,24 @@ class LoadCase:
 
 
 @dataclass(frozen=True, eq=False)
+class Relation:
+    """A sum of factors p, ``above @ p``, or a ratio of two, that is known.
+
+    Parameters
+    ----------
+    above, below : (n_parameter,) float
+        What each factor counts; `below` all zero where it is no ratio.
+    value, sigma : float
+        What it is, and the standard deviation of that.
+    """
+
+    above: Floats
+    below: Floats
+    value: float
+    sigma: float
+
+
+@dataclass(frozen=True, eq=False)
 class Beside:
     """What was measured beside modes, deck units.
 
@@ -46,11 +64,14 @@ class Beside:
     centre_of_gravity : (3,) float, optional
         Basic frame; NaN a coordinate that is not known.
     load_cases : tuple of LoadCase
+    relations : tuple of Relation
+        Of the parameters.
     """
 
     mass: float | None = None
     centre_of_gravity: Floats | None = None
     load_cases: tuple[LoadCase, ...] = ()
+    relations: tuple[Relation, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

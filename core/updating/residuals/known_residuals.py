@@ -17,6 +17,7 @@ from .deflections import DEFLECTIONS
 from .frequencies import FREQUENCIES
 from .frfs import FRFS
 from .prior import PRIOR
+from .relations import RELATIONS
 from .shapes import SHAPES
 from .weight import CENTRE_OF_GRAVITY, MASS
 
@@ -30,6 +31,7 @@ RESIDUALS: list[Residual] = [
     FRFS,
     ANTIRESONANCES,
     PRIOR,
+    RELATIONS,
 ]
 """What an update may minimise; `register_residual` adds to it."""
 
