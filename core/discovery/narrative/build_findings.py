@@ -59,13 +59,14 @@ def build_discovery(
         for place in range(len(outcome.places(best.suspects[k])))
     ]
     nodes = request.placed.observation.sensors.node
+    adequate = whole.adequacy > MODEL_ERROR.adequate
+    tested = tested if adequate else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
     word = "no_gap"
     decide = frame_needed(request.placed.alignment) if findings else ()
     clear = whole.clear and bool(findings) and not decide and not any(map(_says_nothing, findings))
     proposal = clear and not whole.true
-    adequate = whole.adequacy > MODEL_ERROR.adequate
     if clear and whole.true:
         word = "effect"
     elif findings:

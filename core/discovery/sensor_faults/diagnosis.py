@@ -6,7 +6,9 @@ All that a node may be competes in one list, the model being wrong there include
 fault that is told is the share of its evidence.
 """
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -55,6 +57,11 @@ class Verdicts:
         for f in self.faults:
             out[list(f.sensors)] = True
         return out
+
+    @property
+    def beyond_doubt(self) -> Verdicts:
+        """The same without the faults that an error of the model may look like."""
+        return replace(self, faults=tuple(f for f in self.faults if not FAULTS[f.kind].like_model))
 
 
 def judge_sensors(survey: Survey, span: Span) -> Verdicts:

@@ -74,3 +74,11 @@ def test_what_may_be_faulty_is_remarked():
 
 def test_nothing_odd_no_remark():
     assert remarks(seen(), verdicts()) == ()
+
+
+def test_what_an_error_of_the_model_looks_like_is_in_doubt_where_the_model_is():
+    both = verdicts(fault("sensor_gain", (2, 3), 1.5, 0.1), fault("sensor_polarity", (5,), -1.0))
+    (kept,) = accusations(seen(), both.beyond_doubt)
+    assert kept.kind == "sensor_polarity"
+    (said,) = remarks(seen(), both.beyond_doubt)
+    assert "sensor 12 may be faulty, or the model wrong there" in said
