@@ -22,7 +22,15 @@ from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
 from .last_look import looked_again
-from .model_selection import Judgement, Scored, by_such_a_test, contenders, needed, scored
+from .model_selection import (
+    Judgement,
+    Scored,
+    by_such_a_test,
+    contenders,
+    needed,
+    says_else,
+    scored,
+)
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -39,8 +47,8 @@ class Completeness:
         ln of how much likelier the test is by the best, its choices paid for.
     last : float
         The same beside one or more suspects fewer.
-    ahead : float
-        ln of how much likelier it is than its nearest rival elsewhere.
+    ahead, beside : float
+        ln of how much likelier it is than its nearest rival elsewhere, and in the region beside it.
     agree : float
         By how many standard deviations modes that they were not fitted to agree that the best
         foretells them better than the known parameters alone do.
@@ -52,6 +60,7 @@ class Completeness:
     gain: float
     last: float
     ahead: float
+    beside: float
     agree: float
 
     @property
@@ -63,7 +72,7 @@ class Completeness:
     def posterior(self) -> float:
         """Probability of the best among what was found and the known parameters alone."""
         alone = np.exp(-self.gain) if self.best is not self.alone else 0.0
-        return float(1.0 / (1.0 + np.exp(-self.ahead) + alone))
+        return float(1.0 / (1.0 + np.exp(-self.ahead) + np.exp(-self.beside) + alone))
 
     @property
     def deviations(self) -> Floats:
@@ -78,10 +87,12 @@ class Completeness:
 
         It has to gain enough, to be ahead of what else was found, and to foretell (what is not
         there gains on modes that it is fitted to, not on others) or to leave a small part of the
-        error that the known parameters alone leave: what is not there hardly lessens it.
+        error that the known parameters alone leave: what is not there hardly lessens it. Of the
+        same effect not far off it has to be as far ahead as of anything that is spoken of.
         """
         return bool(
             min(self.gain, self.ahead) > needed(self.best)
+            and self.beside > SEARCH.suspect
             and (self.agree > SEARCH.agree or self.left < SEARCH.small_part)
         )
 
@@ -166,13 +177,18 @@ def completeness(
         if _earned(level, levels[kept]):
             kept = k
     best, others = levels[kept], contenders(searcher, found, kept)
-    elsewhere = [s.score for s in fields[kept] if any(s.fit is f for f in others)]
-    ahead = best.score - max(elsewhere, default=-np.inf)
+    elsewhere = [s for s in fields[kept] if any(s.fit is f for f in others)]
+    far = [says_else(searcher, best.fit, s.fit, SEARCH.region) for s in elsewhere]
+    ahead, beside = (
+        best.score
+        - max((s.score for s, x in zip(elsewhere, far, strict=True) if x is there), default=-np.inf)
+        for there in (True, False)
+    )
     assert best.judged is not None
     fewer = max((level.score for level in levels[:kept]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
-    whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), agree)
+    whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), float(beside), agree)
     return searcher, found, kept, whole
 
 

@@ -115,9 +115,11 @@ def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
     return [f for level in found.rivals for f in level if says_else(searcher, best, f)]
 
 
-def says_else(searcher: Searcher, best: Fit, f: Fit) -> bool:
+def says_else(
+    searcher: Searcher, best: Fit, f: Fit, apart: float = SEARCH.same_effect_apart
+) -> bool:
     """Whether a hypothesis lacks an effect of the best one: another place, another nature."""
-    return bool(_unmatched(searcher, best, f)[0])
+    return bool(_unmatched(searcher, best, f, apart=apart)[0])
 
 
 def with_rival(searcher: Searcher, found: Found, rival: Fit, fitted: Fit) -> Found:
@@ -212,14 +214,18 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
 
 
 def _unmatched(
-    searcher: Searcher, best: Fit, f: Fit, by_nature: bool = True
+    searcher: Searcher,
+    best: Fit,
+    f: Fit,
+    by_nature: bool = True,
+    apart: float = SEARCH.same_effect_apart,
 ) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead.
 
     A mass that is spread out and one that is not, at one place, say the same `by_nature`.
     """
     catalogue = searcher.problem.catalogue
-    near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
+    near = apart * searcher.effort.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]

@@ -91,6 +91,7 @@ class SearchNumbers:
     explains: float = number(4.0, LN, "a suspect explains a mode whose misfit it lowers by this", "two standard deviations")
     explains_share: float = number(0.1, "of what it lowers most", "and by this")
     same_effect_apart: float = number(1.5, "of Effort.apart", "a suspect of a rival that is nearer says the same")
+    region: float = number(3.0, "of Effort.apart", "one that is nearer is the same effect in the region where it may be")
     one_effect: float = number(0.09, SIZE, "findings of one nature that are nearer are told as one")
 
     reshape_steps: int = number(8, "steps", "by which a patch grows or shrinks, at most")

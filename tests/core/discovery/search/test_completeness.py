@@ -16,9 +16,10 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
+def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), beside=np.inf, **more):
     none = judged(np.zeros(10), error=before, stray=lost)
-    return Completeness(none, none, judged(np.zeros(10), **more), gain, gain, ahead, agree)
+    best = judged(np.zeros(10), **more)
+    return Completeness(none, none, best, gain, gain, ahead, beside, agree)
 
 
 def test_what_many_modes_gain_by_and_foretell_is_clear():
@@ -70,7 +71,7 @@ def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
         deck = judged(np.zeros(10), error=0.01)
         alone = judged(np.zeros(10), error=0.0005, evidence=gain)
         alone.plain = -1.0
-        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0)
+        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0)
 
     assert with_fields(0.0).lacks_nothing
     assert not with_fields(17.0).lacks_nothing
@@ -80,6 +81,8 @@ def test_two_places_that_are_as_good_are_not_clear():
     assert not found(ahead=1.0).clear
     assert not found(error=0.02, gain=50.0, ahead=20.0).clear
     assert found(error=0.02, gain=50.0, ahead=40.0).clear
+    assert not found(beside=1.0).clear
+    assert found(error=0.02, gain=50.0, beside=20.0).clear
     assert found(ahead=1.0).posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), abs=1e-6)
 
 
