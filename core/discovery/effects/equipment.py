@@ -29,16 +29,19 @@ class Body:
         Of its centre from the place, basic axes.
     radius : float
         Of gyration, about any axis.
+    assumed : bool
+        Whether the test does not tell it.
     """
 
     offset: tuple[float, float, float]
     radius: float
+    assumed: bool = False
 
 
 def block(mass: float, density: float) -> Body:
     """Return a solid block, twice as long as wide and high, its radius the rms about its axes."""
     width = (0.5 * mass / density) ** (1.0 / 3.0)
-    return Body((0.0, 0.0, 0.0), float(width / np.sqrt(3.0)))
+    return Body((0.0, 0.0, 0.0), float(width / np.sqrt(3.0)), assumed=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +125,8 @@ def further(c: Candidates, row: int, words: Words) -> Words:
         return {}
     body = c.bodies[row]
     said: Words = {"inertia": words["mass"] * body.radius**2}
+    if body.assumed:
+        said["inertia_assumed"] = True
     return {**({"offset": list(body.offset)} if any(body.offset) else {}), **said}
 
 

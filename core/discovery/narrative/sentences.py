@@ -99,6 +99,8 @@ def sentence_of(
     what = mode_ranges(modes) if modes else "the test a little better"
     text += f" explains {what} (95 %: {low} to {high}"
     text += ", the test hardly tells)" if interval[1] > NARRATIVE.hardly * interval[0] else ")"
+    if "inertia_assumed" in values:
+        text += ". The test does not tell its inertia: taken as that of a solid block"
     return text + "."
 
 

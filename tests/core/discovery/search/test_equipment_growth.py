@@ -6,6 +6,8 @@ import pytest
 import trueup
 from trueup.core.discovery import discover as core
 from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.sentence_parts import MassUnit
+from trueup.core.discovery.narrative.sentences import magnitude_of, sentence_of
 from trueup.core.discovery.search.equipment_growth import as_blocks, equipped
 
 FRAME = (
@@ -76,6 +78,10 @@ def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_
     own = np.array([1.0 + 1.0, 1.0 + 4.0, 1.0 + 4.0]) * width**2 / 12.0
     assert c.bodies[found.row].radius ** 2 == pytest.approx(own.mean())
     assert c.where[found.row]["grids"] == [6]
+    said = magnitude_of(c, found.row, np.array([2.0]), np.ones((1, 2)), MassUnit())
+    assert said["inertia"] == pytest.approx(2.0 * own.mean())
+    sentence = sentence_of(c.kind, said, "there", (1.0, 3.0), [1], MassUnit())
+    assert sentence.endswith("The test does not tell its inertia: taken as that of a solid block.")
     again, same = as_blocks(request.structure, wide, solid, request.densest)
     assert again is wide
     assert same is solid
