@@ -13,6 +13,14 @@ _KILOGRAMS = {
     "ft": (14.59390294, 0.45359237),
 }
 """Kilograms in the mass units that go with a length: t or kg, lbf s²/in or lb, slug or lb."""
+_FORCES = {
+    ("m", 1.0): "N",
+    ("mm", 1e3): "N",
+    ("mm", 1.0): "mN",
+    ("in", 175.12683699): "lbf",
+    ("ft", 14.59390294): "lbf",
+}
+"""The force that goes with a length, a mass and seconds."""
 _SOLID = (4e2, 2.5e4)
 """Densities of what structures are made of [kg/m³]: balsa panels and below are left out."""
 
@@ -38,7 +46,10 @@ def mass_unit(deck: Deck, length_unit: str | None) -> MassUnit:
     likely = [
         kg for kg in _KILOGRAMS[length_unit] if _SOLID[0] < np.median(rho) * kg / volume < _SOLID[1]
     ]
-    return MassUnit(1.0 / wtmass, likely[0] if len(likely) == 1 else None)
+    if len(likely) != 1:
+        return MassUnit(1.0 / wtmass)
+    force = _FORCES.get((length_unit, likely[0]))
+    return MassUnit(1.0 / wtmass, likely[0], f"{force}/{length_unit}" if force else "")
 
 
 def _densities(deck: Deck) -> list[float]:

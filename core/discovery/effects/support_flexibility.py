@@ -235,7 +235,7 @@ KIND = EffectKind(
     name="support_flexibility",
     label="flexible support",
     sentence="The support gives {region}, direction {components}, with a stiffness of about "
-    "{stiffness:.3g} (deck units): it",
+    "{stiffness:.3g} {per_length}: it",
     magnitudes=(STIFFNESS,),
     places=_places,
 )

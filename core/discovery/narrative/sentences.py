@@ -81,7 +81,8 @@ def sentence_of(
     many: int = 1,
 ) -> str:
     """Say what is missing, where, which test modes it explains, how sure."""
-    values = {**magnitude, "region": region}
+    along = masses.per_length(magnitude.get("components") or [1])
+    values = {**magnitude, "region": region, "per_length": along}
     low, high = (f"{v:.3g}" for v in interval)
     if "components" in values:
         values["components"] = "".join(str(k) for k in values["components"])

@@ -80,6 +80,9 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
     pounds = MassUnit(1.0 / 0.00259, 175.12683699)
     assert pounds.said(10.0) == "4.54 kg"
     assert MassUnit().said(0.62e-3) == "0.00062 (deck units)"
+    known = MassUnit(1.0, 1e3, "N/mm")
+    assert known.per_length([1, 3]) == "N/mm"
+    assert known.per_length([3, 5]) == MassUnit().per_length([1]) == "(deck units)"
 
 
 @pytest.mark.parametrize(
