@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Unpack
 
+import numpy as np
+
 from ..core.correlation.pair_expansion import expand_pairs
 from ..core.errors import InputError
 from ..core.results.correlation import compared
 from ..core.results.orthogonality import orthogonality_tables
+from ..core.results.response_agreement import response_tables
 from .analysis import both_given, correlated, named, read_analysis
 from .made_of import beside, made_of
 from .options import CorrelateOptions, Files, study_of
@@ -64,6 +67,8 @@ def correlate(
     if asked.reduction:
         pairs = expand_pairs(found, analysis.model, asked.reduction, analysis.rigid_body_modes)
         told, expanded = orthogonality_tables(found, pairs), pairs.modes
+    content = content_of(found, tables, expanded=expanded)
+    heard = content.frfs.get("measured")
     return Correlated(
         **vars(tables),
         **made_of(analysis.deck, side, modes),
@@ -71,6 +76,7 @@ def correlate(
         deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
         orthogonality=told,
-        content=content_of(found, tables, expanded=expanded),
+        responses=heard and response_tables(heard, np.asarray(content.matrices["frac"])),
+        content=content,
         study=named(asked, analysis.deck, side, modes),
     )

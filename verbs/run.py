@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from .plots import Plots
 
 
+EXPANDED = "test expanded"
+"""The name of test shapes on all grids in result.h5."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(RunTables, Folder):
     """Base of the results of the verbs that compare.
@@ -86,6 +90,16 @@ class Run(RunTables, Folder):
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Correlated(CorrelateTables, Run):
     """What `correlate` found: the tables of result.json as fields, and the nouns behind them."""
+
+    def fill(self, work: Path) -> None:
+        """Write the run folder; expanded test shapes as a universal file as well."""
+        from ..adapters.universal import write_universal
+
+        super().fill(work)
+        expanded = self.content.modes.get(EXPANDED)
+        if expanded is not None:
+            path = work / "test_expanded.unv"
+            write_universal(path, geometry=self.content.geometry, modes=expanded)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,7 +165,7 @@ def content_of(
     last = after or before
     modes = {"test": before.test, "analysis": before.analysis}
     if expanded is not None:
-        modes["test expanded"] = expanded
+        modes[EXPANDED] = expanded
     heard = model_responses(last)
     frfs = {} if heard is None else {"measured": heard.measured, "model": heard.model}
     return StoreContent(

@@ -22,6 +22,7 @@ from .doubts import doubts
 from .made import MadeTables, ModeNameRow, WeightRow
 from .orthogonality import OrthogonalityTables
 from .plain import Matrix, Table, Tables, finite
+from .response_agreement import ResponseTables
 
 _SHOWN = 12
 """Modes of either side of a MAC matrix on a page."""
@@ -248,6 +249,7 @@ class CorrelateTables(Compared, RunTables):
     deck_file: str = field(metadata=key("deck"))
     test_files: tuple[str, ...] = field(metadata=key("test"))
     orthogonality: OrthogonalityTables | None = field(default=None, metadata=OPTIONAL)
+    responses: ResponseTables | None = field(default=None, metadata=OPTIONAL)
 
     @property
     def sources(self) -> tuple[str, tuple[str, ...]]:
