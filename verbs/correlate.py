@@ -68,7 +68,10 @@ def correlate(
         pairs = expand_pairs(found, analysis.model, asked.reduction, analysis.rigid_body_modes)
         told, expanded = orthogonality_tables(found, pairs), pairs.modes
     content = content_of(found, tables, expanded=expanded)
-    heard = content.frfs.get("measured")
+    responses = None
+    if "measured" in content.frfs:
+        frac = np.asarray(content.matrices["frac"])
+        responses = response_tables(content.frfs["measured"], frac)
     return Correlated(
         **vars(tables),
         **made_of(analysis.deck, side, modes),
@@ -76,7 +79,7 @@ def correlate(
         deck_file=analysis.deck.told if analysis.deck else "",
         test_files=tuple(map(str, side.files)),
         orthogonality=told,
-        responses=heard and response_tables(heard, np.asarray(content.matrices["frac"])),
+        responses=responses,
         content=content,
         study=named(asked, analysis.deck, side, modes),
     )
