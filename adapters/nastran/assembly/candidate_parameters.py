@@ -21,7 +21,10 @@ _BOUNDS = (0.9, 1.1)
 
 
 def properties_of(deck: Deck) -> tuple[PropertyRow, ...]:
-    """Return every card with values that may move, and how many elements have it."""
+    """Return every card with values that may move, and how many elements have it.
+
+    Offsets and thicknesses of single elements, which may move too, are left out.
+    """
     held, users = _holding(deck.bulk), referring(deck.bulk)
 
     def elements(card: str, number: int) -> int:
@@ -34,6 +37,7 @@ def properties_of(deck: Deck) -> tuple[PropertyRow, ...]:
     return tuple(
         PropertyRow(card, number, elements(card, number), dict(_values(deck, card, number)))
         for card in movable()
+        if not definitions()[card].properties
         for number in sorted(deck.bulk.table(card))
     )
 

@@ -55,7 +55,9 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
         coupled=deck.param("COUPMASS", -1.0) > 0.0,
     )
     nonstructural = read_nonstructural(deck, points)
-    context = Context(variation.bulk, points, settings, nonstructural)
+    context = Context(
+        variation.bulk, points, settings, nonstructural, moved=frozenset(variation.moves)
+    )
     groups = tuple(g for f in FAMILIES if f.groups for g in f.groups(context))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(element_block(g, points, variation, wtmass) for g in groups)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ....core.arrays import Floats, Ints, Matrices
+from ....core.arrays import Bools, Floats, Ints, Matrices
 from ....core.elements import Element
 from ....core.errors import InputError
 from ..deck.bulk import Bulk
@@ -52,6 +52,8 @@ class Context:
         Mass per area or length that NSM cards add to elements.
     notes : list of str
         What families leave out, to be said as warnings.
+    moved : frozenset of Key
+        Cards that parameters move.
     """
 
     bulk: Bulk
@@ -59,6 +61,12 @@ class Context:
     settings: Settings
     nonstructural: Nonstructural = field(default_factory=Nonstructural)
     notes: list[str] = field(default_factory=list)
+    moved: frozenset[Key] = frozenset()
+
+    def moved_of(self, name: str, ids: Ints) -> Bools:
+        """Return which elements of a card have values of their own that parameters move, (n,)."""
+        own = [number for card, number in self.moved if card == name]
+        return np.asarray(np.isin(ids, own))
 
     def extra_mass(self, bulk: Bulk, ids: Ints) -> Floats | float:
         """Mass per area or length that NSM cards add to the elements `ids`."""
@@ -114,14 +122,20 @@ def numbered(sources: Iterable[frozenset[Key]]) -> tuple[tuple[frozenset[Key], .
 
 
 def element_sources(
-    context: Context, ids: Ints, of_property: Sequence[frozenset[Key]], of: Ints
+    context: Context, name: str, ids: Ints, of_property: Sequence[frozenset[Key]], of: Ints
 ) -> tuple[tuple[frozenset[Key], ...], Ints]:
-    """Return the sets of cards that elements take values from: their property's, and NSM cards."""
-    if not context.nonstructural.shares:
+    """Return the sets of cards that elements take values from.
+
+    Their property's, NSM cards, and their own where a parameter moves it.
+    """
+    own = context.moved_of(name, ids)
+    if not context.nonstructural.shares and not own.any():
         return tuple(of_property), of
     return numbered(
-        of_property[int(k)] | context.nonstructural.sources(int(eid))
-        for eid, k in zip(ids, of, strict=True)
+        of_property[int(k)]
+        | (context.nonstructural.sources(int(eid)) if context.nonstructural.shares else frozenset())
+        | (frozenset([(name, int(eid))]) if moved else frozenset())
+        for eid, k, moved in zip(ids, of, own, strict=True)
     )
 
 
@@ -200,7 +214,9 @@ def property_groups(context: Context, name: str, constants: Constants) -> list[G
             M = element.mass(xyz[rows], density, context.settings.coupled)
         return K, M
 
-    sources, source_of = element_sources(context, ids, [with_material(bulk, k) for k in keys], of)
+    sources, source_of = element_sources(
+        context, name, ids, [with_material(bulk, k) for k in keys], of
+    )
     return [Group(name, ids, element, nodes, matrices, sources, source_of)]
 
 

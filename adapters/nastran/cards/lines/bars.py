@@ -39,7 +39,15 @@ _DIMENSIONS = tuple(f"DIM{n}" for n in range(1, 11))
 _NAMES = (*_DIMENSIONS, "NSM")
 
 CARDS = (
-    Card("CBAR", _CBAR, "eid", blanks_from="BAROR", elements="bar", properties="PBAR PBARL"),
+    Card(
+        "CBAR",
+        _CBAR,
+        "eid",
+        blanks_from="BAROR",
+        elements="bar",
+        properties="PBAR PBARL",
+        moves=Moves(),
+    ),
     Card("BAROR", "- PID:i - - X1,X2,X3>x:ir OFFT:iw"),
     Card(
         "PBAR",

@@ -11,6 +11,7 @@ from .....core.elements.lines.beam import BeamSections, beam_mass, beam_stiffnes
 from .....core.errors import Place
 from ...deck.bulk import Bulk
 from ...deck.card_definition import Card, Values
+from ...deck.movable_values import Moves
 from ...properties.cross_sections import section
 from ...properties.materials import isotropic
 from ..element_group import Context, Group, Key
@@ -31,6 +32,7 @@ CARDS = (
         blanks_from="BEAMOR",
         elements="beam",
         properties="PBEAM PBEAML PBCOMP",
+        moves=Moves(),
     ),
     Card("BEAMOR", "- PID:i - - X1,X2,X3>x:ir OFFT:x"),
     *beam_properties.CARDS,

@@ -107,7 +107,7 @@ def bends(context: Context) -> list[Group]:
         return tuple(None if X is None else congruent(X, T) for X in (K, M))  # type: ignore[return-value]
 
     of_property = [with_material(context.bulk, key) for key in keys]
-    sources, source_of = element_sources(context, ids, of_property, of)
+    sources, source_of = element_sources(context, "CBEND", ids, of_property, of)
     return [Group("CBEND", ids, element, nodes, matrices, sources, source_of)]
 
 

@@ -69,12 +69,15 @@ def line_groups(context: Context, name: str, make: Make) -> list[Group]:
     if not cards or element is None:
         return []
     ids, ends, keys, of = connected(context, name, cards)
-    lines = line_axes(context, name, cards, ids, ends)
+    lines, own = line_axes(context, name, cards, ids, ends), context.moved_of(name, ids)
 
     def matrices(bulk: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
         used, position = np.unique(of[rows], return_inverse=True)
         extra = context.extra_mass(bulk, ids[rows])
         at = lines.take(rows)
+        if own[rows].any():
+            now = [bulk.table(name)[int(i)] for i in ids[rows]]
+            at = line_axes(context, name, now, ids[rows], ends[rows])
         K, M = make(bulk, [keys[k] for k in used], position, at, extra, wanted)
         if lines.offset:
             T = offset_transform(at.wa, at.wb)
@@ -82,7 +85,7 @@ def line_groups(context: Context, name: str, make: Make) -> list[Group]:
         return K, M
 
     of_property = [with_material(context.bulk, key) for key in keys]
-    sources, source_of = element_sources(context, ids, of_property, of)
+    sources, source_of = element_sources(context, name, ids, of_property, of)
     return [Group(name, ids, element, ends, matrices, sources, source_of)]
 
 

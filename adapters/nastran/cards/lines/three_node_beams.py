@@ -98,7 +98,7 @@ def three_node_beams(context: Context) -> list[Group]:
         return K, M
 
     of_property = [with_material(bulk, key) for key in keys]
-    sources, source_of = element_sources(context, ids, of_property, of)
+    sources, source_of = element_sources(context, "CBEAM3", ids, of_property, of)
     return [Group("CBEAM3", ids, element, nodes, matrices, sources, source_of)]
 
 

@@ -9,6 +9,7 @@ from .....core.elements.surfaces.normals import corner_normals, grid_normals
 from .....core.elements.surfaces.section import ShellSection, rotate_section
 from ...deck.bulk import Bulk
 from ...deck.card_definition import Card, Values
+from ...deck.movable_values import Moves
 from ...properties import laminates
 from ...properties.laminates import Layup, layup
 from ..element_group import Context, Group, element_sources
@@ -32,7 +33,14 @@ _ELEMENTS = (
 
 CARDS = (
     *(
-        Card(name, layout, "eid", elements=element, properties="PSHELL PCOMP PCOMPG")
+        Card(
+            name,
+            layout,
+            "eid",
+            elements=element,
+            properties="PSHELL PCOMP PCOMPG",
+            moves=Moves(),
+        )
         for name, layout, element in _ELEMENTS
     ),
     *laminates.CARDS,
@@ -88,15 +96,25 @@ def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
     angle = np.zeros(len(ids))
     if turned.any():
         angle[turned] = _material_angle(context, shell, np.flatnonzero(turned))
-    offset = np.array([c.zoffs for c in shell.cards], dtype=np.float64)
-    facts = _Facts(angle, own, share)
+    off = _offsets(shell.cards)
+    every, moved = _Facts(angle, own, share), context.moved_of(shell.name, ids)
     of_property = [
         frozenset([key, *section.materials])
         for key, section in zip(keys, any_thickness, strict=True)
     ]
-    sources, source_of = element_sources(context, ids, of_property, shell.of)
+    sources, source_of = element_sources(context, shell.name, ids, of_property, shell.of)
+
+    def _at(values: Bulk, rows: Ints) -> tuple[_Facts, Floats]:
+        """Facts and offsets where some of these elements are moved themselves."""
+        table = values.table(shell.name)
+        now = [table[int(ids[k])] for k in rows]
+        own_now, share_now, off_now = own.copy(), share.copy(), off.copy()
+        own_now[rows], share_now[rows] = _thickness(now, element.corners)
+        off_now[rows] = _offsets(now)
+        return _Facts(angle, own_now, share_now), off_now
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
+        facts, offset = (every, off) if not moved[rows].any() else _at(values, rows)
         section, density = _sections_of(shell, facts, values, rows)
         K = M = None
         if wanted[0]:
@@ -137,6 +155,10 @@ def _sections_of(
     if facts.angle[rows].any():
         section = rotate_section(section, facts.angle[rows])
     return section, np.array([part.density for part in layups])[position]
+
+
+def _offsets(cards: list[Values]) -> Floats:
+    return np.array([c.zoffs for c in cards], dtype=np.float64)
 
 
 def _distinct(table: Floats) -> tuple[Floats, Ints]:
