@@ -312,23 +312,27 @@ def static_answers(
     groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
     ends = np.cumsum([0] + [m * len(g) for g in groups])
 
-    def loads(members: Sequence[int]) -> Floats:
-        F = np.zeros((n, m * len(members)), order="F")
-        for k, i in enumerate(members):
-            dK, dM = model.dK(i, p0), model.dM(i, p0)
-            rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
-            F[rows, k * m : (k + 1) * m] = (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
-        return F
+    def loads(i: int) -> tuple[Ints, Floats]:
+        dK, dM = model.dK(i, p0), model.dM(i, p0)
+        rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
+        return rows, (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
 
     S = np.empty((n, ends[-1]), order="F")
     energy = np.zeros((ends[-1],) * 2)
     modal = np.empty((len(span), ends[-1]))
     for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
-        F = loads(members)
+        parts = [
+            (slice(first, first + m), *loads(i))
+            for first, i in zip(range(start, end, m), members, strict=True)
+        ]
+        F = np.zeros((n, end - start), order="F")
+        for at, rows, part in parts:
+            F[rows, at.start - start : at.stop - start] = part
         S[:, start:end] = factor.solve(F)
-        energy[:end, start:end] = S[:, :end].T @ F
+        for at, rows, part in parts:
+            energy[:end, at] = S[rows, :end].T @ part
+            modal[:, at] = (solution.vectors[rows].T @ part) / span[:, None]
         energy[start:end, :start] = energy[:start, start:end].T
-        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
     energy -= modal.T @ (span[:, None] * modal)
     value, W = np.linalg.eigh((energy + energy.T) / 2.0)
     best = np.argsort(-value)[:most]
