@@ -1,10 +1,11 @@
 """An update beside one eigensolution of the same model, in one run; ends with one line of JSON.
 
-``python benchmarks/updating.py [--quick] [--dofs N] [--no-scipy]``: twenty moduli of a free barrel
-shell of 120,000 degrees of freedom are moved to a test of 36 modes at 200 sensors, made by the
-same model with other moduli and 0.2 % of noise; ten iterations on frequencies and shapes, the
-check at full order included. ``--quick`` runs each part once, otherwise the best of three
-eigensolutions counts; ``--no-scipy`` leaves out scipy's ``eigsh``, which takes minutes.
+``python benchmarks/updating.py [--quick] [--dofs N] [--no-scipy] [--growth]``: twenty moduli of a
+free barrel shell of 120,000 degrees of freedom are moved to a test of 36 modes at 200 sensors, made
+by the same model with other moduli and 0.2 % of noise; ten iterations on frequencies and shapes,
+the check at full order included. ``--quick`` runs each part once, otherwise the best of three
+eigensolutions counts; ``--no-scipy`` leaves out scipy's ``eigsh``, which takes minutes;
+``--growth`` tells how the cost grows with parameters and modes, at 18,000 degrees of freedom.
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ _SENSORS = 200
 _SIGMA = -((2.0 * np.pi * 20.0) ** 2)
 
 
-def measured(model: Model, seed: int = 0) -> Target:
+def measured(model: Model, seed: int = 0, modes: int = _MODES) -> Target:
     """Return a test of the model with other factors."""
     rng = np.random.default_rng(seed)
-    truth = rng.uniform(0.8, 1.25, _PARAMETERS)
-    solution = solve(model, _MODES, p=truth)
+    truth = rng.uniform(0.8, 1.25, len(model.parameters))
+    solution = solve(model, modes, p=truth)
     grids = rng.choice(len(model.geometry.xyz), _SENSORS // 2, replace=False)
     rows = model.expansion[np.concatenate([6 * grids, 6 * grids + 1])]
     elastic = slice(solution.rigid_body_modes, None)
-    hz = solution.frequencies_hz[elastic] * (1.0 + 0.002 * rng.standard_normal(_MODES - 6))
+    hz = solution.frequencies_hz[elastic] * (1.0 + 0.002 * rng.standard_normal(modes - 6))
     shapes = np.asarray(rows @ solution.vectors[:, elastic])
     shapes = shapes + 0.01 * np.abs(shapes).max(axis=0) * rng.standard_normal(shapes.shape)
     return Target(hz, shapes, sp.csr_matrix(rows))
@@ -55,11 +56,26 @@ def clocked(what: str, work: Callable[[], object]) -> tuple[float, object]:
     return seconds, outcome
 
 
+def cost(parameters: int, modes: int, dofs: int = 18_000) -> float:
+    """Return the time of an update over that of an eigensolution."""
+    model = shell_model(*SIZES[dofs], panels=parameters, parameters=parameters)
+    target = measured(model, modes=modes)
+    name = f"{parameters} parameters, {modes} modes"
+    one, _ = clocked(f"{name}: solution", lambda: solve(model, modes))
+    stage = Stage(tuple(range(parameters)), "both", _ITERATIONS)
+    whole, _ = clocked(
+        f"{name}: update",
+        lambda: update(model, target, [stage], Criteria(), n_modes=modes, tolerance=1e-9),
+    )
+    return round(whole / one, 2)
+
+
 def main() -> None:
     """Run and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--no-scipy", action="store_true")
+    parser.add_argument("--growth", action="store_true")
     parser.add_argument("--dofs", type=int, default=120_000, choices=sorted(SIZES))
     chosen = parser.parse_args()
     model = shell_model(*SIZES[chosen.dofs], panels=_PARAMETERS, parameters=_PARAMETERS)
@@ -88,6 +104,9 @@ def main() -> None:
         ],
         "stopped": done.stopped.sentence,
     }
+    if chosen.growth:
+        sizes = ((5, _MODES), (10, _MODES), (20, _MODES), (40, _MODES), (20, 18))
+        result["growth"] = {f"{k} parameters, {m} modes": cost(k, m) for k, m in sizes}
     if not chosen.no_scipy:
         result["scipy_over_ours"] = round(_scipy(model, runs[0][1]) / eigensolution, 2)
     sys.stdout.write(json.dumps(result) + "\n")
