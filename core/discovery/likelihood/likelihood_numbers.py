@@ -19,7 +19,6 @@ class Effort:
     search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
     near: float = number(0.12, SIZE, "how far a suspect moves at once")
-    twice: int = number(8000, "degrees of freedom", "models up to it are searched a second time, with all kinds at once", "time")
 
 
 @dataclass(frozen=True)

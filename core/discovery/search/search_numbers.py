@@ -21,7 +21,7 @@ class SearchNumbers:
     steps_moved: int = number(4, "steps", "for a suspect that moved to a neighbour, changed its stretch, or was taken out")
     steps_whole: int = number(2, "steps", "on the whole basis after those on a small one")
     steps_fair: int = number(12, "steps", "for a hypothesis with a suspect less, before the richer one is compared with it")
-    steps_guided: int = number(15, "steps", "by the noise of the test for what a wider noise found")
+    steps_guided: int = number(15, "steps", "by errors that were estimated anew")
     steps_instead: int = number(8, "steps", "for a simple effect in place of an absorber")
     steps_polished: int = number(20, "steps", "on a basis made for one hypothesis")
     rounds: int = number(6, "moves", "of each suspect to a neighbour, at most")
@@ -62,7 +62,6 @@ class SearchNumbers:
 
     clearly: float = number(1.3, "of a simple effect's gain", "what a tuned one must gain")
     late_tried: int = number(3, "places", "of an absorber or a link that are tried beside what was found")
-    second_opinion: float = number(2.5, "of the assumed variance", "what a best hypothesis leaves that asks for a search by a wider noise")
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")

@@ -13,8 +13,7 @@ from functools import partial
 import numpy as np
 
 from ..effects.candidates import Candidates, Suspect
-from ..likelihood.hypothesis import Fit, softened
-from ..likelihood.map_fit import fit
+from ..likelihood.hypothesis import Fit
 from .beam_search import Found, grown
 from .model_selection import adequate, complete, cost, enough, noise_scale, usual, with_unseen
 from .moves import Searcher
@@ -29,7 +28,7 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     """
     kinds = [c.kind.late for c in searcher.problem.catalogue]
     simple = _with(searcher, [not late for late in kinds])
-    found = _simple(simple, progress)
+    found = grown(simple, enough(simple), progress, explains=partial(complete, simple))
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
     best = int(np.argmin(costs))
     if not any(kinds) or usual(searcher, found.levels[best]):
@@ -50,22 +49,6 @@ def searched(searcher: Searcher, progress: Callable[[str], None] = lambda _: Non
     return _better(
         searcher, found, simplified(searcher, grown(simple, enough(searcher), progress, levels))
     )
-
-
-def _simple(searcher: Searcher, progress: Callable[[str], None]) -> Found:
-    """Search with simple kinds; where much is left, by a wider noise first as well."""
-    found = grown(searcher, enough(searcher), progress, explains=partial(complete, searcher))
-    if complete(searcher, found.levels[-1]):
-        return found
-    scale, best = _scale(searcher, found, found), int(np.argmin(_costs(searcher, found, found)))
-    if scale < SEARCH.second_opinion or (best and not _small(searcher)):
-        return found
-    progress("looking by a wider noise")
-    return _better(searcher, found, guided(searcher, progress))
-
-
-def _small(searcher: Searcher) -> bool:
-    return len(searcher.problem.basis.vectors) <= searcher.effort.twice
 
 
 def _better(searcher: Searcher, found: Found, other: Found) -> Found:
@@ -153,22 +136,3 @@ def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
         if kind not in best or new.objective < best[kind].objective:
             best[kind] = new
     return [searcher.refined(f) for f in best.values()]
-
-
-def guided(searcher: Searcher, progress: Callable[[str], None] = lambda _: None) -> Found:
-    """Return what grows from the hypotheses that a search by a wider noise finds.
-
-    Two effects may each explain nothing alone: the shapes are as wrong with one as with none, and
-    a misfit that levels off for what is far away does not tell that one of them is right. By
-    several times the noise it does (graduated non-convexity: Blake and Zisserman 1987, chapter 3).
-    """
-    wide = replace(searcher, problem=softened(searcher.problem))
-    found = grown(wide, enough(wide), progress)
-    levels = []
-    for f in found.levels:  # by the noise of the test, every suspect at its best neighbour
-        f = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
-        levels.append(searcher.refined(f) if f.suspects else f)
-    best = int(np.argmin([f.objective for f in levels]))
-    if not best:
-        return Found(tuple(levels[:1]), ((),))
-    return grown(searcher, enough(searcher), progress, levels[: best + 1])
