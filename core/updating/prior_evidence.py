@@ -111,11 +111,15 @@ def _settled(
     best = problem.at(orders, np.array(start), residuals)
     for _ in range(UPDATING.profile_iterations):
         step = problem.step(orders, best, active, residuals)
-        lower, upper = problem.bounds
-        trial = problem.at(orders, np.clip(best.factors + step, lower, upper), residuals)
-        if trial.objective > best.objective - UPDATING.prior_accuracy:
+        tried = (
+            problem.at(orders, np.clip(best.factors + step / 2**k, *problem.bounds), residuals)
+            for k in range(UPDATING.halvings)
+        )
+        least = best.objective - UPDATING.prior_accuracy
+        found = next((trial for trial in tried if trial.objective <= least), None)
+        if found is None:
             break
-        best = trial
+        best = found
     return best
 
 
