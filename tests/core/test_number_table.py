@@ -40,6 +40,7 @@ FORMULAS: dict[str, set[float]] = {
     "coherence.py": {10.0},
     "time_records.py": {1e3},
     "participation.py": {20.0},
+    "peaks_without_mode.py": {20.0},
     "function_faults.py": {4},
 }
 """What may stand outside the tables: counts of directions and degrees of freedom, halves, squares,

@@ -9,9 +9,7 @@ from ...correlation.comparison import Comparison
 from ...data.frfs import Frfs
 from .frf_evidence import place_responses
 from .frf_likelihood import State, frac, ratios_of, synthesised
-
-_LINES = 800
-"""Lines that are kept for a picture, at most."""
+from .likelihood_numbers import LIKELIHOOD
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +53,7 @@ def model_responses(c: Comparison) -> ModelResponses | None:
     share = np.where(seen, frac(measured.values, made), np.nan)
     f = measured.frequencies_hz
     at = np.searchsorted(f, [*c.test.frequencies_hz, *analysis.frequencies_hz])
-    even = np.linspace(0, len(f) - 1, min(len(f), _LINES)).round()
+    even = np.linspace(0, len(f) - 1, min(len(f), LIKELIHOOD.pictured)).round()
     lines = np.unique(np.concatenate([even, at.clip(max=len(f) - 1)])).astype(np.int64)
     shown = replace(measured, frequencies_hz=f[lines], values=measured.values[..., lines])
     return ModelResponses(shown, replace(shown, values=made[..., lines], source="model"), share)
