@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
@@ -23,6 +25,7 @@ from .study import Study, converted, read_study
 from .study_text import write_study
 
 if TYPE_CHECKING:
+    from ..adapters.nastran.deck.read_deck import EigenRequest
     from ..adapters.store import StoreContent
 
 _FEW = 10
@@ -116,7 +119,8 @@ def solve(
     deck : path, Deck, ChangedDeck or Model
         Default: the deck of `study`.
     number : int, optional
-        Modes to find, rigid-body ones included; default: what the deck asks for, or ten.
+        Modes to find, rigid-body ones included; default: what the deck asks for
+        (ND, or all up to V2), or ten.
     fmax : float, optional
         All modes up to here, Hz; default: that of `study`.
     study : Study or path, optional
@@ -153,13 +157,13 @@ def solve(
     if fmax is not None and fmax <= 0.0:
         raise InputError(f"fmax is {fmax!r}; give a frequency above 0 Hz")
     read = None if isinstance(deck, Model) else read_deck(deck)
-    sought = read.eigen.nd if read and read.eigen else None
+    request = read.eigen if read and not (number or fmax) else None
     with naming(read.path if read else None):
         model = build_model(read) if read else deck
         assert isinstance(model, Model)
         progress("solving")
-        wanted = number if number or fmax else (sought or _FEW)
-        solution = normal_modes.solve(model, n_modes=wanted, fmax=fmax)
+        wanted = (number, fmax) if number or fmax else _wanted(request)
+        solution = normal_modes.solve(model, *wanted)
     modes = normal_modes.modes_of(model, solution)
     mass, unit = weight(read) if read else None, asked.deck_length_unit
     unit = unit or (read.length_unit if read else None)
@@ -180,7 +184,12 @@ def solve(
         degrees_of_freedom=model.n_free,
         backend=solution.backend,
         seconds=solution.seconds,
-        warnings=(*(read.warnings if read else ()), *model.warnings, *solution.warnings),
+        warnings=(
+            *(read.warnings if read else ()),
+            *model.warnings,
+            *solution.warnings,
+            *_of_range(request, wanted[1], modes),
+        ),
         geometry=geometry_of(model, read),
         shapes=modes,
         parts=grids_by_property(read) if read else {},
@@ -188,3 +197,21 @@ def solve(
             asked, deck=read.path if read and read.on_disk else None, fmax=fmax, fmin=None, bands=()
         ),
     )
+
+
+def _wanted(request: EigenRequest | None) -> tuple[int | None, float | None]:
+    """How many modes a deck asks for, or else up to where [Hz]; or else a few."""
+    if request and not request.nd and (request.v2 or 0.0) > 0.0:
+        return None, request.v2
+    return (request and request.nd) or _FEW, None
+
+
+def _of_range(request: EigenRequest | None, limit: float | None, modes: Modes) -> tuple[str, ...]:
+    """Say what the frequencies that were asked for leave unsaid."""
+    if limit and not len(modes):
+        return (f"no mode lies below {limit:g} Hz",)
+    first = (request and request.v1) or 0.0
+    below = int(np.count_nonzero(modes.frequencies_hz < first))
+    if not below:
+        return ()
+    return (f"EIGRL or EIGR asks for modes from {first:g} Hz: the {below} below are counted, too",)

@@ -103,6 +103,36 @@ def test_normal_modes_of_a_deck_and_of_a_model(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("request_", "modes", "told"),
+    [
+        ("EIGRL,1,,,2", 2, None),
+        ("EIGRL,1,,100.", 2, None),
+        ("EIGRL,1,,100.,1", 1, None),
+        ("EIGR,1,LAN,0.,100.", 2, None),
+        ("EIGR,1,GIV,0.,1.,,2", 2, None),
+        ("EIGRL,1,5.,300.", 3, "asks for modes from 5 Hz: the 1 below"),
+        ("EIGRL,1,,1.", 0, "no mode lies below 1 Hz"),
+    ],
+)
+def test_what_the_deck_asks_for_is_found(
+    tmp_path: Path, request_: str, modes: int, told: str | None
+) -> None:
+    """A clamped bar with a mass of 10 kg at its tip: 3.99, 5.65 and 231 Hz."""
+    deck = tmp_path / "bar.bdf"
+    deck.write_text(
+        f"SOL 103\nCEND\nMETHOD=1\nSPC=1\nBEGIN BULK\n{request_}\nGRID,1,,0.,0.,0.\n"
+        "GRID,2,,1.,0.,0.\nSPC1,1,123456,1\nCBAR,1,1,1,2,0.,1.,0.\n"
+        "PBAR,1,1,1.E-4,1.E-8,2.E-8,3.E-8\nMAT1,1,2.1E11,,.3\nCONM2,5,2,,10.\nENDDATA\n"
+    )
+    found = trueup.solve(deck)
+    stiffness = 2.1e11 * np.array([3e-8, 6e-8, 1e-4])
+    expected = np.sqrt(stiffness / 10.0) / (2.0 * np.pi)
+    assert [m.frequency_hz for m in found.modes] == pytest.approx(expected[:modes], rel=1e-6)
+    assert [told in w for w in found.warnings] == [True] if told else not found.warnings
+    assert len(trueup.solve(deck, 3).modes) == 3
+
+
+@pytest.mark.parametrize(
     ("given", "said"),
     [
         ({"number": 0}, "number is 0"),

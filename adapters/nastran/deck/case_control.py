@@ -14,6 +14,8 @@ _COMMAND = re.compile(
 )
 _SETS = {"SPC": "spc", "MPC": "mpc", "NSM": "nsm", "SUPORT1": "suport1"}
 _MATRICES = {"K2GG": "k2gg", "M2GG": "m2gg", "K2PP": "k2pp", "M2PP": "m2pp"}
+_MOST = 9999
+"""Superelements of a set between two numbers."""
 _LOADED = (
     "the deck asks for modes of the structure under loads (STATSUB, or steps before them); those "
     "of the unloaded structure are found: without stress stiffness, large motions and damage",
@@ -81,12 +83,17 @@ def read_case_control(
     matches = [(line, _COMMAND.match(line.text.split("$", 1)[0])) for line in lines]
     above = CaseControl(commands=frozenset(m["key"].upper()[:4] for _, m in matches if m))
     subcases: list[CaseControl] = []
+    sets: dict[str, str] = {}
     for line, match in matches:
         if not match:
             continue
         key, value = match["key"].upper(), match["value"].strip()
         if key.startswith("SUBC") and value.split()[0].isdecimal():
             subcases.append(replace(above, subcase=int(value.split()[0])))
+            continue
+        if key == "SET":
+            number, _, listed = value.partition("=")
+            sets[number.strip()] = listed
             continue
         try:
             case = _apply(subcases[-1] if subcases else above, key, match["option"], value)
@@ -98,8 +105,9 @@ def read_case_control(
             above = case
     if not subcases:
         return above, _LOADED * above.loaded
-    parts = tuple((c.superelement, (c.spc, c.mpc)) for c in subcases if c.superelement)
-    whole = [c for c in subcases if not c.superelement] or subcases
+    of = [(c, _numbers(sets.get(str(c.superelement), str(c.superelement)))) for c in subcases]
+    parts = tuple((k, (c.spc, c.mpc)) for c, some in of for k in some if k)
+    whole = [c for c, some in of if 0 in some] or subcases
     modal = [c for c in whole if c.method is not None and c.analysis in ("", "MODES")]
     candidates = modal or [c for c in whole if c.analysis != "HEAT"] or whole
     chosen = replace(candidates[0], of_parts=parts)
@@ -114,6 +122,13 @@ def read_case_control(
         f"subcase {chosen.subcase} is used; subcases {', '.join(map(str, others))} select other "
         "constraints and are left out",
     )
+
+
+def _numbers(listed: str) -> list[int]:
+    """Read the superelements of a set: ``0, 3 THRU 6``."""
+    found = re.findall(r"(\d+)(?:\s+THRU\s+(\d+))?", listed.upper())
+    ends = [(int(a), min(int(b or a), int(a) + _MOST)) for a, b in found]
+    return [k for a, b in ends for k in range(a, b + 1)]
 
 
 def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseControl:

@@ -74,7 +74,7 @@ def clash(space: str, main: Bulk, part: Bulk, joints: Mapping[int, int]) -> bool
     return False
 
 
-def merged(main: Bulk, part: Bulk, numbers: Mapping[str, Numbers], sets: Mapping[int, int]) -> Bulk:
+def merged(main: Bulk, part: Bulk, numbers: Mapping[str, Numbers]) -> Bulk:
     """Add the cards of a part, in their new numbers, to what is joined so far."""
     tables, lists = dict(main.tables), dict(main.lists)
     raw, numbered = dict(main.raw), dict(main.numbered)
@@ -98,8 +98,6 @@ def merged(main: Bulk, part: Bulk, numbers: Mapping[str, Numbers], sets: Mapping
         raw[name] = [at[key] for key in into]
     for name, cards in part.lists.items():
         new = [_renumbered(card, numbers, every) for card in cards]
-        if name in ("SPC", "SPC1", "MPC"):
-            new = [card._replace(sid=sets.get(card.sid, card.sid)) for card in new]
         lists[name] = [*lists.get(name, []), *new]
         raw[name] = [*raw.get(name, []), *part.raw[name]]
     return replace(

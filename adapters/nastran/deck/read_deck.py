@@ -227,15 +227,20 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
 
 
 def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:
-    params = {}
-    for line in case_lines:  # PARAM may stand in case control too; bulk data then overrides it
+    """Values of PARAM: bulk data overrides subcases, and what stands above them bulk data."""
+    above: dict[str, str] = {}
+    inside: dict[str, str] = {}
+    params = above
+    for line in case_lines:
         words = re.split(r"[\s,=]+", line.text.split("$", 1)[0].strip().upper())
+        if words[0].startswith("SUBC"):
+            params = inside
         if words[0] == "PARAM" and len(words) > 2:
             params[words[1]] = words[2]
         if words[0].startswith("AUTOSPC") and len(words) > 1:
             params["AUTOSPC"] = words[-1]
-    params |= {card.n: card.v1 for card in bulk.listed("PARAM") if card.v1 is not None}
-    return params
+    given = {card.n: card.v1 for card in bulk.listed("PARAM") if card.v1 is not None}
+    return inside | given | above
 
 
 def _eigen(bulk: Bulk, case: CaseControl) -> EigenRequest | None:

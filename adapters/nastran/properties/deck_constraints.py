@@ -25,6 +25,7 @@ CARDS = (
     Card("MPC", f"SID:i! [{_TERM} A>coefficients:r=0. {_TERM} A>coefficients:r=0. - -]"),
     *(Card(name, "SID:i! [S>sets:i]") for name in ("SPCADD", "MPCADD")),
 )
+_NAMED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,8 @@ class Constraints:
     fixed : (n_dof,) bool
         SPC and permanent constraints.
     notes : tuple of str
-        Sets that case control asks for and the deck does not have.
+        Sets that case control asks for and the deck does not have, and those of a deck of which
+        case control selects none.
     """
 
     equations: Equations
@@ -56,7 +58,7 @@ def read_constraints(deck: Deck, points: Points) -> Constraints:
     InputError
         A grid or component that does not exist; an equation without its first coefficient.
     """
-    notes: list[str] = []
+    notes = list(_unselected(deck))
     fixed = np.zeros(points.n_dof, dtype=bool)
     fixed[: points.permanent.size] = points.permanent.reshape(-1)
     if deck.case.spc is not None:
@@ -70,6 +72,20 @@ def read_constraints(deck: Deck, points: Points) -> Constraints:
         for card, place in _selected(deck, deck.case.mpc, ("MPC",), notes):
             _add_mpc(rows, card, place)
     return Constraints(_equations(rows, points.n_dof), fixed, tuple(notes))
+
+
+def _unselected(deck: Deck) -> Iterator[str]:
+    for kind, names, chosen in (
+        ("SPC", ("SPC", "SPC1"), deck.case.spc),
+        ("MPC", ("MPC",), deck.case.mpc),
+    ):
+        sets = sorted({card.sid for name in names for card in deck.bulk.listed(name)})
+        if sets and chosen is None:
+            shown = ", ".join(map(str, sets[:_NAMED])) + ", ..." * (len(sets) > _NAMED)
+            yield (
+                f"{deck.path}: case control selects no {kind}: nothing is constrained by those of "
+                f"the deck (SID {shown})"
+            )
 
 
 def _selected(

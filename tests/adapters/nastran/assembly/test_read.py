@@ -177,3 +177,20 @@ def test_real_decks_are_read(data, path):
     assert deck.counts["GRID"] > 5
     assert deck.eigen is not None
     assert Path(deck.path).read_bytes() == before
+
+
+def test_what_case_control_selects_no_set_of_is_said(tmp_path):
+    cards = "SPC1,4,123,1\nSPC,2,1,1\nMPC,3,1,2,1.,2,2,1.\n"
+    (tmp_path / "a.bdf").write_text(f"SOL 103\nCEND\nBEGIN BULK\n{BAR}{cards}")
+    told = [w for w in build_model(read_deck(tmp_path / "a.bdf")).warnings if "selects no" in w]
+    assert [w.split(": ", 1)[1] for w in told] == [
+        f"case control selects no {kind}: nothing is constrained by those of the deck (SID {sets})"
+        for kind, sets in (("SPC", "2, 4"), ("MPC", "3"))
+    ]
+
+
+def test_parameters_above_the_subcases_override_bulk_data(tmp_path):
+    path = tmp_path / "a.bdf"
+    case = "PARAM,WTMASS,.5\nSUBCASE 1\nPARAM,G,.1\nPARAM,W3,7.\n"
+    path.write_text(f"SOL 103\nCEND\n{case}BEGIN BULK\nPARAM,WTMASS,.2\nPARAM,G,.3\n{BAR}")
+    assert read_deck(path).params == {"WTMASS": ".5", "G": ".3", "W3": "7."}

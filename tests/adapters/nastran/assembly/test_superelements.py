@@ -99,6 +99,18 @@ def test_sets_of_a_part_are_those_of_its_subcase(frequencies):
     np.testing.assert_allclose(both, frequencies(plate(6, 0.0) + MATERIAL + ends)[0], rtol=1e-9)
 
 
+@pytest.mark.parametrize("residual", ["", "SPC=3\n"])
+@pytest.mark.parametrize("sets", ["SPC1,7,123456,{}\n", "SPCADD,7,8\nSPC1,8,123456,{}\n"])
+def test_a_part_is_held_by_the_set_of_its_subcase_alone(frequencies, residual, sets):
+    cases = f"METHOD=1\nSUBCASE 1\nSUPER=1\nSPC=7\nSUBCASE 2\n{residual}"
+    head = f"SOL 103\nCEND\n{cases}BEGIN BULK\n"
+    held = sets.format("105,110,115,120") + "SPC1,3,123456,103\nSPC1,1,123456,104\n"
+    part = f"BEGIN SUPER=1\n{plate(4, 0.2, 101, 101)}{MATERIAL}{held}"
+    found, _ = frequencies(plate(2, 0.0) + MATERIAL + part, head)
+    one = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,7,14,21,28\n"
+    np.testing.assert_allclose(found, frequencies(one)[0], rtol=1e-9)
+
+
 def test_superelements_of_the_main_bulk_are_solved_whole_and_said(frequencies, whole):
     bulk = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,1,8,15,22\nSESET,1,4,thru,7\nCSUPEXT,1,3\n"
     found, deck = frequencies(bulk)

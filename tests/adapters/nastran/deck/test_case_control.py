@@ -52,3 +52,12 @@ def test_of_subcases_without_modes_the_first_of_structure_is_taken_and_said():
     assert (case.subcase, case.spc) == (2, 2)
     assert told.startswith("subcase 2 is used; subcases 3 select other constraints")
     assert read_all("THERMAL = ALL\nSPC = 4\nSUBCASE 1\nLOAD = 2\n")[0].spc == 4
+
+
+def test_a_subcase_may_be_for_a_set_of_superelements():
+    text = "SET 1 = 1 THRU 99999999\nSET 5 = 2, 4 THRU 6\nSUBCASE 1\nSUPER = 5\nSPC = 7\n"
+    case, _ = read_all(f"{text}SUBCASE 2\nMETHOD = 3\nSUPER = 0\nSPC = 8\n")
+    assert (case.subcase, case.spc) == (2, 8)
+    assert case.of_parts == tuple((k, (7, None)) for k in (2, 4, 5, 6))
+    shared, _ = read_all("SET 9 = 0, 3\nMETHOD = 3\nSUBCASE 1\nSUPER = 9\nSPC = 7\n")
+    assert (shared.spc, shared.of_parts) == (7, ((3, (7, None)),))
