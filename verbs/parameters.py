@@ -36,6 +36,7 @@ from ..core.updating.updating_numbers import UPDATING
 from .analysis import placed, require_one, target_of
 from .design_variables import optimised, with_design_variables
 from .folder import Folder
+from .heard import require_heard
 from .made_of import made_of_files
 from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
 from .sources import Measured, Source, measured, read_deck
@@ -145,6 +146,7 @@ def parameters(
 
     accepted = {**ParametersOptions.__annotations__, "parameters": None, "modes": None}
     asked = study_of("parameters", study, {**options, "parameters": parameters}, accepted)
+    require_heard(asked)
     said_to(progress)
     require_one(asked)
     deck = asked.deck if deck is None else deck

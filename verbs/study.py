@@ -202,15 +202,16 @@ class Study:
     @property
     def damped(self) -> bool:
         """Whether the damping of the deck counts."""
-        return any(r.damped for r in self._residuals)
+        return any(r.damped for r in self.named_residuals)
 
     @property
     def hears(self) -> bool:
         """Whether frequency responses count."""
-        return any(r.hears for r in self._residuals)
+        return any(r.hears for r in self.named_residuals)
 
     @property
-    def _residuals(self) -> list[Residual]:
+    def named_residuals(self) -> list[Residual]:
+        """Every residual that is minimised in some stage."""
         from ..core.updating.residuals import residuals_named
 
         every = (self.residuals, *(s.residuals for s in self.stages))

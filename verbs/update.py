@@ -10,6 +10,7 @@ from ..core.data.parametric_model import Model
 from ..core.errors import InputError
 from .analysis import both_given, correlated, read_analysis
 from .design_variables import NOT_NAMED, with_design_variables
+from .heard import require_heard
 from .kept import kept_in
 from .made_of import made_of
 from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
@@ -94,6 +95,7 @@ def update(
     start = time.perf_counter()
     accepted = {**UpdateOptions.__annotations__, "parameters": None, "modes": None}
     asked = study_of("update", study, {**options, "parameters": parameters}, accepted)
+    require_heard(asked)
     said_to(progress)
     if asked.configurations:
         if deck is not None or test is not None:

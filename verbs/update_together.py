@@ -21,6 +21,7 @@ from .folder import Folder
 from .kept import kept_in
 from .made_of import made_of
 from .options import Files, Say
+from .relations import names_in, read_relation
 from .run import Updated
 from .sources import Measured, measured, read_deck
 from .study import Study, read_study
@@ -102,13 +103,17 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     if asked.solver is not None:
         raise InputError("a solver of your own verifies one configuration; leave it out of several")
     _require_one_meaning(asked)
-    states = []
+    states: list[_State] = []
+    relations = asked.relations
     for one in asked.configurations:
         progress(f"reading and correlating {one.name}")
-        states.append(_read(asked, one))
+        states.append(_read(replace(asked, relations=relations), one))
+        here = states[-1].asked.relations
+        relations = tuple(text for text in relations if text not in here)
     every = [configuration(s.analysis, s.placed, s.asked, s.name) for s in states]
     problem = Problem.of(every)
     _require_all_used(asked, problem)
+    _require_all_told(relations, problem)
     kept = kept_in(keep, asked, [made_of(s.analysis.given, s.side) for s in states])
     progress("updating")
     way = moved(every, problem.parameters, asked, kept)
@@ -146,8 +151,9 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
 
 
 def _read(asked: Study, one: ConfigurationRequest) -> _State:
-    """Read a configuration with those of the parameters that its deck has."""
+    """Read a configuration with those of the parameters that its deck has, and their relations."""
     from ..adapters.nastran.assembly.wide_parameters import stands_in
+    from ..adapters.nastran.fields.parameter_references import parse_request
 
     own = asked.of(one)
     assert own.deck is not None
@@ -157,7 +163,9 @@ def _read(asked: Study, one: ConfigurationRequest) -> _State:
         raise InputError(
             f"configuration '{one.name}': {own.deck} has none of the cards that the parameters name"
         )
-    own = replace(own, parameters=there)
+    names = {parse_request(text).name for text in there}
+    known = tuple(text for text in own.relations if names_in(text) <= names)
+    own = replace(own, parameters=there, relations=known)
     side = measured(own.test, own)
     analysis = read_analysis(deck, own, side.highest(own.frequency_tolerance))
     return _State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
@@ -178,6 +186,13 @@ def _require_one_meaning(asked: Study) -> None:
                     f"parameter '{request.name}' is {before} in one configuration and {meant} in "
                     f"'{one.name}'; one parameter moves one property: give each its own name"
                 )
+
+
+def _require_all_told(left: Sequence[str], problem: Problem) -> None:
+    """Refuse a relation that no configuration has all parameters of."""
+    for text in left:
+        read_relation(text, problem.parameters)
+        raise InputError(f"relation '{text}': no configuration has all parameters that it names")
 
 
 def _require_all_used(asked: Study, problem: Problem) -> None:

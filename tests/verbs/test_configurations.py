@@ -235,3 +235,36 @@ def test_other_verbs_look_at_one_deck(files: Path) -> None:
     for verb in (trueup.correlate, trueup.discover, trueup.parameters):
         with pytest.raises(trueup.InputError, match="one configuration"):
             verb(study=study)
+
+
+def test_a_relation_counts_once_whatever_the_number_of_configurations(files: Path) -> None:
+    """Two configurations of one test say no more of a relation than the relation itself."""
+    clean = configurations(files)[0]
+    asked = {"parameters": SKIN, "deck_length_unit": "mm", "max_iterations": 1}
+    known = {"relations": "stiffness / density = 3e13 ± 1e12"}
+
+    def due(states: list[dict[str, object]], **more: object) -> float:
+        done = trueup.update(configurations=states, **asked, **more)
+        return float(done.history[0].objective)
+
+    for states in ([clean], [clean, clean | {"name": "again"}]):
+        alone = due(states, residuals="frequencies")
+        both = due(states, residuals="frequencies, relations", **known)
+        assert both - alone == pytest.approx(((E / RHO - 3e13) / 1e12) ** 2)
+
+
+def test_a_relation_may_be_of_what_one_deck_has(files: Path) -> None:
+    asked = {
+        "parameters": [*SKIN, "store = CONM2 900 M"],
+        "configurations": configurations(files),
+        "residuals": "frequencies, relations",
+        "frequency_sigma": 0.001,
+        "deck_length_unit": "mm",
+        "regularisation": 0.0,
+    }
+    done = trueup.update(relations=f"store = {TRUTH[2]!r} ± {TRUTH[2] / 1000!r}", **asked)
+    assert [p.standard_error is None for p in done.parameters] == [False] * 3
+    values = [p.updated[0] for p in done.parameters]
+    np.testing.assert_allclose(values, TRUTH, rtol=5e-3)
+    with pytest.raises(trueup.InputError, match="which is no parameter"):
+        trueup.update(relations="shop = 1 ± 1", **asked)

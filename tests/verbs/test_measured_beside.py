@@ -86,7 +86,10 @@ def test_what_was_measured_beside_modes_sets_the_scale(
         ({"load_cases": [{"loads": ["13:+Z=50"]}]}, "says no readings"),
         ({"load_cases": [{"loads": ["13:+Y"], "readings": ["1:+Y=1"]}]}, "cannot be read"),
         (
-            {"load_cases": [{"loads": ["99:+Y=1"], "readings": ["13:+Y=1"]}]},
+            {
+                "residuals": "deflections",
+                "load_cases": [{"loads": ["99:+Y=1"], "readings": ["13:+Y=1"]}],
+            },
             "the deck has no grid 99",
         ),
         ({"measured_mass": -1.0}, "must be above 0"),

@@ -53,6 +53,8 @@ def test_sums_and_ratios_of_values_and_their_derivatives() -> None:
         ("front / rear = 3 ± 0", "above 0"),
         ("front / rear / front = 3 ± 1", "more than two"),
         ("frnt / rear = 3 ± 1", "names 'frnt', which is no parameter; did you mean 'front'"),
+        ("front / rear = nan ± 1", "no finite number"),
+        ("front / rear = 3 ± inf", "no finite number"),
         ("mixed + rear = 3 ± 1", "mixed moves several values"),
     ],
 )
@@ -78,3 +80,19 @@ def test_a_known_value_sets_the_scale_that_frequencies_leave_open(
 def test_relations_are_asked_for(files: tuple[Path, Path]) -> None:
     with pytest.raises(InputError, match="give relations"):
         trueup.update(*files, "MAT1 1 E", residuals="relations", deck_length_unit="mm")
+
+
+@pytest.mark.parametrize(
+    ("given", "residual"),
+    [
+        ({"relations": "MAT1 1 E = 7e4 ± 5"}, "relations"),
+        ({"measured_mass": 1.0}, "mass"),
+        ({"measured_centre_of_gravity": (0.0, 0.0, 0.0)}, "centre_of_gravity"),
+        ({"load_cases": [{"loads": ["13:+Z=50"], "readings": ["13:+Z=1"]}]}, "deflections"),
+    ],
+)
+def test_what_no_residual_reads_is_refused(
+    files: tuple[Path, Path], given: dict[str, object], residual: str
+) -> None:
+    with pytest.raises(InputError, match=f"does not name '{residual}'"):
+        trueup.update(*files, "MAT1 1 E", deck_length_unit="mm", **given)

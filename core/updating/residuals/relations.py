@@ -5,18 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import Floats
-from ...errors import InputError
 from ..updating_numbers import UPDATING
 from .declaration import Relation, Residual, Seen, Slopes
-
-
-def _each(seen: Seen) -> tuple[Relation, ...]:
-    if not seen.beside.relations:
-        raise InputError(
-            "the residual 'relations' needs what is known of parameters: give relations, such as "
-            "'skin / web = 2 ± 0.1'"
-        )
-    return seen.beside.relations
 
 
 def _said(r: Relation, p: Floats) -> tuple[float, Floats]:
@@ -26,13 +16,15 @@ def _said(r: Relation, p: Floats) -> tuple[float, Floats]:
 
 
 def _value(seen: Seen) -> Floats:
-    off = [(_said(r, seen.factors)[0] - r.value) / r.sigma for r in _each(seen)]
-    return np.array(off)[:, None]
+    known = seen.beside.relations
+    off = [(_said(r, seen.factors)[0] - r.value) / r.sigma for r in known]
+    return np.reshape(off, (len(known), 1))
 
 
 def _derivative(seen: Seen, slopes: Slopes) -> Floats:
-    moved = [_said(r, seen.factors)[1][list(slopes.parameters)] / r.sigma for r in _each(seen)]
-    return np.array(moved)[:, None, :]
+    at, known = list(slopes.parameters), seen.beside.relations
+    moved = [_said(r, seen.factors)[1][at] / r.sigma for r in known]
+    return np.reshape(moved, (len(known), 1, len(at)))
 
 
 RELATIONS = Residual("relations", "relation_sigma", UPDATING.relation, _value, _derivative)
