@@ -180,9 +180,10 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
     """Take out rows and columns of M that are the rounding of zero, positive or negative.
 
     Massless directions, as the torsion of a bar, that a displacement coordinate system mixes
-    with others keep some 1e-16 of the masses that they are mixed with. So a row is rounding where
-    each of its entries is, beside the mass of the other degree of freedom; how a mass compares
-    with those elsewhere says nothing. Scaled by the stiffness, which rids it of units.
+    with others keep some 1e-16 of the masses that they are mixed with, beside each other, too. So a
+    row is rounding where each of its entries is, beside the mass of the other degree of freedom or,
+    where that is small as well, the largest of the row's; how a mass compares with those elsewhere
+    says nothing. Scaled by the stiffness, which rids it of units.
     """
     k = np.abs(K.diagonal())
     d = 1.0 / np.sqrt(np.where(k > 0.0, k, 1.0))
@@ -193,8 +194,9 @@ def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
     row, other = entries.row[beside], entries.col[beside]
     mixed, largest = np.zeros(len(small), bool), np.zeros(len(small))
     mixed[row] = True
-    mixed[row[np.abs(entries.data[beside]) > EIGEN.mass_rounding * m[other]]] = False
     np.maximum.at(largest, row, m[other])
+    limit = EIGEN.mass_rounding * np.where(np.isin(other, small), largest[row], m[other])
+    mixed[row[np.abs(entries.data[beside]) > limit]] = False
     noise = np.zeros(len(m), bool)
     noise[small] = mixed & (m[small] < EIGEN.mass_rounding * largest)
     if not noise.any():

@@ -24,6 +24,16 @@ def test_what_a_rotation_leaves_of_no_mass_is_no_mass(noise):
     np.testing.assert_array_equal(cleaned.toarray(), np.diag([1.0, 2.0, 0.0, 1.0]))
 
 
+@pytest.mark.parametrize("noise", [-3e-18, 7e-18])
+def test_massless_directions_mixed_with_each_other_are_massless(noise):
+    """As the rotations of a lumped bar's grid in an oblique frame: one of three has mass."""
+    K, M = chain([1.0, noise, 7e-18])
+    M[0, 1] = M[1, 0] = -3e-16
+    M[0, 2] = M[2, 0] = 1e-17
+    M[1, 2] = M[2, 1] = -2.7e-18
+    np.testing.assert_array_equal(Pencil(K, M).M.toarray(), np.diag([1.0, 0.0, 0.0]))
+
+
 def test_a_small_mass_is_a_mass():
     K, M = chain([1.0, 2.0, 1e-6, 1.0])
     np.testing.assert_array_equal(Pencil(K, M).M.toarray(), M.toarray())

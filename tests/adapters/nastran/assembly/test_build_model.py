@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trueup.adapters.nastran import build_model, read_deck, weight
+from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 
 # Elastic frequencies [Hz] that the decks' own Nastran runs gave, and the tolerance asked for.
@@ -138,6 +139,15 @@ class TestInvariants:
         np.testing.assert_allclose(
             frequencies(model(STRUCTURE))[6:12], frequencies(model(plain))[6:12], rtol=1e-7
         )
+
+    @pytest.mark.parametrize("vector", ["4.,-2.,1.5", "1.9,4.,-2."])
+    def test_massless_rotations_in_an_oblique_system_are_massless(self, model, vector):
+        bars = "".join(f"GRID,{k},,{k}.,0.,0.\n" for k in range(1, 9))
+        bars += "".join(f"CBEAM,{k},1,{k},{k + 1},0.,1.,0.\n" for k in range(1, 8))
+        bars += "PBEAM,1,1,.1,.003,.002,,.001\nMAT1,1,2.1+5,,.3,7.85-9\n"
+        oblique = f"GRDSET,,7,,,,7\nCORD2R,7,,3.,-2.,1.,3.5,-1.2,1.9\n,{vector}\n"
+        plain, turned = solve(model(bars), 12), solve(model(bars + oblique), 12)
+        np.testing.assert_allclose(turned.eigenvalues[6:], plain.eigenvalues[6:], rtol=1e-8)
 
     def test_mass_is_that_of_the_cards(self, deck):
         found = weight(deck(STRUCTURE.replace("\nMAT1", "\nPARAM,GRDPNT,5\nMAT1")))
