@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..adapters.universal import ModalTest
+from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.errors import InputError, Place
 from .exchange import load
@@ -58,7 +59,26 @@ def modes_on_grids(files: Sequence[Path]) -> ModalTest:
     if geometry is None:
         decks = " with" if any(kind_of_file(f) is DECK for f in files) else "; give the deck, too:"
         raise here.fault(f"holds modes and no positions of their grids{decks} a deck that has them")
+    modes = _told(modes, geometry)
     return ModalTest(geometry, modes, length_unit=geometry.length_unit, files=tuple(files))
+
+
+def _told(modes: Modes, geometry: Geometry) -> Modes:
+    """Leave out what files list and no sensor would read.
+
+    Scalar points, grids of no element that rest in every mode, and rotations of grids without
+    any, which are zero in every mode.
+    """
+    of = modes.dofs
+    held = np.zeros(len(geometry.ids), bool)
+    for corners in geometry.elements.values():
+        held[corners.ravel()] = True
+    moves = (modes.shapes != 0).any(axis=1)
+    turns = of.component > 3
+    on_it = np.isin(of.node, geometry.ids[held]) | np.isin(of.node, np.unique(of.node[moves]))
+    turning = ~turns | np.isin(of.node, np.unique(of.node[moves & turns]))
+    rows = np.flatnonzero(np.isin(of.node, geometry.ids) & on_it & turning)
+    return replace(modes, shapes=modes.shapes[rows], dofs=of.take(rows))
 
 
 def _thinned(modes: Modes) -> tuple[Modes, tuple[str, ...]]:

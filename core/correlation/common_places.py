@@ -18,12 +18,17 @@ from .mode_pairing import Correlation, correlate
 def common_places(a: Geometry, b: Geometry) -> tuple[Ints, Ints]:
     """Return rows of grids that are in one place, nearest ones by pairs, at most so many.
 
+    Of several in one place the one of the same number is taken.
+
     Raises
     ------
     InputError
         Hardly any are.
     """
     distance, nearest = cKDTree(b.xyz).query(a.xyz)
+    own = b.index_of(a.ids)
+    same = (own >= 0) & (np.linalg.norm(b.xyz[own] - a.xyz, axis=1) <= distance)
+    nearest = np.where(same, own, nearest)
     reach = CORRELATION.one_place * min(a.size, b.size)
     rows = np.flatnonzero(distance <= reach)
     if len(rows) < CORRELATION.places[0]:

@@ -40,11 +40,6 @@ class Where(Noun):
         }
         return cls(**named, xyz=tuple(xyz.tolist()), **more)
 
-    @property
-    def size(self) -> int:
-        """Number of grids, elements or sensors that it names; at least 1."""
-        return max(len(self.grids or ()), len(self.elements or ()), len(self.sensors or ()), 1)
-
 
 @dataclass(frozen=True)
 class Finding(Noun):

@@ -48,7 +48,9 @@ class Placement(Noun):
         return len(self.facet)
 
 
-def place(surface: Surface, points: Floats, reach: float | None = None) -> Placement:
+def place(
+    surface: Surface, points: Floats, reach: float | None = None, own: Ints | None = None
+) -> Placement:
     """Find the nearest point of the surface for every point.
 
     The search is exact within `reach`: all facets that could hold a nearer point than the
@@ -64,6 +66,8 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
         In the frame and unit of the surface.
     reach : float, optional
         Default: a tenth of the size of the surface.
+    own : (n,) int, optional
+        Row of the grid that is meant where facets of several are as near, -1 for none.
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
     reach = PLACEMENT.reach * surface.size if reach is None else reach
@@ -72,7 +76,9 @@ def place(surface: Surface, points: Floats, reach: float | None = None) -> Place
     s, t, distance = _feet(surface, points[rows], facets)
     step = PLACEMENT.tied * surface.size if surface.size > 0 else 1.0
     tied = np.round(distance / step)  # so that a face wins over the line on its edge
-    order = np.lexsort((-surface.kind[facets], tied, rows))
+    own = np.full(len(points), -1) if own is None else own
+    meant = (surface.corners[facets] == own[rows, None]).any(axis=1)
+    order = np.lexsort((-surface.kind[facets], ~meant, tied, rows))
     first = order[np.unique(rows[order], return_index=True)[1]]
     facets, s, t = facets[first], s[first], t[first]
     s, t = _on_warped_quads(surface, points, facets, s, t)

@@ -206,7 +206,8 @@ def observe(
     surface = grids.surface
     xyz = transform.apply(test_geometry.xyz[nodes])
     axis = transform.turn(sensors.axis)
-    placement = place(surface, xyz)
+    nearest = _of_same_number(surface, geometry.index_of(sensors.node), xyz)
+    placement = place(surface, xyz, own=nearest)
     limit = default_tolerance(surface, placement)
     limit = limit if tolerance is None else np.full(len(xyz), float(tolerance))
     within = placement.distance <= limit
@@ -214,9 +215,16 @@ def observe(
         raise InputError(_nowhere(surface, xyz, placement, within, limit))
     matrix = grids.sensor_matrix(placement, axis, sensors.component > 3)
     turned = Dofs(sensors.node, sensors.component, axis)
-    nearest = grids.ids[surface.nearest_grid(xyz)[0]]
     off, told = placement.distance, _outside(sensors, placement, within, limit)
-    return Observation(matrix, turned, xyz, nearest, off, within, limit, told)
+    return Observation(matrix, turned, xyz, grids.ids[nearest], off, within, limit, told)
+
+
+def _of_same_number(surface: Surface, own: Ints, xyz: Floats) -> Ints:
+    """Return the row of the nearest grid, among several in one place that of the same number."""
+    nearest, distance = surface.nearest_grid(xyz)
+    apart = np.linalg.norm(surface.xyz[own] - xyz, axis=1)
+    as_near = apart <= distance + PLACEMENT.tied * surface.size
+    return np.where((own >= 0) & np.isin(own, surface.attached) & as_near, own, nearest)
 
 
 def _outside(sensors: Dofs, placement: Placement, within: Bools, limit: Floats) -> tuple[str, ...]:

@@ -278,3 +278,20 @@ def test_modes_of_a_duct_are_named_by_their_waves(found: trueup.Correlated) -> N
     assert first.waves.startswith("n = 2, 6")
     cluster = next(c for c in found.clusters if 1 in c.test)
     assert cluster.harmonic == 2
+
+
+@pytest.mark.parametrize(
+    ("deck", "modes"),
+    [
+        ("mast/pn_mwe_s-solution_1.dat", "mast/pn_mwe_s-solution_1.op2"),  # grids in one place
+        ("beam_pairs/beam_modes.dat", "beam_pairs/beam_modes_m1.op2"),  # a grid of no element
+        ("solid_shell_bar/mode_solid_shell_bar.bdf", "solid_shell_bar/mode_solid_shell_bar.op2"),
+    ],
+)
+def test_modes_of_another_solver_of_the_same_deck_are_the_same(deck: str, modes: str) -> None:
+    recorded = Path(__file__).parents[3] / "shared" / "data" / "nastran"
+    if not recorded.is_dir():
+        pytest.skip("recorded runs are not beside the checkout")
+    found = trueup.correlate(recorded / deck, [recorded / modes, recorded / deck])
+    assert not found.unpaired_test
+    assert min(p.mac for p in found.pairs) > 0.998

@@ -45,7 +45,7 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
             f.where.region or "",
             _magnitude(f),
             Cell(percent(f.confidence), bar=f.confidence),
-            str(sum(place.size for place in f.credible_set) or MISSING),
+            _places(f),
         )
         for f in found.findings
     ]
@@ -53,6 +53,16 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
     note = "Sizes without a unit are in deck units."
     columns = (*words, "confidence %", "places as good")
     return [Table.of("Findings", columns, rows, note)] if rows else []
+
+
+def _places(finding: Finding) -> str:
+    """Return how many places explain the data as well, and of how many grids or elements."""
+    places = finding.credible_set
+    named = {"elements": {e for p in places for e in p.elements or ()},
+             "grids": {g for p in places for g in p.grids or ()}}  # fmt: skip
+    word, members = max(named.items(), key=lambda one: len(one[1]))
+    more = f" ({len(members)} {word})" if len(members) > len(places) else ""
+    return f"{len(places)}{more}" if places else MISSING
 
 
 def _magnitude(finding: Finding) -> str:

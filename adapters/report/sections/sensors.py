@@ -59,7 +59,7 @@ def _render(run: ReportedRun[RunTables]) -> str:
         for m in marks_on_structure.sensors(found.alignment.sensors, run.geometry, directions=False)
     ]
     picture = scene(run.geometry, "Misfit of the sensors", marks=marks, width=480, behind=False)
-    scale = heatmap.legend(f"% of {percent(largest, 1)} %")
+    scale = heatmap.legend("misfit, % of its largest")
     return tag("div", tag("div", tables), tag("div", picture, scale), class_="beside")
 
 

@@ -123,6 +123,18 @@ def test_nearest_grid_and_distance():
     np.testing.assert_allclose(obs.distance, 0.05)
 
 
+def test_of_grids_in_one_place_the_one_of_the_same_number_is_read():
+    geo = geometry(
+        [[0, 0, 0], [2, 0, 0], [2, 0, 0], [5, 0, 0]], line=np.array([[0, 1], [2, 3]])
+    )  # 2 and 3 are the sides of a joint
+    test = geometry(geo.xyz[[0, 1, 2, 2]])
+    dofs = six_a_grid(geo)
+    obs = observe(geo, dofs, test, triaxial(test))
+    assert list(obs.nearest_grid[::3][:3]) == [1, 2, 3]
+    reading = obs.matrix @ np.repeat([1.0, 2.0, 3.0, 4.0], 6)
+    np.testing.assert_allclose(reading.reshape(4, 3)[:3, 0], [1.0, 2.0, 3.0], atol=1e-12)
+
+
 def test_sensor_beyond_the_tolerance_is_listed_and_marked():
     geo = plate()
     xyz = sensors_on(geo, np.random.default_rng(5), n=9).xyz.copy()

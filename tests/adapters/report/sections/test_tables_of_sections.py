@@ -100,9 +100,14 @@ def test_findings_give_size_with_interval_and_count_the_places(
 ) -> None:
     rows = texts(table_of(FINDINGS, discovery))
     assert rows[0] == [
-        "model", "attached mass", "the far corner", "mass 0.00062 (0.00058 to 0.00066)", "97", "3",
+        "model", "attached mass", "the far corner", "mass 0.00062 (0.00058 to 0.00066)", "97",
+        "2 (3 grids)",
     ]  # fmt: skip
     assert rows[1][1:3] == ["sensor polarity", "sensor 108"]
+    discovery["findings"][0]["credible_set"] = [
+        {"elements": [1, 2, 3], "xyz": [0.0, 0.0, 0.0]}, {"elements": [2, 3, 4], "xyz": [1.0, 0, 0]}
+    ]  # fmt: skip
+    assert texts(table_of(FINDINGS, discovery))[0][-1] == "2 (4 elements)"
 
 
 def test_alternatives_say_what_where_and_how_likely(discovery: dict[str, Any]) -> None:
