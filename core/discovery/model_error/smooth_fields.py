@@ -112,7 +112,7 @@ def _reduced(structure: Structure, m: Members, rows: Ints, motion: Floats) -> tu
 
 def _cells(xyz: Floats) -> tuple[Ints, int]:
     """Divide points among boxes of a grid over them; number of each point's box, and of boxes."""
-    low, size = xyz.min(axis=0), np.ptp(xyz, axis=0).max()
+    low, size = xyz.min(axis=0), np.ptp(xyz, axis=0).max() or 1.0
     box = ((xyz - low) / size * MODEL_ERROR.cells).astype(np.int64)
     box = np.minimum(box, MODEL_ERROR.cells - 1)
     _, number = np.unique(box, axis=0, return_inverse=True)
@@ -122,7 +122,7 @@ def _cells(xyz: Floats) -> tuple[Ints, int]:
 def _polynomials(xyz: Floats, weights: Floats) -> tuple[Floats, tuple[str, ...]]:
     """Return polynomials at points, orthogonal by weight and of rms 1, (n, k), and their names."""
     x = xyz - np.average(xyz, axis=0, weights=weights)
-    x = x / np.abs(x).max()
+    x = x / (np.abs(x).max() or 1.0)
     columns, names = [np.ones(len(x))], [""]
     for degree in range(1, MODEL_ERROR.degree + 1):
         for which in combinations_with_replacement(range(3), degree):

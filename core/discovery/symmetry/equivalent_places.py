@@ -92,7 +92,8 @@ def _lines(xyz: Floats) -> Iterator[tuple[Floats, Floats]]:
     axes and that of the grids.
     """
     middle = xyz.mean(axis=0)
-    _, extent, principal = np.linalg.svd(xyz - middle, full_matrices=False)
+    off = np.vstack([xyz - middle, np.zeros((3, 3))])
+    _, extent, principal = np.linalg.svd(off, full_matrices=False)
     gap = np.abs(np.subtract.outer(extent, extent)) + np.diag(np.full(3, np.inf))
     own = gap.min(axis=1) > SYMMETRY.image_round * extent.max()
     for frame, wanted in ((np.eye(3), np.ones(3, bool)), (principal, own)):

@@ -157,3 +157,10 @@ def test_nodes_far_from_the_others_are_named():
     far = Geometry([*test.ids, 99], np.vstack([test.xyz, [[30.0, 0.0, 0.0]]]), "m")
     with pytest.raises(InputError, match="nodes 99 lies far from the others: without that it"):
         reconcile_units(plate("mm"), far)
+
+
+def test_a_model_of_matrices_spans_its_grids():
+    """Its only element is a mass at one of them."""
+    bridge = replace(plate("m", side=9.0), elements={"point": np.array([[5]])})
+    told = reconcile_units(bridge, replace(bridge, length_unit=None, elements={}))
+    assert (told.test, told.factor) == ("m", 1.0)

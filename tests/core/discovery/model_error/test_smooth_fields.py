@@ -6,6 +6,7 @@ import pytest
 from trueup.core.discovery.model_error.smooth_fields import (
     SUSPENSION,
     Fields,
+    _cells,
     _polynomials,
     suspended,
 )
@@ -27,6 +28,12 @@ def test_a_flat_structure_has_no_field_across():
     q, names = _polynomials(xyz, np.ones(200))
     assert q.shape == (200, 5)
     assert not any("z" in n for n in names)
+
+
+def test_one_place_is_one_cell_and_has_no_field():
+    with np.errstate(all="raise"):
+        assert _cells(np.ones((1, 3)))[1] == 1
+        assert _polynomials(np.ones((1, 3)), np.ones(1))[0].size == 0
 
 
 def test_a_suspension_lifts_every_eigenvalue_by_that_of_its_swinging():

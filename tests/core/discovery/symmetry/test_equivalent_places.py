@@ -54,3 +54,7 @@ def test_feet_in_a_ring_are_found(n):
 
 def test_what_is_its_own_image_nowhere_has_none():
     assert not sets(np.random.default_rng(1).normal(size=(80, 3)))
+
+
+def test_one_place_is_no_image_of_others():
+    assert sets(np.ones((1, 3))) == []
