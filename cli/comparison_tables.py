@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rich.padding import Padding
 from rich.text import Text
 
-from ..adapters.report.tables.number_formats import fixed, general, hz, percent, signed
+from ..adapters.report.tables.number_formats import fixed, general, hz, percent, signed, weighed
 from ..core.results.comparison import CompareTables
 from .terminal_tables import titled
 
@@ -21,7 +21,8 @@ def comparison_tables(found: CompareTables) -> Iterator[Padding]:
         table.add_column(heading, justify="right")
     for s in found.sources:
         table.add_row(
-            Text(f"{s.name} ({s.what})"), str(s.modes), general(s.mass, 6),
+            Text(f"{s.name} ({s.what})"), str(s.modes),
+            "" if s.mass is None else weighed(s.mass, s.kilograms),
             "" if s.pairs is None else str(s.pairs), fixed(s.mean_abs_deviation_percent, 2),
             fixed(s.worst_deviation_percent, 2), percent(s.mean_mac, 1),
         )  # fmt: skip

@@ -41,6 +41,7 @@ class _Model:
     deck: Deck | None = None
     rigid: int | None = None
     mass: float | None = None
+    kilograms: float | None = None
 
 
 @checked_call
@@ -168,7 +169,8 @@ def _model(path: Path, name: str, number: int | None, fmax: float | None) -> _Mo
     if kind_of_file(path) is DECK:
         deck = read_deck(path)
         found = solve(deck, number, fmax)
-        return _Model(name, found.geometry, found.shapes, deck, found.rigid_body_modes, found.mass)
+        told = found.rigid_body_modes, found.mass, found.kilograms
+        return _Model(name, found.geometry, found.shapes, deck, *told)
     test = modes_on_grids([path]) if holds_modes([path]) else read_test(path)
     if test.modes is None:
         raise InputError(f"{path} holds no modes; identify finds them in responses", file=path)
@@ -209,7 +211,8 @@ def _row(
     mac: float | None = None,
 ) -> SourceRow:  # fmt: skip
     what = "deck" if m.deck is not None else "modes"
-    return SourceRow(m.name, what, len(m.modes), m.rigid, m.mass, pairs, mean, worst, mac)
+    far = pairs, mean, worst, mac
+    return SourceRow(m.name, what, len(m.modes), m.rigid, m.mass, *far, m.kilograms)
 
 
 def _values(models: Sequence[_Model]) -> Iterator[ValueRow]:

@@ -183,6 +183,8 @@ def place_test(
         moved, test = declared, measurement.modes
     if test is None:
         raise InputError("the test holds no modes")
+    if not np.any(test.shapes):
+        raise InputError("the test's mode shapes are zero at every sensor; give measured ones")
     by_hand = aligned_by(own, moved, node_map) if node_map else None
     alignment = by_hand or align(own, moved, analysis, test, seed=seed)
     if node_map:

@@ -11,7 +11,8 @@ from .plain import Table, Tables
 class SourceRow:
     """One of those compared, and how far it is from the reference: the test, or the first of them.
 
-    `mass` is that of a deck, in its unit; None what is not known of it.
+    `mass` is that of a deck, in its unit, `kilograms` the same where its densities leave no doubt;
+    None what is not known of it.
     """
 
     name: str
@@ -23,6 +24,7 @@ class SourceRow:
     mean_abs_deviation_percent: float | None
     worst_deviation_percent: float | None
     mean_mac: float | None
+    kilograms: float | None = None
 
 
 @dataclass(frozen=True)

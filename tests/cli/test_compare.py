@@ -41,6 +41,7 @@ def test_decks_stand_side_by_side(runs, duct):
     assert {v.name for v in found.values} == {"PBAR 11 I1", "PBAR 11 I2"}
     assert {m.mode for m in found.modes} == set(range(7, 15))
     assert found.sources[0].mass == pytest.approx(found.sources[1].mass)
+    assert found.sources[0].kilograms == pytest.approx(1000.0 * found.sources[0].mass)
     assert found.sources[1].pairs == sum(m.partner is not None for m in found.modes) > 4
 
 

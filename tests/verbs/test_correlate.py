@@ -280,6 +280,14 @@ def test_modes_of_a_duct_are_named_by_their_waves(found: trueup.Correlated) -> N
     assert cluster.harmonic == 2
 
 
+def test_shapes_without_motion_are_refused() -> None:
+    deck, test = trueup.read_deck(str(FILES[0])), trueup.read_test([FILES[1]])
+    assert test.modes is not None
+    still = replace(test, modes=replace(test.modes, shapes=0.0 * test.modes.shapes))
+    with pytest.raises(trueup.InputError, match="zero at every sensor"):
+        trueup.correlate(deck, still, deck_length_unit="mm")
+
+
 @pytest.mark.parametrize(
     ("deck", "modes"),
     [
