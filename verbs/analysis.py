@@ -247,7 +247,7 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     InputError
         One is in neither.
     """
-    from .report import imprint_of
+    from .imprint import imprint_of
 
     require_one(study)
     deck = study.deck if deck is None else deck

@@ -108,14 +108,14 @@ def convert(
         raise InputError("boundary= reduces a deck alone; there is none among the sources")
     names = ", ".join(p.name for p in files) or type(sources).__name__
     if is_empty(cargo, target):
-        nothing = f"{names}: nothing that {target.name} can hold ({_told(cargo)})"
+        nothing = f"{names}: nothing that {_with_article(target.name)} can hold ({_told(cargo)})"
         nothing += f"; {cargo.no_matrices}" * bool(cargo.no_matrices)
         raise InputError(nothing, file=files[0] if files else None)
     lost = losses(cargo, target)
     if lost and not lossy:
         more = f" and {len(lost) - _MOST} more" if len(lost) > _MOST else ""
         raise Place(path).error(
-            f"a {target.name} cannot hold {'; '.join(lost[:_MOST])}{more}; give "
+            f"{_with_article(target.name)} cannot hold {'; '.join(lost[:_MOST])}{more}; give "
             "lossy=True to leave that out"
         )
     progress("writing")
@@ -191,3 +191,7 @@ def _told(cargo: Cargo) -> str:
     every = frozenset({"geometry", "modes", "frfs", "matrices", "functions"})
     told = "; ".join([*(f"{k} {v}" for k, v in _written(cargo, every).items()), *cargo.rest[:3]])
     return told[:_LONGEST] + "..." * (len(told) > _LONGEST) or "no content at all"
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name.startswith('OP') else 'a'} {name}"

@@ -213,7 +213,7 @@ def _request(
 ) -> tuple[core.Request, tuple[str, ...]]:
     """Return what discovery is asked, and what of the responses cannot be used."""
     from ..adapters.nastran import weight
-    from ..adapters.nastran.discovery.mass_unit import densest, mass_unit
+    from ..adapters.nastran.properties.mass_unit import densest, mass_unit
 
     model, on_model = structure.model, before.placed
     responses, unplaced = place_responses(

@@ -175,7 +175,7 @@ def identify(
     from ..adapters.universal.joining.time_records import time_records_of
     from ..core.identification import identify as find
     from ..core.identification.survey.time_records import faults_of_records
-    from .report import imprint_of
+    from .imprint import imprint_of
 
     given = {"fmin": fmin, "fmax": fmax, "max_order": max_order, "take": take, "refuse": refuse,
              "exponential_window": exponential_window, "bands": bands}  # fmt: skip

@@ -61,7 +61,7 @@ def beside(study: Study, unit: str | None, **decks: Deck | ChangedDeck | None) -
 
 def _weighed(name: str, deck: Deck, unit: str | None) -> WeightRow:
     from ..adapters.nastran import weight
-    from ..adapters.nastran.discovery.mass_unit import mass_unit
+    from ..adapters.nastran.properties.mass_unit import mass_unit
 
     found, each = weight(deck), mass_unit(deck, unit).kilograms
     kilograms = None if each is None else found.mass * each

@@ -199,7 +199,7 @@ def study_of(
     study = study or Study()
     spoken = [key for key, value in given.items() if value is not None]
     refuse_idle(verb, spoken, staged=bool(study.stages) and "stages" not in spoken)
-    return merge(study, given, known, verb)
+    return merge(study, given, known, verb) if given else study
 
 
 def checked_call(verb: Callable[P, R]) -> Callable[P, R]:

@@ -70,7 +70,7 @@ class MovableParameters(ParametersTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
         from ..adapters.report.parameters_page import parameters_page
-        from .report import imprint_of
+        from .imprint import imprint_of
 
         super().fill(work)
         page = parameters_page(self, self.geometry, self.places, imprint_of(self.study))

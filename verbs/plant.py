@@ -253,7 +253,7 @@ def _of_pairs(analysis_hz: Floats, ratios: Floats, hz: Floats, n: int) -> Floats
 
 def _units(found: PlantSource, given: str | None) -> tuple[float, float, list[str]]:
     """Return metres and kilograms in the units of the deck, and what was assumed."""
-    from ..adapters.nastran.discovery.mass_unit import mass_unit
+    from ..adapters.nastran.properties.mass_unit import mass_unit
 
     unit = given or found.length_unit
     if unit is None:

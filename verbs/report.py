@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,8 +15,9 @@ from ..core.results.discovery import DiscoverTables
 from ..core.results.modes import IdentifyTables, SolveTables
 from ..core.results.together import TogetherTables
 from ..core.results.update import UpdateTables
+from .imprint import imprint_of
 from .open_run import read_content, read_diff, read_result
-from .study import Study, read_study
+from .study import read_study
 
 if TYPE_CHECKING:
     from ..adapters.report import Curves, Film, Imprint, Overlay
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 
 _OWN_PAGES = {IdentifyTables.schema: "stabilisation.html", SolveTables.schema: "report.html"}
-_PICTURES = {".png": "png", ".svg": "svg+xml", ".jpg": "jpeg", ".jpeg": "jpeg", ".webp": "webp"}
 
 
 def report(run: Path | str) -> Path:
@@ -68,32 +67,6 @@ def _together(run: Path, result: Mapping[str, Any]) -> Path:
     imprint = imprint_of(read_study(asked)) if asked.is_file() else None
     write_text(run / "report.html", together_page(found, imprint))
     return run / "report.html"
-
-
-def imprint_of(study: Study) -> Imprint:
-    """Return what stands on the report of a study besides its results.
-
-    Raises
-    ------
-    InputError
-        A logo that cannot be read or is no picture that a page can show.
-    """
-    from ..adapters.report import Imprint
-    from ..core.files import reading
-
-    logo = ""
-    if study.logo is not None:
-        kind = _PICTURES.get(study.logo.suffix.lower())
-        if kind is None:
-            known = ", ".join(_PICTURES)
-            raise Place(study.logo).fault(f"is no picture that a page shows; give {known}")
-        with reading(study.logo):
-            held = base64.b64encode(study.logo.read_bytes()).decode()
-        logo = f"data:image/{kind};base64,{held}"
-    title, author, company, date = (
-        text or "" for text in (study.title, study.author, study.company, study.date)
-    )
-    return Imprint(title, author, company, date, logo)
 
 
 def render(

@@ -68,7 +68,8 @@ class Run(RunTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
         from ..adapters.store import write_store
-        from .report import imprint_of, render
+        from .imprint import imprint_of
+        from .report import render
 
         super().fill(work)
         diff = None

@@ -82,7 +82,7 @@ class Solved(SolveTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that the run folder of a solution holds."""
         from ..adapters.report.solution_page import solution_page
-        from .report import imprint_of
+        from .imprint import imprint_of
 
         imprint = imprint_of(self.study)
         page = solution_page(self, self.geometry, self.shapes, self.parts, imprint)
@@ -141,8 +141,8 @@ def solve(
     """
     from ..adapters.nastran import build_model, weight
     from ..adapters.nastran.assembly.candidate_parameters import grids_by_property
-    from ..adapters.nastran.discovery.mass_unit import mass_unit
-    from .report import imprint_of
+    from ..adapters.nastran.properties.mass_unit import mass_unit
+    from .imprint import imprint_of
 
     who = Place(shown="solve")
     asked = study_of("solve", study, {}, {})

@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 
 Hertz = tuple[float, float]
 """A band of frequencies; written as "15:60", too."""
-UNITS = ("m", "mm", "in", "ft")
-ADOPT = ("significant", "all", "none")
+UNITS, ADOPT = ("m", "mm", "in", "ft"), ("significant", "all", "none")
+_NO_MATTER = {"deck", "title", "author", "company", "logo", "date", "out", "source"}
+"""Of a study, what any run accepts."""
 
 
 @dataclass(frozen=True)
@@ -120,13 +121,19 @@ class Study:
         self._require_accepted()
 
     def __repr__(self) -> str:
+        return f"Study({', '.join(f'{name}={value!r}' for name, value in self._given.items())})"
+
+    @property
+    def _given(self) -> dict[str, Any]:
+        """What is not left to its default, by name."""
         every = ((f.name, getattr(self, f.name)) for f in dataclasses.fields(self))
         default = {f.name: f.default for f in dataclasses.fields(self)} | {"sigmas": {}}
-        told = ", ".join(f"{name}={value!r}" for name, value in every if value != default[name])
-        return f"Study({told})"
+        return {name: value for name, value in every if value != default[name]}
 
     def _require_accepted(self) -> None:
         """Refuse what the core accepts in no run, before any file is read."""
+        if self._given.keys() <= _NO_MATTER:
+            return  # what judges the others would be imported for nothing
         from ..core.reduction.model_at_sensors import require_method
         from ..core.updating.residuals import residuals_named
         from .executors import require_executor

@@ -50,7 +50,7 @@ class UpdatedTogether(TogetherTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that the run folder holds, those of the configurations included."""
         from ..adapters.report.together_page import together_page
-        from .report import imprint_of
+        from .imprint import imprint_of
 
         super().fill(work)
         for name, result in self.results.items():

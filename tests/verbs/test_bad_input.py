@@ -36,7 +36,7 @@ def solved() -> trueup.Solved:
     "name", ["read", "open_run", "report", "read_deck", "read_test", "solve", "inspect", "identify"]
 )
 def test_what_is_no_path_is_refused(name: str, given: object) -> None:
-    with pytest.raises(trueup.InputError, match=r"is given as|no file of a test|pyuff"):
+    with pytest.raises(trueup.InputError, match=r"is given as|no file of a test|give a deck|pyuff"):
         getattr(verb, name)(given)
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ...correlation.comparison import Placed
+from ...data.mass_unit import MassUnit
 from ...eigen.normal_modes import Eigensolution
 from ...noun import Noun
-from ..effects.sentence_parts import MassUnit
 from ..reduction.elements_and_supports import Structure
 from .frf_likelihood import Responses
 from .likelihood_numbers import EFFORT, Effort

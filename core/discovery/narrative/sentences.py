@@ -7,10 +7,11 @@ import numpy as np
 
 from ...arrays import Floats
 from ...data.geometry import Geometry
+from ...data.mass_unit import MassUnit
 from ..effects import KINDS
 from ..effects.candidates import Candidates
 from ..effects.effect_kind import EffectKind
-from ..effects.sentence_parts import MassUnit, listed, mode_ranges, odds
+from ..effects.sentence_parts import listed, mode_ranges, odds
 from ..findings import Alternative
 from .narrative_numbers import NARRATIVE
 

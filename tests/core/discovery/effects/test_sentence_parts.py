@@ -3,10 +3,11 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.adapters.nastran import read_deck
-from trueup.adapters.nastran.discovery.mass_unit import mass_unit
+from trueup.adapters.nastran.properties.mass_unit import mass_unit
+from trueup.core.data.mass_unit import MassUnit
 from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.effects.sentence_parts import MassUnit, mode_ranges, odds
+from trueup.core.discovery.effects.sentence_parts import mode_ranges, odds
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.narrative.sentences import effects_said
 from trueup.core.discovery.search.model_selection import explained

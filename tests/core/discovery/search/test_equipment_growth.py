@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import trueup
+from trueup.core.data.mass_unit import MassUnit
 from trueup.core.discovery import discover as core
 from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.effects.sentence_parts import MassUnit
 from trueup.core.discovery.narrative.sentences import magnitude_of, sentence_of
 from trueup.core.discovery.search.equipment_growth import as_blocks, equipped
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ....core.data.length_units import METRES
-from ....core.discovery.effects.sentence_parts import MassUnit
+from ....core.data.mass_unit import MassUnit
 from ..deck.read_deck import Deck
 
 _KILOGRAMS = {
