@@ -41,7 +41,7 @@ class Pencil:
         self.labels = labels
         self._check_shapes()
         self.given_mass = self.M
-        self.M = _without_rounding(self.K, self.M)
+        self.M = _without_rounding(self.K, self.M, self.groups)
         self._check()
         upper_k, upper_m = sp.triu(self.K, format="csr"), sp.triu(self.M, format="csr")
         both = (upper_k + 1j * upper_m).tocsr()  # keeps an entry unless it is zero in both
@@ -176,29 +176,37 @@ def magnitudes(matrix: sp.csr_matrix) -> sp.csr_matrix:
     return sp.csr_matrix((np.abs(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
 
 
-def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix) -> sp.csr_matrix:
+def _without_rounding(K: sp.csr_matrix, M: sp.csr_matrix, nodes: Ints | None) -> sp.csr_matrix:
     """Take out rows and columns of M that are the rounding of zero, positive or negative.
 
     Massless directions, as the torsion of a bar, that a displacement coordinate system mixes
-    with others keep some 1e-16 of the masses that they are mixed with, beside each other, too. So a
-    row is rounding where each of its entries is, beside the mass of the other degree of freedom or,
-    where that is small as well, the largest of the row's; how a mass compares with those elsewhere
-    says nothing. Scaled by the stiffness, which rids it of units.
+    with others keep some 1e-16 of the masses that they are mixed with. So a row is rounding where
+    each of its entries is, beside the mass of the other degree of freedom or the largest entry
+    between the same two nodes (`nodes`, (n,)); how a mass compares with those elsewhere says
+    nothing. Scaled by the stiffness, which rids it of units.
     """
     k = np.abs(K.diagonal())
     d = 1.0 / np.sqrt(np.where(k > 0.0, k, 1.0))
     m = np.abs(M.diagonal()) * d**2
     small = np.flatnonzero(m < EIGEN.mass_rounding * m.max(initial=0.0))
-    entries = (sp.diags(d[small]) @ M[small] @ sp.diags(d)).tocoo()
-    beside = small[entries.row] != entries.col
-    row, other = entries.row[beside], entries.col[beside]
-    mixed, largest = np.zeros(len(small), bool), np.zeros(len(small))
+    if not len(small):
+        return M
+    of = np.arange(len(m)) if nodes is None else nodes
+    near = np.flatnonzero(np.isin(of, of[small]))
+    entries = (sp.diags(d[near]) @ M[near] @ sp.diags(d)).tocoo()
+    rows, size = near[entries.row], np.abs(entries.data)
+    pairs, pair = np.unique(of[rows] * (of.max() + 1) + of[entries.col], return_inverse=True)
+    between = np.zeros(len(pairs))
+    np.maximum.at(between, pair, size)
+    limit = EIGEN.mass_rounding * np.maximum(m[entries.col], between[pair])
+    beside = (rows != entries.col) & (size > 0.0)
+    row, other = rows[beside], entries.col[beside]
+    mixed, largest = np.zeros(len(m), bool), np.zeros(len(m))
     mixed[row] = True
+    mixed[row[size[beside] > limit[beside]]] = False
     np.maximum.at(largest, row, m[other])
-    limit = EIGEN.mass_rounding * np.where(np.isin(other, small), largest[row], m[other])
-    mixed[row[np.abs(entries.data[beside]) > limit]] = False
     noise = np.zeros(len(m), bool)
-    noise[small] = mixed & (m[small] < EIGEN.mass_rounding * largest)
+    noise[small] = (mixed & (m < EIGEN.mass_rounding * largest))[small]
     if not noise.any():
         return M
     kept = sp.diags((~noise).astype(float))

@@ -31,7 +31,15 @@ def test_massless_directions_mixed_with_each_other_are_massless(noise):
     M[0, 1] = M[1, 0] = -3e-16
     M[0, 2] = M[2, 0] = 1e-17
     M[1, 2] = M[2, 1] = -2.7e-18
-    np.testing.assert_array_equal(Pencil(K, M).M.toarray(), np.diag([1.0, 0.0, 0.0]))
+    grid = Pencil(K, M, ("7:4", "7:5", "7:6"))
+    np.testing.assert_array_equal(grid.M.toarray(), np.diag([1.0, 0.0, 0.0]))
+
+
+def test_light_nodes_beside_a_heavy_one_have_mass():
+    K, M = chain([1e9, 1e-6, 1e-6])
+    M[0, 1] = M[1, 0] = M[1, 2] = M[2, 1] = 2e-7
+    kept = Pencil(K, M, ("1:3", "2:3", "3:3")).M
+    np.testing.assert_array_equal(kept.toarray(), M.toarray())
 
 
 def test_a_small_mass_is_a_mass():
