@@ -24,7 +24,7 @@ import numpy as np
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 
 _BAND = (10.0, 810.0)

@@ -33,7 +33,7 @@ from scipy.optimize import linear_sum_assignment
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.modal_synthesis import poles_from
 
 _POINTS, _REFERENCES, _MODES = 40, 3, 8

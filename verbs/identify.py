@@ -173,7 +173,7 @@ def identify(
     from ..adapters.report.stabilisation_page import stabilisation_page
     from ..adapters.universal.joining.join_coherence import coherence_of
     from ..adapters.universal.joining.time_records import time_records_of
-    from ..core.identification import identify as find
+    from ..core.identification.identify import identify as find
     from ..core.identification.survey.time_records import faults_of_records
     from .imprint import imprint_of
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.data.geometry import Geometry
-from ...core.identification import Identification
+from ...core.identification.result import Identification
 from ...core.results.made import MadeTables
 from .html.html_table import html_table
 from .html.markup import esc, key, tag

@@ -126,13 +126,17 @@ class _Trial:
         )  # fmt: skip
         self._judged: dict[object, Judged | None] = {}
 
-    def judged(self, problem: Problem, f: Fit) -> Judged | None:
-        """Return a hypothesis as the error of the model judges it, None where it does not solve."""
+    def judged(self, problem: Problem, f: Fit, least: float = -np.inf) -> Judged | None:
+        """Return a hypothesis as the error of the model judges it, None where it does not solve.
+
+        Without smooth fields where these could not bring it to the evidence `least`.
+        """
         same = problem, f.suspects, f.nuisance.tobytes()
-        if same not in self._judged:
+        known = self._judged.get(same)
+        if same not in self._judged or (known and not known.whole and known.may_reach(least)):
             self._judged[same] = None
             with suppress(TrueupError):
-                self._judged[same] = by_model_error(self.own, problem, f)
+                self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
 
 

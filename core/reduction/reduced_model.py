@@ -140,7 +140,7 @@ class ReducedModel(Noun):
         new = size > DERIVATIVES.known_already
         W = W @ (turn[:, new] / np.sqrt(size[new]))
         sums = (self.stiffness, self.mass, self.damping, self.loss)
-        K, M, D, H = (terms.with_vectors(self.Q, W) for terms in sums)
+        K, M, D, H = (terms.widened(self.Q, W) for terms in sums)
         return replace(self, Q=np.hstack([self.Q, W]), stiffness=K, mass=M, damping=D, loss=H)
 
     def vectors(self, modes: ReducedModes) -> Floats:

@@ -65,33 +65,18 @@ class ReducedSum:
     def widened(self, V: Floats, W: Floats) -> ReducedSum:
         """Return the sum on the vectors V, on which it is made, and W (n_free, s).
 
-        As many terms at once as together have no more responses than there are vectors.
-        """
-        (n, s), t = (V.shape[1], W.shape[1]), len(self.terms)
-        whole = np.zeros((t, n + s, n + s))
-        whole[:, :n, :n] = self.whole
-        for some in np.array_split(np.arange(t), max(1, -(-t * s // n))):
-            if len(some):
-                X = np.hstack([self.terms[k].matrix @ W for k in some])
-                across = (V.T @ X).reshape(n, len(some), s).swapaxes(0, 1)
-                whole[some, :n, n:], whole[some, n:, :n] = across, across.swapaxes(1, 2)
-                whole[some, n:, n:] = (W.T @ X).reshape(s, len(some), s).swapaxes(0, 1)
-        return ReducedSum(self.terms, whole)
-
-    def with_vectors(self, V: Floats, W: Floats) -> ReducedSum:
-        """Return the sum on the vectors V, on which it is made, and few more, W (n_free, s).
-
-        Term by term, each on the rows that it has: of many terms of a part of the structure each.
+        Term by term, each on the rows that it has, of many terms of a part of the structure each.
         """
         (n, s), t = (V.shape[1], W.shape[1]), len(self.terms)
         whole = np.zeros((t, n + s, n + s))
         whole[:, :n, :n] = self.whole
         for out, term in zip(whole, self.terms, strict=True):
             rows = np.flatnonzero(np.diff(term.matrix.indptr))
-            X = np.asarray(term.matrix[rows] @ W)
-            out[:n, n:] = V[rows].T @ X
+            some = slice(None) if len(rows) == len(V) else rows
+            X = np.asarray(term.matrix[some] @ W)
+            out[:n, n:] = V[some].T @ X
             out[n:, :n] = out[:n, n:].T
-            out[n:, n:] = W[rows].T @ X
+            out[n:, n:] = W[some].T @ X
         return ReducedSum(self.terms, whole)
 
     def and_also(self, other: ReducedSum) -> ReducedSum:

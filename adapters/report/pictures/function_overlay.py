@@ -7,7 +7,7 @@ import numpy as np
 
 from ....core.arrays import Bools, Floats, Ints, Numbers
 from ....core.data.frfs import Frfs
-from ....core.identification import Identification
+from ....core.identification.result import Identification
 from ..html.markup import centred, esc, key, short, svg, svg_text, tag
 from ..tables.number_formats import counted, general, percent
 from .axes import Plot, decades, ticks

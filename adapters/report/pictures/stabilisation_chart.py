@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from ....core.arrays import Bools, Floats
-from ....core.identification import Identification
+from ....core.identification.result import Identification
 from ..html.markup import centred, esc, key, short, svg, svg_text, tag
 from ..tables.number_formats import counted, fixed, general, hz, percent
 from .axes import Plot, decades, spread, ticks

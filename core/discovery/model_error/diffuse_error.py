@@ -82,10 +82,11 @@ class Seen:
     reading: float = 0.0
 
 
-def diffuse(seen: Seen, near: Diffuse | None = None) -> Diffuse:
+def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> Diffuse:
     """Return the likelihood of a test at the diffuse error and the noise that make it largest.
 
-    Those `near` a known one are tried where there is one, else all.
+    Those `near` a known one are tried where there is one, else all; none beside the first where
+    that is below `least`.
     """
     low, high, n = MODEL_ERROR.errors
     step = float(np.log(high / low)) / (n - 1)
@@ -93,7 +94,7 @@ def diffuse(seen: Seen, near: Diffuse | None = None) -> Diffuse:
     while True:
         best = max(tried, key=lambda k: tried[k].log)
         beside = [k for k in (best - 1, best + 1) if 0 <= k < n and k not in tried]
-        if not beside:
+        if not beside or tried[best].log < least:
             top = float(np.exp((best + _top(tried, best)) * step))
             return replace(tried[best], error=low * top)
         tried |= {k: _at(seen, low * np.exp(k * step)) for k in beside}

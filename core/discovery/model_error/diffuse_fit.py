@@ -52,6 +52,8 @@ class Judged:
         Smooth fields that are likelier than none, the largest first.
     problem, state : Problem, Fit
         What was fitted: with the smooth fields, where there are any, as further parameters.
+    whole : bool
+        Whether smooth fields were tried.
     """
 
     fit: Fit
@@ -62,6 +64,11 @@ class Judged:
     problem: Problem
     state: Fit
     drifts: tuple[Drift, ...] = ()
+    whole: bool = True
+
+    def may_reach(self, evidence: float) -> bool:
+        """Whether smooth fields, if they were not tried, may make it as likely as that."""
+        return self.evidence + MODEL_ERROR.drift_gain >= evidence
 
 
 def everything(problem: Problem) -> tuple[int, ...]:
@@ -69,20 +76,25 @@ def everything(problem: Problem) -> tuple[int, ...]:
     return tuple(range(len(problem.prior.spread)))
 
 
-def with_drift(problem: Problem, state: Fit, fields: Callable[[], Fields]) -> Judged:
+def with_drift(
+    problem: Problem, state: Fit, fields: Callable[[], Fields], least: float = -np.inf
+) -> Judged:
     """Return a hypothesis as it is likeliest: without smooth fields, or with fields of some size.
 
     `fields` on the basis are made when they are asked for. All of them have one size, which is
-    tried from small to large, from that on which could make a part of the error that is left.
+    tried from small to large, from that on which could make a part of the error that is left; none
+    where they could not make up for what the hypothesis lacks of the evidence `least`.
     """
     plain = best = judged(problem, state, everything(problem))
+    if not plain.may_reach(least):
+        return replace(plain, whole=False)
     known = fields()
     n, k = len(problem.prior.spread) - 1, len(known.names)
     start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
-    least = min(MODEL_ERROR.drift_part * plain.diffuse.error, MODEL_ERROR.drifts[-1])
-    for size in (s for s in MODEL_ERROR.drifts if s >= least):
+    smallest = min(MODEL_ERROR.drift_part * plain.diffuse.error, MODEL_ERROR.drifts[-1])
+    for size in (s for s in MODEL_ERROR.drifts if s >= smallest):
         moved = with_fields(problem, known, size)
-        tried = judged(moved, start, everything(moved), best.diffuse)
+        tried = _climbed(moved, start, everything(moved), best.diffuse)
         if tried.evidence < best.evidence:
             break
         best, start = tried, tried.fit
@@ -149,8 +161,12 @@ def judged(
     of the fields, then the mesh; the error is looked for from that of `near` on, if there is one. A
     step to where a mass is negative is too long.
     """
-    now, best = state, diffuse(seen(problem, state), near)
-    height = best.log - 0.5 * surprise(problem, now.nuisance, now.suspects)
+    return _climbed(problem, state, active, diffuse(seen(problem, state), near))
+
+
+def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse) -> Judged:
+    """Return a hypothesis moved from a state, at which `best` is the diffuse error."""
+    now, height = state, best.log - 0.5 * surprise(problem, state.nuisance, state.suspects)
     damping = 0.0
     for _ in range(MODEL_ERROR.steps):
         H, g = _normal_equations(problem, now, best, active)
@@ -161,8 +177,9 @@ def judged(
                 if -float(g @ step) < MODEL_ERROR.tolerance:
                     break
                 trial = stepped(problem, now, active, step)
-                d = diffuse(seen(problem, trial), best)
-                new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
+                lost = 0.5 * surprise(problem, trial.nuisance, trial.suspects)
+                d = diffuse(seen(problem, trial), best, height + lost - MODEL_ERROR.hopeless)
+                new = d.log - lost
                 if new > height:
                     better = trial, d, new
                     damping *= LIKELIHOOD.damping_down

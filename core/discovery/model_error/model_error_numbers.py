@@ -23,6 +23,7 @@ class ModelErrorNumbers:
     most: float = number(0.4, "rms", "of a smooth field, at most")
     drifts: tuple[float, ...] = number((0.003, 0.01, 0.03), "rms", "of each smooth field, sizes that are tried", "all of them together make a tenth: more is no drift but another structure")
     drift_part: float = number(0.15, "of the diffuse error", "below which a size of smooth fields is not tried: it could not make it", "fits from three starts on a measured aeroplane find the same then")
+    drift_gain: float = number(60.0, "ln L", "that smooth fields gain, at most: they are not tried for hypotheses that are further behind", "time")
     seen: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of, and for a model to lack something")
     folds: int = number(5, "parts", "of the test modes, each of which is foretold by the others")
     usual: float = number(0.003, "of K", "median of the errors that right models left", BY_HAND)
@@ -32,6 +33,7 @@ class ModelErrorNumbers:
     explained: float = number(0.4, "-", "adequacy below which known parameters are not said to explain the gap")
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
     tolerance: float = number(0.1, "ln L", "gain of such a step that counts, and that is looked for")
+    hopeless: float = number(1.0, "ln L", "by which such a step may be behind at the error before it for others to be tried", "time")
     dampings: int = number(4, "trials", "of Levenberg's damping a step")
 
 

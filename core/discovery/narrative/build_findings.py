@@ -150,8 +150,9 @@ class _Outcome:
 
     def times_less_likely(self, f: Fit) -> float:
         """Return how many times, by the error of the model, choices paid for; at least once."""
-        best, other = (scored(self.searcher, g).score for g in (self.best, f))
-        return times(2.0 * max(best - other, 0.0))
+        best = scored(self.searcher, self.best)
+        other = scored(self.searcher, f, best)
+        return times(2.0 * max(best.score - other.score, 0.0))
 
     def of(self, s: Suspect) -> Candidates:
         """Return the candidates that a suspect is one of."""

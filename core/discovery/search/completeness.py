@@ -28,6 +28,7 @@ from .model_selection import (
     by_such_a_test,
     contenders,
     needed,
+    ranked,
     says_else,
     scored,
 )
@@ -161,8 +162,8 @@ def completeness(
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
-        tried = [scored(searcher, f) for f in (*_near(found, k), *poorer)]
-        first = max(tried, key=lambda s: s.score)
+        tried = ranked(searcher, (*_near(found, k), *poorer))
+        first = tried[0]
         if _unsettled(first, fields[k + 1][0] if k < most else None):
             searcher, again = looked_again(searcher, first)
             tried += (s for s in again if s is not first)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
-from .model_selection import Scored, needed, says_else, scored
+from .model_selection import Scored, needed, ranked, says_else
 from .moves import Searcher
 from .patch_reshaping import options_beside, promising
 from .search_numbers import SEARCH
@@ -27,8 +27,8 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
     """
     tried = [first]
     for q in range(len(first.fit.suspects)):
-        tried += _scored(searcher, _elsewhere(searcher, first.fit, q))
-    searcher, moved = _moved(searcher, max(tried, key=_score))
+        tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
+    searcher, moved = _moved(searcher, tried[0])
     tried += moved
     best = max(tried, key=_score)
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
@@ -42,10 +42,6 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
 
 def _score(s: Scored) -> float:
     return s.score
-
-
-def _scored(searcher: Searcher, fits: Sequence[Fit]) -> list[Scored]:
-    return [scored(searcher, f) for f in fits]
 
 
 def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
@@ -69,8 +65,9 @@ def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
         before = best.score
         for q in range(len(best.fit.suspects)):
             searcher, fits = _beside(searcher, best.fit, q)
-            tried += _scored(searcher, fits)
-            best = max((best, *tried), key=_score)
+            new = ranked(searcher, fits, [best])
+            tried += (s for s in new if s is not best)
+            best = new[0]
         if best.score < before + SEARCH.look_gain:
             break
     return searcher, tried

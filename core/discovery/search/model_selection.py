@@ -1,6 +1,6 @@
 """Does a richer hypothesis earn its place, and what else could it be."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -143,11 +143,23 @@ class Scored:
     score: float
 
 
-def scored(searcher: Searcher, f: Fit) -> Scored:
-    """Return a hypothesis with its evidence, less ln of the number of choices it had."""
-    judged = searcher.judged(searcher.problem, f)
+def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
+    """Return a hypothesis with its evidence, less ln of the number of choices it had.
+
+    Where the `best` is so far ahead that it does not matter, smooth fields are not tried.
+    """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
+    least = best.score - needed(best.judged) + paid if best and best.judged else -np.inf
+    judged = searcher.judged(searcher.problem, f, least)
     return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
+
+
+def ranked(searcher: Searcher, fits: Iterable[Fit], known: Sequence[Scored] = ()) -> list[Scored]:
+    """Return what is `known` and more hypotheses, the likeliest first."""
+    out = list(known)
+    for f in fits:
+        out.append(scored(searcher, f, max(out, key=lambda s: s.score, default=None)))
+    return sorted(out, key=lambda s: -s.score)
 
 
 def needed(judged: Judged) -> float:

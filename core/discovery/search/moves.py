@@ -26,8 +26,9 @@ from .search_numbers import SEARCH
 class Searcher:
     """The search with what it needs at every step.
 
-    `coarse` holds for every kind the rows that a first scan looks at; ``judged(problem, fit)`` is a
-    hypothesis as the error of the model judges it, None where its model does not solve.
+    `coarse` holds for every kind the rows that a first scan looks at; ``judged(problem, fit,
+    least)`` is a hypothesis as the error of the model judges it, None where its model does not
+    solve, in full where it may have the evidence `least`.
     """
 
     problem: Problem
@@ -36,7 +37,7 @@ class Searcher:
     start: Floats
     size: float
     effort: Effort
-    judged: Callable[[Problem, Fit], Judged | None] = lambda *_: None
+    judged: Callable[..., Judged | None] = lambda *_: None
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""

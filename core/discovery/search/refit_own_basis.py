@@ -116,11 +116,14 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     return replace(state, in_deck=_in_deck(own, replace(state, suspects=start)))
 
 
-def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = True) -> Judged:
+def by_model_error(
+    ground: Ground, problem: Problem, state: Fit, moving: bool = True, least: float = -np.inf
+) -> Judged:
     """Return a fit as the whole test and the diffuse error judge it, on modes of its own.
 
     Parameters and smooth fields of stiffness and mass move along, of a free structure its
-    suspension too; where nothing is `moving`, the error of the mesh alone.
+    suspension too; no fields where they could not bring it to the evidence `least`; where nothing
+    is `moving`, the error of the mesh alone.
     """
     own, start = _own_problem(ground, problem, state)
     size = min(SEARCH.own_times * own.modes, len(own.mesh))
@@ -139,7 +142,7 @@ def by_model_error(ground: Ground, problem: Problem, state: Fit, moving: bool = 
         )
 
     if moving:
-        found = with_drift(small, here, fields)
+        found = with_drift(small, here, fields, least)
     else:
         found = judged(small, here, everything(small)[-1:])
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))

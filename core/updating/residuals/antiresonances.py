@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.signal import find_peaks
 
 from ...arrays import Floats, Ints, Numbers
 from ...errors import InputError
@@ -45,6 +44,8 @@ def antiresonances(frequencies_hz: Floats, values: Numbers) -> Floats:
     values : (n_line,) complex
         NaN what was not measured.
     """
+    from scipy.signal import find_peaks
+
     good = np.isfinite(values) & (np.abs(values) > 0.0)
     hz, H = frequencies_hz[good], values[good]
     size = np.log(np.abs(H))

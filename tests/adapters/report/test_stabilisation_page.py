@@ -16,8 +16,9 @@ from trueup.adapters.report.stabilisation_page import modes_table, stabilisation
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
 from trueup.core.data.geometry import Geometry
-from trueup.core.identification import Identification, identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.rejected import Rejected
+from trueup.core.identification.result import Identification
 
 ROOTS = (20.0, 50.0, 80.0)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trueup.core.data.dofs import Dofs
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 from trueup.core.identification.uncertainty.uncertainty_numbers import UNCERTAINTY
 

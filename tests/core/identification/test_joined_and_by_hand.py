@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trueup.core.errors import InputError
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 
 
 def test_rejected_roots_fill_up_the_number_of_modes_asked_for(survey):

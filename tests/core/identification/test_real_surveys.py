@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from trueup.adapters.universal import read_universal
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data"
 GARTEUR = DATA / "uff" / "garteur_frf_1995.uff"

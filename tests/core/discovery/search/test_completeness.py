@@ -115,7 +115,7 @@ def weighed(monkeypatch, found, evidence):
         coarse=[np.arange(100)],
         size=1.0,
         effort=Some(apart=0.1),
-        judged=lambda _, f: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
+        judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1
     deck = judged(np.zeros(10))

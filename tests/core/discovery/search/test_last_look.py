@@ -14,7 +14,7 @@ from trueup.core.discovery.search.model_selection import scored
 MASS, SPRING, ABSORBER = range(3)
 
 
-def by_misfit(_, f):
+def by_misfit(_, f, __):
     """Judge by half the objective."""
     left = Some(error=0.001, noise=0.02, each=np.zeros(12))
     return Some(evidence=-0.5 * f.objective, diffuse=left)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 
 
 def disturbed(frfs, shape, spectrum, share):

@@ -8,7 +8,7 @@ from benchmarks.imperfect_surveys import survey as imperfect
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 
 PLATE = [27.9, 59.4, 80.2, 111.68, 111.86, 164.1, 167.4, 197.0]
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.check_survey import checked
 from trueup.core.identification.survey.coherence import Coherence
 from trueup.core.identification.survey.survey_data import prepare

@@ -6,7 +6,7 @@ import pytest
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
 from trueup.core.errors import InputError
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.exponential_window import decay_rate
 
 HZ, ZETA = np.array([21.0, 34.0, 55.0]), np.array([0.002, 0.004, 0.003])

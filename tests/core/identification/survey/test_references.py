@@ -7,7 +7,7 @@ import pytest
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.check_survey import checked
 from trueup.core.identification.survey.driving_points import positive_share
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from

@@ -7,7 +7,7 @@ import pytest
 
 from trueup.core.data.dofs import Dofs
 from trueup.core.errors import InputError
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.survey_data import noise_levels, prepare
 
 

@@ -6,7 +6,7 @@ import pytest
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
 from trueup.core.data.geometry import Geometry
-from trueup.core.identification import identify
+from trueup.core.identification.identify import identify
 from trueup.core.identification.survey.modal_synthesis import modal_response, poles_from
 from trueup.core.identification.survey.suspension import rigid_share
 
