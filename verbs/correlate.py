@@ -57,7 +57,7 @@ def correlate(
     deck, test = both_given(deck, test, asked)
     modes = asked.modes if modes is None else modes
     side = measured(test, asked)
-    analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance), modes)
+    analysis = read_analysis(deck, asked, side.highest(asked), modes)
     if asked.reduction and modes is not None:
         raise InputError(
             "reduction= needs the modes of the deck's own matrices; leave modes= out, or reduction="

@@ -97,7 +97,7 @@ def discover(
         writer_of(kind)
     progress("reading and placing")
     side = measured(test, asked)
-    top = side.highest(asked.frequency_tolerance)
+    top = side.highest(asked)
     given = read_deck(deck)
     deck, named_ones = parameters_of(given, asked.parameters)
     every = doubted(deck, named_ones)

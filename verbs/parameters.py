@@ -240,7 +240,7 @@ def _of_deck(deck: Deck, model: Model, asked: Study) -> _Seen:
 def _of_test(deck: Deck, model: Model, side: Measured, asked: Study) -> _Seen:
     """Return what the test says through the pairs of modes."""
     with naming(deck.path):
-        solution = normal_modes.solve(model, fmax=side.highest(asked.frequency_tolerance))
+        solution = normal_modes.solve(model, fmax=side.highest(asked))
     modes = normal_modes.modes_of(model, solution)
     on_model = placed(model, deck, modes, side, asked)
     target = target_of(model, on_model, asked)

@@ -178,9 +178,12 @@ class Measured:
                 raise InputError("all modes are at 0 Hz or have no frequency in the file")
         return modes
 
-    def highest(self, tolerance: float) -> float:
-        """Return the frequency up to which analysis modes could pair with it, Hz."""
-        return float(self.modes.frequencies_hz.max() * (1.0 + tolerance))
+    def highest(self, study: Study) -> float:
+        """Return the frequency up to which analysis modes count, Hz: they pair, or are heard."""
+        from ..core.updating.updating_numbers import UPDATING
+
+        times = max(1.0 + study.frequency_tolerance, UPDATING.heard * study.hears)
+        return float(self.modes.frequencies_hz.max() * times)
 
 
 def measured(source: Source, study: Study) -> Measured:

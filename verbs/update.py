@@ -115,7 +115,7 @@ def update(
         )
     progress("reading and correlating")
     side = measured(test, asked)
-    analysis = read_analysis(deck, asked, side.highest(asked.frequency_tolerance))
+    analysis = read_analysis(deck, asked, side.highest(asked))
     placed = correlated(analysis, side, asked).placed
     found = by_solver if asked.solver else by_itself
     kept = kept_in(keep, asked, [made_of(analysis.given, side)])

@@ -167,7 +167,7 @@ def _read(asked: Study, one: ConfigurationRequest) -> _State:
     known = tuple(text for text in own.relations if names_in(text) <= names)
     own = replace(own, parameters=there, relations=known)
     side = measured(own.test, own)
-    analysis = read_analysis(deck, own, side.highest(own.frequency_tolerance))
+    analysis = read_analysis(deck, own, side.highest(own))
     return _State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
 
 

@@ -16,6 +16,7 @@ class UpdatingNumbers:
     damping: float = number(0.1, "of a ratio", "standard deviation of a damping ratio, unless said otherwise", "modal tests")
     response: float = number(0.3, "ln of a magnitude", "standard deviation of a response, unless said otherwise", "modal tests")
     antiresonance: float = number(0.01, "of f", "standard deviation of an antiresonance, unless said otherwise", "modal tests")
+    heard: float = number(2.5, "times the highest test mode", "up to which modes make up frequency responses; static answers stand for those above", "their error goes by the square of the frequency")
     lines: int = number(60, "lines", "of responses that count, at most, spread evenly", "time")
     functions: int = number(24, "responses", "of each reference that count, at most, spread evenly", "time")
     deflection: float = number(0.02, "of the largest of its load case", "standard deviation of a static reading, unless said otherwise", "static tests")

@@ -53,7 +53,7 @@ def test_the_completed_deck_has_the_mode_that_the_absorber_adds(tmp_path):
     assert low < truth["frequency_hz"] < high
     assert finding["interval"][0] < truth["mass"] < finding["interval"][1]
     assert finding["magnitude"]["components"] == truth["components"]
-    assert [c.split()[0].rstrip("*") for c in finding["cards"]] == ["SPOINT", "CELAS2", "CMASS2"]
+    assert {"CELAS2", "CMASS2"} <= {c.split()[0].rstrip("*") for c in finding["cards"]}
     assert result["before"]["unpaired_test"]
     assert not result["after"]["unpaired_test"]
     assert all(abs(p["deviation_percent"]) < 0.5 for p in result["after"]["pairs"])
