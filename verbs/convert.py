@@ -194,4 +194,4 @@ def _told(cargo: Cargo) -> str:
 
 
 def _with_article(name: str) -> str:
-    return f"{'an' if name.startswith('OP') else 'a'} {name}"
+    return name if name.endswith("OP4") else f"a {name}"

@@ -180,10 +180,13 @@ class Measured:
 
     def highest(self, study: Study) -> float:
         """Return the frequency up to which analysis modes count, Hz: they pair, or are heard."""
-        from ..core.updating.updating_numbers import UPDATING
+        top = float(self.modes.frequencies_hz.max())
+        paired = top * (1.0 + study.frequency_tolerance)
+        if not study.hears:
+            return paired
+        from ..core.updating.residuals.frfs import modes_up_to
 
-        times = max(1.0 + study.frequency_tolerance, UPDATING.heard * study.hears)
-        return float(self.modes.frequencies_hz.max() * times)
+        return max(paired, modes_up_to(top))
 
 
 def measured(source: Source, study: Study) -> Measured:

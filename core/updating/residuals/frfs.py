@@ -51,6 +51,11 @@ def heard(seen: Seen, name: str) -> Heard:
     return Heard(pairs.responses, Responding(pairs.model, ratio))
 
 
+def modes_up_to(highest_hz: float) -> float:
+    """Return up to where modes make up responses to a frequency; above, static answers stand."""
+    return UPDATING.heard * highest_hz
+
+
 @dataclass(frozen=True, eq=False)
 class _Chosen:
     """Lines and sensors that count, and what was measured there, (n_line, n_out, n_in)."""
