@@ -16,7 +16,7 @@ from ..reduction.reduced_sum import ReducedSum, reduced_sum
 from .dampers.damper_evidence import weighed
 from .discovery_numbers import DISCOVERY
 from .effects import KINDS
-from .effects.candidates import Candidates, factors_of
+from .effects.candidates import Candidates, factors_of, lacking
 from .effects.effect_kind import Scale
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
@@ -28,7 +28,7 @@ from .model_error.diffuse_fit import Judged
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.discretisation_error import consistent_bars, lumping
-from .reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
+from .reduction.residual_flexibility import Compliance
 from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
@@ -386,23 +386,10 @@ def _searcher(trial: _Trial) -> Searcher:
     small = replace(small, modes=min(DISCOVERY.small_modes, small.basis.size))
     vectors = small.basis.vectors
     inverse = compliance.on(vectors)
-    missing = tuple(_missing(c, compliance, vectors, inverse) for c in made)
+    missing = tuple(lacking(c, compliance, vectors, inverse) for c in made)
     factors = factors_of(made, small.basis)
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     active = tuple(range(len(problem.prior.spread)))
     return Searcher(small, coarse, active, null.nuisance, size, request.effort, trial.judged)
-
-
-def _missing(
-    c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
-) -> Flexibility | SharedFlexibility | None:
-    """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
-    if not c.rows_each:
-        return None
-    if c.law.shared:
-        loads = c.root if c.loads is None else c.loads
-        turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
-        return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)
-    return Flexibility(compliance, vectors, inverse, c.root, c.rows_each)

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E, cantilever
 
 import trueup
 from trueup.core.errors import CheckError, InputError
@@ -100,16 +99,6 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPat
         executor("dask:tcp://127.0.0.1:9"),
     ):
         pass
-
-
-@pytest.fixture
-def files(tmp_path: Path) -> tuple[Path, Path]:
-    deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
-    deck.write_text(cantilever())
-    truth.write_text(cantilever(TRUTH[0] * E))
-    trueup.solve(truth, 6).save(tmp_path / "solved")
-    trueup.convert([tmp_path / "solved" / "result.h5"], test)
-    return deck, test
 
 
 def updated(files: tuple[Path, Path], **more: object) -> trueup.Updated:

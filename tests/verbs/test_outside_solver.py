@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E, cantilever
+from tests.verbs.test_measured_beside import TRUTH
 
 import trueup
 from trueup.adapters.nastran import read_modes
@@ -26,16 +26,6 @@ with h5py.File("modes.h5", "r+") as file:
         modes["frequencies_hz"][...] *= 1.03
 """
 """A solver whose frequencies are three percent higher."""
-
-
-@pytest.fixture
-def files(tmp_path: Path) -> tuple[Path, Path]:
-    deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
-    deck.write_text(cantilever())
-    truth.write_text(cantilever(TRUTH[0] * E))
-    trueup.solve(truth, 6).save(tmp_path / "solved")
-    trueup.convert([tmp_path / "solved" / "result.h5"], test)
-    return deck, test
 
 
 @pytest.fixture(autouse=True)

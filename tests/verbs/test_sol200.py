@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E, cantilever
+from tests.verbs.test_measured_beside import TRUTH, E
 
 import trueup
 from trueup.core.errors import InputError
@@ -20,16 +20,6 @@ DESVAR,8,YOUNG,1.,.5
 DVMREL1,2,MAT1,1,E
 ,8,PVAL
 """
-
-
-@pytest.fixture
-def files(tmp_path: Path) -> tuple[Path, Path]:
-    deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
-    deck.write_text(cantilever())
-    truth.write_text(cantilever(TRUTH[0] * E))
-    trueup.solve(truth, 6).save(tmp_path / "solved")
-    trueup.convert([tmp_path / "solved" / "result.h5"], test)
-    return deck, test
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
+from ..reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
 from ..reduction.search_basis import Basis
 from ..symmetry.equivalent_places import images_of, symmetries
 from ..symmetry.symmetry_numbers import SYMMETRY
@@ -246,3 +247,19 @@ def places_of(c: Candidates, row: int) -> list[tuple[Candidates, int]]:
     if c.single is None:
         return [(c, row)]
     return [(c.single, i) for i in c.copies[row]]
+
+
+def lacking(
+    c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
+) -> Flexibility | SharedFlexibility | None:
+    """Return the flexibility that a basis lacks for candidates, None where it does not matter.
+
+    `vectors` (n_dof, n_basis) are the basis, `inverse` the compliance on them (n_basis, n_basis).
+    """
+    if not c.rows_each:
+        return None
+    if c.law.shared:
+        loads = c.root if c.loads is None else c.loads
+        turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
+        return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)
+    return Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
