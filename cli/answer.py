@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..verbs.study import Study
+from ..verbs.studies.study import Study
 from .console import emit_json, speaks, stdout, tell
 from .options import Output
 
 if TYPE_CHECKING:
-    from ..verbs.run import Changing, Run
-    from ..verbs.update_together import UpdatedTogether
+    from ..verbs.runs.run import Changing, Run
+    from ..verbs.runs.together import UpdatedTogether
 
 
 def new_folder(study: Study, verb: str, output: Output) -> Path:

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import InputError
-from ..verbs.study import Study, merge, read_study
-from ..verbs.taking_part import refuse_idle
+from ..verbs.studies.study import Study, merge, read_study
+from ..verbs.studies.taking_part import refuse_idle
 
 JsonOption = Annotated[
     str | None,

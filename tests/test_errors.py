@@ -17,7 +17,7 @@ from trueup.adapters.nastran.matrices.read_matrices import read_matrices
 from trueup.adapters.nastran.text.deck_text import read_deck_text
 from trueup.core.eigen.mechanisms import Massless
 from trueup.core.errors import CheckError, InputError, Place, naming
-from trueup.verbs.study import read_study
+from trueup.verbs.studies.study import read_study
 
 ROD = "GRID,1\nGRID,2,,1.,0.,0.\nCROD,5,7,1,2\nPROD,7,1,1.\nMAT1,1,1.,,.3,1.\n"
 BAR = ROD.replace("CROD,5,7,1,2", "CBAR,5,7,1,2,{},0.,0.").replace("PROD,7,1,1.", "{}")

@@ -16,9 +16,9 @@ from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError, naming
-from .sources import Measured, Source, file_or_pynastran, geometry_of, read_deck
-from .study import Study
-from .study_tables import value_at
+from .files.sources import Measured, Source, file_or_pynastran, geometry_of, read_deck
+from .studies.study import Study
+from .studies.study_tables import value_at
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec
@@ -105,7 +105,7 @@ def analysis_modes(source: Source, deck: Deck | None) -> Modes:
     """Return analysis modes of the user's own Nastran run, or those that a store holds."""
     from ..adapters.nastran import read_modes
     from ..adapters.store import is_store
-    from .solve import Solved
+    from .runs.solved import Solved
 
     if isinstance(source, Solved):
         return source.shapes
@@ -222,7 +222,7 @@ def _responses(model: Model, placed: Placed) -> Responses | None:
 def _beside(model: Model, study: Study) -> Beside:
     from ..core.statespace.channels import read_channels, rows_of
     from ..core.updating.residuals import Beside, LoadCase
-    from .relations import read_relation
+    from .studies.relations import read_relation
 
     def rows(told: Sequence[str]) -> tuple[sp.csr_matrix, Floats]:
         places, values = zip(*(value_at(text) for text in told), strict=True)
@@ -247,7 +247,7 @@ def both_given(deck: Source | None, test: Source | None, study: Study) -> tuple[
     InputError
         One is in neither.
     """
-    from .imprint import imprint_of
+    from .studies.imprint import imprint_of
 
     require_one(study)
     deck = study.deck if deck is None else deck
@@ -270,7 +270,7 @@ def require_one(study: Study) -> None:
 
 def _require_order(deck: Source, test: Source) -> None:
     """Refuse a test that was given as the deck and a deck as the test."""
-    from .read import DECK, UNIVERSAL, kind_of_file
+    from .files.read import DECK, UNIVERSAL, kind_of_file
 
     last = test[0] if isinstance(test, list | tuple) and len(test) == 1 else test
     if isinstance(deck, str | Path) and isinstance(last, str | Path):

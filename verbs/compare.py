@@ -17,10 +17,10 @@ from ..core.results.comparison import CompareTables, MatchRow, SourceRow, ValueR
 from ..core.results.correlation import Compared, RunTables, gap
 from ..core.results.plain import Table
 from .analysis import rigid_count
-from .folder import Folder
-from .options import Say, checked_call, unheard
-from .sources import Source, read_deck
-from .study import Study
+from .files.sources import Source, read_deck
+from .runs.folder import Folder
+from .studies.options import Say, checked_call, unheard
+from .studies.study import Study
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck
@@ -112,8 +112,8 @@ def _names(paths: Sequence[Path]) -> list[str]:
 
 
 def _of_runs(paths: Sequence[Path], names: Sequence[str]) -> SideBySide:
-    from .open_run import read_result
-    from .report import answer_of
+    from .runs.open_run import read_result
+    from .runs.report import answer_of
 
     answers: list[RunTables] = []
     for path in paths:
@@ -161,10 +161,10 @@ def _by_test(found: Compared, name: str) -> Iterator[MatchRow]:
 
 
 def _model(path: Path, name: str, number: int | None, fmax: float | None) -> _Model:
-    from .modes_as_test import holds_modes, modes_on_grids
-    from .read import DECK, kind_of_file
+    from .files.modes_as_test import holds_modes, modes_on_grids
+    from .files.read import DECK, kind_of_file
+    from .files.sources import read_test
     from .solve import solve
-    from .sources import read_test
 
     if kind_of_file(path) is DECK:
         deck = read_deck(path)

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Unpack
 
 from ..core.errors import InputError, Place, path_of
-from .copy_deck import SUFFIXES, copy_deck
-from .delivery import is_empty, losses, target_of
-from .exchange import KINDS, Boundary, Cargo, cargo_of, load
-from .options import Files, PlantOptions, Say, checked_call, unheard
-from .read import DECK, kind_of_file
-from .sources import Source, existing
-from .study import converted
-from .write_fmu import OTHERS, PLANTS, Converted, write_fmu
+from .files.copy_deck import SUFFIXES, copy_deck
+from .files.delivery import is_empty, losses, target_of
+from .files.exchange import KINDS, Boundary, Cargo, cargo_of, load
+from .files.read import DECK, kind_of_file
+from .files.sources import Source, existing
+from .files.write_fmu import OTHERS, PLANTS, Converted, write_fmu
+from .studies.options import Files, PlantOptions, Say, checked_call, unheard
+from .studies.study import converted
 
 _MOST, _LONGEST, _MODES = 4, 200, 20
 

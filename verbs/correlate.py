@@ -12,11 +12,11 @@ from ..core.results.correlation import compared
 from ..core.results.orthogonality import orthogonality_tables
 from ..core.results.response_agreement import response_tables
 from .analysis import both_given, correlated, named, read_analysis
-from .made_of import beside, made_of
-from .options import CorrelateOptions, Files, study_of
-from .run import Correlated, content_of
-from .sources import Source, measured
-from .study import Study
+from .files.made_of import beside, made_of
+from .files.sources import Source, measured
+from .runs.run import Correlated, content_of
+from .studies.options import CorrelateOptions, Files, study_of
+from .studies.study import Study
 
 
 def correlate(

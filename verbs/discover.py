@@ -32,11 +32,11 @@ from ..core.results.evidence import damping_table, misfit_table, response_table
 from ..core.results.plain import Table
 from ..core.results.update import ParameterRow
 from .analysis import both_given, named, placed
-from .made_of import beside, made_of
-from .options import DiscoverOptions, Files, Say, said_to, study_of, unheard
-from .run import Discovered, content_of
-from .sources import Measured, Source, geometry_of, measured, read_deck
-from .study import Study
+from .files.made_of import beside, made_of
+from .files.sources import Measured, Source, geometry_of, measured, read_deck
+from .runs.run import Discovered, content_of
+from .studies.options import DiscoverOptions, Files, Say, said_to, study_of, unheard
+from .studies.study import Study
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck, ParameterSpec

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..adapters.store import StoreContent
 from ..adapters.universal import UniversalContent
-from ..adapters.universal.universal_content import Skipped, Units
+from ..adapters.universal.universal_content import Skipped
 from ..core.data.frfs import Frfs
 from ..core.data.measurement import Measurement
-from ..core.errors import InputError, Place, path_of
-from ..core.noun import BESIDE
+from ..core.errors import InputError, Place
 from ..core.results.modes import (
-    IdentifyTables,
     band_rows,
     driving_rows,
     fault_rows,
@@ -27,93 +25,17 @@ from ..core.results.modes import (
     reciprocity_rows,
     rejected_rows,
 )
-from .folder import Folder
-from .made_of import made_of_files
-from .options import Files, Say, checked_call, study_of, unheard
-from .sources import Source, existing, files_of
-from .study import Study, converted, read_study
-from .study_text import write_study
+from .files.made_of import made_of_files
+from .files.sources import Source, existing, files_of
+from .runs.identified import Identified
+from .studies.imprint import imprint_of
+from .studies.options import Files, Say, checked_call, study_of, unheard
+from .studies.study import Study, converted
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function
 
 _MOST_NAMED = 20
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Identified(IdentifyTables, Folder):
-    """What `identify` found: the tables of result.json as fields, and the nouns behind them.
-
-    Parameters
-    ----------
-    content : StoreContent
-        Geometry, modes ``test`` (normalised real shapes) and ``test_complex``, and ``shape_std``.
-    units : Units or None
-        Of the responses.
-    page : str
-        The stabilisation chart as one self-contained HTML page.
-    study : Study or None
-        What was asked of files; None of objects.
-    skipped : tuple of Skipped
-        What of the files was not read, and why.
-    """
-
-    content: StoreContent = field(metadata=BESIDE)
-    units: Units | None = field(metadata=BESIDE)
-    page: str = field(metadata=BESIDE)
-    study: Study | None = field(default=None, metadata=BESIDE)
-    skipped: tuple[Skipped, ...] = field(default=(), metadata=BESIDE)
-
-    def write(self, path: Path | str, complex_shapes: bool = False) -> Path:
-        """Write the modes by the suffix: a store (.h5), which holds both kinds, or .unv, .uff.
-
-        Raises
-        ------
-        InputError
-            No mode was found, or the file cannot be written.
-        """
-        from ..adapters.store import write_store
-        from ..adapters.universal import write_universal
-
-        path = path_of(path, "the file")
-        if not self.modes:
-            raise Place(path).fault("is not written: no mode stands out of the noise")
-        if path.suffix.lower() == ".h5":
-            write_store(path, **vars(self.content))
-            return path
-        write_universal(
-            path,
-            geometry=self.content.geometry,
-            modes=self.content.modes["test_complex" if complex_shapes else "test"],
-            units=self.units,
-            description="complex shapes" if complex_shapes else "normalised real shapes",
-        )
-        return path
-
-    def fill(self, work: Path) -> None:
-        """Write everything that the run folder of an identification holds."""
-        from ..adapters.store import write_store
-
-        super().fill(work)
-        if self.modes:
-            self.write(work / "modes.unv")
-            self.write(work / "modes_complex.unv", complex_shapes=True)
-        write_store(work / "result.h5", **vars(self.content))
-        (work / "stabilisation.html").write_text(self.page, encoding="utf-8")
-        if self.study is not None:
-            write_study(work, self.study)
-
-    @classmethod
-    def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
-        """Return what `fill` wrote."""
-        from ..adapters.universal import read_universal
-
-        modes, page = run / "modes.unv", run / "stabilisation.html"
-        units = read_universal([modes]).units if modes.is_file() else None
-        shown = page.read_text(encoding="utf-8") if page.is_file() else ""
-        asked = run / "study.toml"
-        study = read_study(asked) if asked.is_file() else None
-        return cls.from_dict(result, content=content, units=units, page=shown, study=study)
 
 
 @checked_call
@@ -175,7 +97,6 @@ def identify(
     from ..adapters.universal.joining.time_records import time_records_of
     from ..core.identification.identify import identify as find
     from ..core.identification.survey.time_records import faults_of_records
-    from .imprint import imprint_of
 
     given = {"fmin": fmin, "fmax": fmax, "max_order": max_order, "take": take, "refuse": refuse,
              "exponential_window": exponential_window, "bands": bands}  # fmt: skip

@@ -9,9 +9,9 @@ from pathlib import Path
 from ..core.errors import InputError, Place
 from ..core.results.inspection import FileRow, InspectTables
 from ..core.results.plain import Table, plain, typed
-from .options import checked_call
-from .read import describe
-from .sources import Source, file_of
+from .files.read import describe
+from .files.sources import Source, file_of
+from .studies.options import checked_call
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -34,15 +34,15 @@ from ..core.updating.residuals import residuals_named
 from ..core.updating.residuals.frequencies import FREQUENCIES
 from ..core.updating.updating_numbers import UPDATING
 from .analysis import placed, require_one, target_of
-from .design_variables import optimised, with_design_variables
-from .folder import Folder
-from .heard import require_heard
-from .made_of import made_of_files
-from .options import Files, ParametersOptions, Say, said_to, study_of, unheard
-from .sources import Measured, Source, measured, read_deck
-from .study import Study
-from .study_text import write_study
-from .taking_part import refuse_idle
+from .files.made_of import made_of_files
+from .files.sources import Measured, Source, measured, read_deck
+from .runs.folder import Folder
+from .studies.design_variables import optimised, with_design_variables
+from .studies.heard import require_heard
+from .studies.options import Files, ParametersOptions, Say, said_to, study_of, unheard
+from .studies.study import Study
+from .studies.study_text import write_study
+from .studies.taking_part import refuse_idle
 
 if TYPE_CHECKING:
     from ..adapters.nastran import Deck
@@ -70,7 +70,7 @@ class MovableParameters(ParametersTables, Folder):
     def fill(self, work: Path) -> None:
         """Write everything that a run folder holds into an empty folder."""
         from ..adapters.report.parameters_page import parameters_page
-        from .imprint import imprint_of
+        from .studies.imprint import imprint_of
 
         super().fill(work)
         page = parameters_page(self, self.geometry, self.places, imprint_of(self.study))

@@ -17,11 +17,11 @@ from ..core.noun import BESIDE
 from ..core.results.plain import Table
 from ..core.results.plan import PlannedExciter, PlannedMode, PlannedSensor, PlanTables
 from ..core.sensors.sensor_choice import drive_points, effective_independence, least_off_diagonal
-from .folder import Folder
-from .options import Say, checked_call, unheard
+from .files.sources import Source
+from .runs.folder import Folder
 from .solve import solve
-from .sources import Source
-from .taking_part import READERS
+from .studies.options import Say, checked_call, unheard
+from .studies.taking_part import READERS
 
 METHODS = {"independence": effective_independence, "mac": least_off_diagonal}
 

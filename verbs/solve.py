@@ -2,105 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.data.geometry import Geometry
 from ..core.data.modes import Modes
 from ..core.data.parametric_model import Model
 from ..core.eigen import normal_modes
-from ..core.errors import InputError, Place, naming, path_of
-from ..core.noun import BESIDE
-from ..core.results.modes import ModeRow, SolveTables
+from ..core.errors import InputError, Place, naming
+from ..core.results.modes import ModeRow
 from ..core.results.plain import Table
-from .folder import Folder
-from .made_of import made_of_files
-from .options import Files, Say, checked_call, study_of, unheard
-from .sources import Source, geometry_of, read_deck
-from .study import Study, converted, read_study
-from .study_text import write_study
+from .files.made_of import made_of_files
+from .files.sources import Source, geometry_of, read_deck
+from .runs.solved import Solved
+from .studies.imprint import imprint_of
+from .studies.options import Files, Say, checked_call, study_of, unheard
+from .studies.study import Study, converted
 
 if TYPE_CHECKING:
     from ..adapters.nastran.deck.read_deck import EigenRequest
-    from ..adapters.store import StoreContent
 
 _FEW = 10
 """Modes where neither the user nor the deck says how many."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Solved(SolveTables, Folder):
-    """What `solve` found: the tables as fields, and the nouns behind them.
-
-    Parameters
-    ----------
-    geometry : Geometry
-    shapes : Modes
-        On all degrees of freedom, mass-normalised.
-    parts : mapping of str to sequence of int
-        Grids of the elements of each property of a deck, for the pictures of its page.
-    study : Study
-        What was asked.
-    """
-
-    geometry: Geometry = field(metadata=BESIDE)
-    shapes: Modes = field(metadata=BESIDE)
-    parts: Mapping[str, Sequence[int]] = field(default_factory=dict, metadata=BESIDE)
-    study: Study = field(default_factory=Study, metadata=BESIDE)
-
-    @property
-    def content(self) -> StoreContent:
-        """What a store holds of it."""
-        from ..adapters.store import StoreContent
-
-        return StoreContent(geometry=self.geometry, modes={"analysis": self.shapes})
-
-    def write(self, path: Path | str) -> Path:
-        """Write the modes by the suffix: a store (.h5) or a universal file (.unv, .uff).
-
-        Raises
-        ------
-        InputError
-            Another suffix, or a file that cannot be written.
-        """
-        from ..adapters.store import write_store
-        from ..adapters.universal import write_universal
-
-        path = path_of(path, "the file")
-        if path.suffix == ".h5":
-            write_store(path, **vars(self.content))
-        elif path.suffix in (".unv", ".uff"):
-            write_universal(path, geometry=self.geometry, modes=self.shapes)
-        else:
-            raise InputError(f"{path}: modes are written as .h5 or .unv", file=path)
-        return path
-
-    def fill(self, work: Path) -> None:
-        """Write everything that the run folder of a solution holds."""
-        from ..adapters.report.solution_page import solution_page
-        from .imprint import imprint_of
-
-        imprint = imprint_of(self.study)
-        page = solution_page(self, self.geometry, self.shapes, self.parts, imprint)
-        (work / "report.html").write_text(page, encoding="utf-8")
-        self.write(work / "result.h5")
-        if self.study.deck is not None:
-            write_study(work, self.study)
-        super().fill(work)
-
-    @classmethod
-    def opened(cls, run: Path, result: Mapping[str, object], content: StoreContent) -> Self:
-        """Return what `fill` wrote."""
-        if content.geometry is None or "analysis" not in content.modes:
-            raise Place(run / "result.h5").fault("holds no modes of an analysis")
-        asked = run / "study.toml"
-        study = read_study(asked) if asked.is_file() else Study()
-        shapes = content.modes["analysis"]
-        return cls.from_dict(result, geometry=content.geometry, shapes=shapes, study=study)
 
 
 @checked_call
@@ -142,7 +66,6 @@ def solve(
     from ..adapters.nastran import build_model, weight
     from ..adapters.nastran.assembly.candidate_parameters import grids_by_property
     from ..adapters.nastran.properties.mass_unit import mass_unit
-    from .imprint import imprint_of
 
     who = Place(shown="solve")
     asked = study_of("solve", study, {}, {})

@@ -9,17 +9,18 @@ from typing import Unpack, overload
 from ..core.data.parametric_model import Model
 from ..core.errors import InputError
 from .analysis import both_given, correlated, read_analysis
-from .design_variables import NOT_NAMED, with_design_variables
-from .heard import require_heard
-from .kept import kept_in
-from .made_of import made_of
-from .options import Files, Say, UpdateOptions, said_to, study_of, unheard
-from .run import Updated
-from .sources import Source, measured, read_deck
-from .study import Study
-from .update_together import UpdatedTogether, update_together
-from .updated import updated
-from .updating_ways import by_itself, by_solver
+from .files.made_of import made_of
+from .files.sources import Source, measured, read_deck
+from .runs.run import Updated
+from .runs.together import UpdatedTogether
+from .studies.design_variables import NOT_NAMED, with_design_variables
+from .studies.heard import require_heard
+from .studies.options import Files, Say, UpdateOptions, said_to, study_of, unheard
+from .studies.study import Study
+from .updating.kept import kept_in
+from .updating.update_together import update_together
+from .updating.updated import updated
+from .updating.updating_ways import by_itself, by_solver
 
 
 @overload

@@ -5,7 +5,7 @@ import shutil
 import typer
 
 from ...core.errors import CheckError, InputError
-from ...verbs.study import Study
+from ...verbs.studies.study import Study
 from ..answer import answer, answer_changed, new_folder
 from ..console import what_is_left, working
 from ..options import Output
@@ -23,8 +23,8 @@ def correlate(study: Study, output: Output) -> None:
 
 def update(study: Study, output: Output) -> None:
     """Move the named parameters to the test, by sensitivities."""
-    from ...verbs.design_variables import NOT_NAMED
-    from ...verbs.run import Updated
+    from ...verbs.runs.run import Updated
+    from ...verbs.studies.design_variables import NOT_NAMED
     from ...verbs.update import update as move
 
     if study.configurations and output.in_place:

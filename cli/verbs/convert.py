@@ -6,8 +6,8 @@ from typing import Annotated, Any
 import typer
 
 from ...core.errors import InputError
-from ...verbs.delivery import TARGETS
-from ...verbs.exchange import KINDS
+from ...verbs.files.delivery import TARGETS
+from ...verbs.files.exchange import KINDS
 from ..console import emit_json, speaks, stdout, tell, working
 from ..options import JsonOption, Output, QuietOption
 

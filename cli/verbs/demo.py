@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from ...core.errors import InputError, Place
-from ...verbs.open_run import open_run
-from ...verbs.study import read_study
+from ...verbs.runs.open_run import open_run
+from ...verbs.studies.study import read_study
 from ..console import stdout, working
 from ..options import ForceOption, Output, QuietOption
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ...verbs.run import Run
+    from ...verbs.runs.run import Run
 
 
 @dataclass(frozen=True)

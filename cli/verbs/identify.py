@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...core.errors import InputError, Place
-from ...verbs.study import Study, read_study
+from ...verbs.studies.study import Study, read_study
 from ..answer import free_folder
 from ..console import emit_json, speaks, stdout, tell, working
 from ..options import (
@@ -28,7 +28,7 @@ from ..options import (
 )
 
 if TYPE_CHECKING:
-    from ...verbs.identify import Identified
+    from ...verbs.runs.identified import Identified
 
 _FILES = (".unv", ".uff", ".h5")
 

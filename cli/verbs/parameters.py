@@ -1,6 +1,6 @@
 """``trueup parameters DECK [TEST]``."""
 
-from ...verbs.study import Study
+from ...verbs.studies.study import Study
 from ..console import emit_json, speaks, stdout, tell, working
 from ..options import Output
 

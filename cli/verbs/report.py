@@ -10,7 +10,7 @@ from ..options import QuietOption
 
 def report(run: Annotated[Path, typer.Argument(metavar="RUN")], quiet: QuietOption = False) -> None:
     """Make the report of a run folder again."""
-    from ...verbs.report import report as make
+    from ...verbs.runs.report import report as make
 
     page = make(run)
     if not quiet:

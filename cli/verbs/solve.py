@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from ...core.errors import InputError
-from ...verbs.study import Study, read_study
+from ...verbs.studies.study import Study, read_study
 from ..console import emit_json, speaks, stdout, tell, working
 from ..options import (
     ForceOption,

@@ -45,10 +45,28 @@ if TYPE_CHECKING:
     from .verbs.convert import convert as convert
     from .verbs.correlate import correlate as correlate
     from .verbs.discover import discover as discover
-    from .verbs.identify import Identified as Identified, identify as identify
+    from .verbs.files.read import read as read
+    from .verbs.files.sources import read_deck as read_deck, read_test as read_test
+    from .verbs.files.write_fmu import Converted as Converted, write_fmu as write_fmu
+    from .verbs.identify import identify as identify
     from .verbs.inspect import Inspected as Inspected, inspect as inspect
-    from .verbs.open_run import open_run as open_run
-    from .verbs.options import (
+    from .verbs.parameters import (
+        MovableParameters as MovableParameters,
+        parameters as parameters,
+    )
+    from .verbs.plan import Planned as Planned, plan as plan
+    from .verbs.runs.identified import Identified as Identified
+    from .verbs.runs.open_run import open_run as open_run
+    from .verbs.runs.report import report as report
+    from .verbs.runs.run import (
+        Correlated as Correlated,
+        Discovered as Discovered,
+        Updated as Updated,
+    )
+    from .verbs.runs.solved import Solved as Solved
+    from .verbs.runs.together import UpdatedTogether as UpdatedTogether
+    from .verbs.solve import solve as solve
+    from .verbs.studies.options import (
         CompareOptions as CompareOptions,
         CorrelateOptions as CorrelateOptions,
         DiscoverOptions as DiscoverOptions,
@@ -56,20 +74,8 @@ if TYPE_CHECKING:
         PlantOptions as PlantOptions,
         UpdateOptions as UpdateOptions,
     )
-    from .verbs.parameters import (
-        MovableParameters as MovableParameters,
-        parameters as parameters,
-    )
-    from .verbs.plan import Planned as Planned, plan as plan
-    from .verbs.read import read as read
-    from .verbs.report import report as report
-    from .verbs.run import Correlated as Correlated, Discovered as Discovered, Updated as Updated
-    from .verbs.solve import Solved as Solved, solve as solve
-    from .verbs.sources import read_deck as read_deck, read_test as read_test
-    from .verbs.study import Study as Study
+    from .verbs.studies.study import Study as Study
     from .verbs.update import update as update
-    from .verbs.update_together import UpdatedTogether as UpdatedTogether
-    from .verbs.write_fmu import Converted as Converted, write_fmu as write_fmu
 
 __version__ = VERSION
 
@@ -91,22 +97,24 @@ __getattr__, __all__ = lazy_names(
         ".verbs.convert": "convert",
         ".verbs.correlate": "correlate",
         ".verbs.discover": "discover",
-        ".verbs.identify": "Identified identify",
+        ".verbs.identify": "identify",
         ".verbs.inspect": "Inspected inspect",
-        ".verbs.open_run": "open_run",
-        ".verbs.options": "CompareOptions CorrelateOptions DiscoverOptions ParametersOptions "
-        "PlantOptions UpdateOptions",
+        ".verbs.runs.open_run": "open_run",
+        ".verbs.studies.options": "CompareOptions CorrelateOptions DiscoverOptions "
+        "ParametersOptions PlantOptions UpdateOptions",
         ".verbs.parameters": "MovableParameters parameters",
         ".verbs.plan": "Planned plan",
-        ".verbs.read": "read",
-        ".verbs.report": "report",
-        ".verbs.run": "Correlated Discovered Updated",
-        ".verbs.solve": "Solved solve",
-        ".verbs.sources": "read_deck read_test",
-        ".verbs.study": "Study",
+        ".verbs.files.read": "read",
+        ".verbs.runs.report": "report",
+        ".verbs.runs.run": "Correlated Discovered Updated",
+        ".verbs.solve": "solve",
+        ".verbs.files.sources": "read_deck read_test",
+        ".verbs.studies.study": "Study",
         ".verbs.update": "update",
-        ".verbs.update_together": "UpdatedTogether",
-        ".verbs.write_fmu": "Converted write_fmu",
+        ".verbs.runs.identified": "Identified",
+        ".verbs.runs.solved": "Solved",
+        ".verbs.runs.together": "UpdatedTogether",
+        ".verbs.files.write_fmu": "Converted write_fmu",
     },
 )
 

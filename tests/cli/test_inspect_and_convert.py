@@ -27,7 +27,7 @@ from trueup.core.data.dofs import Dofs
 from trueup.core.data.frfs import Frfs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
-from trueup.verbs.read import kind_of_file
+from trueup.verbs.files.read import kind_of_file
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 KINDS = {

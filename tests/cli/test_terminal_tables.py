@@ -16,7 +16,7 @@ from trueup.core.results.correlation import Compared, RunTables
 from trueup.core.results.inspection import FileRow, SkippedRow
 from trueup.core.results.modes import Checks, IdentifiedRow, ModeRow, SolveTables
 from trueup.core.results.plain import Table
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 
 def correlation(n: int = 2, others: int = 0) -> dict[str, Any]:

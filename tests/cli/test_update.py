@@ -193,7 +193,7 @@ def test_frequencies_and_shapes_together_close_the_gap_of_both(
 
 
 def test_the_three_strategies_of_the_paper_are_study_files(duct: Path) -> None:
-    from trueup.verbs.study import read_study
+    from trueup.verbs.studies.study import read_study
 
     first, second, third = (
         read_study(duct / f"{n}.toml") for n in ("frequencies", "masses_first", "both")

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from trueup.cli.app import run
-from trueup.verbs.study import read_study, study_keys
+from trueup.verbs.studies.study import read_study, study_keys
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

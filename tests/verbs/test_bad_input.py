@@ -11,7 +11,7 @@ import pytest
 
 import trueup
 from trueup.core.data.parameter import Parameter
-from trueup.verbs.study import Study
+from trueup.verbs.studies.study import Study
 
 DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
 DECK, TEST = DUCT / "duct.bdf", DUCT / "duct_test.unv"

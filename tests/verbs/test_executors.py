@@ -14,8 +14,8 @@ import pytest
 import trueup
 from trueup.core.errors import CheckError, InputError
 from trueup.core.independent import in_turn
-from trueup.verbs import executors
-from trueup.verbs.executors import executor
+from trueup.verbs.studies import executors
+from trueup.verbs.studies.executors import executor
 
 NUMBERS = [3.0, 1.0, 4.0, 1.5, 9.0]
 

@@ -69,8 +69,8 @@ def test_what_cannot_be_inspected_is_named(files: Any) -> None:
 
 def test_a_store_gives_matrices_the_names_of_their_source(tmp_path: Path) -> None:
     from trueup.adapters.nastran import matrix_of
-    from trueup.verbs.delivery import TARGETS
-    from trueup.verbs.exchange import Cargo, load
+    from trueup.verbs.files.delivery import TARGETS
+    from trueup.verbs.files.exchange import Cargo, load
 
     cargo, store = Cargo(), tmp_path / "all.h5"
     for own in ("M", "M", "M_3"):

@@ -14,7 +14,7 @@ from tests.verbs.test_measured_beside import TRUTH
 import trueup
 from trueup.adapters.nastran import read_modes
 from trueup.adapters.nastran.editing.changed_deck import ChangedDeck
-from trueup.verbs.outside_solver import outside_solver
+from trueup.verbs.updating.outside_solver import outside_solver
 
 SELF = f"{shlex.quote(sys.executable)} -m trueup solve {{deck}} -n 6 --out modes.h5"
 HIGHER = """

@@ -12,7 +12,7 @@ import trueup
 from trueup.adapters.nastran import NastranMatrix, matrix_of, write_op4
 from trueup.adapters.store import StoreContent, write_store
 from trueup.adapters.universal import UniversalContent, write_universal
-from trueup.verbs.read import FILE_KINDS, kind_of_file
+from trueup.verbs.files.read import FILE_KINDS, kind_of_file
 
 FIXTURES = Path(__file__).parents[2] / "fixtures" / "duct"
 

@@ -12,7 +12,7 @@ import trueup
 from trueup.core.data.parameter import Parameter
 from trueup.core.errors import InputError
 from trueup.core.updating.residuals import RESIDUALS, Beside, Seen, Slopes
-from trueup.verbs.relations import read_relation
+from trueup.verbs.studies.relations import read_relation
 
 __all__ = ["files"]
 RELATIONS = next(r for r in RESIDUALS if r.name == "relations")

@@ -11,7 +11,7 @@ import pytest
 
 from trueup.core.data.geometry import Geometry
 from trueup.core.results.correlation import RunTables
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 
 def pair(

@@ -23,7 +23,7 @@ from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
 from trueup.core.errors import InputError
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 VOID = {"meta", "br", "path", "rect", "circle", "line", "use"}
 

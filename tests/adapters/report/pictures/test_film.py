@@ -13,7 +13,7 @@ from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
 from trueup.core.results.correlation import Compared
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 SHAPES = np.random.default_rng(5).normal(size=(24, 4))
 ALL = Dofs(np.repeat(np.arange(1, 9), 3), np.tile(np.arange(1, 4), 8))

@@ -17,7 +17,7 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
 from trueup.core.results.correlation import Compared
 from trueup.core.results.plain import Table
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 RNG = np.random.default_rng(7)
 ALL = Dofs(np.repeat(np.arange(1, 9), 6), np.tile(np.arange(1, 7), 8))

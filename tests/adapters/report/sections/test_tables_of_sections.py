@@ -18,7 +18,7 @@ from trueup.adapters.report.sections.parameters import PARAMETERS
 from trueup.adapters.report.sections.unpaired_modes import UNPAIRED_MODES
 from trueup.adapters.report.sections.would_decide import WOULD_DECIDE
 from trueup.adapters.report.tables.number_formats import fixed, general, hz, listed, signed
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 
 def table_of(section: Section[Any], result: dict[str, Any], k: int = 0) -> Table:

@@ -8,7 +8,7 @@ import pytest
 
 from trueup.adapters.report import headline
 from trueup.adapters.report.tables.headline import figures, story
-from trueup.verbs.report import answer_of
+from trueup.verbs.runs.report import answer_of
 
 
 def test_correlation_counts_pairs_and_names_the_worst_and_the_lonely(

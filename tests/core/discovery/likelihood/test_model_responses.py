@@ -59,6 +59,6 @@ def test_the_report_shows_them_and_can_be_made_again(run, tmp_path):
     assert 'class="overlaid"' in page
     assert 'data-made="the model"' in page
     trueup.open_run(folder)
-    from trueup.verbs.report import report
+    from trueup.verbs.runs.report import report
 
     assert report(folder).read_text(encoding="utf-8") == page

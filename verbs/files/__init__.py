@@ -1,0 +1,1 @@
+"""Files and objects in, files out: decks, tests, modes, matrices, plants for simulators."""

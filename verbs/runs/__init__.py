@@ -1,0 +1,1 @@
+"""What a verb gives back, the run folder that holds it, its report and pictures."""
