@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E, cantilever
+from tests.verbs.updating.test_measured_beside import TRUTH, E, cantilever
 
 import trueup
 

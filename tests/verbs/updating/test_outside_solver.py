@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_measured_beside import TRUTH
+from tests.verbs.updating.test_measured_beside import TRUTH
 
 import trueup
 from trueup.adapters.nastran import read_modes
@@ -106,7 +106,7 @@ def test_a_command_that_cannot_be_is_refused(files: tuple[Path, Path]) -> None:
 @pytest.mark.parametrize("kept", ["modes.op2", "modes.h5", "modes.f06"])
 def test_modes_are_taken_of_what_msc_nastran_leaves(kept: str, tmp_path: Path) -> None:
     """A solver that leaves one of the files of a recorded run of MSC Nastran."""
-    recorded = Path(__file__).parents[3] / "shared" / "data" / "nastran" / "svanberg_beam"
+    recorded = Path(__file__).parents[4] / "shared" / "data" / "nastran" / "svanberg_beam"
     if not recorded.is_dir():
         pytest.skip("no shared data beside the repository")
     deck = trueup.read_deck(recorded / "modes.dat")

@@ -17,7 +17,7 @@ import trueup
 from trueup.adapters.nastran import build_model
 from trueup.cli.app import run
 
-DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
+DUCT = Path(__file__).parents[3] / "fixtures" / "duct"
 ASKED = {"inputs": "10:+Z,200:+Y", "outputs": "10:+Z,200:+Y,333:-X:acc"}
 DECK = """SOL 103
 CEND
@@ -114,7 +114,7 @@ def test_damping_of_the_deck_is_half_of_g_and_what_dashpots_give(tmp_path: Path)
 def test_responses_are_those_of_nx_nastran_with_the_damping_of_its_table(tmp_path: Path) -> None:
     """Modal frequency response of a free model (SOL 111, TABDMP1, WTMASS): single precision."""
     op2 = pytest.importorskip("pyNastran.op2.op2")
-    deck = Path(__file__).parents[3] / "shared/data/nastran/seismic_mass/good_sine.dat"
+    deck = Path(__file__).parents[4] / "shared/data/nastran/seismic_mass/good_sine.dat"
     if not deck.is_file():
         pytest.skip("no shared data beside the repository")
     results = op2.OP2(debug=False, log=None)

@@ -14,7 +14,7 @@ from trueup.core.errors import InputError
 
 @pytest.fixture(scope="module")
 def duct():
-    return Path(__file__).resolve().parents[2] / "fixtures" / "duct"
+    return Path(__file__).resolve().parents[3] / "fixtures" / "duct"
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E
+from tests.verbs.updating.test_measured_beside import TRUTH, E
 
 import trueup
 from trueup.core.errors import InputError

@@ -14,7 +14,7 @@ from trueup.adapters.store import StoreContent, write_store
 from trueup.adapters.universal import UniversalContent, write_universal
 from trueup.verbs.files.read import FILE_KINDS, kind_of_file
 
-FIXTURES = Path(__file__).parents[2] / "fixtures" / "duct"
+FIXTURES = Path(__file__).parents[3] / "fixtures" / "duct"
 
 
 def test_a_deck_and_a_test_are_those_of_their_own_readers() -> None:

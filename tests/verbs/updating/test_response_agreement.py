@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs import test_response_update
+from tests.verbs.updating import test_response_update
 
 import trueup
 

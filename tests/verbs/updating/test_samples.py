@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, files
+from tests.verbs.updating.test_measured_beside import TRUTH, files
 
 import trueup
 from trueup.core.errors import InputError

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_measured_beside import TRUTH, E, files
+from tests.verbs.updating.test_measured_beside import TRUTH, E, files
 
 import trueup
 from trueup.core.data.parameter import Parameter

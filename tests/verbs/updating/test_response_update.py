@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.test_damping_update import DECK, written
+from tests.verbs.updating.test_damping_update import DECK, written
 
 import trueup
 from trueup.adapters.nastran import build_model
