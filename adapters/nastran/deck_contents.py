@@ -98,5 +98,6 @@ def _request(eigen: EigenRequest) -> dict[str, Any]:
 def _selected(case: CaseControl) -> dict[str, Any]:
     names = ("subcase", "spc", "mpc", "method", "nsm", "suport1", "temperature")
     sets = {n: getattr(case, n) for n in names if getattr(case, n)}
-    matrices = {n: [m for m, _ in getattr(case, n)] for n in ("k2gg", "m2gg", "k2pp", "m2pp")}
+    matrices = {n: [m for m, _ in getattr(case, n)] for n in ("k2gg", "m2gg")}
+    matrices |= {command.lower(): [*names] for command, names in case.not_added}
     return {**sets, **{n: held for n, held in matrices.items() if held}}

@@ -25,6 +25,7 @@ from ..properties.grids import Points, point_dofs, to_basic
 from ..properties.unit_slips import unit_slips
 from .deck_damping import damping_terms
 from .deck_elements import Structure, read_structure
+from .negative_masses import refuse_negative_masses
 from .parameter_bounds import admissible
 from .variation import Variation, read_variation
 
@@ -165,6 +166,7 @@ def _remove_singular(
     K, M = (_total(part) for part in terms)
     if not K.nnz:
         raise Place(deck.path).error("the deck has no element that carries stiffness")
+    refuse_negative_masses(deck, points, reduced.kept, M.diagonal())
     triple = np.where(reduced.kept < 6 * len(points.ids), reduced.kept // 3, -1)
     automatic = deck.params.get("AUTOSPC", "YES") != "NO"
     smallest = deck.param("EPZERO", _EPZERO)

@@ -45,12 +45,12 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
     Raises
     ------
     InputError
-        A line that neither starts a card nor continues one.
+        A line that neither starts a card nor continues one, or with a symbol to be substituted.
     """
     current: Raw | None = None
     seen: set[str] = set()
     for line in lines:
-        text = line.text.split("$", 1)[0].rstrip() if "$" in line.text else line.text.rstrip()
+        text = _uncommented(line, files)
         if not text:
             continue
         name = text[:8].rstrip()
@@ -75,6 +75,16 @@ def cut(lines: Iterable[Line], files: tuple[Path, ...]) -> Iterator[Raw]:
         current = Raw(name, [text], line.file, line.number)
     if current is not None:
         yield current
+
+
+def _uncommented(line: Line, files: tuple[Path, ...]) -> str:
+    text = line.text.split("$", 1)[0].rstrip() if "$" in line.text else line.text.rstrip()
+    if "%" in text:
+        raise Place(files[line.file], line.number).error(
+            f"{text.strip()!r}: symbols (%) are not substituted: give the deck with their values "
+            "put in"
+        )
+    return text
 
 
 def _indented(text: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -147,9 +147,9 @@ class Deck(Noun):
         try:
             return parse_real(text)
         except ValueError:
-            raise Place(self.path).error(
-                f"PARAM {name} is {text!r}, which is not a number"
-            ) from None
+            cards = (p for card, p in self.bulk.placed("PARAM") if card.n == name)
+            place = next(cards, Place(self.path, card=f"PARAM {name}"))
+            raise place.error(f"{name} is {text!r}, which is not a number") from None
 
 
 def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) -> Deck:
@@ -195,13 +195,8 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *unit_warnings,
         *skip_warnings,
         *_solution(sections),
+        *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
-    for command, matrices in (("K2PP", case.k2pp), ("M2PP", case.m2pp)):
-        if matrices:
-            names = " + ".join(name for name, _ in matrices)
-            warnings.append(
-                f"{path}: {command} = {names} is for response analyses; normal modes go without it"
-            )
     if eigen is None and case.method is not None:
         warnings.append(
             f"{path}: METHOD = {case.method} selects no EIGRL or EIGR of the deck; how many modes "
@@ -269,6 +264,24 @@ def _solution(sections: Any) -> tuple[str, ...]:
         if len(words) > 1 and words[0] == "SOL" and words[1] not in _MODAL:
             return (f"the deck is for SOL {words[1]}; trueup takes its structure for normal modes",)
     return ()
+
+
+def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[str]:
+    """Say of matrices of DMIG what is not added, or not everywhere."""
+    for command, names in case.not_added:
+        of_damping = command in ("B2GG", "K42GG")
+        why = "damping, which goes" if of_damping else "response analyses; normal modes go"
+        yield f"{command} = {' + '.join(names)} is for {why} without it"
+    if case.m2gg:
+        names = tuple(name for name, _ in case.m2gg)
+        yield (
+            f"M2GG = {' + '.join(names)} takes part in the modes, but not in the mass and centre "
+            "of gravity that are told"
+        )
+    words = {w for line in sections.case for w in re.split(r"\W+", line.text.upper())}
+    for name in dict.fromkeys(card.name for card in bulk.listed("DMIG")):
+        if name not in words:
+            yield f"DMIG {name} is added nowhere: case control (K2GG, M2GG, ...) does not select it"
 
 
 def _skipped(

@@ -31,6 +31,7 @@ from ..deck.merged_bulk import (
 from ..deck.read_deck import Deck, External
 from .deck_coordinate_systems import Frames
 from .grids import read_points
+from .superelement_sets import of_own_subcase, with_sets_of_parts
 
 _TOLERANCE = 1e-5
 _EXTERNAL = "EXTOP4"
@@ -79,8 +80,6 @@ _LEFT_OUT = (
 _OWN = ("CWELD", "CFAST", "NSM", "NSML", "NSM1", "NSML1")
 """Cards whose numbers mean what another of their fields says."""
 
-_HOLDING = ("SPCADD", "SPC", "SPC1", "MPCADD", "MPC")
-
 _DIRECTED = ("components", "cm", "cn", "ps")
 """Attributes that hold components of displacement systems."""
 
@@ -116,10 +115,11 @@ def join_superelements(deck: Deck, matrices: Matrices) -> Deck:
             "the assembled deck"
         )
         return replace(deck, refused=(*deck.refused, refused))
+    notes: list[str] = []
+    deck = with_sets_of_parts(deck, notes)
     if not deck.parts:
-        return deck
-    deck, external = _with_sets(deck), _external_ones(deck)
-    notes = []
+        return replace(deck, warnings=(*deck.warnings, *notes))
+    external = _external_ones(deck)
     if whole := sorted(set(deck.parts) - set(external)):
         notes.append(
             f"superelements ({', '.join(map(str, whole))}) are joined and solved whole: Nastran "
@@ -215,7 +215,7 @@ def _add(deck: Deck, joined: _Joined, seid: int, part: Bulk, notes: list[str]) -
             f"superelement {seid} shares numbers with others: {more} is added to those of its "
             f"{', '.join(changed)}"
         )
-    bulk = merged(main, _selected(deck, seid, part), numbers)
+    bulk = merged(main, of_own_subcase(deck, seid, part), numbers)
     _check_directions(bulk, part, joints, numbers)
     if system:
         systems = {**bulk.table("CORD2R"), system.cid: system}
@@ -226,31 +226,6 @@ def _add(deck: Deck, joined: _Joined, seid: int, part: Bulk, notes: list[str]) -
 
 def _params(part: Bulk) -> dict[str, str]:
     return {c.n: c.v1 for c in part.listed("PARAM") if c.v1 is not None}
-
-
-def _with_sets(deck: Deck) -> Deck:
-    """Select a set for the whole where only subcases of superelements select theirs."""
-    bulks = (*deck.parts.values(), deck.bulk)
-    free = 1 + max((c.sid for b in bulks for n in _HOLDING for c in b.listed(n)), default=0)
-    own = zip(*(sets for _, sets in deck.case.of_parts), strict=True)
-    spc, mpc = (free if any(sets) else None for sets in own) if deck.case.of_parts else (None, None)
-    case = replace(deck.case, spc=deck.case.spc or spc, mpc=deck.case.mpc or mpc)
-    return replace(deck, case=case)
-
-
-def _selected(deck: Deck, seid: int, part: Bulk) -> Bulk:
-    """Leave of a part the constraints that its own subcase selects, in the set of the whole."""
-    of_parts = dict(deck.case.of_parts)
-    lists, raw = dict(part.lists), dict(part.raw)
-    for name in _HOLDING if seid in of_parts else ():
-        k = int(name.startswith("MPC"))
-        own, whole = of_parts[seid][k], (deck.case.spc, deck.case.mpc)[k]
-        added = (c.sets for c in part.listed(f"{name[:3]}ADD") if c.sid == own)
-        wanted = {own, *(s for sets in added for s in sets)} if not name.endswith("ADD") else {}
-        both = zip(part.listed(name), part.raw.get(name, ()), strict=True)
-        kept = [(c._replace(sid=whole), r) for c, r in both if c.sid in wanted]
-        lists[name], raw[name] = [c for c, _ in kept], [r for _, r in kept]
-    return replace(part, lists=lists, raw=raw)
 
 
 def _without(part: Bulk, q_set: set[int]) -> Bulk:

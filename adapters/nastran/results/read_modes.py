@@ -145,6 +145,8 @@ def kind_of_results(path: Path) -> str:
         head = stream.read(_HEAD)
     if head.startswith(_HDF5_SIGNATURE):
         return HDF5
+    if path.suffix.lower() in (".h5", ".hdf5"):
+        raise Place(path).fault("is not an HDF5 file, whatever its name says")
     text = "" if b"\0" in head else head.decode("latin-1")
     if is_punched_result(text):
         return PUNCH

@@ -54,6 +54,8 @@ class TestFiles:
                 "GRID,1\nGRID,1,,2.\n",
                 r"main.bdf line 2: GRID 1 is defined twice, first in .* line 1",
             ),
+            ("GRID,1\n%setrepsym t=1.\n", r"main.bdf line 2: '%setrepsym t=1.': symbols \(%\)"),
+            ("GRID,1,,%x%\n", r"main.bdf line 1: 'GRID,1,,%x%': symbols \(%\) are not"),
             ("$ nothing\n", r"no bulk data card was found"),
             ("BEGIN AFPM=1\nGRID,1\n", r"line 1: 'BEGIN AFPM=1' .*does not read"),
         ],
@@ -194,3 +196,51 @@ def test_parameters_above_the_subcases_override_bulk_data(tmp_path):
     case = "PARAM,WTMASS,.5\nSUBCASE 1\nPARAM,G,.1\nPARAM,W3,7.\n"
     path.write_text(f"SOL 103\nCEND\n{case}BEGIN BULK\nPARAM,WTMASS,.2\nPARAM,G,.3\n{BAR}")
     assert read_deck(path).params == {"WTMASS": ".5", "G": ".3", "W3": "7."}
+
+
+MASSES = """\
+GRID,1
+GRID,2
+CELAS2,1,100.,1,1,2,1
+CONM2,5,2,,{}
+CONM2,6,1,,1.
+DMIG,KX,0,6,1,0
+DMIG,KX,2,1,,2,1,1.
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("PARAM,WTMASS,abc\n" + MASSES.format("1."), r"PARAM \(.* line 1\): WTMASS is 'ABC'"),
+        (MASSES.format("-1."), r"CONM2 5 \(.* line 4\): its mass .* leaves -1 at 2:1"),
+        (MASSES.format("-1.") + "CONM2,7,2,,-1.\n", r"line 4\): .* \(also CONM2 7\).* -2 at 2:1"),
+    ],
+)
+def test_what_is_wrong_in_numbers_is_told_with_its_line(tmp_path, text, sentence):
+    (tmp_path / "a.bdf").write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        build_model(read_deck(tmp_path / "a.bdf"))
+
+
+def test_counterweights_are_no_fault(tmp_path):
+    (tmp_path / "a.bdf").write_text(MASSES.format("1.5") + "CONM2,7,2,,-1.\n")
+    build_model(read_deck(tmp_path / "a.bdf"))
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("", "DMIG KX is added nowhere: case control (K2GG, M2GG, ...) does not select it"),
+        ("M2GG = 2.0*KX", "M2GG = KX takes part in the modes, but not in the mass"),
+        ("K2GG = KX", None),
+        ("B2GG = KX", "B2GG = KX is for damping, which goes without it"),
+        ("K2PP = KX", "K2PP = KX is for response analyses; normal modes go without it"),
+    ],
+)
+def test_direct_matrices_that_are_left_out_are_said(tmp_path, command, said):
+    path = tmp_path / "a.bdf"
+    path.write_text(f"CEND\n{command}\nBEGIN BULK\n{MASSES.format('1.')}")
+    told = [w for w in read_deck(path).warnings if "KX" in w]
+    assert told == ([] if said is None else told[:1])
+    assert all(said in w for w in told)

@@ -111,6 +111,22 @@ def test_a_part_is_held_by_the_set_of_its_subcase_alone(frequencies, residual, s
     np.testing.assert_allclose(found, frequencies(one)[0], rtol=1e-9)
 
 
+def test_sets_of_superelements_in_the_main_bulk_hold_it_too(frequencies):
+    """SESET, or SEID on a GRID: their subcases select constraints of the main bulk."""
+    cases = "METHOD=1\nSUBCASE 1\nSUPER=1\nSPC=7\nSUBCASE 2\nSPC=1\n"
+    bulk = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,1,8\n{},15,22\nSESET,1,15,22\n"
+    one = frequencies(bulk.format("SPC1,1,123456"))[0]
+    head = f"SOL 103\nCEND\n{cases}BEGIN BULK\n"
+    for own in ("SPC1,7,123456", "SPCADD,7,8\nSPC1,8,123456"):
+        np.testing.assert_allclose(frequencies(bulk.format(own), head)[0], one, rtol=1e-12)
+
+
+def test_a_set_that_a_part_does_not_have_is_told_by_its_own_number(frequencies):
+    head = "SOL 103\nCEND\nSUBCASE 1\nSUPER=1\nSPC=7\nSUBCASE 2\nSPC=1\nBEGIN BULK\n"
+    _, deck = frequencies(f"{MAIN}BEGIN SUPER=1\n{plate(4, 0.2, 101, 101)}{MATERIAL}", head)
+    assert any("SPC = 7 of superelement 1, which has no SPC cards" in w for w in deck.warnings)
+
+
 def test_superelements_of_the_main_bulk_are_solved_whole_and_said(frequencies, whole):
     bulk = plate(6, 0.0) + MATERIAL + "SPC1,1,123456,1,8,15,22\nSESET,1,4,thru,7\nCSUPEXT,1,3\n"
     found, deck = frequencies(bulk)

@@ -260,6 +260,9 @@ def test_hdf5_of_another_kind(tmp_path):
         file["x"] = 1
     with pytest.raises(InputError, match="not a result file of Nastran"):
         read_modes(tmp_path / "a.h5")
+    (tmp_path / "a.h5").write_text("junk")
+    with pytest.raises(InputError, match=r"a\.h5 is not an HDF5 file"):
+        read_modes(tmp_path / "a.h5")
 
 
 def test_a_file_that_is_not_there(tmp_path):
