@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import frozen
+from ..arrays import Bools, frozen
+from .identifiability import told_alone
 from .problem import Configuration, Problem
 from .stages import Iteration, Reason, Stage, Stop, Updated
 from .update import update_configurations
@@ -22,8 +23,9 @@ def update_determined(
     """Update as ever, and leave at the deck's value what the test does not determine.
 
     Where an update ends with parameters whose values the test leaves open, it is made again
-    without them: of those that it cannot tell apart the one that moves the residuals most is kept
-    (see `identifiability`).
+    without them, unless it determines none of them all by itself: of those that it cannot tell
+    apart the one that moves the residuals most stands for their combination (see
+    `identifiability`), so that the others come out as they are. `put_back` takes that back.
 
     Parameters
     ----------
@@ -35,7 +37,8 @@ def update_determined(
     Returns
     -------
     Updated
-        `undetermined` are those that were left, with factor 1 and no standard error.
+        `undetermined` are those that were left, with factor 1 and no standard error; `combined`
+        are those that stand for a combination. Standard errors are those of all moving together.
 
     Raises
     ------
@@ -48,11 +51,13 @@ def update_determined(
         gone_on, progress = steps()
         return update_configurations(configurations, stages, progress=progress, gone_on=gone_on)
 
-    done = updated(stages)
+    done = every = updated(stages)
+    named = sorted({k for s in stages for k in s.parameters})
+    alone = told_alone(every.factors, every.standard_error)
     solves, left, told = done.eigensolutions, set[int](), list[str]()
     while done.undetermined:
         told += done.doubts
-        left |= {*done.undetermined}
+        left |= {*done.undetermined} if alone.any() else {*named}
         moving = _without(stages, left)
         if not moving:
             done = _as_it_was(done, tuple(problem.deck_point))
@@ -61,11 +66,53 @@ def update_determined(
         solves += done.eigensolutions
     if not left:
         return done
+    warnings = (*dict.fromkeys(told), _stay(problem, left), *done.warnings)
+    combined = tuple(k for k in named if k not in left and not alone[k])
+    done = replace(
+        done,
+        eigensolutions=solves,
+        undetermined=tuple(sorted(left)),
+        warnings=warnings,
+        combined=combined,
+    )
+    return _known_of(done, every, alone)
+
+
+def put_back(configurations: Sequence[Configuration], stage: Stage, done: Updated) -> Updated:
+    """Return an update with what is known in combination alone as in the deck, solved again."""
+    if not done.combined:
+        return done
+    problem, factors = Problem.of(configurations), np.array(done.factors)
+    factors[[*done.combined]] = problem.deck_point[[*done.combined]]
+    at_bound = np.array(done.at_bound)
+    at_bound[[*done.combined]] = False
+    return replace(
+        done,
+        factors=frozen(factors),
+        at_bound=frozen(at_bound),
+        after=problem.at(problem.full, factors, stage.minimised).without_factors(),
+        eigensolutions=done.eigensolutions + len(configurations),
+        undetermined=tuple(sorted((*done.undetermined, *done.combined))),
+        warnings=(*done.warnings, _stay(problem, done.combined)),
+        combined=(),
+    )
+
+
+def _stay(problem: Problem, left: Collection[int]) -> str:
     names = " and ".join(problem.parameters[k].name for k in sorted(left))
-    stay = f"{names} stay{'s' if len(left) == 1 else ''} as in the deck"
-    warnings = (*dict.fromkeys(told), stay, *done.warnings)
-    at = tuple(sorted(left))
-    return replace(done, eigensolutions=solves, undetermined=at, warnings=warnings)
+    return f"{names} stay{'s' if len(left) == 1 else ''} as in the deck"
+
+
+def _known_of(done: Updated, every: Updated, alone: Bools) -> Updated:
+    """Return an update with the standard errors that its parameters have with all moving."""
+    known = alone & np.isfinite(done.standard_error)
+    both = known[:, None] & known
+    covariance = every.covariance
+    return replace(
+        done,
+        standard_error=frozen(np.where(known, every.standard_error, np.nan)),
+        covariance=None if covariance is None else frozen(np.where(both, covariance, np.nan)),
+    )
 
 
 def _without(stages: Sequence[Stage], left: Collection[int]) -> tuple[Stage, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, frozen
+from ..arrays import Bools, Floats, frozen
 from ..noun import Noun
 from .updating_numbers import UPDATING
 
@@ -23,6 +23,8 @@ class Identifiability(Noun):
         Likewise, each moving alone; infinite where it moves no residual.
     covariance : (n, n) float
         Likewise.
+    information : (n, n) float
+        Its inverse where there is one: GᵀG over the scatter.
     correlation : (n, n) float
         Cosines between the columns of G: parameters at 1 or -1 cannot be told apart.
     singular_values : (m,) float
@@ -39,6 +41,7 @@ class Identifiability(Noun):
     standard_error: Floats
     alone: Floats
     covariance: Floats
+    information: Floats
     correlation: Floats
     singular_values: Floats
     directions: Floats
@@ -78,6 +81,7 @@ def identifiability(gradient: Floats, scatter: float, limit: Floats | float) -> 
         frozen(error),
         frozen(alone),
         frozen(covariance),
+        frozen(gradient.T @ gradient / scatter if scatter > 0.0 else np.zeros((n, n))),
         frozen(unit.T @ unit),
         frozen(s),
         frozen(vt),
@@ -100,6 +104,46 @@ def doubts(names: Sequence[str], factors: Floats, said: Identifiability) -> Iter
             f"the test hardly determines {names[k]}: its factor {factors[k]:.3g} has a standard "
             f"error of {said.standard_error[k]:.2g}"
         )
+    known = [
+        f"{_product(names, e)} (factor {np.exp(e @ np.log(factors)):.4g} ± {error:.2g})"
+        for e, error in combinations(factors, said)
+    ]
+    if known:
+        yield (
+            f"known together, not one by one: {'; '.join(known)}; name the one that is to move, or "
+            "add the residual 'prior'"
+        )
+
+
+def told_alone(factors: Floats, error: Floats) -> Bools:
+    """Whether each of all that moved is determined by itself, not in combination alone, (n,)."""
+    return np.asarray(np.nan_to_num(error, nan=np.inf) <= UPDATING.unsure * factors)
+
+
+def combinations(factors: Floats, said: Identifiability) -> Iterator[tuple[Floats, float]]:
+    """Give products of powers that the test determines, of parameters that it does not.
+
+    Each is the exponents, (n,), the largest 1, and the relative standard error; best known first.
+    They are eigenvectors of the information on the logarithms of these parameters, others free.
+    """
+    open_ = np.flatnonzero(~told_alone(factors, said.standard_error))
+    alone = np.setdiff1d(np.arange(len(factors)), open_)
+    N = said.information * np.outer(factors, factors)
+    across = N[np.ix_(open_, alone)]
+    own = N[np.ix_(open_, open_)] - across @ np.linalg.pinv(N[np.ix_(alone, alone)]) @ across.T
+    for w, v in zip(*(x[..., ::-1].T for x in np.linalg.eigh(own)), strict=True):
+        exponents = v / v[np.argmax(np.abs(v))]
+        part = np.abs(exponents) > UPDATING.part
+        error = 1.0 / np.sqrt(max(w, np.finfo(float).tiny)) / np.abs(v).max()
+        if part.sum() > 1 and error <= UPDATING.unsure:
+            whole = np.zeros(len(factors))
+            whole[open_[part]] = exponents[part]
+            yield whole, float(error)
+
+
+def _product(names: Sequence[str], exponents: Floats) -> str:
+    terms = [(names[k], exponents[k]) for k in np.argsort(-np.abs(exponents)) if exponents[k]]
+    return " · ".join(name if e == 1.0 else f"{name}^{e:.2g}" for name, e in terms)
 
 
 def _complement(rows: Floats) -> Floats:

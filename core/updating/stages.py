@@ -86,7 +86,8 @@ class Updated(Noun):
     `standard_error` (n_parameter,) belongs to the factors (NaN where the data say nothing);
     `at_bound` (n_parameter,) bool; `before` and `after` are of full order, of all configurations;
     `stopped` says why the iteration ended; `undetermined` are the positions of parameters that the
-    test does not determine beside the others, `doubts` the warnings that say so;
+    test does not determine beside the others, `doubts` the warnings that say so; `combined` are
+    those that moved although they are known in combination with such alone;
     `covariance` (n_parameter, n_parameter) of the factors, NaN likewise.
     """
 
@@ -102,6 +103,7 @@ class Updated(Noun):
     undetermined: tuple[int, ...] = ()
     doubts: tuple[str, ...] = ()
     covariance: Floats | None = None
+    combined: tuple[int, ...] = ()
 
     def of(self, problem: Problem, k: int) -> Updated:
         """Return what came of one of several configurations, with its own parameters alone."""

@@ -28,7 +28,7 @@ class UpdatingNumbers:
     tolerance: float = number(1e-3, "of a factor", "moves that settle an update, unless said otherwise", CHECK)
 
     unidentifiable: float = number(1e-4, "of the largest singular value, at least of 1", "of a direction that the test does not determine", CHECK)
-    unsure: float = number(0.5, "of a factor", "standard error from which on it is said to be hardly determined", CHECK)
+    unsure: float = number(0.2, "of a factor", "standard error above which it is not determined: the deck knows it as well", "as prior")
     part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
     alike: float = number(1e-6, "of what a parameter moves", "difference below which the first named is taken", ROUNDING)
     indistinct: float = number(0.98, "cosine", "of two columns of derivatives from which on they are not told apart", "angles of 11 degrees")

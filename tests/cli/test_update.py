@@ -237,9 +237,12 @@ def test_what_the_test_does_not_determine_is_not_written(
              "frequencies", "--json", "-")  # fmt: skip
     kept = call(*asked, "--out", tmp_path / "kept")
     every = call(*asked, "--out", tmp_path / "all", "--write-undetermined")
-    left = [p for p in json.loads(kept.out)["parameters"] if p["standard_error"] is None]
-    assert len(left) == 2
-    assert all(p["factor"] == 1.0 and p["updated"] == p["initial"] for p in left)
+    left = json.loads(kept.out)["parameters"]
+    assert all(
+        p["standard_error"] is None and p["factor"] == 1.0 and p["updated"] == p["initial"]
+        for p in left
+    )
+    assert "known together, not one by one:" in kept.err
     assert "stay as in the deck" in kept.err
     assert all(p["factor"] != 1.0 for p in json.loads(every.out)["parameters"])
     again = (tmp_path / "all" / "study.toml").read_text()

@@ -20,7 +20,7 @@ from ...core.errors import CheckError, InputError
 from ...core.reduction.eigenpair_derivatives import sensitivities
 from ...core.results.update import SolverRow
 from ...core.updating import update as core
-from ...core.updating.determined import update_determined
+from ...core.updating.determined import put_back, update_determined
 from ...core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from ...core.updating.prior_evidence import PriorWeighed, weigh_prior
 from ...core.updating.sampling import Sampled, sample_posterior
@@ -200,7 +200,7 @@ def moved(
     evidence = weigh_prior(every, last, best) if asked.evidence else ()
     if sampled:
         best = replace(best, warnings=(*best.warnings, *sampled.doubts))
-    return Moved(best, starts, intervals, sampled, evidence)
+    return Moved(put_back(every, last, best), starts, intervals, sampled, evidence)
 
 
 def _written(analysis: Analysis, done: core.Updated) -> tuple[_Written, ReadBack]:

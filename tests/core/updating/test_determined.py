@@ -2,30 +2,59 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from tests.core.chains import proportional
 from tests.core.updating.test_update import HALVES, N, chain, measured
 
-from trueup.core.updating.determined import update_determined
+from trueup.core.data.parameter import Parameter
+from trueup.core.updating.determined import put_back, update_determined
 from trueup.core.updating.identifiability import identifiability
 from trueup.core.updating.problem import Configuration
 from trueup.core.updating.stages import Reason
 from trueup.core.updating.update import Stage
 
 
-def test_of_stiffness_and_mass_in_common_one_moves():
+def test_of_stiffness_and_mass_in_common_none_moves_and_the_ratio_is_said():
     """Frequencies know the ratio alone: 1.2 by the stiffness or 1/1.2 by the mass."""
     model = chain([range(N), range(N)], ["k", "m"])
-    done = update_determined(
-        [Configuration(model, measured(model, [1.2, 1.0]), n_modes=8)], [Stage((0, 1))]
-    )
-    moved = [k for k in (0, 1) if done.factors[k] != 1.0]
-    assert len(moved) == 1
-    assert done.undetermined == (1 - moved[0],)
-    assert done.factors[0] / done.factors[1] == pytest.approx(1.2, rel=1e-3)
-    assert np.isfinite(done.standard_error[moved]).all()
-    assert any("stays as in the deck" in w for w in done.warnings)
+    target = measured(model, [1.2, 1.0], noise=1e-4)
+    done = update_determined([Configuration(model, target, n_modes=8)], [Stage((0, 1))])
+    assert done.factors.tolist() == [1.0, 1.0]
+    assert done.undetermined == (0, 1)
+    assert np.isnan(done.standard_error).all()
+    (said,) = (w for w in done.warnings if "known together" in w)
+    exponents = [float(e or 1.0) for e in re.findall(r"[km]\d(?:\^(-?[\d.]+))?", said)]
+    assert exponents == [1.0, -1.0]
+    factor = float(re.search(r"factor ([\d.]+) ±", said)[1])
+    assert max(factor, 1.0 / factor) == pytest.approx(1.2, rel=1e-3)
+    assert any("k0 and m1 stay as in the deck" in w for w in done.warnings)
+
+
+def test_what_is_known_by_itself_is_not_led_astray_by_what_is_not():
+    """Of k0 and q the product is known: one stands for it while k1 is found, then is put back."""
+    model = chain(HALVES)
+    first, *others = model.stiffness
+    both = replace(first, factors=(*first.factors, proportional(2, 0.1, 10)))
+    more = Parameter("q", ("q",), (1.0,))
+    model = replace(model, stiffness=(both, *others), parameters=(*model.parameters, more))
+    one = Configuration(model, measured(model, [1.2, 0.9, 1.1], noise=1e-4), n_modes=8)
+    stage = Stage((0, 1, 2))
+    done = update_determined([one], [stage])
+    assert len(done.combined) == 1
+    assert done.factors[0] * done.factors[2] == pytest.approx(1.32, rel=1e-3)
+    found = put_back([one], stage, done)
+    assert found.factors[[0, 2]].tolist() == [1.0, 1.0]
+    assert found.factors[1] == done.factors[1] == pytest.approx(0.9, rel=1e-3)
+    assert np.isnan(found.standard_error).tolist() == [True, False, True]
+    assert found.undetermined == (0, 2)
+    assert found.after.objective > done.after.objective
+    np.testing.assert_array_equal(found.after.factors, found.factors)
+    assert put_back([one], stage, found) is found
 
 
 def test_what_is_determined_moves_as_ever():

@@ -70,7 +70,7 @@ def test_an_interval_ends_nowhere_before_a_bound():
     model = chain([range(1)], n=1)
     only = Parameter("k0", ("k",), (1.0,), lower=0.99, upper=1.01)
     model = replace(model, parameters=(only,))
-    weights = Weights({"frequency_sigma": 0.2, "prior_sigma": 10.0}, 0.0)
+    weights = Weights({"frequency_sigma": 0.09, "prior_sigma": 10.0}, 0.0)
     _, found = posterior(model, [1.0], weights)
     np.testing.assert_array_equal(found[0], [-np.inf, np.inf])
 

@@ -116,7 +116,7 @@ def test_a_mass_leans_as_its_density_does():
 def test_samples_stay_within_the_bounds():
     model = chain([range(1)], n=1)
     model = replace(model, parameters=(replace(model.parameters[0], lower=0.98, upper=1.02),))
-    weights = Weights({"frequency_sigma": 0.2, "prior_sigma": 10.0}, 0.0)
+    weights = Weights({"frequency_sigma": 0.09, "prior_sigma": 10.0}, 0.0)
     _, found = sampled(model, [1.0], weights, count=4000)
     x = found.chains.samples
     assert 0.98 <= x.min() < 0.982

@@ -65,10 +65,13 @@ def configurations(folder: Path) -> list[dict[str, object]]:
 
 @pytest.fixture(scope="module")
 def done(files: Path) -> trueup.UpdatedTogether:
+    states = configurations(files)
+    for s in states:
+        s["measured_mass"] = trueup.solve(files / "truth" / Path(s["deck"]).name, 1).mass
     found = trueup.update(
         parameters=[*SKIN, "store = CONM2 900 M"],
-        configurations=configurations(files),
-        residuals="frequencies",
+        configurations=states,
+        residuals="frequencies, mass",
         frequency_sigma=0.001,
         deck_length_unit="mm",
     )
@@ -82,17 +85,31 @@ def test_two_states_tell_what_one_leaves_open(files: Path, done: trueup.UpdatedT
         files / "clean.bdf", files / "clean.unv", SKIN, residuals="frequencies",
         deck_length_unit="mm",
     )  # fmt: skip
-    assert any("stays as in the deck" in w for w in alone.warnings)
+    assert any("stay as in the deck" in w for w in alone.warnings)
     known = trueup.update(
         parameters=SKIN,
         configurations=configurations(files),
         residuals="frequencies",
         deck_length_unit="mm",
     )
-    assert not any("stays as in the deck" in w for w in known.warnings)
-    ratio = {p.name: p.factor for p in done.parameters}
-    assert ratio["stiffness"] / 0.9 == pytest.approx(ratio["density"] / 1.15, rel=2e-3)
-    assert ratio["store"] / 1.3 == pytest.approx(ratio["density"] / 1.15, rel=2e-3)
+    assert not any("as in the deck" in w for w in known.warnings)
+    found = {p.name: p.factor for p in done.parameters}
+    assert found == pytest.approx({"stiffness": 0.9, "density": 1.15, "store": 1.3}, rel=5e-3)
+
+
+def test_what_two_states_know_in_common_alone_is_put_back(files: Path) -> None:
+    """Of E, RHO and the store two ratios are known, none by itself."""
+    found = trueup.update(
+        parameters=[*SKIN, "store = CONM2 900 M"],
+        configurations=configurations(files),
+        residuals="frequencies",
+        deck_length_unit="mm",
+    )
+    assert {p.factor for p in found.parameters} == {1.0}
+    assert {p.standard_error for p in found.parameters} == {None}
+    (said,) = (w for w in found.warnings if "known together" in w)
+    assert said.count("±") == 2
+    assert not any(r.deck.diff for r in found.results.values())
 
 
 def test_pairs_are_told_of_each_configuration(done: trueup.UpdatedTogether) -> None:
@@ -121,8 +138,7 @@ def test_each_deck_is_written_with_its_changed_cards_alone(
 ) -> None:
     folder = done.save(tmp_path / "run")
     diffs = {name: (folder / name / "changes.diff").read_text() for name in done.results}
-    moved = {p.name for p in done.parameters if p.factor != 1.0}
-    cards = {"clean": ["MAT1"], "with_store": ["MAT1"] + ["CONM2"] * ("store" in moved)}
+    cards = {"clean": ["MAT1"], "with_store": ["MAT1", "CONM2"]}
     for name, diff in diffs.items():
         gone = [x[1:] for x in diff.splitlines() if x[:1] == "-" and x[:3] != "---"]
         assert sorted(x.split(",")[0] for x in gone) == sorted(cards[name])
