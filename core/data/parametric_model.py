@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import prod
 
@@ -104,6 +105,8 @@ class Model(Noun):
     damping, loss : tuple of Term
         Viscous damping D, and H, the structural one: stiffness times loss factor. Empty where the
         model says nothing of it.
+    ratios : callable, optional
+        Damping of modes by their frequencies [Hz] besides, fractions of critical, (n,) of (n,).
     """
 
     geometry: Geometry
@@ -118,6 +121,7 @@ class Model(Noun):
     rigid_mass: tuple[Floats, ...] = ()
     damping: tuple[Term, ...] = ()
     loss: tuple[Term, ...] = ()
+    ratios: Callable[[Floats], Floats] | None = None
 
     def __post_init__(self) -> None:
         require_kind(self.geometry, Geometry, "geometry of Model")
@@ -136,6 +140,11 @@ class Model(Noun):
             raise InputError(
                 f"more than one parameter is called '{repeated[0]}'; give each its own name"
             )
+
+    @property
+    def damped(self) -> bool:
+        """Whether the model says anything of its damping."""
+        return bool(self.damping or self.loss or self.ratios)
 
     @property
     def n_free(self) -> int:

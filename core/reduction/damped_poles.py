@@ -45,15 +45,37 @@ class Damped:
         """Return the derivatives of these poles by some parameters, (n, n_parameter)."""
         s, X = self._of(turned)
         D, _ = self._damping
-        dK, dM, dD, dH = self.order.changes_on_modes(self.p, self.solution, parameters)
+        dK, dM, dD, dH = self.changes_on(self.solution, parameters)
         parts = ((s**2, dM), (s, dD), (np.ones_like(s), dK + 1j * dH))
         moved = sum(w[:, None] * np.einsum("aj,iab,bj->ji", X, A, X) for w, A in parts)
         size = 2.0 * s * np.sum(X**2, axis=0) + np.einsum("aj,ab,bj->j", X, D, X)
         return np.asarray(-moved / np.where(s.imag > 0.0, size, 1.0)[:, None])
 
+    def damping_on(self, modes: Spectral) -> tuple[Floats, Floats]:
+        """Return D and H on modes, each (n_mode, n_mode); ratios of modes stand in H."""
+        D, H = self.order.damping_on_modes(self.p, modes)
+        lam = np.maximum(modes.eigenvalues, 0.0)
+        return D, H + 2.0 * np.diag(self._ratios(modes) * lam)
+
+    def changes_on(self, modes: Spectral, parameters: Sequence[int]) -> Floats:
+        """Return K', M', D' and H' on modes, (4, len(parameters), n_mode, n_mode).
+
+        Ratios of modes stay as their frequencies move.
+        """
+        found = self.order.changes_on_modes(self.p, modes, parameters)
+        ratios = self._ratios(modes)
+        found[3] += (ratios[:, None] + ratios) * found[0]
+        return found
+
+    def _ratios(self, modes: Spectral) -> Floats:
+        say, lam = self.order.model.ratios, modes.eigenvalues
+        if say is None:
+            return np.zeros(len(lam))
+        return say(np.sqrt(np.maximum(lam, 0.0)) / (2.0 * np.pi))
+
     @cached_property
     def _damping(self) -> tuple[Floats, Floats]:
-        return self.order.damping_on_modes(self.p, self.solution)
+        return self.damping_on(self.solution)
 
     @cached_property
     def _complex(self) -> tuple[Numbers, Numbers]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -99,6 +99,10 @@ class Responding:
             return reduce_around(order, self.at.p, self.at.solution, ())  # type: ignore[arg-type]
         return order
 
+    @property
+    def _damped(self) -> Damped:
+        return replace(self.at, order=self._reduced)
+
     @cached_property
     def _modes(self) -> ReducedModes:
         reduced = self._reduced.reduced
@@ -108,15 +112,13 @@ class Responding:
 
     @cached_property
     def _damping(self) -> tuple[Floats, Floats]:
-        model = self._reduced.model
-        if model.damping or model.loss:
-            return self._reduced.damping_on_modes(self.at.p, self._modes)
+        if self._reduced.model.damped:
+            return self._damped.damping_on(self._modes)
         lam = self._modes.eigenvalues
         return np.zeros((len(lam),) * 2), 2.0 * self.ratio * np.diag(np.maximum(lam, 0.0))
 
     def _changes(self, parameters: Sequence[int]) -> Floats:
-        found = self._reduced.changes_on_modes(self.at.p, self._modes, parameters)
-        model = self._reduced.model
-        if not (model.damping or model.loss):
+        found = self._damped.changes_on(self._modes, parameters)
+        if not self._reduced.model.damped:
             found[3] = 2.0 * self.ratio * found[0]
         return found

@@ -261,7 +261,7 @@ def damping_rows(done: Updated) -> Table[DampingRow] | None:
 def _ratios(seen: Seen) -> dict[int, tuple[float, float]]:
     """By test mode: its ratio, NaN unknown, and that of the analysis in percent."""
     pairs = seen.damped
-    if pairs is None or not (seen.model.damping or seen.model.loss):
+    if pairs is None or not seen.model.damped:
         return {}
     found = 100.0 * ratios(pairs.model.poles(pairs.turned))
     known = np.full(len(found), np.nan) if pairs.measured is None else pairs.measured

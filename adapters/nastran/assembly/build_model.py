@@ -13,12 +13,14 @@ from ....core.assembly.multipoint_constraints import Reduction, reduction, unsup
 from ....core.data.geometry import Geometry
 from ....core.data.parameter import Parameter
 from ....core.data.parametric_model import Model, Term
+from ....core.data.rigid_mass import differs_by_axis
 from ....core.errors import CheckError, InputError, Place
 from ....core.numerics.shared_pattern_sum import select, weighted_sum
 from ....core.reduction.component_modes import component_modes
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
 from ..properties.analysis_set import AnalysisSet, read_analysis_set
+from ..properties.damping_tables import selected_ratios
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices
 from ..properties.grids import Points, point_dofs, to_basic
@@ -98,7 +100,8 @@ def assemble(
     reduced = reduction(points.n_dof, constraints.equations, fixed, points.label)
     terms, reduced, warnings, idle = _remove_singular(deck, points, whole, reduced)
     terms, expansion, kept, more = _condense(deck, points, sets, terms, reduced)
-    geometry = _geometry(deck, structure)
+    geometry, rigid_mass = _geometry(deck, structure), _rigid_mass(points, whole[1])
+    uneven = differs_by_axis(_at_deck(whole[1], rigid_mass))
     model = Model(
         geometry=geometry,
         dofs=point_dofs(points.ids, points.scalar_ids),
@@ -114,9 +117,11 @@ def assemble(
             *narrowed,
             *warnings,
             *more,
+            *((uneven,) if uneven else ()),
         ),
         idle=idle,
-        rigid_mass=_rigid_mass(points, whole[1]),
+        rigid_mass=rigid_mass,
+        ratios=selected_ratios(deck),
     )
     if damped or _idle(model):
         D, H = damping_terms(deck, model, variation, parameters)
@@ -267,9 +272,17 @@ def _each(
 
 def _total(terms: tuple[Term, ...]) -> sp.csr_matrix:
     """Sum of the terms at the deck's values."""
-    ones = np.ones(1 + max((f.parameter for t in terms for f in t.factors), default=-1))
-    pairs = ((t.coefficient(ones), t.matrix) for t in terms)
+    pairs = zip(_coefficients(terms), (t.matrix for t in terms), strict=True)
     return weighted_sum(pairs, terms[0].matrix.shape[0])
+
+
+def _at_deck(terms: tuple[Term, ...], parts: Sequence[Floats]) -> Floats:
+    return np.asarray(sum(c * A for c, A in zip(_coefficients(terms), parts, strict=True)))
+
+
+def _coefficients(terms: tuple[Term, ...]) -> list[float]:
+    ones = np.ones(1 + max((f.parameter for t in terms for f in t.factors), default=-1))
+    return [t.coefficient(ones) for t in terms]
 
 
 def _loose_warning(points: Points, dofs: Ints, automatic: bool) -> tuple[str, ...]:

@@ -18,6 +18,7 @@ from ..deck.bulk import Bulk
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
 from ..properties.damping_tables import selected_ratios
+from ..properties.dmig_input import direct_damping
 from ..properties.grids import read_points, to_basic
 from .deck_dashpots import damping_matrix, dashpot_terms
 from .deck_elements import read_structure
@@ -28,7 +29,7 @@ _MATERIAL = ("mid", "mid1", "mid2")
 
 
 def free_damping(deck: Deck, model: Model) -> sp.csr_matrix | None:
-    """Return D of the deck's dashpots on the free degrees of freedom; None where it has none."""
+    """Return D of the deck on its free degrees of freedom; None where it has none."""
     D = damping_matrix(deck)
     return None if D is None else _free(deck, model, D)
 
@@ -58,13 +59,13 @@ def modal_ratios(deck: Deck, model: Model, frequencies_hz: Floats, X: Floats) ->
         A dashpot or a table that refers to nothing.
     """
     w = 2.0 * np.pi * np.where(frequencies_hz > 0.0, frequencies_hz, np.nan)
-    structural, selected = deck.param("G", 0.0), selected_ratios(deck, frequencies_hz)
+    structural, table = deck.param("G", 0.0), selected_ratios(deck)
     loss = _onto(deck, model, _loss_terms(deck, read_variation(deck, ())))
     K4 = sum((t.matrix for t in loss[1:]), loss[0].matrix) if loss else None
     D = free_damping(deck, model)
-    if structural == 0.0 and selected is None and K4 is None and D is None:
+    if structural == 0.0 and table is None and K4 is None and D is None:
         return None
-    ratios = structural / 2.0 + (0.0 if selected is None else selected) + 0.0 * w
+    ratios = structural / 2.0 + (0.0 if table is None else table(frequencies_hz)) + 0.0 * w
     for A, power in ((K4, 2), (D, 1)):
         if A is not None:
             ratios = ratios + np.einsum("ij,ij->j", X, A @ X) / (2.0 * w**power)
@@ -76,8 +77,9 @@ def damping_terms(
 ) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
     """Return D and H of a deck on its free degrees of freedom, as terms in the parameters.
 
-    D are the dashpots and PARAM ALPHA1 M + ALPHA2 K; H is PARAM G K and the stiffness of every
-    element times its GE. The ratios of a TABDMP1 are of modes and have no matrix.
+    D are the dashpots, B2GG and PARAM ALPHA1 M + ALPHA2 K; H is PARAM G K, K42GG and the stiffness
+    of every element times its GE. The ratios of a TABDMP1 are of modes
+    and have no matrix (`Model.ratios`).
 
     Parameters
     ----------
@@ -116,15 +118,17 @@ def _free(deck: Deck, model: Model, A: sp.csr_matrix) -> sp.csr_matrix:
 
 
 def _loss_terms(deck: Deck, variation: Variation) -> tuple[Term, ...]:
-    """Return the stiffness of every element times its loss factor, over the g-set."""
+    """Return the stiffness of every element times its loss factor, and K42GG, over the g-set."""
+    direct = direct_damping(deck, read_points(deck.bulk))[1]
+    more = (Term(direct),) if direct.nnz else ()
     if not any(np.any(c.ge) for c in _with_loss(deck.bulk)):
-        return ()
+        return more
     own = replace(variation, bulk=_by_direction(variation.bulk), read_as=_by_direction, _known={})
     structure, blocks = read_structure(deck, own), []
     for group, block in zip(structure.groups, structure.blocks, strict=True):
         if any(_loss(own.bulk, s) for s in group.sources):
             blocks.append(_scaled(block, group, own))
-    return parametric_terms(blocks, structure.points.n_dof, *own.bounds)[0]
+    return (*parametric_terms(blocks, structure.points.n_dof, *own.bounds)[0], *more)
 
 
 def _by_direction(bulk: Bulk) -> Bulk:

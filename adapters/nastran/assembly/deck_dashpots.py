@@ -1,4 +1,4 @@
-"""Dashpots of a deck, which do not enter normal modes."""
+"""Viscous damping of a deck, which does not enter normal modes: dashpots and direct matrices."""
 
 import scipy.sparse as sp
 
@@ -6,18 +6,19 @@ from ....core.assembly.affine_terms import parametric_terms
 from ....core.data.parametric_model import Term
 from ..cards import FAMILIES, Context, Settings
 from ..deck.read_deck import Deck
+from ..properties.dmig_input import direct_damping
 from ..properties.grids import read_points
 from .deck_elements import element_block
 from .variation import Variation, read_variation
 
 
 def damping_matrix(deck: Deck) -> sp.csr_matrix | None:
-    """Return D of all dashpots over the g-set, displacement systems; None where there are none.
+    """Return D of a deck over the g-set, displacement systems; None where it has none.
 
     Raises
     ------
     InputError
-        A dashpot at a grid or with a property that the deck does not have.
+        A dashpot at a grid or with a property that the deck does not have; a matrix likewise.
     """
     terms = dashpot_terms(deck, read_variation(deck, ()))
     if not terms:
@@ -27,11 +28,11 @@ def damping_matrix(deck: Deck) -> sp.csr_matrix | None:
 
 
 def dashpot_terms(deck: Deck, variation: Variation) -> tuple[Term, ...]:
-    """Return D of all dashpots over the g-set as terms in the parameters; none without any."""
+    """Return D over the g-set as terms in the parameters: dashpots and B2GG; none without any."""
     points = read_points(deck.bulk)
     context = Context(variation.bulk, points, Settings())
     groups = [g for family in FAMILIES if family.dampers for g in family.dampers(context)]
-    if not groups:
-        return ()
     blocks = [element_block(g, points, variation) for g in groups]
-    return parametric_terms(blocks, points.n_dof, *variation.bounds)[0]
+    terms = parametric_terms(blocks, points.n_dof, *variation.bounds)[0] if blocks else ()
+    direct = direct_damping(deck, points)[0]
+    return (*terms, Term(direct)) if direct.nnz else terms

@@ -6,8 +6,10 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.assembly.element_assembly import Members, Recipe, assemble
+from ....core.data.rigid_mass import centre_of_mass, mass_axis
 from ....core.noun import Noun
 from ..deck.read_deck import Deck
+from ..properties.dmig_input import direct_matrices
 from .deck_elements import read_structure
 from .variation import read_variation
 
@@ -19,9 +21,9 @@ class Weight(Noun):
     Parameters
     ----------
     mass : float
-        Mean of the masses that translations along the three axes move (WTMASS applied).
+        The largest of the masses that translations along the three axes move (WTMASS applied).
     masses : (3,) float
-        One for each axis; they differ where scalar masses act along one axis only.
+        One for each axis; they differ where scalar or direct masses (M2GG) act along some only.
     centre_of_gravity : (3,) float
         Basic frame, deck length unit.
     matrix : (6, 6) float
@@ -49,7 +51,7 @@ def weight(deck: Deck) -> Weight:
     points = structure.points
     members = [Members(b, np.arange(len(b))) for b in structure.blocks]
     recipe = Recipe(np.ones((1, 0)), np.zeros((0, 1)), np.ones((1, 1)))
-    M = assemble(members, points.n_dof, recipe)[1][0]
+    M = assemble(members, points.n_dof, recipe)[1][0] + direct_matrices(deck, points)[1]
     grid = int(deck.param("GRDPNT", -1.0))
     k = int(np.searchsorted(points.ids, grid))
     known = k < len(points.ids) and points.ids[k] == grid
@@ -58,13 +60,5 @@ def weight(deck: Deck) -> Weight:
     R[: 6 * len(points.ids)] = points.motions(slice(None), reference).reshape(-1, 6)
     matrix = R.T @ (M @ R)
     masses = np.diag(matrix)[:3].copy()
-    total = float(masses.mean())
-    if not total > 0.0:
-        return Weight(total, masses, reference, matrix, reference)
-    S = matrix[:3, 3:]
-    m = np.where(masses > 0.0, masses, np.inf)
-    # M[0, 4] = m_x z, M[0, 5] = -m_x y, M[1, 3] = -m_y z, ...: each coordinate from two axes
-    x = 0.5 * (S[1, 2] / m[1] - S[2, 1] / m[2])
-    y = 0.5 * (S[2, 0] / m[2] - S[0, 2] / m[0])
-    z = 0.5 * (S[0, 1] / m[0] - S[1, 0] / m[1])
-    return Weight(total, masses, reference + np.array([x, y, z]), matrix, reference)
+    total = float(masses[mass_axis(matrix)])
+    return Weight(total, masses, reference + centre_of_mass(matrix), matrix, reference)

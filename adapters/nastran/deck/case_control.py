@@ -13,8 +13,8 @@ _COMMAND = re.compile(
     r"^\s*(?P<key>[A-Za-z]\w*)\s*(?:\((?P<option>[^)]*)\))?\s*(?:=\s*|\s+)(?P<value>\S.*)$"
 )
 _SETS = {"SPC": "spc", "MPC": "mpc", "NSM": "nsm", "SUPORT1": "suport1"}
-_MATRICES = {"K2GG": "k2gg", "M2GG": "m2gg"}
-_NOT_ADDED = ("B2GG", "K42GG", "K2PP", "M2PP", "B2PP")
+_MATRICES = ("K2GG", "M2GG", "B2GG", "K42GG")
+_NOT_ADDED = ("K2PP", "M2PP", "B2PP")
 _MOST = 9999
 """Superelements of a set between two numbers."""
 _LOADED = (
@@ -34,10 +34,10 @@ class CaseControl:
         Number of the subcase, 0 when the deck has none.
     spc, mpc, method, nsm, suport1, temperature : int or None
         Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (BOTH) or (MATERIAL).
-    k2gg, m2gg : tuple of (name, factor)
+    k2gg, m2gg, b2gg, k42gg : tuple of (name, factor)
         Names of DMIG matrices.
     not_added : tuple of (command, (name, ...))
-        Those of damping, and of the p-set (PP), which is for response analyses.
+        Those of the p-set (PP), which is for response analyses.
     analysis, loaded
         What the subcase is for, and whether loads stiffen its structure (STATSUB).
     sdamping : int or None
@@ -59,6 +59,8 @@ class CaseControl:
     temperature: int | None = None
     k2gg: tuple[tuple[str, float], ...] = ()
     m2gg: tuple[tuple[str, float], ...] = ()
+    b2gg: tuple[tuple[str, float], ...] = ()
+    k42gg: tuple[tuple[str, float], ...] = ()
     not_added: tuple[tuple[str, tuple[str, ...]], ...] = ()
     analysis: str = field(default="", compare=False)
     loaded: bool = field(default=False, compare=False)
@@ -163,6 +165,6 @@ def _with_matrices(case: CaseControl, key: str, value: str) -> CaseControl:
         (m["name"].upper(), parse_real(m["factor"] or "1")) for m in _WEIGHTED.finditer(value)
     )
     if key in _MATRICES:
-        return replace(case, **{_MATRICES[key]: named})  # type: ignore[arg-type]
+        return replace(case, **{key.lower(): named})  # type: ignore[arg-type]
     others = tuple(pair for pair in case.not_added if pair[0] != key)
     return replace(case, not_added=(*others, (key, tuple(name for name, _ in named))))

@@ -269,14 +269,8 @@ def _solution(sections: Any) -> tuple[str, ...]:
 def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[str]:
     """Say of matrices of DMIG what is not added, or not everywhere."""
     for command, names in case.not_added:
-        of_damping = command in ("B2GG", "K42GG")
-        why = "damping, which goes" if of_damping else "response analyses; normal modes go"
-        yield f"{command} = {' + '.join(names)} is for {why} without it"
-    if case.m2gg:
-        names = tuple(name for name, _ in case.m2gg)
         yield (
-            f"M2GG = {' + '.join(names)} takes part in the modes, but not in the mass and centre "
-            "of gravity that are told"
+            f"{command} = {' + '.join(names)} is for response analyses; normal modes go without it"
         )
     words = {w for line in sections.case for w in re.split(r"\W+", line.text.upper())}
     for name in dict.fromkeys(card.name for card in bulk.listed("DMIG")):

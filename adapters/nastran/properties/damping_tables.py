@@ -1,5 +1,7 @@
 """Modal damping that case control selects: SDAMPING and TABDMP1."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ....core.arrays import Floats
@@ -14,10 +16,26 @@ _RATIO = {"G": lambda g: g / 2.0, "CRIT": lambda g: g, "Q": lambda g: 0.5 / g}
 """Fraction of critical of what a table holds, by its TYPE."""
 
 
-def selected_ratios(deck: Deck, frequencies_hz: Floats) -> Floats | None:
-    """Return the fractions of critical that the selected table gives; None where none is.
+@dataclass(frozen=True)
+class TableOfRatios:
+    """Damping by frequency, as a table of a type says it: points x [Hz], y.
 
     Between points and beyond the ends linear, as in Nastran; nowhere below 0.
+    """
+
+    type: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+
+    def __call__(self, frequencies_hz: Floats) -> Floats:
+        """Return fractions of critical, (n,)."""
+        values = np.array([interpolated(self, f) for f in frequencies_hz.tolist()])
+        floor = np.finfo(float).tiny if self.type == "Q" else 0.0
+        return np.asarray(_RATIO[self.type](np.maximum(values, floor)))
+
+
+def selected_ratios(deck: Deck) -> TableOfRatios | None:
+    """Return the fractions of critical that the selected table gives; None where none is.
 
     Raises
     ------
@@ -33,6 +51,4 @@ def selected_ratios(deck: Deck, frequencies_hz: Floats) -> Floats | None:
     if table.type not in _RATIO:
         known = ", ".join(_RATIO)
         raise deck.bulk.place("TABDMP1", number).fault(f"is of type {table.type}, none of {known}")
-    values = np.array([interpolated(table, f) for f in frequencies_hz.tolist()])
-    floor = np.finfo(float).tiny if table.type == "Q" else 0.0
-    return np.asarray(_RATIO[table.type](np.maximum(values, floor)))
+    return TableOfRatios(table.type, table.x, table.y)

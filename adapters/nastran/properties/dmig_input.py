@@ -36,13 +36,7 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
     import scipy.sparse as sp  # slow to import, and not needed to read a deck
 
     n = points.n_dof
-    totals = []
-    for names, scale in (("k2gg", "CK2"), ("m2gg", "CM2")):
-        total = sp.csr_matrix((n, n))
-        for name, factor in getattr(deck.case, names):
-            matrix = _read(deck, points, name, names.upper())
-            total = total + factor * deck.param(scale, 1.0) * matrix
-        totals.append(total.tocsr())
+    totals = [_named(deck, points, "K2GG", "CK2"), _named(deck, points, "M2GG", "CM2")]
     for part in deck.external:
         place = Place(deck.path)
         at = [points.dof(grid, component, place) for grid, component in part.points]
@@ -50,6 +44,30 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
         for k, matrix in enumerate((part.stiffness, part.mass)):
             totals[k] = (totals[k] + T @ matrix @ T.T).tocsr()
     return totals[0], totals[1]
+
+
+def direct_damping(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Sum the matrices named by B2GG and by K42GG: viscous and structural damping, over the g-set.
+
+    PARAM CB2 and CK42 scale them.
+
+    Raises
+    ------
+    InputError
+        As `direct_matrices`.
+    """
+    return _named(deck, points, "B2GG", "CB2"), _named(deck, points, "K42GG", "CK42")
+
+
+def _named(deck: Deck, points: Points, command: str, scale: str) -> sp.csr_matrix:
+    """Sum the matrices that a command names, over the g-set."""
+    import scipy.sparse as sp
+
+    total = sp.csr_matrix((points.n_dof, points.n_dof))
+    for name, factor in getattr(deck.case, command.lower()):
+        matrix = _read(deck, points, name, command)
+        total = total + factor * deck.param(scale, 1.0) * matrix
+    return total.tocsr()
 
 
 def _read(deck: Deck, points: Points, name: str, asked_by: str) -> sp.csr_matrix:

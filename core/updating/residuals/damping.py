@@ -16,10 +16,10 @@ def _of(seen: Seen) -> tuple[DampedPairs, Floats]:
     pairs = seen.damped
     if pairs is None or pairs.measured is None or not np.any(pairs.measured > 0.0):
         raise InputError("the residual 'damping' needs damping ratios, and the test tells none")
-    if not (seen.model.damping or seen.model.loss):
+    if not seen.model.damped:
         raise InputError(
             "the residual 'damping' needs a deck with damping: PARAM G, GE of materials or "
-            "springs, or dashpots"
+            "springs, dashpots, B2GG or SDAMPING"
         )
     return pairs, np.where(pairs.measured > 0.0, pairs.measured, np.inf)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...arrays import Floats
 from ...data.parametric_model import Model
+from ...data.rigid_mass import centre_of_mass, mass_axis, mass_moments
 from ...errors import InputError
 from ..updating_numbers import UPDATING
 from .declaration import Residual, Seen, Slopes
@@ -34,17 +35,6 @@ def _slopes(seen: Seen, slopes: Slopes) -> list[Floats]:
     ]
 
 
-def _mass(R: Floats) -> float:
-    """Mean of what the three translations move."""
-    return float(np.trace(R[:3, :3]) / 3.0)
-
-
-def _moment(R: Floats) -> Floats:
-    """Mass times the centre of gravity, (3,), each coordinate from two axes."""
-    S = R[:3, 3:]
-    return np.array([S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]]) / 2.0
-
-
 def _measured_mass(seen: Seen) -> float:
     if seen.beside.mass is None:
         raise InputError("the residual 'mass' needs what the structure weighs: give measured_mass")
@@ -52,12 +42,14 @@ def _measured_mass(seen: Seen) -> float:
 
 
 def _mass_value(seen: Seen) -> Floats:
-    return np.array([[_mass(_at(seen)) / _measured_mass(seen) - 1.0]])
+    R = _at(seen)
+    k = mass_axis(R)
+    return np.array([[R[k, k] / _measured_mass(seen) - 1.0]])
 
 
 def _mass_derivative(seen: Seen, slopes: Slopes) -> Floats:
-    weighed = _measured_mass(seen)
-    return np.array([[[_mass(R) / weighed for R in _slopes(seen, slopes)]]])
+    weighed, k = _measured_mass(seen), mass_axis(_at(seen))
+    return np.array([[[R[k, k] / weighed for R in _slopes(seen, slopes)]]])
 
 
 def _known(seen: Seen) -> tuple[Floats, Floats]:
@@ -72,16 +64,15 @@ def _known(seen: Seen) -> tuple[Floats, Floats]:
 
 def _centre_value(seen: Seen) -> Floats:
     known, measured = _known(seen)
-    R = _at(seen)
-    off = _moment(R) / _mass(R) - measured
+    off = centre_of_mass(_at(seen)) - measured
     return np.asarray(off[known][:, None] / seen.model.geometry.size)
 
 
 def _centre_derivative(seen: Seen, slopes: Slopes) -> Floats:
     known, _ = _known(seen)
-    R = _at(seen)
-    m, moment = _mass(R), _moment(R)
-    moves = [_moment(dR) / m - moment * _mass(dR) / m**2 for dR in _slopes(seen, slopes)]
+    moments, masses = mass_moments(_at(seen))
+    changes = map(mass_moments, _slopes(seen, slopes))
+    moves = [(ds - dm * moments / masses) / masses for ds, dm in changes]
     return np.asarray(np.array(moves).T[known][:, None, :] / seen.model.geometry.size)
 
 

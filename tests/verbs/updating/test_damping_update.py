@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +99,27 @@ def test_every_kind_of_damping_is_found_and_only_its_cards_change(
     assert "Damping ratios" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     again = trueup.open_run(tmp_path / "run").damping
     assert [r.after for r in again] == [r.after for r in done.damping]
+
+
+def test_tables_of_modal_damping_and_direct_matrices_count(
+    files: tuple[Path, Measurement],
+) -> None:
+    """The dashpot at the tip as B2GG, and 0.2 % of every mode by SDAMPING."""
+    deck, test = files
+    text = deck.read_text().replace("METHOD = 1\n", "METHOD = 1\nSDAMPING = 3\nB2GG = 2.*TIP\n")
+    for old in (f"PDAMP,7,{DECK['tip']}\n", "CDAMP1,70,7,13,3\n"):
+        assert old in text
+        text = text.replace(old, "")
+    more = f"DMIG,TIP,0,6,1,0\nDMIG,TIP,13,3,,13,3,{TRUTH['tip'] / 2}\n"
+    deck.write_text(
+        text.replace("ENDDATA", more + "TABDMP1,3,CRIT\n,0.,.002,1000.,.002,ENDT\nENDDATA")
+    )
+    modes = test.modes
+    higher = replace(test, modes=replace(modes, damping=modes.damping + 0.002))
+    left = [text for name, text in PARAMETERS.items() if name != "tip"]
+    done = trueup.update(deck, higher, left, max_iterations=20, **ASKED)
+    for row, name in zip(done.parameters, [n for n in PARAMETERS if n != "tip"], strict=True):
+        assert row.updated[0] == pytest.approx(TRUTH[name], rel=5e-3), name
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.adapters.nastran import weight
+from trueup.adapters.nastran import build_model, read_deck, weight
 from trueup.adapters.nastran.properties.thermal import read_thermal
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
@@ -269,6 +269,22 @@ def test_a_degenerate_system_prints_nothing(model, capsys):
 def test_scalar_masses_weigh_along_their_axis(deck):
     found = weight(deck(GRID + "CELAS2,1,900.,1,1\nCMASS2,2,3.,1,1\n"))
     np.testing.assert_allclose(found.masses, [3.0, 0.0, 0.0])
+    assert found.mass == 3.0
+
+
+def test_direct_masses_weigh_and_are_where_they_are(tmp_path):
+    """M2GG at two grids along z alone, 2 and 1 times 0.5, the heavy one at x = 6."""
+    path = tmp_path / "a.bdf"
+    rows = ["GRID,1,,6.,1.", "GRID,2,,0.,4.", "CELAS2,1,9.,1,3,2,3", "DMIG,MX,0,6,1,0"]
+    rows += ["DMIG,MX,1,3,,1,3,2.", "DMIG,MX,2,3,,2,3,1."]
+    path.write_text("CEND\nM2GG = MX\nBEGIN BULK\nPARAM,CM2,.5\n" + "\n".join(rows) + "\n")
+    read = read_deck(path)
+    found = weight(read)
+    np.testing.assert_allclose(found.masses, [0.0, 0.0, 1.5])
+    assert found.mass == 1.5
+    np.testing.assert_allclose(found.centre_of_gravity, [4.0, 2.0, 0.0])
+    (said,) = (w for w in build_model(read).warnings if "masses along" in w)
+    assert said.startswith("masses along x, y and z are 0, 0 and 1.5; the largest")
 
 
 @pytest.mark.parametrize(
