@@ -15,10 +15,10 @@ from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..model_error.model_error_numbers import MODEL_ERROR
-from ..posterior.credible_places import Place, between, credible_places
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
 from ..search.completeness import Completeness
+from ..search.credible_places import Place, between
 from ..search.model_selection import (
     Judgement,
     contenders,
@@ -176,7 +176,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     best, scale, masses = o.best, o.verdict.scale, o.request.masses
     s = best.suspects[number]
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
-    places = credible_places(o.searcher, best, number, scale)
+    places = o.whole.places[number]
     error = [m.place_error for m in c.kind.magnitudes]
     spread = np.hypot(np.hypot(deviation, error), between(places))
     if "factor" in (m.word for m in c.kind.magnitudes):

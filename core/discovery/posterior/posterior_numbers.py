@@ -4,19 +4,11 @@ from dataclasses import dataclass
 
 from ...number_table import ROUNDING, number
 
-SIZE = "of the structure's size"
-
 
 @dataclass(frozen=True)
 class PosteriorNumbers:
-    near: float = number(0.15, SIZE, "places nearer are all looked at")
-    most: int = number(400, "places", "of them, at most", "time")
-    sizes: tuple[float, ...] = number((-0.6, -0.3, 0.0, 0.3, 0.6), "θ", "steps of the magnitude with which they are")
-    fitted: int = number(30, "places", "at which all else follows, the most promising")
-    in_vain: int = number(8, "places", "one after the other that are not credible, after which no more are fitted", "time")
-    steps: int = number(3, "steps", "in which it does")
     sensors: int = number(3, "sensors", "that are proposed, at most", "what a reader takes in")
-    sensors_apart: float = number(0.1, SIZE, "how far apart they are")
+    sensors_apart: float = number(0.1, "of the structure's size", "how far apart they are")
     tells: float = number(0.1, "of the rms of a shape", "least difference of a reading that a sensor could tell")
     shift: float = number(0.01, "of ln f", "least difference of a mode that was not measured")
     twin: float = number(0.5, "MAC", "of a mode with its twin in another explanation")

@@ -21,6 +21,7 @@ from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
+from .credible_places import Place, credible_places, middle
 from .last_look import looked_again
 from .model_selection import (
     Judgement,
@@ -53,6 +54,8 @@ class Completeness:
     agree : float
         By how many standard deviations modes that they were not fitted to agree that the best
         foretells them better than the known parameters alone do.
+    places : list of list of Place
+        Where each suspect of the best may be.
     """
 
     deck: Judged
@@ -63,6 +66,7 @@ class Completeness:
     ahead: float
     beside: float
     agree: float
+    places: list[list[Place]]
 
     @property
     def moved(self) -> float:
@@ -177,7 +181,9 @@ def completeness(
     for k, level in enumerate(levels[1:], start=1):
         if _earned(level, levels[kept]):
             kept = k
-    best, others = levels[kept], contenders(searcher, found, kept)
+    best, places = _centred(searcher, levels[kept], verdict.scale)
+    found = _led(found, best.fit)
+    others = contenders(searcher, found, kept)
     elsewhere = [s for s in fields[kept] if any(s.fit is f for f in others)]
     far = [says_else(searcher, best.fit, s.fit, SEARCH.region) for s in elsewhere]
     ahead, beside = (
@@ -189,7 +195,8 @@ def completeness(
     fewer = max((level.score for level in levels[:kept]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
-    whole = Completeness(deck, alone, best.judged, gain, last, float(ahead), float(beside), agree)
+    apart = float(ahead), float(beside)
+    whole = Completeness(deck, alone, best.judged, gain, last, *apart, agree, places)
     return searcher, found, kept, whole
 
 
@@ -212,6 +219,29 @@ def _unsettled(best: Scored, richer: Scored | None) -> bool:
     several = len(best.fit.suspects) > 1
     adequate = best.judged is not None and by_such_a_test(best.judged) > MODEL_ERROR.adequate
     return adequate or not several
+
+
+def _centred(searcher: Searcher, best: Scored, scale: float) -> tuple[Scored, list[list[Place]]]:
+    """Return a hypothesis with what is at points in the middle of where it may be, and the places.
+
+    What is found does not hang on which of places that are as likely happens to be the best.
+    """
+    every = []
+    for q in range(len(best.fit.suspects)):
+        places = credible_places(searcher, best.fit, q, scale)
+        c = searcher.problem.catalogue[best.fit.suspects[q].kind]
+        for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
+            s, suspects = middle(c, places), best.fit.suspects
+            if s.row == suspects[q].row:
+                break
+            moved = (*suspects[:q], s, *suspects[q + 1 :])
+            new = scored(searcher, searcher.fitted(best.fit, moved, SEARCH.steps_new))
+            if 2.0 * (best.score - new.score) > SEARCH.credible:
+                break
+            best = new
+            places = credible_places(searcher, best.fit, q, scale)
+        every.append(places)
+    return best, every
 
 
 def _near(found: Found, k: int) -> list[Fit]:

@@ -5,9 +5,11 @@ from types import SimpleNamespace as Some
 import numpy as np
 import pytest
 
+from trueup.core.discovery.effects import point_mass
 from trueup.core.discovery.search import completeness as room
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness, completeness
+from trueup.core.discovery.search.credible_places import Place
 
 
 def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
@@ -19,7 +21,7 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
 def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), beside=np.inf, **more):
     none = judged(np.zeros(10), error=before, stray=lost)
     best = judged(np.zeros(10), **more)
-    return Completeness(none, none, best, gain, gain, ahead, beside, agree)
+    return Completeness(none, none, best, gain, gain, ahead, beside, agree, [])
 
 
 def test_what_many_modes_gain_by_and_foretell_is_clear():
@@ -71,7 +73,7 @@ def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
         deck = judged(np.zeros(10), error=0.01)
         alone = judged(np.zeros(10), error=0.0005, evidence=gain)
         alone.plain = -1.0
-        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0)
+        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
 
     assert with_fields(0.0).lacks_nothing
     assert not with_fields(17.0).lacks_nothing
@@ -101,20 +103,31 @@ def hypothesis(objective, *rows):
     return Some(objective=objective, suspects=suspects, nuisance=None)
 
 
-def weighed(monkeypatch, found, evidence):
-    """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows."""
+def weighed(monkeypatch, found, evidence, alike=()):
+    """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows.
+
+    Places `alike` explain as well as any of them.
+    """
+    monkeypatch.setattr(
+        room,
+        "credible_places",
+        lambda s, f, q, _: [Place(Some(kind=0, row=r), 1.0) for r in alike or [f.suspects[q].row]],
+    )
     monkeypatch.setattr(room, "looked_again", lambda searcher, first: (searcher, [first]))
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
     monkeypatch.setattr(
         room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
     )
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
-    kind = Some(kind="mass", tunings=1, xyz=xyz, many=lambda row: 1, where=[{}] * 100)
+    kind = Some(
+        kind=point_mass.KIND, tunings=1, xyz=xyz, spots=xyz, many=lambda row: 1, where=[{}] * 100
+    )
     searcher = Some(
         problem=Some(catalogue=[kind]),
         coarse=[np.arange(100)],
         size=1.0,
         effort=Some(apart=0.1),
+        fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1
@@ -149,3 +162,12 @@ def test_the_richer_hypothesis_without_a_suspect_is_one_of_the_poorer(monkeypatc
     assert kept == 1
     assert [s.row for s in found.levels[1].suspects] == [9]
     assert said.ahead == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize(("lost", "row"), [(0.1, 5), (1.0, 3)])
+def test_what_is_found_stands_in_the_middle_of_places_that_are_as_likely(monkeypatch, lost, row):
+    levels = hypothesis(100.0), hypothesis(40.0, 3)
+    evidence = {(): 0.0, (3,): 30.0, (5,): 30.0 - 10.0 * lost}
+    found, kept, said = weighed(monkeypatch, Found(levels, ((), ())), evidence, (3, 4, 5, 6, 7))
+    assert [s.row for s in found.levels[kept].suspects] == [row]
+    assert said.best.evidence == evidence[(row,)]

@@ -11,8 +11,8 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.core.discovery.effects import distributed_mass, ground_spring, point_mass
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
-from trueup.core.discovery.posterior.credible_places import Place, between, credible_places
 from trueup.core.discovery.search.beam_search import Found, grown
+from trueup.core.discovery.search.credible_places import Place, between, credible_places, middle
 from trueup.core.discovery.search.model_selection import (
     adequate,
     complete,
@@ -184,3 +184,15 @@ def test_a_support_that_turns_is_another_explanation_than_one_that_moves(compone
     best, rival = (Some(suspects=(Some(kind=0, row=row),)) for row in (0, 1))
     found = Found((Some(suspects=()), best), ((), (rival,)))
     assert len(contenders(searcher, found, 1)) == others
+
+
+def test_the_middle_is_nearest_to_where_a_suspect_may_be_each_place_as_likely_as_it_is():
+    s = searcher(hidden(masses=[(7, 1.0)]))
+    c = s.problem.catalogue[0]
+
+    def at(weights):
+        places = [Place(Suspect(0, row, (float(row),)), w) for row, w in weights.items()]
+        return middle(c, places)
+
+    assert at({7: 0.2, 8: 0.2, 9: 0.2, 10: 0.2, 11: 0.2}) == Suspect(0, 9, (9.0,))
+    assert at({7: 0.6, 8: 0.1, 9: 0.1, 10: 0.1, 11: 0.1}).row == 7

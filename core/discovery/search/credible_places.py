@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Floats
-from ..effects.candidates import Suspect
+from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate, fit
-from ..search.exact_scan import scan
-from ..search.moves import Searcher
-from ..search.search_numbers import SEARCH
-from .posterior_numbers import POSTERIOR
+from .exact_scan import scan
+from .moves import Searcher
+from .search_numbers import SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,22 +33,22 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     before, after = best.suspects[:number], best.suspects[number + 1 :]
     c = searcher.problem.catalogue[suspect.kind]
     away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
-    near = np.flatnonzero(away < POSTERIOR.near * searcher.size)[: POSTERIOR.most]
+    near = np.flatnonzero(away < SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
-    trials = c.around(suspect.theta, np.array(POSTERIOR.sizes))
+    trials = c.around(suspect.theta, np.array(SEARCH.credible_sizes))
     score = scan(small, here, suspect.kind, rows, trials)
-    order = np.argsort(score.min(axis=1), kind="stable")[: POSTERIOR.fitted]
+    order = np.argsort(score.min(axis=1), kind="stable")[: SEARCH.credible_fitted]
     own = np.flatnonzero(rows == suspect.row)
     tried: list[Fit] = []
     vain = 0
     for i in [*own, *order[order != own[0]]]:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
         suspects = (*before, moved, *after)
-        tried.append(fit(small, best.nuisance, suspects, searcher.active, POSTERIOR.steps))
+        tried.append(fit(small, best.nuisance, suspects, searcher.active, SEARCH.credible_steps))
         least = min(f.objective for f in tried)
         vain = 0 if tried[-1].objective - least < SEARCH.credible * scale else vain + 1
-        if vain == POSTERIOR.in_vain:
+        if vain == SEARCH.credible_vain:
             break
     kept = [f for f in tried if f.objective - least < SEARCH.credible * scale]
     weight = np.exp([-0.5 * (f.objective - least) / scale for f in kept])
@@ -64,3 +63,13 @@ def between(places: Sequence[Place]) -> Floats:
     theta = np.array([p.suspect.theta for p in places])
     mean = np.sum(weight * theta, axis=0) / weight.sum()
     return np.asarray(np.sqrt(np.sum(weight * (theta - mean) ** 2, axis=0) / weight.sum()))
+
+
+def middle(c: Candidates, places: Sequence[Place]) -> Suspect:
+    """Return a suspect at that of its places which is nearest to where it may be, on average.
+
+    Along a beam that hardly stretches a spring in its direction does the same anywhere.
+    """
+    spots = c.spots[[p.suspect.row for p in places]]
+    away = np.linalg.norm(spots[:, None] - spots, axis=2) @ [p.weight for p in places]
+    return places[int(np.argmin(away))].suspect
