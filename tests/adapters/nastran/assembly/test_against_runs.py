@@ -1,4 +1,4 @@
-"""Whole decks with extreme masses against the frequencies that NX printed for them."""
+"""Whole decks against what NX and MSC Nastran printed for them."""
 
 import numpy as np
 import pytest
@@ -80,3 +80,41 @@ def test_membranes_of_anisotropic_shells_with_and_without_middle_nodes(data):
     square += [3139.2825, 3669.9431, 3725.5938, 4078.3342, 7461.1851, 8890.8848]
     hertz = np.sqrt(square) / (2.0 * np.pi)
     np.testing.assert_allclose(found.frequencies_hz[9:], hertz, rtol=1e-6)
+
+
+BOLTED = """\
+METHOD = 1
+SPC = 1
+BEGIN BULK
+PARAM,WTMASS,.00259
+EIGRL,1,,,2
+SPC1,1,123456,27,28
+PSHELL,1,1,.1,1,,1
+PBUSH,2,K,1.+9,1.+9,1.+9,1.+9,1.+9,1.+9
+MAT1,1,9.9+6,,.31,.098
+CQUAD4,1,1,1,2,3,4
+CQUAD4,2,1,5,6,7,8
+CQUAD4,31,1,1,2,28,27
+CQUAD4,33,1,7,8,30,29
+"""
+CORNERS = """\
+1 0. 0. 0.,2 1. 0. 0.,3 1. 2. 0.,4 0. 2. 0.,5 0. 1. .1,6 1. 1. .1,7 1. 3. .1,8 0. 3. .1,
+27 0. -.1 0.,28 1. -.1 0.,29 1. 3.1 .1,30 0. 3.1 .1"""
+BOLTS = [".5 1.5", ".875 1.5", ".125 1.5", ".875 1.25", ".875 1.75", ".5 1.25", ".5 1.75"]
+BOLTS += [".125 1.75", ".125 1.25"]
+
+
+def test_plates_bolted_through_weighted_means_of_their_corners(tmp_path):
+    """MSC 2025.2: 18 RBE3, nine CBUSH across them (MYSTRAN_Validation, turbo_coarse_bolted)."""
+    grids = [c.split() for c in CORNERS.replace("\n", "").split(",")]
+    joints = []
+    for k, bolt in enumerate(BOLTS):
+        grids += [[f"{9 + k}", *bolt.split(), "0."], [f"{18 + k}", *bolt.split(), ".1"]]
+        joints += [
+            f"RBE3,{3 + k},,{9 + k},123456,1.,123,1,2\n,3,4",
+            f"RBE3,{12 + k},,{18 + k},123456,1.,123,5,6\n,7,8",
+            f"CBUSH,{50 + k},2,{18 + k},{9 + k},.577,.577,.577",
+        ]
+    cards = [*(f"GRID,{n},,{x},{y},{z}" for n, x, y, z in grids), *joints, "ENDDATA\n"]
+    (tmp_path / "a.bdf").write_text("SOL 103\nCEND\n" + BOLTED + "\n".join(cards))
+    np.testing.assert_allclose(elastic(tmp_path / "a.bdf", 2), [270.8582, 1269.993], rtol=5e-7)
