@@ -18,7 +18,7 @@ class DerivativeNumbers:
     beside: float = number(0.01, "of λ − σ", "by which a factor stands off its cluster, at most", CHECK)
     mass: float = number(1e13, "times the first λ − σ", "above which a vector of the basis has no mass", ROUNDING)
 
-    near_modes: float = number(3.0, "times the highest frequency", "below which modes are coupled by damping in a response", CHECK)
+    near_modes: float = number(3.0, "times the highest frequency", "below which modes are coupled by damping with one another in a response", CHECK)
     more_modes: int = number(12, "modes", "in a basis beyond the last that must be good", CHECK)
     most_static: int = number(250, "static vectors", "at most", "time")
     least_energy: float = number(1e-4, "of a mode's", "energy of a static vector, for a factor moved by one", CHECK)

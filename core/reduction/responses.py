@@ -23,7 +23,7 @@ class Responding:
     Receptances are C (Λ − ω² + iH + iωD)⁻¹ Bᵀ; their derivatives −W (K' − ω²M' + iH' + iωD') Y
     with W and Y what is left and right of it, as in D'Ambrogio, Fregolent (2000), *The use of
     antiresonances for robust model updating*, Journal of Sound and Vibration 236, 227. Modes far
-    above the frequencies go without coupling by damping.
+    above the frequencies are coupled by damping with those near them, not with one another.
 
     Parameters
     ----------
@@ -86,11 +86,13 @@ class Responding:
         lam, (D, H) = self._modes.eigenvalues, self._damping
         near = lam < (DERIVATIVES.near_modes * omega.max(initial=0.0)) ** 2
         n, w = int(near.sum()), omega[:, None, None]
-        Z = 1j * H[:n, :n] + 1j * w * D[:n, :n] + (lam[:n] - w**2) * np.eye(n)
-        low = np.linalg.solve(Z, np.broadcast_to(B[:, :n].T, (len(omega), n, len(B))))
         own = lam - omega[:, None] ** 2 + 1j * (np.diag(H) + omega[:, None] * np.diag(D))
-        high = B[:, n:].T / own[:, n:, None]
-        return np.concatenate([low, high], axis=1)
+        near, far = B[:, :n].T, B[:, n:].T / own[:, n:, None]
+        across = 1j * H[:n, n:] + 1j * w * D[:n, n:]
+        back = across.swapaxes(1, 2) / own[:, n:, None]
+        Z = 1j * H[:n, :n] + 1j * w * D[:n, :n] + (lam[:n] - w**2) * np.eye(n) - across @ back
+        low = np.linalg.solve(Z, near - across @ far)
+        return np.concatenate([low, far - back @ low], axis=1)
 
     @cached_property
     def _reduced(self) -> ReducedOrder:
