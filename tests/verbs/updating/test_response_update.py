@@ -25,7 +25,7 @@ def stiffer(path: Path) -> Path:
     return path
 
 
-def tested(truth: Path, number: int, hz: np.ndarray) -> list[Path]:
+def measured_on(truth: Path, number: int, hz: np.ndarray) -> list[Path]:
     """Modes and accelerances of a deck, solved directly."""
     solved = trueup.solve(truth, number)
     model = build_model(trueup.read_deck(truth), damped=True)
@@ -49,14 +49,14 @@ def tested(truth: Path, number: int, hz: np.ndarray) -> list[Path]:
 def files(tmp_path: Path) -> tuple[Path, list[Path]]:
     """A deck, and what was measured on one with other E and G."""
     deck, truth = written(tmp_path / "bar.bdf", CALM), stiffer(written(tmp_path / "t.bdf", TRUTH))
-    return deck, tested(truth, 6, np.linspace(2.0, 300.0, 1200))
+    return deck, measured_on(truth, 6, np.linspace(2.0, 300.0, 1200))
 
 
 def test_what_is_right_stays_where_it_is(tmp_path: Path) -> None:
     """A spring that moves responses by less than a per cent, four modes, damping that couples."""
     deck = written(tmp_path / "bar.bdf", CALM)
     deck.write_text(deck.read_text().replace("ENDDATA", "CELAS2,500,.005,9,3\nENDDATA"))
-    test = tested(deck, 4, np.linspace(0.5, 180.0, 900))
+    test = measured_on(deck, 4, np.linspace(0.5, 180.0, 900))
     done = trueup.update(
         deck, test, ["CELAS2 500 K"], residuals="frfs", deck_length_unit="mm", regularisation=0.0
     )
