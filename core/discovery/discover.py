@@ -35,21 +35,16 @@ from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
 from .search.equipment_growth import as_blocks, equipped
 from .search.footprints import footed, settled
-from .search.merge_neighbours import merged
 from .search.model_selection import (
     Judgement,
     adequate,
-    contenders,
-    cost,
     held_out,
     judge,
-    noise_scale,
     scored,
     usual,
-    with_rival,
 )
 from .search.moves import Searcher
-from .search.patch_reshaping import nearby, reshaped
+from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
 from .search.robust_search import robust
 from .search.strategy import searched
@@ -160,32 +155,20 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher, found = max(ways, key=lambda way: _score(*way))
     progress("weighing the best hypotheses on bases of their own")
     verdict = judge(searcher, found)
-    wide, laid, _ = _laid(trial, searcher, found, verdict)
+    wide, laid = _laid(trial, searcher, found, verdict)
     explained = usual(wide, laid.levels[verdict.accepted])
     if explained:
         searcher, found = wide, laid
     searcher, found = _reshaped(trial.request, searcher, found, stands=not explained)
     found, verdict = _weighed(trial, searcher, found)
-    best = found.levels[verdict.accepted]
-    one = merged(searcher, best)
-    if one is not best:
-        with suppress(TrueupError):
-            as_many = found.levels[len(one.suspects)]
-            both = (polished(trial.own, searcher.problem, f) for f in (one, as_many))
-            one = min(both, key=lambda f: f.objective)
-            levels = (*found.levels[: verdict.accepted], one)
-            scale = max(verdict.scale, noise_scale(searcher.problem, one))
-            found, verdict = replace(found, levels=levels), replace(verdict, scale=scale)
     if not explained:
-        searcher, found, verdict = _laid(trial, searcher, found, verdict)
-    best = found.levels[verdict.accepted]
-    others = (f for q in range(len(best.suspects)) for f in nearby(searcher, best, q))
-    return searcher, found.with_rivals(others), verdict
+        searcher, found = _laid(trial, searcher, found, verdict)
+    return searcher, found, verdict
 
 
 def _laid(
     trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Searcher, Found, Judgement]:
+) -> tuple[Searcher, Found]:
     """Lay the masses of what was accepted on footprints, if that fits better on its own basis."""
     structure, best = trial.request.structure, found.levels[verdict.accepted]
     wide, free = footed(searcher, structure, best)
@@ -197,8 +180,8 @@ def _laid(
                 wide, laid = reshaped(wide, laid, verdict.scale)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
-                return wide, found.with_level(laid), verdict
-    return searcher, found, verdict
+                return wide, found.with_level(laid)
+    return searcher, found
 
 
 def _score(searcher: Searcher, found: Found) -> float:
@@ -322,7 +305,7 @@ def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Ju
             done.add(k)
         found = Found(tuple(levels[: most + 1]), found.rivals[: most + 1])
         verdict = judge(searcher, found)
-    return _contested(trial, searcher, found, verdict)
+    return found, verdict
 
 
 def _first_solved(trial: _Trial, searcher: Searcher, fits: Sequence[Fit]) -> Fit | None:
@@ -331,23 +314,6 @@ def _first_solved(trial: _Trial, searcher: Searcher, fits: Sequence[Fit]) -> Fit
         with suppress(TrueupError):
             return polished(trial.own, searcher.problem, f)
     return None
-
-
-def _contested(
-    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Found, Judgement]:
-    """Fit the nearest rivals on bases of their own too, and let the best of all win."""
-    best = cost(searcher, found.levels[verdict.accepted], verdict.scale)
-
-    def behind(f: Fit) -> float:
-        return cost(searcher, f, verdict.scale) - best
-
-    rivals = sorted(contenders(searcher, found, verdict.accepted), key=behind)
-    near = [f for f in rivals if behind(f) < DISCOVERY.contested][: DISCOVERY.contested_most]
-    for rival in near if verdict.accepted else ():
-        with suppress(TrueupError):
-            found = with_rival(searcher, found, rival, polished(trial.own, searcher.problem, rival))
-    return found, judge(searcher, found)
 
 
 def _completed(

@@ -16,8 +16,6 @@ class DiscoveryNumbers:
     steps_deck: int = number(10, "steps", "for the error of the mesh alone")
     steps_null: int = number(30, "steps", "for the known parameters")
     estimated: float = number(6.0, "of the assumed variance", "what a best hypothesis leaves that asks for errors estimated by the test")
-    contested: float = number(30.0, "2 ln L", "rivals less far behind are fitted as carefully as the best")
-    contested_most: int = number(2, "rivals", "that are, at most", "time")
     modes_held: tuple[int, int] = number((4, 6), "modes", "first that is held out, and every how many after it")
     modes_enough: int = number(10, "modes", "from so many on")
     sensors_held: tuple[int, int] = number((5, 10), "sensors", "first that is held out, and every how many after it")

@@ -70,10 +70,8 @@ class EffectKind:
     directed : bool
         Whether a place has one direction, looked at only where something moves that way.
     nature : str
-        Effects of one nature side by side, along the same components, are told as one. ""
-        stays by itself.
-    adds_up : bool
-        Whether the magnitudes of what is told as one add up; else the strongest stays.
+        Effects of one nature at one place, along the same components, say the same. "" says the
+        same as its own kind alone.
     spread_out : bool
         Whether it is what small patches of its nature become when they grow.
     limits : callable
@@ -96,7 +94,6 @@ class EffectKind:
     across: float = 0.0
     directed: bool = False
     nature: str = ""
-    adds_up: bool = True
     spread_out: bool = False
     limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}

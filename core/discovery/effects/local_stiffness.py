@@ -31,5 +31,4 @@ KIND = EffectKind(
     magnitudes=(FACTOR,),
     places=_places,
     nature="stiffness",
-    adds_up=False,
 )

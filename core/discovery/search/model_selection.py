@@ -122,18 +122,6 @@ def says_else(
     return bool(_unmatched(searcher, best, f, apart=apart)[0])
 
 
-def with_rival(searcher: Searcher, found: Found, rival: Fit, fitted: Fit) -> Found:
-    """Return what was found with a rival fitted anew; where it wins it changes places."""
-    k = len(fitted.suspects)
-    levels, rivals = list(found.levels), list(found.rivals)
-    others = [f for f in rivals[k] if f is not rival]
-    scale = noise_scale(searcher.problem, min(found.levels, key=lambda f: f.objective))
-    if cost(searcher, fitted, scale) < cost(searcher, levels[k], scale):
-        levels[k], fitted = fitted, levels[k]
-    rivals[k] = (fitted, *others)
-    return Found(tuple(levels), tuple(rivals))
-
-
 @dataclass(frozen=True, eq=False)
 class Scored:
     """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""

@@ -40,19 +40,6 @@ def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fi
     return searcher, state
 
 
-def nearby(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
-    """Return fits with a mass spread over other patches of the catalogue near to where it is."""
-    s = state.suspects[q]
-    c = searcher.problem.catalogue[s.kind]
-    if not c.kind.spread_out:
-        return []
-    away = np.linalg.norm(c.xyz - c.xyz[s.row], axis=1)
-    rows = np.flatnonzero(away < SEARCH.patch_beside * searcher.size)
-    options = [replace(s, row=int(row)) for row in rows if row != s.row]
-    tried = promising(searcher, state, q, options)[: SEARCH.reshape_beside]
-    return [_with(searcher, state, q, option) for option in tried]
-
-
 def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])

@@ -98,11 +98,9 @@ class SearchNumbers:
     explains_share: float = number(0.1, "of what it lowers most", "and by this")
     same_effect_apart: float = number(1.5, "of Effort.apart", "a suspect of a rival that is nearer says the same")
     region: float = number(3.0, "of Effort.apart", "one that is nearer is the same effect in the region where it may be")
-    one_effect: float = number(0.09, SIZE, "findings of one nature that are nearer are told as one")
 
     reshape_steps: int = number(8, "steps", "by which a patch grows or shrinks, at most")
     reshape_tried: int = number(2, "shapes", "next to a patch that are fitted")
-    reshape_beside: int = number(4, "patches", "of the catalogue near a spread mass that compete with its own")
     reshape_sizes: tuple[float, ...] = number((-0.4, -0.15, 0.0, 0.15, 0.4), "θ", "tried with every shape: what a patch gains in area it loses in strength")
     link_near: int = number(9, "grids", "about either end of a link where it may end instead")
     row_of_elements: float = number(0.5, "of an element's side", "by which rows of elements are told apart", "half of it")
