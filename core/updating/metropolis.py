@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ..arrays import Floats
+from ..independent import Each, in_turn
 from ..noun import Noun
 from .updating_numbers import UPDATING
 
@@ -56,12 +58,26 @@ class Chains(Noun):
         return np.asarray(self.values.mean(axis=1).var(axis=0, ddof=1))
 
 
+@dataclass(frozen=True, eq=False)
+class _Walker:
+    """Where a chain is, the logarithm of the density there, and its random numbers."""
+
+    point: Floats
+    height: float
+    rng: np.random.Generator
+
+
+Density = Callable[[Floats], float]
+"""Logarithm of a density at a point (n,), up to a constant; −inf where nothing is."""
+
+
 def adaptive_metropolis(
-    log_density: Callable[[Floats], float],
+    log_density: Density,
     start: Floats,
     covariance: Floats,
     count: int,
     seed: int = 0,
+    each: Each = in_turn,
 ) -> Chains:
     """Sample a density that is known up to a factor.
 
@@ -73,7 +89,6 @@ def adaptive_metropolis(
     Parameters
     ----------
     log_density : callable
-        Of a point (n,); −inf where nothing is.
     start : (n,) float
         Where the density is not nothing.
     covariance : (n, n) float
@@ -81,43 +96,58 @@ def adaptive_metropolis(
     count : int
         Samples to keep, at least.
     seed : int
+        Each chain has random numbers of its own, so that it is the same wherever it runs.
+    each : Each
+        Runs the chains once the proposals are learnt.
 
     Returns
     -------
     Chains
     """
-    rng, n, chains = np.random.default_rng(seed), len(start), UPDATING.chains
+    n, chains = len(start), UPDATING.chains
     keep = -(-count // chains)
     learn = max(int(UPDATING.learning * keep), UPDATING.least_learning)
     width = UPDATING.proposal / np.sqrt(n)
-    root = _root(covariance)
-    points, heights = _begin(log_density, np.asarray(start, float), root, rng)
-    values, taken = np.empty((learn + keep, chains, n)), 0
-    for step in range(learn + keep):
-        trial = points + width * rng.standard_normal((chains, n)) @ root.T
-        odds = np.array([log_density(p) for p in trial])
-        go = np.log(rng.uniform(size=chains)) < odds - heights
-        points, heights = np.where(go[:, None], trial, points), np.where(go, odds, heights)
-        values[step] = points
-        taken += int(go.sum()) if step >= learn else 0
-        if step < learn and (step + 1) % UPDATING.relearn == 0:
-            past = values[step // 2 : step + 1].reshape(-1, n)
-            own, weight = len(past), UPDATING.prior_steps * n
-            root = _root(
-                (own * np.cov(past.T).reshape(n, n) + weight * covariance) / (own + weight)
-            )
-    return Chains(values[learn:].swapaxes(0, 1).copy(), taken / (keep * chains))
+    own = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(chains)]
+    root, past = _root(covariance), np.empty((chains, 0, n))
+    walkers: Sequence[_Walker] = [
+        _begin(log_density, np.asarray(start, float), root, rng) for rng in own
+    ]
+    while past.shape[1] < learn:
+        steps = partial(_walk, log_density, width * root, min(UPDATING.relearn, learn))
+        values, walkers, _ = zip(*map(steps, walkers), strict=True)
+        past = np.concatenate([past, np.array(values)], axis=1)
+        late = past[:, past.shape[1] // 2 :].reshape(-1, n)
+        weight = UPDATING.prior_steps * n
+        C = (len(late) * np.cov(late.T).reshape(n, n) + weight * covariance) / (len(late) + weight)
+        root = _root(C)
+    steps = partial(_walk, log_density, width * root, keep)
+    values, _, taken = zip(*each(steps, walkers), strict=True)
+    return Chains(np.array(values), sum(taken) / (keep * chains))
 
 
-def _begin(
-    log_density: Callable[[Floats], float], start: Floats, root: Floats, rng: np.random.Generator
-) -> tuple[Floats, Floats]:
-    """Return where chains begin, around `start` or there, and the density, (n_chain,)."""
-    points = start + rng.standard_normal((UPDATING.chains, len(start))) @ root.T
-    heights = np.array([log_density(p) for p in points])
-    lost = ~np.isfinite(heights)
-    points[lost], heights[lost] = start, log_density(start)
-    return points, heights
+def _walk(
+    log_density: Density, step: Floats, count: int, begin: _Walker
+) -> tuple[Floats, _Walker, int]:
+    """Walk on by so many steps: the points (count, n), where it ends, how many moved it."""
+    point, height, rng = begin.point, begin.height, begin.rng
+    values, taken = np.empty((count, len(point))), 0
+    for k in range(count):
+        trial = point + step @ rng.standard_normal(len(point))
+        odds = log_density(trial)
+        if np.log(rng.uniform()) < odds - height:
+            point, height, taken = trial, odds, taken + 1
+        values[k] = point
+    return values, _Walker(point, height, rng), taken
+
+
+def _begin(log_density: Density, start: Floats, root: Floats, rng: np.random.Generator) -> _Walker:
+    """Begin a chain around `start`, or there."""
+    point = start + root @ rng.standard_normal(len(start))
+    height = log_density(point)
+    if np.isfinite(height):
+        return _Walker(point, height, rng)
+    return _Walker(start, log_density(start), rng)
 
 
 def _root(covariance: Floats) -> Floats:

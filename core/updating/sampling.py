@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Floats
 from ..errors import InputError
+from ..independent import Each, in_turn
 from ..noun import Noun
+from ..reduction.full_or_reduced import Order, ReducedOrder
 from .metropolis import Chains, adaptive_metropolis
-from .problem import Configuration, Problem
+from .problem import Configuration, Orders, Problem
 from .stages import Stage, Updated
 from .updating_numbers import UPDATING
 
@@ -44,6 +46,7 @@ def sample_posterior(
     done: Updated,
     count: int,
     seed: int = 0,
+    each: Each = in_turn,
 ) -> Sampled | None:
     """Sample exp(−J/2s), J being the objective and s the scatter of the residuals.
 
@@ -62,6 +65,8 @@ def sample_posterior(
     count : int
         Samples, at least.
     seed : int
+    each : Each
+        Runs the chains.
 
     Returns
     -------
@@ -83,18 +88,50 @@ def sample_posterior(
     lower = np.maximum(lower, centre / UPDATING.reach)
     upper = np.minimum(upper, centre * UPDATING.reach)
 
-    def log_density(x: Floats) -> float:
-        if ((x < lower) | (x > upper)).any():
-            return -np.inf
-        p = np.array(top.factors)
-        p[active] = x
-        try:
-            found = problem.at(orders, p, residuals)
-        except InputError:
-            return -np.inf
-        return -found.objective / (2.0 * scatter)
-
+    density = _Density(
+        problem,
+        [_to_send(o) for o in orders],
+        stage,
+        top.factors,
+        active,
+        lower,
+        upper,
+        scatter,
+    )
     normal = scatter * np.linalg.pinv(lin.gradient.T @ lin.gradient)
     width = np.minimum(1.0, (upper - lower) / np.sqrt(np.maximum(12.0 * np.diag(normal), 1e-300)))
     normal = normal * np.outer(width, width)
-    return Sampled(tuple(active), adaptive_metropolis(log_density, centre, normal, count, seed))
+    chains = adaptive_metropolis(density, centre, normal, count, seed, each)
+    return Sampled(tuple(active), chains)
+
+
+@dataclass(frozen=True, eq=False)
+class _Density:
+    """exp(−J/2s) of the active factors, within their limits, those of all being `factors`."""
+
+    problem: Problem
+    orders: Orders
+    stage: Stage
+    factors: Floats
+    active: list[int]
+    lower: Floats
+    upper: Floats
+    scatter: float
+
+    def __call__(self, x: Floats) -> float:
+        if ((x < self.lower) | (x > self.upper)).any():
+            return -np.inf
+        p = np.array(self.factors)
+        p[self.active] = x
+        try:
+            found = self.problem.at(self.orders, p, self.stage.minimised)
+        except InputError:
+            return -np.inf
+        return -found.objective / (2.0 * self.scatter)
+
+
+def _to_send(order: Order) -> Order:
+    """Return a reduced model without the factorised matrix that it was made by."""
+    assert isinstance(order, ReducedOrder)
+    bare = replace(order.reduced.solution, factor=None)
+    return replace(order, reduced=replace(order.reduced, solution=bare))

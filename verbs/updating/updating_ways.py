@@ -195,7 +195,9 @@ def moved(
     last = stages[-1]
     intervals = profile_intervals(every, last, best) if asked.intervals else None
     sampled = (
-        sample_posterior(every, last, best, asked.samples, asked.seed) if asked.samples else None
+        sample_posterior(every, last, best, asked.samples, asked.seed, each)
+        if asked.samples
+        else None
     )
     evidence = weigh_prior(every, last, best) if asked.evidence else ()
     if sampled:

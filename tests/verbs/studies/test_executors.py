@@ -13,7 +13,8 @@ import pytest
 
 import trueup
 from trueup.core.errors import CheckError, InputError
-from trueup.core.independent import in_turn
+from trueup.core.independent import Each, in_turn
+from trueup.core.updating.metropolis import adaptive_metropolis
 from trueup.verbs.studies import executors
 from trueup.verbs.studies.executors import executor
 
@@ -70,6 +71,26 @@ def test_the_answer_is_the_same_where_one_is_killed_in_the_middle(asked: str, tm
     assert mark.exists()
 
 
+def height_elsewhere(mark: Path, here: int, x: np.ndarray) -> float:
+    """A Gaussian; whoever else asks for it first is killed."""
+    if os.getpid() != here and not mark.exists():
+        mark.write_text("")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return -0.5 * float(x @ x)
+
+
+@pytest.mark.filterwarnings("default")
+def test_chains_go_on_alike_where_one_is_killed(asked: str, tmp_path: Path):
+    def chains(each: Each, pid: int) -> np.ndarray:
+        height = partial(height_elsewhere, tmp_path / "mark", pid)
+        return adaptive_metropolis(height, np.zeros(2), np.eye(2), 400, 3, each).values
+
+    here = chains(in_turn, os.getpid())
+    with executor(asked) as each:
+        np.testing.assert_array_equal(chains(each, os.getpid()), here)
+    assert (tmp_path / "mark").exists()
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_what_a_piece_raises_is_raised_here(asked: str):
@@ -115,6 +136,18 @@ def test_starts_end_alike_wherever_they_run(files: tuple[Path, Path], asked: str
     there = updated(files, executor=asked)
     assert [s.factors for s in there.starts] == [s.factors for s in here.starts]
     assert [q.factor for q in there.parameters] == [q.factor for q in here.parameters]
+
+
+@pytest.mark.filterwarnings("default")
+def test_chains_are_the_same_wherever_they_run(files: tuple[Path, Path], asked: str):
+    more = {"samples": 400, "prior_sigma": 0.3}
+    here, there = (
+        trueup.update(*files, ["MAT1 1 E"], residuals="frequencies, prior", deck_length_unit="mm",
+                      executor=whose, **more)
+        for whose in ("processes:1", asked)
+    )  # fmt: skip
+    np.testing.assert_array_equal(there.draws.values, here.draws.values)
+    assert list(there.samples) == list(here.samples)
 
 
 def test_an_update_goes_on_where_it_was_cut_off(files: tuple[Path, Path], tmp_path: Path):
