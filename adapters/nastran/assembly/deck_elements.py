@@ -53,6 +53,7 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
         k6rot=deck.param("K6ROT", 100.0),
         snorm=deck.param("SNORM", 20.0),
         coupled=deck.param("COUPMASS", -1.0) > 0.0,
+        bars_spin=deck.param("BARMASS", 0.0) > 0.0,
     )
     nonstructural = read_nonstructural(deck, points)
     context = Context(

@@ -29,11 +29,12 @@ Constants = Callable[[Bulk, Key], tuple[Sequence[float], float]]
 
 @dataclass(frozen=True)
 class Settings:
-    """PARAM values that shape element matrices."""
+    """PARAM values, and those of the NASTRAN statement, that shape element matrices."""
 
     k6rot: float = 100.0
     snorm: float = 20.0
     coupled: bool = False
+    bars_spin: bool = False
 
 
 @dataclass(frozen=True, eq=False)

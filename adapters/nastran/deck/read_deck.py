@@ -26,6 +26,7 @@ _NOT_KNOWN = "this card is not known"
 _MODAL = ("3", "103", "SEMODES", "MODES", "SEMFREQ", "111", "112", "SEMTRAN", "200")
 
 
+_BARMASS = re.compile(r"\b(?:BARMASS|SYSTEM *\( *398 *\)) *= *(\d+)")
 _ASSIGN = re.compile(
     r"ASSIGN\s+INPUTT4\s*=\s*'(?P<file>[^']+)'[^']*?UNIT\s*=\s*(?P<unit>\d+)", re.IGNORECASE
 )
@@ -64,7 +65,7 @@ class Deck(Noun):
     case : CaseControl
         Sets that the normal modes subcase selects.
     params : dict
-        PARAM values by name, as text in capitals.
+        PARAM values by name, as text in capitals, and BARMASS of the NASTRAN statement.
     length_unit : {"m", "mm", "in", "ft"} or None
         What the deck declares, None where it does not.
     eigen : EigenRequest or None
@@ -207,7 +208,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         files=sections.files,
         bulk=bulk,
         case=case,
-        params=_params(bulk, sections.case),
+        params=_cells(sections) | _params(bulk, sections.case),
         length_unit=unit,
         eigen=eigen,
         counts=counts,
@@ -219,6 +220,13 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         changed=changed,
         on_disk=changed is None,
     )
+
+
+def _cells(sections: Any) -> dict[str, str]:
+    """Cells of the NASTRAN statement that shape matrices, as if they were PARAM values."""
+    text = " ".join(line.text.split("$", 1)[0].upper() for line in sections.executive)
+    found = _BARMASS.search(text)
+    return {"BARMASS": found[1]} if found else {}
 
 
 def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:

@@ -92,7 +92,14 @@ def bar_stiffness(
     return from_axes(K, xa, xb, v)
 
 
-def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled: bool) -> Floats:
+def bar_mass(
+    xa: Floats,
+    xb: Floats,
+    v: Floats,
+    mass_per_length: Floats,
+    coupled: bool,
+    spin: Floats | None = None,
+) -> Floats:
     """Mass of prismatic bars, (n, 12, 12), basic frame, as Nastran makes it.
 
     Parameters
@@ -102,19 +109,30 @@ def bar_mass(xa: Floats, xb: Floats, v: Floats, mass_per_length: Floats, coupled
     mass_per_length : (n,) float
         rho A + non-structural mass.
     coupled : bool
-        Hermite bending and the mean of lumped and consistent mass along the axis, no torsion
-        (COUPMASS 1); otherwise half the mass at each end, translations only.
+        Hermite bending and the mean of lumped and consistent mass along the axis (COUPMASS 1);
+        otherwise half the mass at each end, translations only.
+    spin : (n,) float, optional
+        rho (I1 + I2), inertia about the axis (BARMASS 1); with it all along the axis is
+        consistent where `coupled`.
     """
     L = np.linalg.norm(xb - xa, axis=1)
     if not coupled:
-        return lumped_ends(np.stack([0.5 * mass_per_length * L] * 2, axis=1))
+        M = lumped_ends(np.stack([0.5 * mass_per_length * L] * 2, axis=1))
+        if spin is None:
+            return M
+        M[:, [3, 9], [3, 9]] = (0.5 * spin * L)[:, None]
+        return from_axes(M, xa, xb, v)
     M = np.zeros((len(xa), 12, 12))
-    for i, j, m in ((0, 0, 175.0), (6, 6, 175.0), (0, 6, 35.0), (6, 0, 35.0)):
+    own, other = (175.0, 35.0) if spin is None else (140.0, 70.0)
+    for i, j, m in ((0, 0, own), (6, 6, own), (0, 6, other), (6, 0, other)):
         M[:, i, j] = m
     for w, r, sign in ((1, 5, 1.0), (2, 4, -1.0)):
         rows = np.array([w, r, w + 6, r + 6])
         M[:, rows[:, None], rows] = _hermite_mass(sign * L)
     M *= (mass_per_length * L / 420.0)[:, None, None]
+    if spin is not None:
+        for i, j, share in ((3, 3, 3.0), (9, 9, 3.0), (3, 9, 6.0), (9, 3, 6.0)):
+            M[:, i, j] = spin * L / share
     return from_axes(M, xa, xb, v)
 
 

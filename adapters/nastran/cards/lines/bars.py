@@ -72,7 +72,7 @@ CARDS = (
     ),
 )
 
-_MASS = 9  # column of a bar's constants, after E, G, A, I1, I2, I12, J, K1, K2
+_MASS = 9  # columns of a bar's constants, after E, G, A, I1, I2, I12, J, K1, K2: mass and inertia
 
 
 def bars(context: Context) -> list[Group]:
@@ -93,7 +93,8 @@ def bars(context: Context) -> list[Group]:
             pins = at.pins[:, :6], at.pins[:, 6:]
             K = bar_stiffness(*ends, E, G, A, I1, I2, I12, J, k1, k2, *pins)
         if wanted[1]:
-            M = bar_mass(*ends, c[_MASS] + extra, context.settings.coupled)
+            spin = c[_MASS + 1] if context.settings.bars_spin else None
+            M = bar_mass(*ends, c[_MASS] + extra, context.settings.coupled, spin)
         return K, M
 
     return line_groups(context, "CBAR", make)
@@ -107,10 +108,11 @@ def _constants(bulk: Bulk, key: Key) -> list[float]:
         s = section(card.type, card.dim, place)
         sheared = s.I12 == 0.0
         k1, k2 = (s.K1, s.K2) if sheared else (0.0, 0.0)
-        return [E, G, s.A, s.I1, s.I2, s.I12, s.J, k1, k2, rho * s.A + card.nsm]
+        line = (rho * s.A + card.nsm, rho * (s.I1 + s.I2))
+        return [E, G, s.A, s.I1, s.I2, s.I12, s.J, k1, k2, *line]
     values = [card.a, card.i1, card.i2, card.i12, card.j]
     A, I1, I2, I12, _ = values  # K1 and K2 do not count beside an I12 (Quick Reference, PBAR)
     if min(A, I1, I2) < 0.0 or I12**2 > I1 * I2 * (1.0 + 1e-9):
         raise place.error("its area and inertias are not those of a real section")
     k1, k2 = (0.0 if k is None or I12 != 0.0 else k for k in (card.k1, card.k2))
-    return [E, G, *values, k1, k2, rho * A + card.nsm]
+    return [E, G, *values, k1, k2, rho * A + card.nsm, rho * (I1 + I2)]

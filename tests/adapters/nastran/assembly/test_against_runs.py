@@ -118,3 +118,68 @@ def test_plates_bolted_through_weighted_means_of_their_corners(tmp_path):
     cards = [*(f"GRID,{n},,{x},{y},{z}" for n, x, y, z in grids), *joints, "ENDDATA\n"]
     (tmp_path / "a.bdf").write_text("SOL 103\nCEND\n" + BOLTED + "\n".join(cards))
     np.testing.assert_allclose(elastic(tmp_path / "a.bdf", 2), [270.8582, 1269.993], rtol=5e-7)
+
+
+CANTILEVER = """\
+NASTRAN BARMASS=1
+SOL 103
+CEND
+METHOD = 1
+SPC = 1
+BEGIN BULK
+PARAM,COUPMASS,1
+EIGRL,1,,,12
+SPC1,1,123456,1
+MAT1,1,7.17+10,,.33,2810.
+"""
+NSM = 2810.0 * 0.025 * 0.00625
+
+
+def cantilever(path, element, make):
+    """Fifty elements in a metre, turned by thirty degrees, made from the scales of their ends."""
+    cards = [f"GRID,{k + 1},,{k / 50}" for k in range(51)]
+    for k in range(50):
+        prop, offsets = make(1.0 - 0.01 * k, 0.99 - 0.01 * k)
+        cards.append(prop.format(k + 1))
+        cards.append(f"{element},{k + 1},{k + 1},{k + 1},{k + 2},0.,.8660254,.5\n,,,{offsets}")
+    path.write_text(CANTILEVER + "\n".join(cards) + "\nENDDATA\n")
+    return elastic(path, 12)
+
+
+def test_bars_that_turn_about_their_axis(tmp_path):
+    """BARMASS 1: consistent along and about the axis; tubes beside their grids (TACS, CBAR)."""
+    tube = f"PBARL,{{}},1,,TUBE\n,.0125,.011875,{NSM}"
+    run = [11.788982068, 73.479154970, 203.96974252, 394.78371603, 642.51400490]
+    found = cantilever(tmp_path / "a.bdf", "CBAR", lambda a, b: (tube, "0.,.0125,.05,0.,.0125,.05"))
+    np.testing.assert_allclose(found[[0, 2, 4, 6, 9]], run, rtol=1e-7)
+    np.testing.assert_allclose(found[[8, 11]], [611.53200851, 774.32532277], rtol=1e-7)
+
+
+def test_tapered_tubes(tmp_path):
+    """Round sections, no rotary inertia of bending (TACS; its deck is rounded to eight columns)."""
+
+    def tube(a, b):
+        ends = [f"{x:.7e},{y:.7e},{NSM}" for x, y in ((0.0125 * s, 0.011875 * s) for s in (a, b))]
+        return f"PBEAML,{{}},1,,TUBE\n,{ends[0]},NO,1.,{ends[1]}", ""
+
+    run = [9.9504547856, 46.810109631, 119.50420772, 226.75097480, 367.60128870, 540.48587510]
+    found = cantilever(tmp_path / "a.bdf", "CBEAM", tube)
+    np.testing.assert_allclose(found[::2], run, rtol=2e-5)
+
+
+def test_tapered_beams_with_every_offset(tmp_path):
+    """Ends, neutral axis and non-structural mass beside the grids (TACS); its deck is rounded."""
+
+    def rectangle(a, b):
+        ends = []
+        for w, d in ((0.025 * s, 0.00625 * s) for s in (a, b)):
+            J = w * d**3 / 16.0 * (16.0 / 3.0 - 3.36 * d / w * (1.0 - (d / w) ** 4 / 12.0))
+            ends.append(f"{w * d:.7e},{w * d**3 / 12:.7e},{d * w**3 / 12:.7e},,{J:.7e},{NSM}")
+        offsets = ",.00625,.025,.00625,.025,.0125,.05,.0125,.05"
+        prop = f"PBEAM,{{}},1,{ends[0]}\n,\n,NO,1.,{ends[1]}\n,.8333333,.8333333\n{offsets}"
+        return prop, "0.,.0125,.05,0.,.0125,.05"
+
+    run = [3.4020326843, 13.585184614, 15.484585105, 38.639044432, 61.250571652, 71.531582313]
+    run += [112.54780736, 122.95368962, 150.45980354, 161.95891874, 213.44033788, 270.14164160]
+    found = cantilever(tmp_path / "a.bdf", "CBEAM", rectangle)
+    np.testing.assert_allclose(found, run, rtol=1e-5)
