@@ -188,6 +188,7 @@ def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
     at_grids = np.flatnonzero([len(w["grids"]) == 1 for w in single.where])
     grids = np.array([single.where[i]["grids"][0] for i in at_grids], dtype=np.int64)
     _, once = np.unique(grids, return_index=True)
+    once = np.sort(once)
     xyz = single.xyz[at_grids[once]]
     if not len(xyz):
         return (single,)

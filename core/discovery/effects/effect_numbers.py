@@ -41,7 +41,6 @@ class EffectNumbers:
     patch_thinned: float = number(1.05, "-", "times the spacing, where there are more")
     patch_sides: tuple[float, float] = number((1.25, 0.63), "radii", "half sides of an elongated patch", "the area of the round one")
     patch_reach: float = number(1.6, "radii", "within which its elements are", "more than half its diagonal")
-    patch_wide: float = number(0.1, SIZE, "extent along an axis from which on patches are elongated along it")
     patch_largest: float = number(0.5, "of all elements", "that a patch may hold")
     patch_left: float = number(1e-5, "of the trace", "that a row of a patch's root is worth, at least")
     patch_rounding: float = number(1e-12, "of the largest eigenvalue", "below which one of an element is zero", ROUNDING)

@@ -39,17 +39,19 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> l
             continue
         xyz = structure.centroids(m)
         tree = cKDTree(xyz)
-        wide = np.flatnonzero(np.ptp(xyz, axis=0) > EFFECTS.patch_wide * size)
-        wide = wide if len(wide) > 1 else wide[:0]
-        sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in wide]
-        centres = np.concatenate([xyz, structure.model.geometry.xyz[np.unique(m.corners)]])
+        frames = _frames(structure.model.geometry.xyz[m.corners])
+        sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in (0, 1)]
+        own = xyz[structure.in_order(xyz)]
+        grids = structure.model.geometry.xyz[np.unique(m.corners)]
+        centres = np.concatenate([own, grids[structure.in_order(grids)]])
         for k, r in enumerate(radii):
             apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
             wider = EFFECTS.patch_first * apart * r * size
-            coarse = set(_centres(xyz, wider)) if k % 3 == 1 else set()
+            coarse = set(_centres(own, wider)) if k % 3 == 1 else set()
             for c in sorted({*_centres(centres, apart * r * size), *coarse}):
                 reach = np.array(tree.query_ball_point(centres[c], within), np.int64)
-                away = np.abs(xyz[reach] - centres[c]) / (r * size)
+                away = np.abs((xyz[reach] - centres[c]) @ frames[tree.query(centres[c])[1]].T)
+                away = away / (r * size)
                 inside = [np.linalg.norm(away, axis=1) <= 1.0]
                 inside += [np.all(away <= s, axis=1) for s in sides]
                 for shape, which in enumerate(inside):
@@ -59,6 +61,15 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> l
                         middle = xyz[rows].mean(axis=0)
                         out.append(Patch(number, rows, middle, first))
     return _distinct(out)
+
+
+def _frames(corners: Floats) -> Floats:
+    """Return the first side of shells (n, k, 3), what is across it, and the normal, (n, 3, 3)."""
+    along, side = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
+    normal = np.cross(along, side)
+    frames = np.stack([along, np.cross(normal, along), normal], axis=1)
+    length = np.linalg.norm(frames, axis=2, keepdims=True)
+    return np.asarray(frames / np.maximum(length, np.finfo(float).tiny))
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:

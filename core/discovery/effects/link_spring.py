@@ -74,7 +74,6 @@ def _grids(structure: Structure) -> Points:
     """Return weights (n, n_grid), positions and numbers of the grids that move, in an order."""
     points, xyz, grids = points_of(structure)
     own = np.flatnonzero([len(g) == 1 for g in grids])
-    own = own[np.argsort(xyz[own] @ _ORDER, kind="stable")]
     return points[own], xyz[own], [grids[i] for i in own.tolist()]
 
 
@@ -106,9 +105,6 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         ends_xyz=np.hstack([xyz[a], xyz[b]]),
     )
 
-
-_ORDER = np.array([1.0, 0.7548776662466927, 0.5698402909980532])
-"""Along it grids are in order: which end of a link is the first (Roberts 2018)."""
 
 KIND = EffectKind(
     name="link_spring",

@@ -53,9 +53,12 @@ def edges_of(structure: Structure, s: Supports) -> list[Edge]:
     held = np.zeros(len(g.ids), bool)
     held[g.index_of(np.unique(s.grid))] = True
     ends, along, normal = _sides(structure, held)
+    order = structure.in_order(g.xyz)
+    rank = np.argsort(order)
     out = []
     for rows in _continued(ends, along, normal):
-        grids, at = _walk(ends[rows])
+        sides, at = _walk(rank[ends[rows]])
+        grids = order[sides]
         t, n = along[rows][at], normal[rows][at]
         out.append(Edge(g.ids[grids], g.xyz[grids], t, n))
     return out

@@ -24,27 +24,29 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[in
     for m in structure.members:
         used[m.corners.ravel()] = True
     own = np.flatnonzero(carries & used)
+    own = own[structure.in_order(g.xyz[own])]
     weights = [
         sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
     ]
     for m in structure.members:
         if m.element.dimension == 2:
-            weights.append(_means(m.corners, len(g.ids)))
+            weights.append(_means(m.corners, structure))
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges = np.unique(np.sort(edges, axis=1), axis=0)
-            weights.append(_means(edges, len(g.ids)))
+            weights.append(_means(edges, structure))
     for number, rows in bare_bars(structure):
-        weights.append(_means(structure.members[number].corners[rows, :2], len(g.ids)))
+        weights.append(_means(structure.members[number].corners[rows, :2], structure))
     P = sp.vstack(weights).tocsr()
     grids = [g.ids[c].tolist() for c in np.split(P.indices, P.indptr[1:-1])]
     return P, np.asarray(P @ g.xyz), grids
 
 
-def _means(corners: Ints, n_grid: int) -> sp.csr_matrix:
-    """Rows that take the mean of some grids, (n, n_grid)."""
-    n, k = corners.shape
+def _means(corners: Ints, structure: Structure) -> sp.csr_matrix:
+    """Rows that take the mean of some grids, in an order of their own, (n, n_grid)."""
+    xyz, (n, k) = structure.model.geometry.xyz, corners.shape
+    corners = corners[structure.in_order(xyz[corners].mean(axis=1))]
     where = (np.repeat(np.arange(n), k), corners.ravel())
-    return sp.csr_matrix((np.full(n * k, 1.0 / k), where), (n, n_grid))
+    return sp.csr_matrix((np.full(n * k, 1.0 / k), where), (n, len(xyz)))
 
 
 def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:

@@ -53,6 +53,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     made = [_released(s, list(_joined(s, components)), carrying) for components in _TOGETHER]
     for c in np.unique(s.component):
         own = np.flatnonzero(s.component == c)
+        own = own[structure.in_order(s.xyz[own])]
         made.append(_released(s, [_Place(np.array([i]), own[:0]) for i in own], carrying))
         made.append(_released(s, list(_groups(s, own[~on_edge[own]], scale.size)), carrying))
     for component in range(1, 7):

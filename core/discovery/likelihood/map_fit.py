@@ -220,7 +220,8 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     t = e.shapes
     m = min(problem.columns, shapes.shape[1])
     near = shapes[:, :m]
-    joint = joint_macs(lam[:m], t.T @ near, near.T @ near, noise.mixing)[here, k]
+    strained = np.where(lam[:m] > LIKELIHOOD.least_eigenvalue * aim.min(), lam[:m], 0.0)
+    joint = joint_macs(strained, t.T @ near, near.T @ near, noise.mixing)[here, k]
     own = np.sum(t * a, axis=0) ** 2
     counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, LIKELIHOOD.apart_least))
     scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)

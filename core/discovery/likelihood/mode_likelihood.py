@@ -143,7 +143,7 @@ def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) ->
     floor = LIKELIHOOD.least_eigenvalue * omega2.min()
     off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
     n = e.noise
-    macs = joint_macs(np.maximum(eigenvalues, floor), cross, gram, n.mixing)
+    macs = joint_macs(np.where(eigenvalues > floor, eigenvalues, 0.0), cross, gram, n.mixing)
     f, s = np.asarray(n.frequency)[..., None], np.asarray(n.shape)[..., None]
     d = (off / f) ** 2 + n.independent * (1.0 - macs) / s**2
     return np.asarray(n.robust * np.log1p(d / n.robust))

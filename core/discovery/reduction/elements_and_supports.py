@@ -1,6 +1,7 @@
 """Where on a structure something may be missing."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,6 +11,8 @@ from ...assembly.element_assembly import ElementBlock
 from ...data.parametric_model import Model
 from ...elements import Element
 from ...noun import Noun
+from .own_axes import own_axes
+from .reduction_numbers import REDUCTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,18 @@ class Structure(Noun):
         """Centroids of the elements of one card, (n, 3)."""
         return np.asarray(self.model.geometry.xyz[m.corners].mean(axis=1))
 
+    def in_order(self, xyz: Floats) -> Ints:
+        """Rows of points (n, 3) in order along the structure's own axes, whatever order they have.
+
+        So what is chosen of them hangs on where they are, not on how a deck numbers them.
+        """
+        unit = REDUCTION.as_far * self.model.geometry.size
+        return np.asarray(np.lexsort(np.round(xyz @ self._axes.T / unit).T[::-1]))
+
+    @cached_property
+    def _axes(self) -> Floats:
+        return own_axes(self.model.geometry.xyz)
+
 
 def shelled(structure: Structure) -> Bools:
     """Whether each grid is one of a shell or solid, (n_grid,)."""
@@ -109,7 +124,7 @@ def shelled(structure: Structure) -> Bools:
 
 
 def thinned(xyz: Floats, distance: float) -> Ints:
-    """Rows of a subset of points in which every other point has one within `distance`."""
+    """Rows of a subset of points in which every other has one within `distance`, the first kept."""
     from scipy.spatial import cKDTree
 
     tree = cKDTree(xyz)

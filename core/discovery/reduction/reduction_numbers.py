@@ -10,6 +10,8 @@ class ReductionNumbers:
     own: float = number(1e-6, "of the mass of a mode", "that moves with the structure, for it to count", ROUNDING)
     rounding: float = number(1e-7, "of a vector", "what is left of it is rounding", ROUNDING)
     dependent: float = number(1e-5, "of the largest squared length", "directions with less are not new to a basis")
+    as_far: float = number(1e-6, "of the structure's size", "by which points are at one place along an axis", ROUNDING)
+    alike: float = number(1e-3, "of the largest", "difference of moments of inertia of axes that are as good as any other between them")
     pinned: float = number(1e-9, "of the larger bending stiffness", "below which a bar does not bend with the grid", ROUNDING)
     bars_at_once: int = number(512, "bars", "whose consistent mass is made at once", "memory")
     at_once: int = number(128, "loads", "whose displacements are found at once", "memory")

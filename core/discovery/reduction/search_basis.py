@@ -78,11 +78,23 @@ def with_answers(
     model: Model, p: Floats, V: Floats, modes: Floats, M: sp.spmatrix, factor: Factorisation
 ) -> Floats:
     """Return V with what A⁻¹ ∂K/∂p φ of some modes φ adds, A being what was factorised."""
-    sides = [model.dK(k, p) @ modes for k in range(len(model.parameters))]
+    sides = [independent(model.dK(k, p) @ modes) for k in range(len(model.parameters))]
     if not sides:
         return V
     X = factor.solve(np.ascontiguousarray(np.hstack(sides)))
     return np.hstack([V, beside(X, V, M, REDUCTION.dependent)])
+
+
+def independent(loads: Floats) -> Floats:
+    """Return loads that span the same as those of some modes, (n_free, m) and (n_free, s ≤ m).
+
+    Modes of a free body that strain nothing have none but rounding.
+    """
+    length = np.linalg.norm(loads, axis=0)
+    live = length > REDUCTION.rounding * length.max(initial=0.0)
+    unit = loads[:, live] / length[live]
+    values, vectors = np.linalg.eigh(unit.T @ unit)
+    return np.asarray(unit @ vectors[:, values > REDUCTION.rounding * len(values)])
 
 
 def _lengths(X: Floats, M: sp.spmatrix) -> Floats:

@@ -28,7 +28,7 @@ from ..model_error.smooth_fields import Fields, smooth_fields, suspended
 from ..reduction.elements_and_supports import Structure
 from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.residual_flexibility import Compliance
-from ..reduction.search_basis import Basis, beside, structural
+from ..reduction.search_basis import Basis, beside, independent, structural
 from .model_selection import noise_scale
 from .search_numbers import SEARCH
 
@@ -200,7 +200,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     V = ground.basis.vectors
     sums = ground.basis.stiffness, ground.basis.mass, ground.mesh, ground.bars
     loads = [
-        _root(c, row).T.toarray() if c.rows_each else c.full(row) @ V[:, :columns]
+        _root(c, row).T.toarray() if c.rows_each else independent(c.full(row) @ V[:, :columns])
         for c, row in places
     ]
     stiffness, mass, mesh, bars = sums

@@ -14,6 +14,7 @@ from trueup.core.discovery.reduction.residual_flexibility import (
     Flexibility,
     SharedFlexibility,
 )
+from trueup.core.discovery.reduction.search_basis import independent
 from trueup.core.reduction.reduced_sum import reduced_sum
 
 RNG = np.random.default_rng(4)
@@ -90,3 +91,11 @@ def test_what_a_basis_lacks_among_the_loads_of_a_candidate_is_the_rest_of_the_fl
     expected = np.einsum("nij,jk,nlk->nil", own, lost, own)
     for rows in ([2], [0, 2, 3, 2]):
         np.testing.assert_allclose(lacking[np.array(rows)], expected[rows], rtol=1e-7, atol=1e-12)
+
+
+def test_loads_of_modes_that_strain_nothing_and_loads_that_others_make_up_are_left_out():
+    noise = 1e-12 * RNG.standard_normal((30, 2))
+    own = independent(np.hstack([noise, 1e-3 * V[:, :2], V[:, 2:4], V[:, :1] - V[:, 3:4]]))
+    assert own.shape == (30, 4)
+    assert np.linalg.matrix_rank(np.hstack([own, V[:, :4]])) == 4
+    assert independent(np.zeros((30, 3))).shape == (30, 0)
