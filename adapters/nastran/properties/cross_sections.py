@@ -2,9 +2,8 @@
 
 Areas and inertias are exact for the shapes drawn in the Quick Reference Guide. Torsion constants
 are the usual thin-walled ones (sum of b t**3 / 3 where open, Bredt where closed; Roark for solid
-rectangles) and shear factors the web's share of the area, 5/6 for rectangles; of rods and tubes
-Cowper's without Poisson's ratio, which makes Nastran's frequencies to 1e-7 (the NX Nastran Element
-Library Reference rounds it to 0.9 and 0.5).
+rectangles) and shear factors the web's share of the area, 5/6 for rectangles, 0.9 for rods and
+0.5 for tubes, as the NX Nastran Element Library Reference gives them.
 """
 
 import math
@@ -124,10 +123,8 @@ def _compose(
     return Section(A, I1, I2, I12, J, K[0] / A, K[1] / A, y_from, z_from)
 
 
-def _round(outer: float, inner: float) -> Section:
+def _round(outer: float, inner: float, shear: float) -> Section:
     _require(outer > inner >= 0.0)
-    m = (inner / outer) ** 2
-    shear = 6.0 * (1.0 + m) ** 2 / (7.0 * (1.0 + m) ** 2 + 20.0 * m)
     A = math.pi * (outer**2 - inner**2)
     quarter = 0.25 * math.pi * (outer**4 - inner**4)
     return Section(A, quarter, quarter, 0.0, 2.0 * quarter, shear, shear)
@@ -297,9 +294,9 @@ def _hat1(plate: float, h: float, top: float, t: float, tp: float) -> Section:
 
 
 SHAPES: dict[str, tuple[int, Callable[..., Section]]] = {
-    "ROD": (1, lambda r: _round(r, 0.0)),
-    "TUBE": (2, _round),
-    "TUBE2": (2, lambda outer, t: _round(outer, outer - t)),
+    "ROD": (1, lambda r: _round(r, 0.0, 0.9)),
+    "TUBE": (2, lambda outer, inner: _round(outer, inner, 0.5)),
+    "TUBE2": (2, lambda outer, t: _round(outer, outer - t, 0.5)),
     "BAR": (2, _bar),
     "BOX": (4, _box),
     "BOX1": (6, _box1),
