@@ -18,9 +18,10 @@ from .studies.heard import require_heard
 from .studies.options import Files, Say, UpdateOptions, said_to, study_of, unheard
 from .studies.study import Study
 from .updating.kept import kept_in
+from .updating.solver_in_the_loop import by_solver
 from .updating.update_together import update_together
 from .updating.updated import updated
-from .updating.updating_ways import by_itself, by_solver
+from .updating.updating_ways import State, by_itself
 
 
 @overload
@@ -118,7 +119,7 @@ def update(
     side = measured(test, asked)
     analysis = read_analysis(deck, asked, side.highest(asked))
     placed = correlated(analysis, side, asked).placed
-    found = by_solver if asked.solver else by_itself
     kept = kept_in(keep, asked, [made_of(analysis.given, side)])
-    way = found(analysis, placed, side, asked, progress, kept)
-    return updated(analysis, side, placed, asked, way, time.perf_counter() - start)
+    state = State("", asked, side, analysis, placed)
+    _, (way,) = (by_solver if asked.solver else by_itself)([state], asked, progress, kept)
+    return updated(state, way, time.perf_counter() - start)

@@ -20,6 +20,8 @@ from ...core.independent import Each, R, T, in_turn
 
 _TRIES = 3
 """Processes or workers that may end under a piece of work before it is given up."""
+_GRACE = 5
+"""Seconds that a process may take to end by itself."""
 _ANSWERS = 30
 """Seconds that a Dask scheduler may take to answer."""
 _FORM = re.compile(r"processes(:(?P<number>[1-9]\d*))?|dask:(?P<address>.+)")
@@ -74,13 +76,14 @@ def _in_processes(number: int, work: Callable[[T], R], items: Sequence[T], /) ->
         for _ in range(_TRIES):
             if ended.is_set():
                 break
+            piece = sent + pickle.dumps(item)
             process = subprocess.Popen(
                 [sys.executable, "-m", "trueup.verbs.studies.piece_of_work"],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=settings,
                 start_new_session=True,
             )  # fmt: skip
             running.add(process)
-            answer, _ = process.communicate(sent + pickle.dumps(item))
+            answer, _ = process.communicate(piece)
             running.discard(process)
             if process.returncode == 0:
                 value: R = _answer(pickle.loads(answer))
@@ -93,7 +96,16 @@ def _in_processes(number: int, work: Callable[[T], R], items: Sequence[T], /) ->
         finally:
             ended.set()
             for process in tuple(running):
-                process.kill()
+                _end(process)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a process; it first ends what it started itself, the user's solver."""
+    process.terminate()
+    try:
+        process.wait(_GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
 
 
 def answered(work: Callable[[Any], R], item: Any) -> tuple[R | None, Exception | None]:

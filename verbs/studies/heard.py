@@ -5,17 +5,19 @@ from __future__ import annotations
 from ...core.errors import InputError
 from .study import Study
 
-_READ_BY = {
-    "relations": "relations",
-    "measured_mass": "mass",
-    "measured_centre_of_gravity": "centre_of_gravity",
-    "load_cases": "deflections",
+_READS = {
+    "relations": ("relations", "is known of parameters", ", such as 'skin / web = 2 ± 0.1'"),
+    "mass": ("measured_mass", "the structure weighs", ""),
+    "centre_of_gravity": ("measured_centre_of_gravity", "was measured of it", ""),
+    "deflections": ("load_cases", "was read under which load", ""),
 }
-"""Keys of a study, each with the residual that reads it."""
+"""Residuals, each with the key of a study that it reads, what that is, and an example."""
 
 
 def require_heard(asked: Study) -> None:
-    """Refuse what an update would not hear, and a residual of relations without any.
+    """Refuse what an update would not hear, and a residual that has nothing to hear.
+
+    Of several configurations one has to be measured.
 
     Raises
     ------
@@ -23,14 +25,11 @@ def require_heard(asked: Study) -> None:
         Which, and what to do.
     """
     named = {r.name for r in asked.named_residuals}
-    if "relations" in named and not asked.relations:
-        raise InputError(
-            "the residual 'relations' needs what is known of parameters: give relations, such as "
-            "'skin / web = 2 ± 0.1'"
-        )
-    for key, residual in _READ_BY.items():
+    for residual, (key, what, example) in _READS.items():
         states = (asked, *asked.configurations)
         given = any(getattr(s, key, None) not in (None, ()) for s in states)
+        if residual in named and not given:
+            raise InputError(f"the residual '{residual}' needs what {what}: give {key}{example}")
         if given and residual not in named:
             raise InputError(
                 f"{key} is given, and residuals does not name '{residual}', which reads it; name "

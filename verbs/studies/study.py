@@ -162,8 +162,11 @@ class Study:
         names = [c.name for c in self.configurations]
         if names and (self.deck is not None or self.test):
             raise InputError("each of the configurations has its deck and test; give none beside")
-        if len(set(names)) < len(names):
-            raise InputError("two configurations have one name; give each its own")
+        if len({name.casefold() for name in names}) < len(names):
+            raise InputError(
+                "two configurations have one name, or names that differ by case only, and so one "
+                "folder; give each its own"
+            )
 
     def of(self, one: ConfigurationRequest) -> Study:
         """Return the study of one of its configurations alone."""

@@ -41,16 +41,6 @@ class Kept:
     of: str
     _numbers: Iterator[int] = field(default_factory=count)
 
-    def once(self, work: Callable[[], R]) -> R:
-        """Do a piece of work, or take what came of it."""
-        number = next(self._numbers)
-        there = self._read(number)
-        if there is None:
-            there = (work(),)
-            self._write(number, there)
-        value: R = there[0]
-        return value
-
     def each(self, asked: str) -> Each:
         """Return what does independent pieces of work by an executor, those that are not there."""
 

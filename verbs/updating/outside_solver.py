@@ -31,14 +31,14 @@ class OutsideSolver:
     """A command that solves a deck, in which ``{deck}`` stands for its path.
 
     It runs in the folder of the deck; what it leaves there is looked through for modes. `limit` is
-    in seconds. `work` is the folder for its runs.
+    in seconds. `work` is the folder for its runs, wherever they are.
     """
 
     command: str
     limit: float
     work: Path
 
-    def modes(self, changed: ChangedDeck, deck: Deck) -> Modes:
+    def modes(self, changed: ChangedDeck) -> Modes:
         """Return the modes of a deck.
 
         Raises
@@ -47,8 +47,12 @@ class OutsideSolver:
             The command ends with another status than 0, or not in time, or leaves no modes: what
             it said last, and where the deck and its output are kept.
         """
-        run = self.work / f"run{1 + len(list(self.work.iterdir()))}"
+        from ...adapters.nastran import read_deck
+
+        self.work.mkdir(parents=True, exist_ok=True)
+        run = Path(tempfile.mkdtemp(prefix="run", dir=self.work))
         path = changed.write(run)
+        deck = read_deck(path)
         given = {p for p in run.rglob("*") if p.is_file()}
         log = run / "solver.log"
         words = [w.replace(_PLACE, str(path)) for w in shlex.split(self.command)]

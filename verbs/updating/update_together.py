@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from ...core.correlation.comparison import Placed
 from ...core.errors import InputError
 from ...core.results.plain import Table
 from ...core.results.together import configuration_rows, pair_rows, shared_rows
 from ...core.results.update import drawn, posterior_table, sample_rows, start_rows
 from ...core.updating.problem import Problem
 from ...core.version import VERSION
-from ..analysis import Analysis, correlated, read_analysis
+from ..analysis import correlated, read_analysis
 from ..files.made_of import made_of
-from ..files.sources import Measured, measured, read_deck
+from ..files.sources import measured, read_deck
 from ..runs.run import Updated
 from ..runs.together import UpdatedTogether
 from ..studies.options import Files, Say
@@ -23,19 +22,9 @@ from ..studies.relations import names_in, read_relation
 from ..studies.study import Study
 from ..studies.study_tables import ConfigurationRequest
 from .kept import kept_in
+from .solver_in_the_loop import by_solver
 from .updated import updated
-from .updating_ways import Moved, configuration, moved, way_of
-
-
-@dataclass(frozen=True, eq=False)
-class _State:
-    """A configuration that was read: what of it was asked, its test, its model, the test on it."""
-
-    name: str
-    asked: Study
-    side: Measured
-    analysis: Analysis
-    placed: Placed
+from .updating_ways import State, by_itself, configuration
 
 
 def update_together(asked: Study, progress: Say, keep: Files | None = None) -> UpdatedTogether:
@@ -55,32 +44,22 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     start = time.perf_counter()
     if not any((asked.parameters, *(c.parameters for c in asked.configurations))):
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
-    if asked.solver is not None:
-        raise InputError("a solver of your own verifies one configuration; leave it out of several")
     _require_one_meaning(asked)
-    states: list[_State] = []
+    states: list[State] = []
     relations = asked.relations
     for one in asked.configurations:
         progress(f"reading and correlating {one.name}")
         states.append(_read(replace(asked, relations=relations), one))
         here = states[-1].asked.relations
         relations = tuple(text for text in relations if text not in here)
-    every = [configuration(s.analysis, s.placed, s.asked, s.name) for s in states]
-    problem = Problem.of(every)
+    problem = Problem.of([configuration(s) for s in states])
     _require_all_used(asked, problem)
     _require_all_told(relations, problem)
     kept = kept_in(keep, asked, [made_of(s.analysis.given, s.side) for s in states])
-    progress("updating")
-    way = moved(every, problem.parameters, asked, kept)
-    found, intervals = way.done, way.intervals
-    results: dict[str, Updated] = {}
-    for k, s in enumerate(states):
-        progress(f"writing the updated deck of {s.name} and solving it again")
-        own = intervals if intervals is None else intervals[problem.parts[k].own]
-        alone = Moved(found.of(problem, k), intervals=own)
-        seconds = time.perf_counter() - start
-        changed = way_of(s.analysis, s.placed, s.asked, alone)
-        results[s.name] = updated(s.analysis, s.side, s.placed, s.asked, changed, seconds)
+    way, ways = (by_solver if asked.solver else by_itself)(states, asked, progress, kept)
+    found, results = way.done, dict[str, Updated]()
+    for state, own in zip(states, ways, strict=True):
+        results[state.name] = updated(state, own, time.perf_counter() - start)
     told = [f"{name}: {w}" for name, r in results.items() for w in r.warnings]
     of_all = [w for w in told if w.partition(": ")[2] not in found.warnings]
     inputs = dict.fromkeys(row for r in results.values() for row in r.inputs)
@@ -105,7 +84,7 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     )
 
 
-def _read(asked: Study, one: ConfigurationRequest) -> _State:
+def _read(asked: Study, one: ConfigurationRequest) -> State:
     """Read a configuration with those of the parameters that its deck has, and their relations."""
     from ...adapters.nastran.assembly.wide_parameters import stands_in
     from ...adapters.nastran.fields.parameter_references import parse_request
@@ -123,7 +102,7 @@ def _read(asked: Study, one: ConfigurationRequest) -> _State:
     own = replace(own, parameters=there, relations=known)
     side = measured(own.test, own)
     analysis = read_analysis(deck, own, side.highest(own))
-    return _State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
+    return State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
 
 
 def _require_one_meaning(asked: Study) -> None:

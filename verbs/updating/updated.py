@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ...core.correlation.comparison import Placed
 from ...core.results.correlation import compared
 from ...core.results.plain import Table
 from ...core.results.update import (
@@ -16,18 +15,15 @@ from ...core.results.update import (
     start_rows,
     weights_table,
 )
-from ..analysis import Analysis, named
+from ..analysis import named
 from ..files.made_of import beside, made_of
-from ..files.sources import Measured
 from ..runs.run import Updated, content_of
-from ..studies.study import Study
-from .updating_ways import Way
+from .updating_ways import State, Way
 
 
-def updated(
-    analysis: Analysis, side: Measured, placed: Placed, asked: Study, way: Way, seconds: float
-) -> Updated:
+def updated(state: State, way: Way, seconds: float) -> Updated:
     """Return the result of an update that was made in some way."""
+    asked, side, analysis, placed = state.asked, state.side, state.analysis, state.placed
     moved, parameters = way.moved, analysis.model.parameters
     done = moved.done
     before, after, (changed, values) = way.before, way.after, way.written

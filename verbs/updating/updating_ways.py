@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...core.arrays import Floats
 from ...core.correlation.comparison import Comparison, Placed, compare
-from ...core.correlation.mode_pairing import Pair
 from ...core.data.parameter import Parameter
 from ...core.data.parametric_model import Model
 from ...core.eigen.normal_modes import Eigensolution, modes_of
@@ -23,30 +20,26 @@ from ...core.updating import update as core
 from ...core.updating.determined import put_back, update_determined
 from ...core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from ...core.updating.prior_evidence import PriorWeighed, weigh_prior
+from ...core.updating.problem import Problem
 from ...core.updating.sampling import Sampled, sample_posterior
-from ..analysis import Analysis, placed as place, rigid_count, target_of
+from ..analysis import Analysis, target_of
 from ..files.sources import Measured
 from ..studies.options import Say
 from ..studies.study import Study, meant
 from .kept import Kept
-from .outside_solver import outside_solver
 
 if TYPE_CHECKING:
     from ...adapters.nastran.assembly.read_back import ReadBack
     from ...adapters.nastran.editing.changed_deck import ChangedDeck
     from ...adapters.nastran.fields.parameter_references import FieldRef
 
-_MOST_RUNS = 4
-"""Updates that the user's solver verifies, at most."""
-_SETTLED = 0.05
-"""Percent of a frequency by which the correction for the user's solver may still change."""
 _AGREES = 1e-4
 """Relative difference of eigenvalues, updated model and deck read back, that is none."""
 
 
 _CURVED = 10.0
 """Relative change of an eigenvalue by the square of that of a factor: a thickness bends by 3."""
-_Written = tuple["ChangedDeck", list[list[float | None]]]
+Written = tuple["ChangedDeck", list[list[float | None]]]
 """The updated deck, and the values of its parameters' fields."""
 
 
@@ -68,119 +61,80 @@ class Way:
     moved: Moved
     before: Comparison
     after: Comparison
-    written: _Written
+    written: Written
     solver: SolverRow | None = None
     warnings: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class State:
+    """A configuration that was read: what of it was asked, its test, its model, the test on it.
+
+    The name is empty where there is one.
+    """
+
+    name: str
+    asked: Study
+    side: Measured
+    analysis: Analysis
+    placed: Placed
+
+    @property
+    def named(self) -> str:
+        """For what is told while it lasts."""
+        return f" of {self.name}" * bool(self.name)
+
+
 def by_itself(
-    analysis: Analysis, placed: Placed, _: Measured, asked: Study, progress: Say, kept: Kept
-) -> Way:
-    """Update, solved by the embedded solver alone."""
+    states: Sequence[State], asked: Study, progress: Say, kept: Kept
+) -> tuple[Moved, list[Way]]:
+    """Update, solved by the embedded solver alone: what came of it, and of each configuration."""
     progress("updating")
-    one = configuration(analysis, placed, asked)
-    found = moved([one], analysis.model.parameters, asked, kept)
-    progress("writing the updated deck and solving it again")
-    return way_of(analysis, placed, asked, found)
+    every = [configuration(s) for s in states]
+    found = moved(every, asked, kept)
+    ways = []
+    for s, own in zip(states, apart(found, every), strict=True):
+        progress(f"writing the updated deck{s.named} and solving it again")
+        ways.append(_way_of(s, own))
+    return found, ways
 
 
-def way_of(analysis: Analysis, placed: Placed, asked: Study, found: Moved) -> Way:
+def apart(found: Moved, every: Sequence[core.Configuration]) -> list[Moved]:
+    """Return what came of each configuration, with its own parameters alone."""
+    if len(every) == 1:
+        return [found]
+    problem, k = Problem.of(every), found.intervals
+    return [
+        Moved(found.done.of(problem, n), intervals=None if k is None else k[part.own])
+        for n, part in enumerate(problem.parts)
+    ]
+
+
+def _way_of(state: State, found: Moved) -> Way:
     """Return what an update by the embedded solver did to a deck, both states compared."""
+    analysis, placed, criteria = state.analysis, state.placed, state.asked.criteria
 
     def comparison(model: Model, solution: Eigensolution) -> Comparison:
         modes = modes_of(model, solution)
-        rigid = solution.rigid_body_modes
-        return compare(analysis.geometry, modes, placed, asked.criteria, rigid)
+        return compare(analysis.geometry, modes, placed, criteria, solution.rigid_body_modes)
 
-    written, again = _written(analysis, found.done)
+    deck, again = written(analysis, found.done)
     before = comparison(analysis.model, found.done.before.solution)
-    return Way(found, before, comparison(again.model, again.solution), written)
+    return Way(found, before, comparison(again.model, again.solution), deck)
 
 
-def by_solver(
-    analysis: Analysis, placed: Placed, side: Measured, asked: Study, progress: Say, kept: Kept
-) -> Way:
-    """Update such that the user's own solver meets the test.
-
-    What it says of each pair's frequency over what the embedded solver says corrects the test that
-    is aimed at, until both go together; its modes are those that are compared.
-    """
-    from ...adapters.nastran.editing.changed_deck import ChangedDeck
-
-    assert analysis.deck is not None
-    assert analysis.given is not None
-    assert asked.solver is not None
-    deck, began = analysis.deck, time.perf_counter()
-
-    def judged(changed: ChangedDeck) -> Comparison:
-        modes = kept.once(partial(solver.modes, changed, deck))
-        progress(f"{len(modes)} modes of your solver")
-        at = place(analysis.model, deck, modes, side, asked)
-        return compare(analysis.geometry, modes, at, asked.criteria, rigid_count(modes))
-
-    with outside_solver(asked.solver, asked.solver_limit) as solver:
-        progress("your solver solves the deck as it came")
-        before = judged(ChangedDeck.of(analysis.given.text, analysis.given.text))
-        own = compare(
-            analysis.geometry, analysis.modes, placed, asked.criteria, analysis.rigid_body_modes
-        )
-        factor = first = _correction(before, own.correlation.pairs)
-        for round_ in range(1, _MOST_RUNS + 1):
-            runs = round_ + 1
-            progress("updating")
-            test = placed.test
-            aim = replace(test, frequencies_hz=test.frequencies_hz / factor)
-            one = configuration(analysis, replace(placed, test=aim), asked)
-            found = moved([one], analysis.model.parameters, asked, kept)
-            written, _ = _written(analysis, found.done)
-            progress("your solver solves the updated deck")
-            after = judged(written[0])
-            last, factor = factor, _correction(after, found.done.after.correlation.pairs)
-            left = _percent(factor / last)
-            if left < _SETTLED:
-                break
-    row = SolverRow(
-        asked.solver,
-        runs,
-        time.perf_counter() - began,
-        _percent(first),
-        _percent(factor),
-        left,
-    )
-    open_ = f"your solver and the embedded one still part by {left:.2g} % after {runs} runs"
-    return Way(found, before, after, written, row, () if left < _SETTLED else (open_,))
+def configuration(state: State, corrected: Floats | float = 1.0) -> core.Configuration:
+    """Return a model and its test as the core updates them, its frequencies over a correction."""
+    test, model = state.placed.test, state.analysis.model
+    aim = replace(test, frequencies_hz=test.frequencies_hz / corrected)
+    target = target_of(model, replace(state.placed, test=aim), state.asked)
+    how = state.asked.criteria, state.asked.weights
+    return core.Configuration(model, target, *how, len(state.analysis.modes), state.name)
 
 
-def _correction(by_solver: Comparison, own: Sequence[Pair]) -> Floats:
-    """Frequency by the user's solver over that by the embedded one, by test mode, (n_test,)."""
-    factor = np.full(len(by_solver.test), np.nan)
-    ours = {p.test: p.analysis_hz for p in own}
-    for p in by_solver.correlation.pairs:
-        if p.test in ours:
-            factor[p.test] = p.analysis_hz / ours[p.test]
-    known = np.isfinite(factor)
-    factor[~known] = np.median(factor[known]) if known.any() else 1.0
-    return factor
-
-
-def _percent(factor: Floats) -> float:
-    return float(100.0 * np.abs(factor - 1.0).max(initial=0.0))
-
-
-def configuration(
-    analysis: Analysis, placed: Placed, asked: Study, name: str = ""
-) -> core.Configuration:
-    """Return a model and its test as the core updates them."""
-    target, count = target_of(analysis.model, placed, asked), len(analysis.modes)
-    how = asked.criteria, asked.weights
-    return core.Configuration(analysis.model, target, *how, count, name)
-
-
-def moved(
-    every: Sequence[core.Configuration], parameters: Sequence[Parameter], asked: Study, kept: Kept
-) -> Moved:
+def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Moved:
     """Return the update and what was asked of it."""
-    stages = _stages(asked, parameters)
+    stages = _stages(asked, Problem.of(every).parameters)
 
     def update() -> core.Updated:
         if not asked.write_undetermined:
@@ -205,7 +159,7 @@ def moved(
     return Moved(put_back(every, last, best), starts, intervals, sampled, evidence)
 
 
-def _written(analysis: Analysis, done: core.Updated) -> tuple[_Written, ReadBack]:
+def written(analysis: Analysis, done: core.Updated) -> tuple[Written, ReadBack]:
     """Return the updated deck and the values of its parameters' fields; and it read back, solved.
 
     Raises

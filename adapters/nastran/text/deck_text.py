@@ -62,15 +62,15 @@ class DeckText(Noun):
 
     @cached_property
     def _walked(self) -> "_Walk":
-        def follow(parent: int, written: str, where: Place) -> int:
-            child = self.children.get((parent, written))
-            if child is None:
-                raise where.error(f"INCLUDE {written!r} was not there when the deck was read")
-            return child
-
-        walk = _Walk(lambda k: self.files[k], follow)
+        walk = _Walk(self.files.__getitem__, self._follow)
         walk.through(0, ())
         return walk
+
+    def _follow(self, parent: int, written: str, where: Place) -> int:
+        child = self.children.get((parent, written))
+        if child is None:
+            raise where.error(f"INCLUDE {written!r} was not there when the deck was read")
+        return child
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:

@@ -1,4 +1,4 @@
-"""Displacements under static loads."""
+"""Displacements under static loads; no row where none were read."""
 
 from __future__ import annotations
 
@@ -57,14 +57,12 @@ def _balanced(K: sp.csr_matrix, solved: _Solved) -> bool:
 
 def _of(seen: Seen) -> tuple[_Solved, ...]:
     cases = seen.beside.load_cases
-    if not cases:
-        raise InputError("the residual 'deflections' needs what was read under which load")
-    return _solved(seen.model, tuple(map(float, seen.factors)), cases)
+    return _solved(seen.model, tuple(map(float, seen.factors)), cases) if cases else ()
 
 
 def _value(seen: Seen) -> Floats:
     off = [(s.case.rows @ s.moved - s.case.values) / s.largest for s in _of(seen)]
-    return np.asarray(np.concatenate(off)[:, None])
+    return np.asarray(np.concatenate([np.zeros(0), *off])[:, None])
 
 
 def _derivative(seen: Seen, slopes: Slopes) -> Floats:
@@ -73,7 +71,7 @@ def _derivative(seen: Seen, slopes: Slopes) -> Floats:
         np.stack([-s.adjoint.T @ (dK @ s.moved) / s.largest for dK in changes], axis=-1)
         for s in _of(seen)
     ]
-    return np.asarray(np.concatenate(parts)[:, None, :])
+    return np.asarray(np.concatenate([np.zeros((0, len(changes))), *parts])[:, None, :])
 
 
 DEFLECTIONS = Residual("deflections", "deflection_sigma", UPDATING.deflection, _value, _derivative)

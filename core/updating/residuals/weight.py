@@ -1,4 +1,4 @@
-"""What the structure weighs, and where its centre of gravity is."""
+"""What the structure weighs and where its centre of gravity is; no row where not measured."""
 
 from __future__ import annotations
 
@@ -35,41 +35,33 @@ def _slopes(seen: Seen, slopes: Slopes) -> list[Floats]:
     ]
 
 
-def _measured_mass(seen: Seen) -> float:
-    if seen.beside.mass is None:
-        raise InputError("the residual 'mass' needs what the structure weighs: give measured_mass")
-    return seen.beside.mass
-
-
 def _mass_value(seen: Seen) -> Floats:
+    if seen.beside.mass is None:
+        return np.zeros((0, 1))
     R = _at(seen)
     k = mass_axis(R)
-    return np.array([[R[k, k] / _measured_mass(seen) - 1.0]])
+    return np.array([[R[k, k] / seen.beside.mass - 1.0]])
 
 
 def _mass_derivative(seen: Seen, slopes: Slopes) -> Floats:
-    weighed, k = _measured_mass(seen), mass_axis(_at(seen))
-    return np.array([[[R[k, k] / weighed for R in _slopes(seen, slopes)]]])
+    if seen.beside.mass is None:
+        return np.zeros((0, 1, len(slopes.parameters)))
+    k = mass_axis(_at(seen))
+    return np.array([[[R[k, k] / seen.beside.mass for R in _slopes(seen, slopes)]]])
 
 
-def _known(seen: Seen) -> tuple[Floats, Floats]:
-    """Return which coordinates are known, and the measured ones."""
+def _measured_centre(seen: Seen) -> Floats:
     measured = seen.beside.centre_of_gravity
-    if measured is None:
-        raise InputError(
-            "the residual 'centre_of_gravity' needs where it is: give measured_centre_of_gravity"
-        )
-    return np.isfinite(measured), measured
+    return np.full(3, np.nan) if measured is None else measured
 
 
 def _centre_value(seen: Seen) -> Floats:
-    known, measured = _known(seen)
-    off = centre_of_mass(_at(seen)) - measured
-    return np.asarray(off[known][:, None] / seen.model.geometry.size)
+    off = centre_of_mass(_at(seen)) - _measured_centre(seen)
+    return np.asarray(off[np.isfinite(off)][:, None] / seen.model.geometry.size)
 
 
 def _centre_derivative(seen: Seen, slopes: Slopes) -> Floats:
-    known, _ = _known(seen)
+    known = np.isfinite(_measured_centre(seen))
     moments, masses = mass_moments(_at(seen))
     changes = map(mass_moments, _slopes(seen, slopes))
     moves = [(ds - dm * moments / masses) / masses for ds, dm in changes]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
+import threading
+import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -17,6 +20,7 @@ from trueup.core.independent import Each, in_turn
 from trueup.core.updating.metropolis import adaptive_metropolis
 from trueup.verbs.studies import executors
 from trueup.verbs.studies.executors import executor
+from trueup.verbs.updating.outside_solver import _run
 
 NUMBERS = [3.0, 1.0, 4.0, 1.5, 9.0]
 
@@ -120,6 +124,32 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPat
         executor("dask:tcp://127.0.0.1:9"),
     ):
         pass
+
+
+def started(folder: Path, of: float) -> int:
+    """Start a command as the user's solver is started, which goes on for a minute."""
+    words = [sys.executable, "-c", "import os, sys, time; open(sys.argv[1], 'w').write("
+             "str(os.getpid())); time.sleep(60)", str(folder / f"{of:g}")]  # fmt: skip
+    with (folder / f"{of:g}.log").open("wb") as log:
+        return _run(words, folder, log, 60.0)
+
+
+@pytest.mark.slow
+def test_what_pieces_have_started_ends_with_them(tmp_path: Path):
+    """Ctrl-C while two solvers run elsewhere."""
+    marks = [tmp_path / "1", tmp_path / "2"]
+
+    def interrupt() -> None:
+        while not all(m.exists() and m.read_text() for m in marks):
+            time.sleep(0.05)
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+    threading.Thread(target=interrupt, daemon=True).start()
+    with executor("processes:2") as each, pytest.raises(KeyboardInterrupt):
+        list(each(partial(started, tmp_path), [1.0, 2.0]))
+    for mark in marks:
+        with pytest.raises(ProcessLookupError):
+            os.kill(int(mark.read_text()), 0)
 
 
 def updated(files: tuple[Path, Path], **more: object) -> trueup.Updated:

@@ -95,6 +95,8 @@ def test_what_was_measured_beside_modes_sets_the_scale(
         ({"measured_mass": -1.0}, "must be above 0"),
         ({"measured_centre_of_gravity": [1.0]}, "three numbers"),
         ({"residuals": "mass"}, "give measured_mass"),
+        ({"residuals": "centre_of_gravity"}, "give measured_centre_of_gravity"),
+        ({"residuals": "deflections"}, "under which load: give load_cases"),
     ],
 )
 def test_what_cannot_be_is_said(

@@ -70,6 +70,23 @@ def test_a_solver_that_is_off_is_corrected_for(files: tuple[Path, Path], tmp_pat
     np.testing.assert_allclose(start, 100.0 * (1.03 / TRUTH[0] ** 0.5 - 1.0), atol=0.01)
 
 
+def test_every_configuration_is_verified(files: tuple[Path, Path], tmp_path: Path) -> None:
+    """Two that are alike, solved by two processes."""
+    deck, test = files
+    states = [{"name": name, "deck": deck, "test": test} for name in ("empty", "Full")]
+    done = trueup.update(
+        parameters=["MAT1 1 E"], configurations=states, residuals="frequencies",
+        deck_length_unit="mm", regularisation=0.0, solver=script(tmp_path, HIGHER),
+        executor="processes:2",
+    )  # fmt: skip
+    assert done.parameters[0].factor == pytest.approx(TRUTH[0] / 1.03**2, rel=1e-3)
+    for result in done.results.values():
+        assert result.solver.off_before == pytest.approx(3.0, rel=1e-3)
+        assert max(abs(p.deviation_percent) for p in result.after.pairs) < 0.05
+    again = trueup.open_run(done.save(tmp_path / "run"))
+    assert again.results["Full"].solver == done.results["Full"].solver
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -113,7 +130,7 @@ def test_modes_are_taken_of_what_msc_nastran_leaves(kept: str, tmp_path: Path) -
     changed = ChangedDeck.of(deck.text, deck.text)
     copy = f"import shutil; shutil.copy({str(recorded / kept)!r}, {kept!r})"
     with outside_solver(script(tmp_path, copy), 60.0) as solver:
-        found = solver.modes(changed, deck)
+        found = solver.modes(changed)
     np.testing.assert_allclose(
         found.frequencies_hz, read_modes(recorded / "modes.op2", deck).frequencies_hz, rtol=1e-5
     )
