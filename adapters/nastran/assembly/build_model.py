@@ -22,10 +22,10 @@ from ..fields.parameter_references import ParameterSpec
 from ..properties.analysis_set import AnalysisSet, read_analysis_set
 from ..properties.damping_tables import selected_ratios
 from ..properties.deck_constraints import read_constraints
-from ..properties.dmig_input import direct_matrices
+from ..properties.dmig_input import direct_matrices, external_matrices
 from ..properties.grids import Points, point_dofs, to_basic
 from ..properties.unit_slips import unit_slips
-from .deck_damping import damping_terms
+from .deck_damping import damping_terms, linear, params_moved
 from .deck_elements import Structure, read_structure
 from .negative_masses import refuse_negative_masses
 from .parameter_bounds import admissible
@@ -94,7 +94,7 @@ def assemble(
     points = structure.points
     constraints = read_constraints(deck, points)
     variation, narrowed = admissible(variation, parameters, structure.groups, structure.blocks)
-    whole = _terms(deck, structure, variation)
+    whole = _terms(deck, structure, variation, parameters)
     sets = read_analysis_set(deck, points)
     fixed = constraints.fixed if sets is None else constraints.fixed | sets.modal
     reduced = reduction(points.n_dof, constraints.equations, fixed, points.label)
@@ -130,18 +130,25 @@ def assemble(
     return Assembly(model, structure, whole[0], constraints.fixed)
 
 
-def _terms(deck: Deck, structure: Structure, variation: Variation) -> Pair:
-    """Stiffness and mass of the g-set: elements, then direct matrices in the constant term."""
-    n = structure.points.n_dof
+def _terms(
+    deck: Deck, structure: Structure, variation: Variation, specs: Sequence[ParameterSpec]
+) -> Pair:
+    """Stiffness and mass of the g-set: elements, superelements, direct matrices."""
+    points, named = structure.points, params_moved(specs)
     try:
-        terms = parametric_terms(structure.blocks, n, *variation.bounds)
+        terms = parametric_terms(structure.blocks, points.n_dof, *variation.bounds)
     except CheckError as error:
         raise InputError(str(error)) from None
-    added = direct_matrices(deck, structure.points)
-    return tuple(
-        tuple(Term(t.matrix + extra, ()) if not t.factors and extra.nnz else t for t in part)
-        for part, extra in zip(terms, added, strict=True)
-    )  # type: ignore[return-value]
+    added = zip(direct_matrices(deck, points), external_matrices(deck, points), strict=True)
+    out = []
+    for part, scale, (direct, fixed) in zip(terms, ("CK2", "CM2"), added, strict=True):
+        own, (constant, *others) = named.get(scale), part
+        if own is None:
+            fixed = fixed + direct
+        elif direct.nnz:
+            others.append(Term(direct, (linear(variation.parameters[own], own),)))
+        out.append((Term(constant.matrix + fixed, ()) if fixed.nnz else constant, *others))
+    return out[0], out[1]
 
 
 def _idle(model: Model) -> list[Parameter]:

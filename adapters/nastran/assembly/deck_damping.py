@@ -88,7 +88,7 @@ def damping_terms(
     variation : Variation
         What `specs` move.
     """
-    named = {ref.field: k for k, spec in enumerate(specs) for ref in spec.fields if not ref.id}
+    named = params_moved(specs)
 
     def times(name: str, terms: tuple[Term, ...]) -> tuple[Term, ...]:
         value, own = deck.param(name, 0.0), named.get(name)
@@ -99,6 +99,11 @@ def damping_terms(
     H = _onto(deck, model, _loss_terms(deck, variation))
     D = (*D, *times("ALPHA1", model.mass), *times("ALPHA2", model.stiffness))
     return D, (*H, *times("G", model.stiffness))
+
+
+def params_moved(specs: Sequence[ParameterSpec]) -> dict[str, int]:
+    """Return which parameter moves each PARAM that one moves."""
+    return {ref.field: k for k, spec in enumerate(specs) for ref in spec.fields if not ref.id}
 
 
 def linear(parameter: Parameter, number: int) -> Factor:

@@ -9,7 +9,7 @@ from ....core.assembly.element_assembly import Members, Recipe, assemble
 from ....core.data.rigid_mass import centre_of_mass, mass_axis
 from ....core.noun import Noun
 from ..deck.read_deck import Deck
-from ..properties.dmig_input import direct_matrices
+from ..properties.dmig_input import direct_matrices, external_matrices
 from .deck_elements import read_structure
 from .variation import read_variation
 
@@ -51,7 +51,8 @@ def weight(deck: Deck) -> Weight:
     points = structure.points
     members = [Members(b, np.arange(len(b))) for b in structure.blocks]
     recipe = Recipe(np.ones((1, 0)), np.zeros((0, 1)), np.ones((1, 1)))
-    M = assemble(members, points.n_dof, recipe)[1][0] + direct_matrices(deck, points)[1]
+    M = assemble(members, points.n_dof, recipe)[1][0]
+    M = M + direct_matrices(deck, points)[1] + external_matrices(deck, points)[1]
     grid = int(deck.param("GRDPNT", -1.0))
     k = int(np.searchsorted(points.ids, grid))
     known = k < len(points.ids) and points.ids[k] == grid

@@ -3,7 +3,7 @@
 from .card_definition import Card
 from .movable_values import Moves, Read, Variable
 
-_DAMPING = ("G", "ALPHA1", "ALPHA2")
+_MOVED = ("G", "ALPHA1", "ALPHA2", "CK2", "CM2")
 
 
 def _find(name: str, read: Read) -> int | None:
@@ -16,7 +16,7 @@ CARDS = (
     Card(
         "PARAM",
         "N:x V1:x V2:x ...",
-        moves=Moves(variable=Variable(_DAMPING, _DAMPING.__contains__, _find)),
+        moves=Moves(variable=Variable(_MOVED, _MOVED.__contains__, _find)),
     ),
     Card("DTI", "NAME:x IREC:x MASS:x FORCE:x LENGTH:x TIME:x ..."),
 )

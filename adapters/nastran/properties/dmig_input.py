@@ -23,7 +23,7 @@ _SYMMETRIC = 6
 
 
 def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Sum the matrices named by K2GG, by M2GG and of external superelements, over the g-set.
+    """Sum the matrices named by K2GG and by M2GG, over the g-set.
 
     PARAM CK2 and CM2 scale them; WTMASS does not. K2PP and M2PP are for response analyses and do
     not enter normal modes.
@@ -33,10 +33,21 @@ def direct_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_m
     InputError
         A name without DMIG, complex or unsymmetric matrices, points that do not exist.
     """
+    return _named(deck, points, "K2GG", "CK2"), _named(deck, points, "M2GG", "CM2")
+
+
+def external_matrices(deck: Deck, points: Points) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Sum stiffness and mass of external superelements, over the g-set.
+
+    Raises
+    ------
+    InputError
+        Points that do not exist.
+    """
     import scipy.sparse as sp  # slow to import, and not needed to read a deck
 
     n = points.n_dof
-    totals = [_named(deck, points, "K2GG", "CK2"), _named(deck, points, "M2GG", "CM2")]
+    totals = [sp.csr_matrix((n, n)), sp.csr_matrix((n, n))]
     for part in deck.external:
         place = Place(deck.path)
         at = [points.dof(grid, component, place) for grid, component in part.points]

@@ -151,3 +151,22 @@ def test_a_field_belongs_to_one_parameter(deck):
         InputError, match="PBAR 2 A is moved by the parameter 'PBAR 2 A' and by 'both'"
     ):
         build_model(deck(PLATE), specs)
+
+
+def test_direct_matrices_move_by_the_params_that_scale_them(tmp_path):
+    """PARAM CK2 and CM2, beside an element and a matrix of damping that stay."""
+    text = (
+        "CEND\nK2GG = KX\nM2GG = MX\nBEGIN BULK\nGRID,1\nGRID,2,,1.\nCELAS2,1,9.,1,3,2,3\n"
+        "CONM2,2,1,,.5\nPARAM,CK2,1.5\nPARAM,CM2,{}\nDMIG,KX,0,6,1,0\nDMIG,KX,1,3,,1,3,2.\n"
+        "DMIG,MX,0,6,1,0\nDMIG,MX,2,3,,2,3,3.\n"
+    )
+    path = tmp_path / "a.bdf"
+    path.write_text(text.format("1."))
+    specs = [parse_parameter("PARAM CK2"), parse_parameter("scale = PARAM CM2")]
+    model = build_model(read_deck(path), specs)
+    np.testing.assert_allclose(model.K(np.array([2.0, 1.0])).diagonal()[[0, -1]], [15.0, 9.0])
+    path.write_text(text.format("1.2"))
+    heavier = build_model(read_deck(path))
+    p = np.array([1.0, 1.2])
+    assert abs(model.M(p) - heavier.M()).max() < 1e-12
+    np.testing.assert_allclose(model.rigid_mass[-1][2, 2], 3.0)
