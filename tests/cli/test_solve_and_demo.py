@@ -176,3 +176,14 @@ def test_a_run_folder_of_solve_has_a_page_with_moving_shapes_and_properties(call
 def test_inspect_lists_properties_with_their_values(call, duct):
     said = call("inspect", duct / "duct.bdf")
     assert "PBAR 11 (72): A 200, I1 9000, I2 9000, J 3000" in said.out
+
+
+def test_matrices_are_no_deck_and_what_makes_one_of_them_is_said(
+    call: Call, beam: Path, tmp_path: Path
+) -> None:
+    matrices = tmp_path / "beam.op4"
+    assert call("convert", beam, matrices).status == 0
+    said = call("solve", matrices)
+    assert said.status == 1
+    assert "holds matrices, and a deck is expected: make one of their grids" in said.sentence
+    assert "'trueup convert beam.op4 beam.pch'" in said.sentence

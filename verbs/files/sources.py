@@ -74,7 +74,20 @@ def read_deck(source: Source) -> Deck:
 
     if isinstance(source, Deck):
         return source
-    return read(source.text if is_changed(source) else file_or_pynastran(source, "a deck"))
+    if is_changed(source):
+        return read(source.text)
+    path = file_or_pynastran(source, "a deck")
+    try:
+        return read(path)
+    except InputError:
+        from .read import OP4, kind_of_file
+
+        if isinstance(path, Path) and path.is_file() and kind_of_file(path) is OP4:
+            raise Place(path).fault(
+                "holds matrices, and a deck is expected: make one of their grids that selects them "
+                f"(K2GG, M2GG), with what 'trueup convert {path.name} {path.stem}.pch' writes"
+            ) from None
+        raise
 
 
 def is_changed(source: Source) -> TypeGuard[ChangedDeck]:
