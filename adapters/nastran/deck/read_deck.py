@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -198,6 +198,8 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *_solution(sections),
         *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
+    params = _cells(sections) | _params(bulk, sections.case)
+    warnings += [f"{path}: {told}" for told in _not_followed(params, others.get("MDLPRM", ()))]
     if eigen is None and case.method is not None:
         warnings.append(
             f"{path}: METHOD = {case.method} selects no EIGRL or EIGR of the deck; how many modes "
@@ -208,7 +210,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         files=sections.files,
         bulk=bulk,
         case=case,
-        params=_cells(sections) | _params(bulk, sections.case),
+        params=params,
         length_unit=unit,
         eigen=eigen,
         counts=counts,
@@ -284,6 +286,24 @@ def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[s
     for name in dict.fromkeys(card.name for card in bulk.listed("DMIG")):
         if name not in words:
             yield f"DMIG {name} is added nowhere: case control (K2GG, M2GG, ...) does not select it"
+
+
+def _not_followed(params: Mapping[str, str], mdlprm: Iterable[Raw]) -> Iterator[str]:
+    """Say of parameters that shape stiffness or mass and are not read."""
+    for name in ("CK1", "CK3", "CM1"):
+        try:
+            given: float | None = parse_real(params.get(name, "1."))
+        except ValueError:
+            given = None
+        if given != 1.0:
+            yield (
+                f"PARAM {name} = {params[name]} is not read: the structure's own matrices go in "
+                "as they are"
+            )
+    words = {w for raw in mdlprm for w in re.split(r"[^A-Z0-9]+", " ".join(raw.lines).upper())}
+    for name in ("OFFDEF", "QR6ROT", "QRSHEAR", "SHEARP"):
+        if name in words:
+            yield f"MDLPRM {name} is not read: elements are as Nastran has them without it"
 
 
 def _skipped(

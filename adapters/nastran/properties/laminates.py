@@ -151,12 +151,15 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     lam = card.lam or ""
     if lam not in ("", "BEND", "MEM", "SYM", "SMEAR", "SMCORE"):
         raise place.error(f"LAM {lam!r} is not one of SYM, MEM, BEND, SMEAR, SMCORE")
-    if lam == "SMCORE":
-        raise place.error("LAM SMCORE is not supported")
+    if lam == "SMCORE" and len(t) < 2:
+        raise place.error("LAM SMCORE needs plies of the faces and, as the last, the core")
     materials = {mid: plane(bulk, mid, place) for mid in dict.fromkeys(mids)}
     Q = np.array([_turned(materials[m].Q, a) for m, a in zip(mids, theta, strict=True)])
     G = np.array([_turned_shear(materials[m].shear, a) for m, a in zip(mids, theta, strict=True)])
     rho = np.array([materials[m].rho for m in mids])
+    if lam == "SMCORE":
+        Q, G, rho = (_smeared_faces(t, x) for x in (Q, G, rho))
+        t = _smeared_faces(t, None)
     total = float(t.sum())
     bottom = -0.5 * total if card.z0 is None else float(card.z0)
     low = bottom + np.concatenate([[0.0], np.cumsum(t)[:-1]])
@@ -168,6 +171,7 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     zero = np.zeros((3, 3))
     if lam == "SMEAR":
         B, D = zero, A * total**2 / 12.0
+        S = np.diag([np.inf, np.inf])  # no MID3 on the PSHELL derived
     elif lam == "MEM":
         B, D = zero, zero
     elif lam == "BEND":
@@ -178,6 +182,19 @@ def _pcomp(bulk: Bulk, card: Values, place: Place) -> Layup:
     same = all(m.isotropic for m in materials.values())
     keys = tuple(_key(bulk, mid) for mid in materials)
     return Layup(A, B, D, S, density, same, keys)
+
+
+def _smeared_faces(t: Floats, values: Floats | None) -> Floats:
+    """Values per ply of a sandwich whose last ply is the core and whose others are smeared.
+
+    Half of the thickness of the faces is above the core and half below, whatever the order of
+    the plies (LAM SMCORE). Without values, the thicknesses themselves.
+    """
+    if values is None:
+        half = 0.5 * float(t[:-1].sum())
+        return np.array([half, t[-1], half])
+    face = np.average(values[:-1], axis=0, weights=t[:-1])
+    return np.array([face, values[-1], face])
 
 
 def _plies(card: Values, place: Place) -> tuple[Floats, Floats, list[int]]:

@@ -245,3 +245,18 @@ def test_direct_matrices_that_are_left_out_are_said(tmp_path, command, said):
     told = [w for w in read_deck(path).warnings if "KX" in w]
     assert told == ([] if said is None else told[:1])
     assert all(said in w for w in told)
+
+
+@pytest.mark.parametrize(
+    ("card", "said"),
+    [
+        ("PARAM,CM1,.5", "PARAM CM1 = .5 is not read"),
+        ("PARAM,CK1,1.", None),
+        ("MDLPRM,QR6ROT,1.+4,OFFDEF,NOMASS", "MDLPRM OFFDEF is not read"),
+        ("MDLPRM,HDF5,1", None),
+    ],
+)
+def test_parameters_of_matrices_that_are_not_read_are_said(tmp_path, card, said):
+    (tmp_path / "a.bdf").write_text(f"{card}\n{MASSES.format('1.')}")
+    told = [w for w in read_deck(tmp_path / "a.bdf").warnings if "is not read" in w]
+    assert any(said in w for w in told) if said else not told
