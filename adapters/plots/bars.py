@@ -41,7 +41,9 @@ def frequencies(states: Sequence[tuple[str, Compared]], colours: Sequence[str]) 
     lower.axhline(100.0 * last.criteria.mac_min, color=FAINT, linewidth=0.8, linestyle="--")
     lower.set_ylabel("MAC, %", color=INK, fontsize=9)
     lower.set_ylim(0.0, 100.0)
-    lower.set_xticks(range(len(modes)), [f"{n}\n{last.test_hz[n - 1]:.4g}" for n in modes])
+    waves = {n: "\n" + w.partition(",")[0] for n, w in last.waves[0].items()}
+    named = [f"{n}\n{last.test_hz[n - 1]:.4g}{waves.get(n, '')}" for n in modes]
+    lower.set_xticks(range(len(modes)), named)
     lower.set_xlabel("test mode, Hz", color=INK, fontsize=9)
     upper.set_title("Frequencies and shapes of each test mode", color=INK, fontsize=11)
     for axes in (upper, lower):

@@ -1,6 +1,6 @@
 """The MAC matrix, shaded."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,15 @@ def mac(found: Compared, rotated: bool, ramp: Sequence[str]) -> Any:
     values, beyond = 100.0 * values[:, columns], values.shape[1] - len(columns)
     n, m = values.shape
     cell = min(0.36, 11.0 / max(m, 1))
-    made = figure(2.2 + cell * m, 1.4 + max(cell * n, 1.0))
+    room = 0.9 * any(found.waves)
+    made = figure(2.2 + cell * m + room, 1.4 + max(cell * n, 1.0) + room)
     axes = made.add_subplot()
     colours = optional("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("mac", ramp)
     picture = axes.imshow(values, vmin=0.0, vmax=100.0, cmap=colours)
-    axes.set_xticks(range(m), _named(columns + 1, found.analysis_hz[columns]), rotation=90)
-    axes.set_yticks(range(n), _named(rows, found.test_hz[rows - 1]))
+    axes.set_xticks(
+        range(m), _named(columns + 1, found.analysis_hz[columns], found.waves[1]), rotation=90
+    )
+    axes.set_yticks(range(n), _named(rows, found.test_hz[rows - 1], found.waves[0]))
     axes.tick_params(labelsize=7, colors=INK, length=0)
     more = f"\n({beyond} more are like none of the test's)" if beyond else ""
     axes.set_xlabel(f"analysis mode, Hz{more}", color=INK)
@@ -73,5 +76,7 @@ def _kept(found: Compared, values: Any) -> Any:
     return np.flatnonzero(kept)
 
 
-def _named(modes: Any, hz: Any) -> list[str]:
-    return [f"{n} · {f:.4g}" for n, f in zip(modes, hz, strict=True)]
+def _named(modes: Any, hz: Any, waves: Mapping[int, str]) -> list[str]:
+    """Return number, frequency and, of a body of revolution, the waves of each mode."""
+    own = [f" · {waves[n]}" if n in waves else "" for n in map(int, modes)]
+    return [f"{n} · {f:.4g}{w}" for n, f, w in zip(modes, hz, own, strict=True)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -60,12 +60,23 @@ class PairRow:
         if self.test_harmonic is None:
             return ""
         number = both[:1] if both[0] == both[1] else both
-        at = (self.test_orientation_deg, self.analysis_orientation_deg)
-        said = [f"n = {' / '.join('?' if n is None else str(n) for n in number)}"]
-        said += [" / ".join(f"{x:.1f}°" for x in at if x is not None)] * any(
-            x is not None for x in at
+        return _in_words(number, (self.test_orientation_deg, self.analysis_orientation_deg))
+
+    @property
+    def waves_by_side(self) -> tuple[str, str]:
+        """The same of the test mode and of the analysis mode: ``n = 3, 17.4°``."""
+        sides = (
+            (self.test_harmonic, self.test_orientation_deg),
+            (self.analysis_harmonic, self.analysis_orientation_deg),
         )
-        return ", ".join(said)
+        test, analysis = ("" if n is None else _in_words((n,), (at,)) for n, at in sides)
+        return test, analysis
+
+
+def _in_words(numbers: Sequence[int | None], degrees: Sequence[float | None]) -> str:
+    said = [f"n = {' / '.join('?' if n is None else str(n) for n in numbers)}"]
+    at = " / ".join(f"{x:.1f}°" for x in degrees if x is not None)
+    return ", ".join([*said, at] if at else said)
 
 
 @dataclass(frozen=True)
@@ -190,6 +201,12 @@ class Compared(Tables):
     auto_mac_test: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
     auto_mac_analysis: AutoMacTable | None = field(default=None, metadata=OPTIONAL)
     axis_of_revolution: AxisRow | None = field(default=None, metadata=OPTIONAL)
+
+    @property
+    def waves(self) -> tuple[dict[int, str], dict[int, str]]:
+        """What waves paired modes are, in words, by test mode and by analysis mode."""
+        both = [(p.test, p.analysis, *p.waves_by_side) for p in self.pairs]
+        return {t: w for t, _, w, _ in both if w}, {a: w for _, a, _, w in both if w}
 
     @property
     def test_modes(self) -> tuple[int, ...]:

@@ -30,7 +30,7 @@ def test_the_mac_figure_frames_every_pair(found: trueup.Correlated) -> None:
     assert bar.get_ylabel() == "MAC, %"
     assert axes.get_images()[0].get_clim() == (0.0, 100.0)
     assert len(axes.patches) == len(found.pairs)
-    assert axes.get_yticklabels()[0].get_text() == "1 · 33.91"
+    assert axes.get_yticklabels()[0].get_text() == "1 · 33.91 · n = 2, 66.7°"
     assert axes.get_title() == "MAC after rotation of close modes"
     assert found.plot.mac(rotated=False).axes[0].get_title() == "MAC"
 
@@ -86,3 +86,19 @@ def test_a_result_is_its_headline_and_its_first_tables(found: trueup.Correlated)
     assert page.count("<table") == 1
     assert "<th" in page
     assert "deviation %" in page
+
+
+def test_waves_round_the_axis_are_named_on_axes_and_page(
+    found: trueup.Correlated, tmp_path: Path
+) -> None:
+    """Modes of the duct are waves: those of its pairs stand beside their frequencies."""
+    pair = next(p for p in found.pairs if p.test_harmonic is not None)
+    words = pair.waves_by_side[0]
+    assert words.startswith(f"n = {pair.test_harmonic}, ")
+    assert words.endswith("°")
+    made = found.plot.mac()
+    assert any(words in t.get_text() for t in made.axes[0].get_yticklabels())
+    bars = found.plot.frequencies().axes[1].get_xticklabels()
+    assert any(f"n = {pair.test_harmonic}" in t.get_text() for t in bars)
+    page = (found.save(tmp_path / "run") / "report.html").read_text(encoding="utf-8")
+    assert f"Hz, {words})" in page

@@ -1,7 +1,7 @@
 """MAC matrices as heat maps: one path per colour class, values for the pointer and the reader."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -26,6 +26,7 @@ def heatmap(
     pairs: Iterable[tuple[int, int]] = (),
     clusters: Iterable[tuple[Sequence[int], Sequence[int]]] = (),
     sides: tuple[str, str] = ("test", "analysis"),
+    waves: tuple[Mapping[int, str], Mapping[int, str]] = ({}, {}),
     width: int = 1040,
 ) -> str:
     """Return a figure of one MAC matrix.
@@ -43,6 +44,8 @@ def heatmap(
         Blocks to be framed.
     sides : (str, str)
         Whose modes stand down and across.
+    waves : (mapping, mapping)
+        Of a body of revolution what modes are, by their number, for the labels.
     width : int
         Width to fill, pixels.
     """
@@ -66,8 +69,11 @@ def heatmap(
         tag("rect", class_="cursor", width=cell, height=cell, hidden=True),
     ]
     labels = [
-        [f"{m} ({hz(f[m - 1])} Hz)" for m in modes]
-        for modes, f in ((matrix.test, test_hz), (matrix.analysis, analysis_hz))
+        [f"{m} ({', '.join([f'{hz(f[m - 1])} Hz', *([w[m]] if m in w else [])])})" for m in modes]
+        for modes, f, w in (
+            (matrix.test, test_hz, waves[0]),
+            (matrix.analysis, analysis_hz, waves[1]),
+        )
     ]
     picture = svg(
         "heat",

@@ -29,6 +29,7 @@ def _render(run: ReportedRun[RunTables]) -> str:
             analysis_hz=c.analysis_hz,
             pairs=[(p.test, p.analysis) for p in c.pairs] if matrix is c.mac_rotated else [],
             clusters=[(k.test, k.analysis) for k in c.clusters],
+            waves=c.waves,
             width=500 if narrow else 1050 if not which else 92 + 19 * len(part.analysis),
         )
         for c, matrix, title in shown
