@@ -32,6 +32,15 @@ _ASSIGN = re.compile(
 )
 
 
+_SHAPING = {
+    **dict.fromkeys(("QR6ROT", "QRSHEAR", "GEV1417", "RMRBE3RT"), ("0", "")),
+    **dict.fromkeys(("DELELAS", "DELMASS", "DELWELD", "DELFAST", "DELSEAM"), ("0.",)),
+    "OFFDEF": ("ELMOFF",),
+    "SHEARP": ("GARVEY",),
+}
+"""MDLPRM that changes stiffness or mass, with the values that are what is done here (QRG 2022)."""
+
+
 @dataclass(frozen=True, eq=False)
 class External:
     """Stiffness and mass (m, m) of an external superelement on (grid, component), 0: scalar."""
@@ -300,10 +309,10 @@ def _not_followed(params: Mapping[str, str], mdlprm: Iterable[Raw]) -> Iterator[
                 f"PARAM {name} = {params[name]} is not read: the structure's own matrices go in "
                 "as they are"
             )
-    words = {w for raw in mdlprm for w in re.split(r"[^A-Z0-9]+", " ".join(raw.lines).upper())}
-    for name in ("OFFDEF", "QR6ROT", "QRSHEAR", "SHEARP"):
-        if name in words:
-            yield f"MDLPRM {name} is not read: elements are as Nastran has them without it"
+    cells = [field for raw in mdlprm for field in fields_of(raw.lines)[1:] if field]
+    for name, value in zip(cells, [*cells[1:], ""], strict=False):
+        if name.upper() in _SHAPING and value.upper() not in _SHAPING[name.upper()]:
+            yield f"MDLPRM {name.upper()} {value} is not read: elements are as without it"
 
 
 def _skipped(

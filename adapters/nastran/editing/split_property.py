@@ -8,6 +8,7 @@ import numpy as np
 from ....core.errors import InputError, Place
 from ..cards import definitions, holders
 from ..deck.movable_values import position_of
+from ..properties.nonstructural import alike
 from ..text.deck_text import DeckText
 from .add_cards import add_lines
 from .cells import CardLine
@@ -166,7 +167,7 @@ def _require_no_nsm(deck: DeckText, card: str, number: int) -> None:
 
 
 def _covers(nsm: Card, card: str, number: int) -> bool:
-    if nsm.text(1) != card:
+    if card not in alike(nsm.text(1)):
         return False
     first = 3 if nsm.name.endswith("1") else 2
     words = [nsm.text(k) for k in range(first, nsm.size)]

@@ -50,6 +50,19 @@ CARDS = (
 )
 
 
+_ALIKE = (
+    ("PSHELL", "PCOMP", "PCOMPG"),
+    ("PBAR", "PBARL"),
+    ("PBEAM", "PBEAML", "PBCOMP"),
+)
+"""Properties that Nastran makes one kind of: TYPE names all of them by any (QRG, NSML1)."""
+
+
+def alike(kind: str) -> tuple[str, ...]:
+    """Return the kinds of property that a TYPE of NSM, NSM1, NSML, NSML1 stands for."""
+    return next((kinds for kinds in _ALIKE if kind in kinds), (kind,))
+
+
 class _Share(NamedTuple):
     """One value of a card (`position` None: its only one) and the elements it goes to."""
 
@@ -163,14 +176,17 @@ class _Measures:
     def elements(self, kind: str, ids: list[int] | None) -> dict[int, tuple[float, bool]]:
         """Elements of a kind of property (ids None: all), with size and whether it is an area."""
         wanted = None if ids is None else set(ids)
+        kinds = alike(kind)
         out = {}
         for name, element in self._elements.items():
-            if kind != "ELEMENT" and kind not in self._kinds(name):
+            if kind != "ELEMENT" and not set(kinds) & set(self._kinds(name)):
                 continue
             sizes = self._sizes(name, element)
             for eid, card in self._bulk.table(name).items():
                 number = eid if kind in ("ELEMENT", name) else card.pid
-                mine = kind in ("ELEMENT", name) or number in self._bulk.table(kind)
+                mine = kind in ("ELEMENT", name) or any(
+                    number in self._bulk.table(k) for k in kinds
+                )
                 if mine and (wanted is None or number in wanted):
                     out[eid] = (sizes[eid], element.dimension == 2)
         return out

@@ -190,7 +190,10 @@ def _pipe(p: Values, R: float, place: Any) -> tuple[float, ...]:
     1/K = (A/I^2) int Q^2/b dy (complementary energy), e = R - A / int dA/r.
     """
     if p.fsi != 1:
-        raise place.error(f"FSI {p.fsi} (flexibility factors of a code) is not supported: 1 is")
+        raise place.error(
+            f"FSI {p.fsi} (flexibility factors of a code) is not supported: 1 is, or give A, I1, "
+            "I2 and J, with I1 and I2 divided by that factor"
+        )
     outer = p.rm + 0.5 * p.t
     inner = p.rm - 0.5 * p.t if p.t else 0.0
     if not (p.t >= 0.0 and inner >= 0.0 and outer < R):

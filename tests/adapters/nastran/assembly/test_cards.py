@@ -102,6 +102,14 @@ class TestWhatIsLeftOut:
         assert any("NSM1 cards are not used" in w for w in model(rod + nsm).warnings)
         assert not any("NSM" in w for w in model(rod + nsm, case="NSM = 4").warnings)
 
+    @pytest.mark.parametrize("kind", ["PSHELL", "PCOMP", "PCOMPG"])
+    @pytest.mark.parametrize("ids", ["ALL", "1,2", "1,THRU,9"])
+    def test_mass_named_by_one_kind_of_shell_property_goes_to_all(self, model, kind, ids):
+        grids = "GRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nMAT1,1,1.,,.3\n"
+        shells = "CQUAD4,1,1,1,2,3,4\nCTRIA3,2,2,1,2,3\nPSHELL,1,1,.1\nPCOMP,2\n,1,.1\n"
+        found = model(f"{grids}{shells}NSM1,4,{kind},2.,{ids}\n", case="NSM = 4")
+        assert found.M().diagonal()[:3].sum() == pytest.approx(3 * (0.5 + 1.0 / 3.0))
+
     @pytest.mark.parametrize(
         "card",
         ["ASET,1,1", "BSET,1,1", "BNDFIX,1,1", "BNDFIX1,1,1", "CSET1,1,1", "BNDFREE1,1,1"],

@@ -252,8 +252,9 @@ def test_direct_matrices_that_are_left_out_are_said(tmp_path, command, said):
     [
         ("PARAM,CM1,.5", "PARAM CM1 = .5 is not read"),
         ("PARAM,CK1,1.", None),
-        ("MDLPRM,QR6ROT,1.+4,OFFDEF,NOMASS", "MDLPRM OFFDEF is not read"),
-        ("MDLPRM,HDF5,1", None),
+        ("MDLPRM,QR6ROT,1.+4,OFFDEF,NOMASS", "MDLPRM OFFDEF NOMASS is not read"),
+        ("MDLPRM,HDF5,1,SHEARP,GARVEY", None),
+        ("MDLPRM,DELMASS,.1", "MDLPRM DELMASS .1 is not read"),
     ],
 )
 def test_parameters_of_matrices_that_are_not_read_are_said(tmp_path, card, said):

@@ -113,6 +113,7 @@ def test_faults(deck, card, number, elements, says):
         "NSM1,1,PSHELL,.5,1,THRU,9",
         "NSM,1,PSHELL,2,.1,3,.2",
         "NSML1,1,PSHELL,.5,3",
+        "NSM1,1,PCOMP,.5,3",
     ],
 )
 def test_mass_given_by_the_propertys_number_would_be_lost(tmp_path, nsm):
