@@ -38,11 +38,11 @@ class _Place:
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give supports a finite stiffness.
 
-    Every fixed direction of a support alone, all its rotations or translations alike, and one
-    direction over groups of supports that are neighbours. Along an edge of shells the groups are
-    its stretches: they move along any axis, turn about the edge, or do both, where a stretch on
-    springs turns freely. The stiffness counts over all grids of a place, for each of its
-    directions.
+    Every fixed direction of a support alone, all its rotations or translations alike, those of
+    every foot alike, and one direction over groups of supports that are neighbours. Along an edge
+    of shells the groups are its stretches: they move along any axis, turn about the edge, or do
+    both, where a stretch on springs turns freely. The stiffness counts over all grids of a place,
+    for each of its directions.
     """
     s = structure.supports
     if s is None or not len(s.grid):
@@ -50,7 +50,12 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     edges = edges_of(structure, s)
     on_edge = np.isin(s.grid, np.concatenate([np.zeros(0, np.int64), *(e.grids for e in edges)]))
     carrying = scale.mass * (2.0 * np.pi * scale.band_hz[0]) ** 2
-    made = [_released(s, list(_joined(s, components)), carrying) for components in _TOGETHER]
+    made = []
+    for components in _TOGETHER:
+        made.append(_released(s, list(_joined(s, components)), carrying))
+        alike = np.flatnonzero(np.isin(s.component, components) & ~on_edge)
+        several = len(np.unique(s.grid[alike])) > 1
+        made.append(_released(s, [_Place(alike, alike[:0])] * several, carrying))
     for c in np.unique(s.component):
         own = np.flatnonzero(s.component == c)
         own = own[structure.in_order(s.xyz[own])]

@@ -75,7 +75,7 @@ def further_modes(problem: Problem, model: Model, best: Fit, rivals: Rivals) -> 
         return ()
     mac = (own.motion[:, new].T @ other.motion) ** 2 / float(len(rows)) ** 2
     twin = np.argmax(mac, axis=1)
-    shift = np.abs(np.log(other.hz[twin] / own.hz[new]))
+    shift = np.abs(np.log(np.maximum(other.hz[twin], POSTERIOR.nil) / own.hz[new]))
     shift = np.where(mac.max(axis=1) > POSTERIOR.twin, shift, 0.0)
     k = int(np.argmax(shift))
     if shift[k] < POSTERIOR.shift:

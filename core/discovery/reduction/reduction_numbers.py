@@ -12,6 +12,7 @@ class ReductionNumbers:
     dependent: float = number(1e-5, "of the largest squared length", "directions with less are not new to a basis")
     as_far: float = number(1e-6, "of the structure's size", "by which points are at one place along an axis", ROUNDING)
     alike: float = number(1e-3, "of the largest", "difference of moments of inertia of axes that are as good as any other between them")
+    released: float = number(1e-12, "of the largest squared length", "likewise of what a release frees: it cancels stiffness, and may hardly move mass", ROUNDING)
     pinned: float = number(1e-9, "of the larger bending stiffness", "below which a bar does not bend with the grid", ROUNDING)
     bars_at_once: int = number(512, "bars", "whose consistent mass is made at once", "memory")
     at_once: int = number(128, "loads", "whose displacements are found at once", "memory")

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+import numpy as np
+
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit, distinct, softened
 from ..likelihood.map_fit import evaluate, fit
@@ -58,7 +60,7 @@ def grown(
     """
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]
-    beam = levels[-1:]
+    beam = [*levels[-1:], *([] if first else [_as_the_deck(searcher, levels[0])])]
     for depth in range(len(levels), searcher.effort.most + 1):
         if explains(levels[-1]):
             break
@@ -97,6 +99,16 @@ def grown(
             break
         beam = sorted(_near(searcher, beam, base), key=_objective)
     return Found(tuple(levels), tuple(rivals))
+
+
+def _as_the_deck(searcher: Searcher, null: Fit) -> Fit:
+    """Return the known parameters as the deck has them, the error of the mesh as fitted.
+
+    Where something large is missing the known parameters have gone far to make up for it; what
+    is right then fits to modes that they have spoilt.
+    """
+    mesh = np.arange(len(null.nuisance)) == len(null.nuisance) - 1
+    return evaluate(searcher.problem, null.nuisance * mesh, ())
 
 
 def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:

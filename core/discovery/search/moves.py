@@ -134,7 +134,11 @@ class Searcher:
             near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
         quick = fit(small, state.nuisance, suspects, self.active, iterations)
-        return fit(self.problem, quick.nuisance, quick.suspects, self.active, SEARCH.steps_whole)
+        whole, steps = self.problem, SEARCH.steps_whole
+        try:
+            return fit(whole, quick.nuisance, quick.suspects, self.active, steps)
+        except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
+            return fit(whole, state.nuisance, suspects, self.active, steps)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""

@@ -98,12 +98,19 @@ class Ground:
 def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """Return the fit with parameters and magnitudes fitted on a basis of its own.
 
-    The laws of the problem's catalogue are not yet fitted to any basis.
+    The laws of the problem's catalogue are not yet fitted to any basis. A support that gives
+    follows the known parameters by its slopes alone, so it is made anew where they came to stand.
     """
-    own, start = _own_problem(ground, problem, state)
-    active = tuple(range(len(state.nuisance)))
-    new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
-    return replace(on_whole_test(own, new), suspects=_back(state, new))
+    for _ in range(SEARCH.made_anew):
+        own, start = _own_problem(ground, problem, state)
+        active = tuple(range(len(state.nuisance)))
+        new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
+        moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
+        state = replace(on_whole_test(own, new), suspects=_back(state, new))
+        kinds = (problem.catalogue[s.kind].kind for s in state.suspects)
+        if moved < SEARCH.followed or support_flexibility.KIND not in kinds:
+            break
+    return state
 
 
 def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
@@ -207,7 +214,9 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     seen, W = ground.readings, V[:, :0]
     if loads:
         X = ground.compliance.responses(np.hstack(loads))
-        W = beside(X, V, ground.mass, REDUCTION.dependent)
+        released = any(c.law.shared for c, _ in places)
+        least = REDUCTION.released if released else REDUCTION.dependent
+        W = beside(X, V, ground.mass, least)
         stiffness, mass, mesh, bars = (s.widened(V, W) for s in sums)
         seen = np.hstack([seen, ground.observation @ W])
     none = np.zeros((0, seen.shape[1]))

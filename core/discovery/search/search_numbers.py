@@ -125,6 +125,8 @@ class SearchNumbers:
     own_above: float = number(1.4, "of the test's highest eigenvalue", "up to which a hypothesis gets modes of its own")
     own_more: int = number(4, "modes", "more than these")
     own_times: int = number(2, "times", "as many make the basis on which a hypothesis is weighed", "time")
+    made_anew: int = number(4, "times", "supports that give are made for where the known parameters came to stand, at most", "time")
+    followed: float = number(1e-3, "of ln p", "that they may move for slopes to tell how a release follows", "a release leaves a thousandth")
     rigid: float = number(1e-6, "of the largest eigenvalue", "by which the lowest of a completed model may lie below zero", ROUNDING)
     held: float = number(1e-3, "θ", "standard deviation of a magnitude that is to stay")
 
