@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,13 @@ class Sampled(Noun):
 
     parameters: tuple[int, ...]
     chains: Chains
+
+    def without(self, left: Collection[int]) -> Sampled | None:
+        """Return the samples of the other parameters; None where none is left."""
+        kept = [i for i, k in enumerate(self.parameters) if k not in left]
+        chains = replace(self.chains, values=self.chains.values[:, :, kept])
+        named = tuple(self.parameters[i] for i in kept)
+        return replace(self, parameters=named, chains=chains) if kept else None
 
     @property
     def doubts(self) -> tuple[str, ...]:

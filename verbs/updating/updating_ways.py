@@ -156,7 +156,10 @@ def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Move
     evidence = weigh_prior(every, last, best) if asked.evidence else ()
     if sampled:
         best = replace(best, warnings=(*best.warnings, *sampled.doubts))
-    return Moved(put_back(every, last, best), starts, intervals, sampled, evidence)
+    if intervals is not None:
+        intervals[[*best.combined]] = np.nan
+    told = sampled and sampled.without(best.combined)
+    return Moved(put_back(every, last, best), starts, intervals, told, evidence)
 
 
 def written(analysis: Analysis, done: core.Updated) -> tuple[Written, ReadBack]:

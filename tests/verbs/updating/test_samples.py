@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.verbs.updating.test_measured_beside import TRUTH, files
+from tests.verbs.updating.test_measured_beside import TRUTH, E, cantilever, files
 
 import trueup
 from trueup.core.errors import InputError
@@ -48,3 +48,24 @@ def test_evidence_asks_for_a_prior(files: tuple[Path, Path]) -> None:
 def test_samples_are_not_less_than_none(files: tuple[Path, Path]) -> None:
     with pytest.raises(InputError, match="samples is -1; it must be 0 or more"):
         trueup.update(*files, "MAT1 1 E", samples=-1)
+
+
+def test_what_is_put_back_has_neither_interval_nor_samples(tmp_path: Path) -> None:
+    """Of E and I bending knows the product; the mass at the tip is known by itself."""
+    deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
+    for path, e, tip in ((deck, E, 1e-4), (truth, 1.2 * E, 1.3e-4)):
+        held = "SPC1,1,123456,1"
+        path.write_text(cantilever(e).replace(held, f"{held}\nCONM2,91,13,,{tip}"))
+    trueup.solve(truth, 5).save(tmp_path / "solved")
+    trueup.convert([tmp_path / "solved" / "result.h5"], test)
+    done = trueup.update(
+        deck, test, ["MAT1 1 E", "I = PBAR 1 I1, PBAR 1 I2", "CONM2 91 M"], samples=400,
+        intervals=True, residuals="frequencies", deck_length_unit="mm", regularisation=0.0,
+    )  # fmt: skip
+    e, i, tip = done.parameters
+    assert (e.factor, e.standard_error, e.interval) == (1.0, None, None)
+    assert (i.factor, i.standard_error, i.interval) == (1.0, None, None)
+    assert tip.factor == pytest.approx(1.3, rel=0.01)
+    assert tip.interval[0] < 1.3 < tip.interval[1]
+    assert [row.name for row in done.samples] == ["CONM2 91 M"]
+    assert any("known together" in w for w in done.warnings)
