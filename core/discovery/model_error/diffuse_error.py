@@ -38,6 +38,8 @@ class Diffuse:
         Its analysis mode.
     stray : (n_test,) float
         Chance that it is none of the model's.
+    mesh : float
+        See `Seen`.
     """
 
     log: float
@@ -46,6 +48,7 @@ class Diffuse:
     each: Floats
     match: Ints
     stray: Floats
+    mesh: float = 0.0
 
     @property
     def complete(self) -> bool:
@@ -71,6 +74,8 @@ class Seen:
         How many of the modes may match.
     reading : float
         Noise of a reading over the rms of its shape, at least.
+    mesh : float
+        What lumping does to ln f of the modes in the measured band, rms.
     """
 
     hz: Floats
@@ -80,6 +85,7 @@ class Seen:
     modes: Floats
     columns: int
     reading: float = 0.0
+    mesh: float = 0.0
 
 
 def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> Diffuse:
@@ -140,7 +146,8 @@ def _at(seen: Seen, error: float, noises: Floats | None = None) -> Diffuse:
         each = L[rows, match]
         if best is None or each.sum() > best.log:
             chance = np.exp(astray - each)
-            best = Diffuse(float(each.sum()), float(error), float(noise), each, match, chance)
+            log = float(each.sum())
+            best = Diffuse(log, float(error), float(noise), each, match, chance, seen.mesh)
     assert best is not None
     return best
 

@@ -145,11 +145,17 @@ def _moved(matrices: ReducedSum, changes: Floats, first: int) -> ReducedSum:
 def seen(problem: Problem, state: Fit) -> Seen:
     """Return a fit beside the test."""
     p = problem
-    shapes = np.asarray(p.sensors @ state.vectors[: p.basis.size])
+    modes = state.vectors[: p.basis.size]
+    shapes = np.asarray(p.sensors @ modes)
     e = p.evidence
+    aim = targets(e)
+    band = (state.eigenvalues >= aim.min()) & (state.eigenvalues <= aim.max())
+    lumped = 0.5 * np.sum(modes[:, band] * (p.mesh @ modes[:, band]), axis=0)
     scatter = np.hypot(np.broadcast_to(e.scatter, e.frequencies_hz.shape), MODEL_ERROR.frequency)
     columns = min(p.columns, len(state.eigenvalues))
-    return Seen(e.frequencies_hz, e.shapes, scatter, state.eigenvalues, shapes, columns, e.reading)
+    mesh = float(np.sqrt(np.mean(lumped**2))) if band.any() else 0.0
+    hz, values = e.frequencies_hz, state.eigenvalues
+    return Seen(hz, e.shapes, scatter, values, shapes, columns, e.reading, mesh)
 
 
 def judged(

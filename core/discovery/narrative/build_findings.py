@@ -59,7 +59,7 @@ def build_discovery(
         for place in range(len(outcome.places(best.suspects[k])))
     ]
     nodes = request.placed.observation.sensors.node
-    adequate = whole.adequacy > MODEL_ERROR.adequate
+    adequate = whole.adequacy > MODEL_ERROR.explained
     tested = tested if adequate else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
@@ -76,7 +76,7 @@ def build_discovery(
         word = "undecided"
     elif accused:
         word = "test_fault"
-    elif whole.moved > NARRATIVE.matters and whole.adequacy > MODEL_ERROR.explained:
+    elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"

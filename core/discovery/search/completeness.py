@@ -16,7 +16,6 @@ from ...arrays import Floats
 from ...errors import CheckError
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
-from ..model_error.adequacy import adequacy
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
@@ -117,7 +116,7 @@ class Completeness:
         whole = np.count_nonzero(self.alone.diffuse.stray > 0.5) <= len(self.unexplained)
         least = SEARCH.usual_left * self.left if whole else 0.0
         few = len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
-        return bool(few and self.adequacy > max(MODEL_ERROR.adequate, least))
+        return bool(few and self.adequacy > max(MODEL_ERROR.explained, least))
 
     @property
     def adequacy(self) -> float:
@@ -126,21 +125,25 @@ class Completeness:
 
     @property
     def lacks_nothing(self) -> bool:
-        """Whether what the deck leaves is usual for a good model before a good test.
-
-        Or the known parameters, moved, leave no more than that and are no likelier than the deck,
-        nor is any smooth field: the test's own scatter hides what the deck is off by.
-        """
-        if _lacks_nothing(self.deck):
-            return True
-        drift = self.alone.evidence - self.alone.plain
-        hidden = max(self.moved, drift - MODEL_ERROR.seen) <= 0.0
-        return hidden and _lacks_nothing(self.alone)
+        """See `lacks_nothing`."""
+        return lacks_nothing(self.deck, self.alone)
 
     @property
     def unexplained(self) -> tuple[int, ...]:
         """Test modes that are more likely none of the model's than one that it has, as rows."""
         return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.stray > 0.5))
+
+
+def lacks_nothing(deck: Judged, alone: Judged) -> bool:
+    """Whether what the deck leaves is usual for a good model before a good test.
+
+    And neither the known parameters `alone` nor smooth fields are clearly likelier. The stiffness
+    of shells is off as the square of element over wave, as their lumped mass is: a part of what
+    lumping does to their frequencies is no gap. Beams have no such excuse.
+    """
+    clearly = alone.evidence - deck.evidence > MODEL_ERROR.seen
+    most = np.hypot(MODEL_ERROR.usual, SEARCH.nothing * deck.diffuse.mesh)
+    return bool(not clearly and deck.diffuse.error <= most)
 
 
 def completeness(
@@ -153,16 +156,18 @@ def completeness(
 
     The searcher that comes with it knows the places that were tried on the way.
 
-    The levels up to the accepted one compete, one suspect where the known parameters alone leave
-    something; of each the likeliest, its rivals and the richer one less a suspect among them, and
-    what another look finds where that may change what is said.
-    `deck` is how likely the test is by the deck as it is.
+    The levels up to the accepted one compete, one suspect where the deck lacks something and
+    the known parameters alone leave more than right models do; of each the likeliest, its rivals
+    and the richer one less a suspect among them, and what another look finds where that may change
+    what is said. What is not clear is none in a deck that lacks nothing. `deck` is how likely the
+    test is by the deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
     alone = levels[0].judged
     if alone is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
-    most = max(verdict.accepted, 0 if _lacks_nothing(alone) else 1)
+    enough = alone.diffuse.error <= MODEL_ERROR.usual or lacks_nothing(deck, alone)
+    most = min(max(verdict.accepted, 0 if enough else 1), len(found.levels) - 1)
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
@@ -197,6 +202,9 @@ def completeness(
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
     apart = float(ahead), float(beside)
     whole = Completeness(deck, alone, best.judged, gain, last, *apart, agree, places)
+    if not whole.clear and whole.lacks_nothing:
+        none = Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
+        return searcher, found, 0, none
     return searcher, found, kept, whole
 
 
@@ -265,7 +273,3 @@ def _led(found: Found, best: Fit) -> Found:
     rest = tuple(f for f in (found.levels[k], *found.rivals[k]) if f is not best)
     rivals = (*found.rivals[:k], rest, *found.rivals[k + 1 :])
     return Found(found.with_level(best).levels, rivals)
-
-
-def _lacks_nothing(judged: Judged) -> bool:
-    return adequacy(judged.diffuse.error) > SEARCH.nothing

@@ -156,9 +156,9 @@ def needed(judged: Judged) -> float:
     Over the known parameters alone, and over any other effect. An error of the model has a
     likeliest place as well, and what that gains is a share of what every mode says: `claimed` a
     mode is more than it, whatever the error that is left; where right models leave as much half of
-    the time, 1 is.
+    the time, 1 is. Less than right models leave is a fit of so few modes, and no proof.
     """
-    a_mode = SEARCH.claimed ** (1.0 - 2.0 * by_such_a_test(judged))
+    a_mode = SEARCH.claimed ** max(1.0 - 2.0 * by_such_a_test(judged), 0.0)
     return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
 
 

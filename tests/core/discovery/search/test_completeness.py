@@ -12,9 +12,10 @@ from trueup.core.discovery.search.completeness import Completeness, completeness
 from trueup.core.discovery.search.credible_places import Place
 
 
-def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0):
+def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
-    shared = Some(each=np.asarray(each, float), error=error, noise=noise, stray=chance)
+    each = np.asarray(each, float)
+    shared = Some(each=each, error=error, noise=noise, stray=chance, mesh=mesh)
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
@@ -52,10 +53,10 @@ def test_five_nats_a_mode_are_clear_whatever_is_left():
 
 
 def test_what_takes_only_a_part_of_the_error_away_has_to_leave_what_is_usual():
-    assert found(error=0.008, before=0.1).true
-    assert not found(error=0.008, before=0.012).true
+    assert found(error=0.004, before=0.1).true
+    assert not found(error=0.004, before=0.0045).true
     assert not found(error=0.05, before=3.0).true
-    assert found(error=0.008, before=0.008, lost=(2, 3)).true
+    assert found(error=0.004, before=0.004, lost=(2, 3)).true
 
 
 def test_a_poor_test_excuses_an_error_of_the_model():
@@ -68,15 +69,25 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
     assert not found(before=0.01).lacks_nothing
 
 
-def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
-    def with_fields(gain):
-        deck = judged(np.zeros(10), error=0.01)
-        alone = judged(np.zeros(10), error=0.0005, evidence=gain)
-        alone.plain = -1.0
-        return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
+def beside(gain, error=0.001, mesh=0.0):
+    deck = judged(np.zeros(10), error=error, mesh=mesh)
+    alone = judged(np.zeros(10), error=0.0005, evidence=gain)
+    return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
 
-    assert with_fields(0.0).lacks_nothing
-    assert not with_fields(17.0).lacks_nothing
+
+def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
+    assert beside(2.0).lacks_nothing
+    assert not beside(17.0).lacks_nothing
+
+
+def test_what_a_mesh_of_shells_leaves_is_no_gap():
+    assert beside(-2.0, error=0.005, mesh=0.02).lacks_nothing
+    assert not beside(-2.0, error=0.005, mesh=0.0).lacks_nothing
+
+
+def test_less_error_than_right_models_leave_is_no_proof():
+    assert not found(error=1e-4, gain=9.0).clear
+    assert found(error=1e-4, gain=11.0).clear
 
 
 def test_two_places_that_are_as_good_are_not_clear():
@@ -95,7 +106,7 @@ def test_an_explanation_with_many_modes_left_is_proposed_not_claimed():
 
 
 def gaining(evidence):
-    return judged(np.full(10, evidence), evidence=evidence)
+    return judged(np.full(10, evidence), error=0.0031, evidence=evidence)
 
 
 def hypothesis(objective, *rows):
@@ -103,7 +114,7 @@ def hypothesis(objective, *rows):
     return Some(objective=objective, suspects=suspects, nuisance=None)
 
 
-def weighed(monkeypatch, found, evidence, alike=()):
+def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
     """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows.
 
     Places `alike` explain as well as any of them.
@@ -114,6 +125,7 @@ def weighed(monkeypatch, found, evidence, alike=()):
         lambda s, f, q, _: [Place(Some(kind=0, row=r), 1.0) for r in alike or [f.suspects[q].row]],
     )
     monkeypatch.setattr(room, "looked_again", lambda searcher, first: (searcher, [first]))
+    monkeypatch.setattr(room, "lacks_nothing", lambda *_: nothing)
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
     monkeypatch.setattr(
         room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
@@ -142,6 +154,14 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
     assert kept == 1
     assert said.gain == pytest.approx(30.0 - np.log(100))
     assert said.agree > 2.5
+
+
+@pytest.mark.parametrize(("gains", "kept"), [(13.0, 0), (30.0, 1)])
+def test_in_a_deck_that_lacks_nothing_only_what_is_clear_is_told(monkeypatch, gains, kept):
+    levels = hypothesis(100.0), hypothesis(40.0, 3)
+    evidence = {(): 0.0, (3,): gains}
+    assert weighed(monkeypatch, Found(levels, ((), ())), evidence)[1] == 1
+    assert weighed(monkeypatch, Found(levels, ((), ())), evidence, nothing=True)[1] == kept
 
 
 @pytest.mark.parametrize(("objective", "leads"), [(50.0, 9), (90.0, 3)])
