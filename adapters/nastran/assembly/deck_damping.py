@@ -141,7 +141,7 @@ def _by_direction(bulk: Bulk) -> Bulk:
     apart = {
         number: p._replace(k=tuple(np.multiply(p.k, p.ge)), ge=(1.0,) * len(p.ge))
         for number, p in bulk.table("PBUSH").items()
-        if any(p.ge[1:])
+        if p.apart
     }
     table = {**bulk.table("PBUSH"), **apart}
     return replace(bulk, tables={**bulk.tables, "PBUSH": table}) if apart else bulk

@@ -27,6 +27,7 @@ _MODAL = ("3", "103", "SEMODES", "MODES", "SEMFREQ", "111", "112", "SEMTRAN", "2
 
 
 _BARMASS = re.compile(r"\b(?:BARMASS|SYSTEM *\( *398 *\)) *= *(\d+)")
+_BARE = re.compile(r"\bSYSTEM *\( *414 *\) *= *[1-9]")
 _ASSIGN = re.compile(
     r"ASSIGN\s+INPUTT4\s*=\s*'(?P<file>[^']+)'[^']*?UNIT\s*=\s*(?P<unit>\d+)", re.IGNORECASE
 )
@@ -208,7 +209,8 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
     params = _cells(sections) | _params(bulk, sections.case)
-    warnings += [f"{path}: {told}" for told in _not_followed(params, others.get("MDLPRM", ()))]
+    not_followed = _not_followed(sections, params, case, others.get("MDLPRM", ()))
+    warnings += [f"{path}: {told}" for told in not_followed]
     if eigen is None and case.method is not None:
         warnings.append(
             f"{path}: METHOD = {case.method} selects no EIGRL or EIGR of the deck; how many modes "
@@ -297,18 +299,22 @@ def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[s
             yield f"DMIG {name} is added nowhere: case control (K2GG, M2GG, ...) does not select it"
 
 
-def _not_followed(params: Mapping[str, str], mdlprm: Iterable[Raw]) -> Iterator[str]:
+def _not_followed(
+    sections: Any, params: Mapping[str, str], case: CaseControl, mdlprm: Iterable[Raw]
+) -> Iterator[str]:
     """Say of parameters that shape stiffness or mass and are not read."""
-    for name in ("CK1", "CK3", "CM1"):
+    for name, beside in (("CK1", "K2GG"), ("CM1", "M2GG"), ("CB1", "B2GG"), ("CK3", None)):
         try:
             given: float | None = parse_real(params.get(name, "1."))
         except ValueError:
             given = None
-        if given != 1.0:
+        if given != 1.0 and (beside is None or getattr(case, beside.lower())):
             yield (
-                f"PARAM {name} = {params[name]} is not read: the structure's own matrices go in "
+                f"PARAM {name} = {params[name]} is not read: the matrices of the elements go in "
                 "as they are"
             )
+    if any(_BARE.search(line.text.split("$", 1)[0].upper()) for line in sections.executive):
+        yield "SYSTEM(414) is not read: lumped masses of CBAR and CBEAM are as without it"
     cells = [field for raw in mdlprm for field in fields_of(raw.lines)[1:] if field]
     for name, value in zip(cells, [*cells[1:], ""], strict=False):
         if name.upper() in _SHAPING and value.upper() not in _SHAPING[name.upper()]:

@@ -32,14 +32,21 @@ _LINES = {
 
 
 def _lines(fields: Fields, _: Known) -> list[Any]:
-    """Read a PBUSH: each line starts with the word that says what it holds."""
+    """Read a PBUSH: each line starts with the word that says what it holds.
+
+    GE1 without any other holds for all directions, `apart` says that it does not: a zero that is
+    written is not a blank there (Quick Reference Guide, PBUSH).
+    """
     out: dict[str, Any] = {name: (0.0,) * len(words) for name, words in _LINES.values()}
+    out["apart"] = False
     for start in range(2, len(fields), 8):
         flag = take(fields, start, "K, B, GE, RCV, T or M:w!")
         if flag not in _LINES:
             raise FieldError(start, flag, "is none of K, B, GE, RCV, T, M")
         name, words = _LINES[flag]
         out[name] = tuple(take(fields, start + k, w) for k, w in enumerate(words, start=1))
+        if flag == "GE":
+            out["apart"] = any(fields[start + 2 : start + 7])
     out["m"] = out["m"][0]
     return list(out.values())
 
@@ -83,7 +90,7 @@ CARDS = (
         "PID:i!",
         "pid",
         more=_lines,
-        extra="k b ge rcv alpha m",
+        extra="k b ge rcv alpha m apart",
         companions="PBUSHT",
         moves=Moves(linear=_SIX, concentrated=_SIX, variable=_VARIABLE),
     ),

@@ -1,5 +1,7 @@
 """Shear panels: CSHEAR."""
 
+from dataclasses import replace
+
 from ...deck.bulk import Bulk
 from ...deck.card_definition import Card
 from ...deck.movable_values import Moves
@@ -19,8 +21,9 @@ CARDS = (
 
 
 def panels(context: Context) -> list[Group]:
-    """Make the group of CSHEAR."""
-    return property_groups(context, "CSHEAR", _constants)
+    """Make the group of CSHEAR, whose mass stays lumped: COUPMASS does not list it (QRG)."""
+    lumped = replace(context.settings, coupled=False)
+    return property_groups(replace(context, settings=lumped), "CSHEAR", _constants)
 
 
 def _constants(bulk: Bulk, key: Key) -> tuple[list[float], float]:

@@ -98,6 +98,11 @@ def _group(context: Context, shell: Placed, normals: Floats | None) -> Group:
         angle[turned] = _material_angle(context, shell, np.flatnonzero(turned))
     off = _offsets(shell.cards)
     every, moved = _Facts(angle, own, share), context.moved_of(shell.name, ids)
+    if context.settings.coupled and shell.name in ("CQUADR", "CTRIAR"):
+        context.notes.append(
+            f"the mass of {shell.name} is coupled (COUPMASS): MSC's guide does not list it among "
+            "the elements whose mass is, and another Nastran's does"
+        )
     of_property = [
         frozenset([key, *section.materials])
         for key, section in zip(keys, any_thickness, strict=True)

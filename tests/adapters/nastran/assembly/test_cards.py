@@ -102,6 +102,18 @@ class TestWhatIsLeftOut:
         assert any("NSM1 cards are not used" in w for w in model(rod + nsm).warnings)
         assert not any("NSM" in w for w in model(rod + nsm, case="NSM = 4").warnings)
 
+    @pytest.mark.parametrize(
+        ("element", "coupled", "said"),
+        [("CSHEAR", False, False), ("CQUAD4", True, False), ("CQUADR", True, True)],
+    )
+    def test_coupled_mass_is_of_the_elements_that_have_it(self, model, element, coupled, said):
+        grids = "GRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nMAT1,1,1.,,.3,1.\n"
+        properties = "PSHELL,1,1,.1,1\n" if element != "CSHEAR" else "PSHEAR,1,1,.1\n"
+        found = model(f"{grids}{element},1,1,1,2,3,4\n{properties}PARAM,COUPMASS,1\n")
+        M = found.M().toarray()
+        assert bool(np.any(M - np.diag(np.diag(M)))) is coupled
+        assert any("MSC's guide" in w for w in found.warnings) is said
+
     @pytest.mark.parametrize("kind", ["PSHELL", "PCOMP", "PCOMPG"])
     @pytest.mark.parametrize("ids", ["ALL", "1,2", "1,THRU,9"])
     def test_mass_named_by_one_kind_of_shell_property_goes_to_all(self, model, kind, ids):

@@ -71,6 +71,7 @@ def test_a_bush_has_a_loss_factor_of_each_direction_and_the_first_alone_is_of_al
     bush = "CBUSH,10,10,5,,,,,0\nPBUSH,10,K,5.+5,3.+5,4.+5\n,,GE,{}\n"
     bare = PLATE + SHELL + mats(0.0, 0.0)
     for said, losses in ((".1,.3,.2", (0.1, 0.3, 0.2)), ("0.,.3", (0.0, 0.3, 0.0)),
+                         (".1,0.", (0.1, 0.0, 0.0)),
                          (".1", (0.1, 0.1, 0.1))):  # fmt: skip
         found, modes, model = ratios(tmp_path, bare + bush.format(said))
         at = [int(np.flatnonzero((model.dofs.node == 5) & (model.dofs.component == c))[0])

@@ -155,7 +155,8 @@ THEIRS = {
     "DMIG.components": lambda o: [c for _, c in o.GCi],
 }  # fmt: skip
 APART = {
-    "PBUSH.alpha": "pyNastran drops the line T", "PARAM.v2": "pyNastran has one list of values",
+    "PBUSH.alpha": "pyNastran drops the line T", "PBUSH.apart": "no field of the card",
+    "PARAM.v2": "pyNastran has one list of values",
     "RBAR1.tref": "pyNastran has no such field", "RROD.tref": "pyNastran has no such field",
     "DTI.irec": "pyNastran does not keep it", "DMIG.tin": "the header's in pyNastran",
     "DMIG.b": "none in a real matrix",
