@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import find_peaks, peak_widths
 
 from ..arrays import Floats
 from .identification_numbers import IDENTIFICATION
@@ -29,6 +28,8 @@ def of_peaks(
     explained : (n,) float
         Frequencies of modes, and of those that the user does not want [Hz].
     """
+    from scipy.signal import find_peaks, peak_widths
+
     f = survey.frequencies_hz
     decibels = 20.0 * np.log10(np.maximum(indicator, np.finfo(float).tiny))
     lines, _ = find_peaks(decibels, prominence=IDENTIFICATION.peak_db)

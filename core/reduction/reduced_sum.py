@@ -45,12 +45,12 @@ class ReducedSum:
         """Return its derivatives by some parameters, (len(parameters), r, r)."""
         c = np.zeros((len(parameters), len(self.terms)))
         for row, k in zip(c, parameters, strict=True):
-            for i in self._moved_by.get(k, ()):
+            for i in self.moved_by.get(k, ()):
                 row[i] = self.terms[i].coefficient_derivative(p, k)
         return np.asarray(np.tensordot(c, self.matrices, 1))
 
     @cached_property
-    def _moved_by(self) -> dict[int, list[int]]:
+    def moved_by(self) -> dict[int, list[int]]:
         """Terms that a parameter changes."""
         out: dict[int, list[int]] = {}
         for i, t in enumerate(self.terms):

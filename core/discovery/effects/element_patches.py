@@ -33,7 +33,7 @@ class Patch:
 
 def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> list[Patch]:
     """Patches of shell elements of several sizes all over the structure."""
-    out = []
+    out: dict[tuple[int, bytes], Patch] = {}
     for number, m in enumerate(structure.members):
         if m.element.dimension != 2 or not len(m.ids):
             continue
@@ -41,26 +41,29 @@ def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> l
         tree = cKDTree(xyz)
         frames = _frames(structure.model.geometry.xyz[m.corners])
         sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in (0, 1)]
-        own = xyz[structure.in_order(xyz)]
+        middles = xyz[structure.in_order(xyz)]
         grids = structure.model.geometry.xyz[np.unique(m.corners)]
-        centres = np.concatenate([own, grids[structure.in_order(grids)]])
+        centres = np.concatenate([middles, grids[structure.in_order(grids)]])
+        nearest = tree.query(centres)[1]
         for k, r in enumerate(radii):
             apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
             wider = EFFECTS.patch_first * apart * r * size
-            coarse = set(_centres(own, wider)) if k % 3 == 1 else set()
-            for c in sorted({*_centres(centres, apart * r * size), *coarse}):
-                reach = np.array(tree.query_ball_point(centres[c], within), np.int64)
-                away = np.abs((xyz[reach] - centres[c]) @ frames[tree.query(centres[c])[1]].T)
-                away = away / (r * size)
+            coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
+            some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
+            around = tree.query_ball_point(centres[some], within, return_sorted=True)
+            for c, reach in zip(some.tolist(), around, strict=True):
+                own = np.array(reach, np.int64)
+                away = np.abs((xyz[own] - centres[c]) @ frames[nearest[c]].T) / (r * size)
                 inside = [np.linalg.norm(away, axis=1) <= 1.0]
                 inside += [np.all(away <= s, axis=1) for s in sides]
                 for shape, which in enumerate(inside):
-                    rows = np.sort(reach[which])
+                    rows = own[which]
+                    key, first = (number, rows.tobytes()), shape == 0 and c in coarse
+                    if key in out and out[key].first >= first:
+                        continue
                     if 0 < len(rows) < EFFECTS.patch_largest * len(xyz):
-                        first = shape == 0 and c in coarse
-                        middle = xyz[rows].mean(axis=0)
-                        out.append(Patch(number, rows, middle, first))
-    return _distinct(out)
+                        out[key] = Patch(number, rows, xyz[rows].mean(axis=0), first)
+    return sorted(out.values(), key=lambda p: not p.first)
 
 
 def _frames(corners: Floats) -> Floats:
@@ -78,13 +81,6 @@ def _centres(xyz: Floats, spacing: float) -> Ints:
         spacing *= EFFECTS.patch_thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
         chosen = thinned(xyz, spacing)
     return chosen
-
-
-def _distinct(patches: list[Patch]) -> list[Patch]:
-    seen: dict[tuple[int, bytes], Patch] = {}
-    for p in sorted(patches, key=lambda q: not q.first):
-        seen.setdefault((p.member, p.rows.tobytes()), p)
-    return list(seen.values())
 
 
 class PatchRows:

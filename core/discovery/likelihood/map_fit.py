@@ -8,7 +8,6 @@ import numpy as np
 import scipy.linalg as la
 
 from ...arrays import Floats, Ints
-from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import Suspect, changed, magnitudes
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
@@ -248,8 +247,11 @@ def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats,
     first = len(active)
     a = np.zeros((first + sum(len(s.theta) for s in now.suspects), V.shape[1], len(k)))
     b, i = np.zeros_like(a), first
-    a[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.stiffness, p, active), S[:, k]))
-    b[:first] = np.matmul(S.T, np.matmul(_by_log(problem.basis.mass, p, active), S[:, k]))
+    for out, matrices in ((a, problem.basis.stiffness), (b, problem.basis.mass)):
+        moving = np.flatnonzero([q in matrices.moved_by for q in active])
+        which = np.array(active, np.int64)[moving]
+        slopes = matrices.slopes(p, which.tolist()) * p[which, None, None]
+        out[moving] = np.matmul(S.T, np.matmul(slopes, S[:, k]))
     if len(p) in active:
         b[active.index(len(p))] = -S.T @ (problem.mesh @ S[:, k])
     for s in now.suspects:
@@ -272,9 +274,3 @@ def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats,
             if change is not None:
                 a[j] += (u.T * change[0]) @ u[:, k]
     return a, b
-
-
-def _by_log(matrices: ReducedSum, p: Floats, active: Sequence[int]) -> Floats:
-    """Differentiate by the active nuisance parameters: (n, r, r), nil for the mesh error."""
-    known = np.append(p, 0.0)
-    return np.asarray(matrices.slopes(p, active) * known[list(active), None, None])

@@ -29,8 +29,11 @@ class Look:
     theta: Floats
 
 
-def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
-    """Evaluate the places `rows` of a kind, see `scan`; some that promise nothing are left out."""
+def look(problem: Problem, state: Fit, kind: int, rows: Ints, worth: float = np.inf) -> Look:
+    """Evaluate the places `rows` of a kind, see `scan`; some that promise nothing are left out.
+
+    Of places that cost more than is `worth` a closer look at every other size only.
+    """
     c = problem.catalogue[kind]
     if c.law.on == "A" and len(c.trials) > SEARCH.sizes_many:
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)
@@ -45,6 +48,7 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints) -> Look:
     cost += c.surprise(c.trials)
     best = np.argsort(cost.min(axis=1), kind="stable")
     kept = best[: max(SEARCH.every_size_least, int(SEARCH.every_size * len(rows)))]
+    kept = kept[cost[kept].min(axis=1) <= worth]
     between = scan(problem, state, kind, rows[kept], c.trials[~first])
     cost[np.ix_(kept, np.flatnonzero(~first))] = between + c.surprise(c.trials[~first])
     return Look(rows, cost.min(axis=1), c.trials[cost.argmin(axis=1)])

@@ -16,6 +16,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     or (n, n_trial, t) values of θ, the same everywhere or for each place. Each entry is an exact
     solution of the changed eigenproblem on the basis.
     """
+    if not len(rows):
+        return np.empty((0, trials.shape[-2]))
     U, law = problem.part(kind, rows, state.nuisance)
     own = state.vectors[: problem.basis.size]
     U = U @ own

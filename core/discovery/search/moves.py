@@ -17,9 +17,11 @@ from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
 from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
-from .coarse_scan import look
+from .coarse_scan import Look, look
 from .exact_scan import best_apart, scan
 from .search_numbers import SEARCH
+
+_NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,36 +74,56 @@ class Searcher:
         """
         small, here = self.local(state)
         small = by(small)
-        out: list[tuple[float, Suspect]] = []
-        for kind in range(len(small.catalogue)):
-            c, rows = small.catalogue[kind], self.coarse[kind]
+        here = evaluate(small, here.nuisance, here.suspects)
+        seen: dict[int, Look] = {}
+        worth = np.inf
+        for kind, rows in enumerate(self.coarse):
             rows = rows[~self._taken(state, kind, rows)]
             if not len(rows):
                 continue
-            seen = look(small, here, kind, rows)
-            tried = list(zip(seen.cost, seen.rows, seen.theta, strict=True))
-            coarse = best_apart(
-                c.spots[seen.rows], seen.cost, self.effort.apart * self.size, self.effort.looked_at
-            )
-            done = set(seen.rows.tolist())
-            for i in coarse:
-                near = self.around(kind, int(seen.rows[i]))
-                near = near[~self._taken(state, kind, near)]
-                near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
-                if not len(near):
-                    continue
-                done.update(near.tolist())
-                theta = tried[i][2]
-                alike = scan(small, here, kind, near, theta[None])[:, 0]
-                near = near[np.argsort(alike, kind="stable")[: SEARCH.promising // 2]]
-                trials = c.around(theta, np.array(SEARCH.nearby))
-                fine = scan(small, here, kind, near, trials) + c.surprise(trials)
-                tried += zip(fine.min(axis=1), near, trials[fine.argmin(axis=1)], strict=True)
-            best = np.array([t[0] for t in tried])
-            every = np.array([t[1] for t in tried], dtype=np.int64)
-            for i in best_apart(c.spots[every], best, self.effort.apart * self.size, count):
-                out.append((float(best[i]), Suspect(kind, int(every[i]), tuple(tried[i][2]))))
+            seen[kind] = look(small, here, kind, rows, worth)
+            gain = here.objective - min(float(s.cost.min()) for s in seen.values())
+            worth = np.inf if self.small else here.objective - SEARCH.worth_refining * gain
+        apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
+        for kind, coarse in seen.items():
+            tried = self._finer(small, here, kind, coarse, worth)
+            spots = small.catalogue[kind].spots[tried.rows]
+            for i in best_apart(spots, tried.cost, apart, count):
+                suspect = Suspect(kind, int(tried.rows[i]), tuple(tried.theta[i]))
+                out.append((float(tried.cost[i]), suspect))
         return sorted(out, key=lambda b: b[0])
+
+    def _finer(self, small: Problem, here: Fit, kind: int, coarse: Look, worth: float) -> Look:
+        """Return a first look at a kind with the best places next to the best of it that cost less.
+
+        What `worth` allows; of each, places with its size first, then other sizes at some of them.
+        """
+        c, spots = small.catalogue[kind], small.catalogue[kind].spots
+        apart, done = self.effort.apart * self.size, set(coarse.rows.tolist())
+        groups: list[tuple[int, Ints]] = []
+        for i in best_apart(spots[coarse.rows], coarse.cost, apart, self.effort.looked_at):
+            near = self.around(kind, int(coarse.rows[i])) if coarse.cost[i] <= worth else _NONE
+            near = near[~self._taken(here, kind, near)]
+            near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
+            done.update(near.tolist())
+            groups.append((i, near))
+        rows = np.concatenate([near for _, near in groups])
+        if not len(rows):
+            return coarse
+        which = np.repeat([i for i, _ in groups], [len(near) for _, near in groups])
+        alike = scan(small, here, kind, rows, coarse.theta[which][:, None])[:, 0]
+        order = np.lexsort((alike, which))
+        number = np.arange(len(rows)) - np.searchsorted(which[order], which[order])
+        kept = order[number < SEARCH.promising // 2]
+        rows = rows[kept]
+        trials = np.array([c.around(coarse.theta[i], _NEARBY) for i in which[kept]])
+        fine = scan(small, here, kind, rows, trials) + c.surprise(trials)
+        each, best = np.arange(len(rows)), fine.argmin(axis=1)
+        return Look(
+            np.concatenate([coarse.rows, rows]),
+            np.concatenate([coarse.cost, fine[each, best]]),
+            np.concatenate([coarse.theta, trials[each, best]]),
+        )
 
     def around(self, kind: int, row: int) -> Ints:
         """Places next to one, nearest first."""

@@ -39,6 +39,7 @@ class SearchNumbers:
     hopeless: float = number(0.3, "of its price", "a further suspect that gains less before it is moved to better neighbours is given up")
     other_kind: float = number(0.5, GAIN, "a kind whose best place gains this is followed too")
     worth_fitting: float = number(0.35, GAIN, "a branch that gains less is not fitted")
+    worth_refining: float = number(0.175, GAIN, "a place that gains less in a first scan is not looked at more closely", "half of what is worth fitting")
     grown_too: float = number(0.35, GAIN, "a hypothesis that gained less than all but this is not grown")
     rivals_kept: int = number(12, "hypotheses", "that are kept as rivals of each number of suspects")
     same_place: float = number(0.5, "of Effort.apart", "hypotheses whose suspects are nearer are one")

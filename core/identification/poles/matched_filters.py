@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from ...arrays import Floats, Numbers
 from .pole_numbers import POLES
@@ -97,7 +97,7 @@ def traces(frequencies_hz: Floats, residual: Numbers, measured: Numbers, error: 
     energy = np.sum(np.abs(kernels) ** 2, axis=1)
     explained = np.linalg.eigvalsh(grams)[..., -1] / energy[:, None]
     freedom = (np.sqrt(2.0 * n_output) + np.sqrt(2.0 * n_input - 2.0)) ** 2
-    white = 0.5 * float(chi2.isf(POLES.filter_risk / explained.size, freedom))
+    white = 0.5 * float(chdtri(freedom, POLES.filter_risk / explained.size))
     of_errors = [
         _summed(error, 1 + int(2.0 * POLES.seen_widths * w)) / np.maximum(smooth, 1e-300)
         for w in decay

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from ...arrays import Floats, Numbers
 from .moments import BandData, basis, onto, parts_of, shape_normals, unstacked
@@ -93,7 +93,7 @@ def best_of_noise(data: BandData, f: Floats, n_output: float) -> float:
     """Return what the best pole fitted to unit noise explains, see `significance`."""
     n_input = data.weight.shape[1]
     freedom = (np.sqrt(2 * n_output) + np.sqrt(2 * n_input - 2)) ** 2 + 2
-    return float(chi2.isf(POLES.risk / len(f), freedom))
+    return float(chdtri(freedom, POLES.risk / len(f)))
 
 
 def residual_lines(data: BandData, fit: Fit, F: Floats) -> Floats:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from ...arrays import Floats, Ints
 from ...data.dofs import Dofs
@@ -73,6 +72,8 @@ def coherence_checked(survey: Survey, coherence: Coherence | None) -> Survey:
 
 def _resonances(survey: Survey) -> Ints:
     """Lines at which the functions together peak."""
+    from scipy.signal import find_peaks
+
     together = 10.0 * np.log10(np.sum(np.abs(survey.values) ** 2, axis=(0, 1)) + 1e-300)
     return np.asarray(find_peaks(together, prominence=SURVEY.signs_prominence_db)[0])
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import find_peaks, peak_widths
 
 from ...arrays import Floats, Ints, Numbers
 from .survey_numbers import SURVEY
@@ -59,6 +58,8 @@ def peaks(indicator: Floats, floor: float) -> Ints:
     floor : float
         What noise alone makes of the singular values.
     """
+    from scipy.signal import find_peaks
+
     found = []
     for column in np.maximum(indicator.T, 1e-300):
         lines, _ = find_peaks(20.0 * np.log10(column), prominence=SURVEY.prominence_db)
@@ -94,6 +95,8 @@ def split(frequencies_hz: Floats, indicator: Floats, floor: float) -> tuple[Band
 
 def _widths(indicator: Floats, lines: Ints) -> Floats:
     """Half-power widths of peaks, in lines, by the singular value that is narrowest there."""
+    from scipy.signal import find_peaks, peak_widths
+
     result = np.full(len(lines), float(len(indicator)))
     for column in indicator.T:
         tops, _ = find_peaks(column)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import find_peaks, peak_widths
 
 from ...arrays import Floats, Ints, Numbers
 from .survey_data import Survey, few_at_a_time, noise_levels
@@ -85,6 +84,8 @@ def followed(survey: Survey, rows: Ints) -> Followed | None:
     Lerman, Maunu (2018), Fast, robust and non-convex subspace recovery, Information and
     Inference 7, 277-336.
     """
+    from scipy.signal import find_peaks
+
     raw = survey.values[rows]
     size = np.linalg.norm(raw, axis=(1, 2))
     raw = raw / np.maximum(size, np.median(size))[:, None, None]
@@ -119,6 +120,8 @@ def _less_beside(
 
     Returned are the functions at the lines `near`, and the norm over all lines, (n_output,).
     """
+    from scipy.signal import peak_widths
+
     width = float(np.median(peak_widths(level**2, tops, rel_height=0.5)[0]))
     reach = max(round(SURVEY.signs_beside * width), SURVEY.signs_lines + 1)
     result = np.empty((*functions.shape[:2], len(near)), functions.dtype)

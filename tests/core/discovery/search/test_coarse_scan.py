@@ -54,3 +54,16 @@ def test_what_comes_back_is_exact_and_the_best_of_all_is_in_it(kind, truth, monk
     for row, cost, theta in zip(seen.rows, seen.cost, seen.theta, strict=True):
         size = int(np.flatnonzero(c.trials[:, 0] == theta[0])[0])
         assert cost == pytest.approx(every[row, size], rel=1e-9)
+
+
+def test_places_that_cost_more_than_is_worth_are_not_looked_at_more_closely():
+    s = searcher(hidden(masses=[(9, 1.7)]))
+    small, here = s.local(evaluate(s.problem, np.zeros(2), ()))
+    rows, c = np.arange(N), s.problem.catalogue[0]
+    every = look(small, here, 0, rows)
+    one = look(small, here, 0, rows, worth=float(every.cost.min()) + 1.0)
+    assert one.cost.min() == every.cost.min()
+    none = look(small, here, 0, rows, worth=-np.inf)
+    first = c.trials[every_other(c)][:, 0]
+    assert np.isin(none.theta[:, 0], first).all()
+    assert not np.isin(every.theta[:, 0], first).all()
