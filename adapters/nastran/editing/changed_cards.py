@@ -30,7 +30,8 @@ def written_cards(before: DeckText, after: DeckText) -> tuple[str, ...]:
 
 def _cards(old: TextFile, new: TextFile) -> Iterator[str]:
     keys, done = new.lines.keys, 0
-    for _, _, row, stop in changes(old, new):
+    for _, _, first, stop in changes(old, new):
+        row = first
         while 0 < row < len(keys) and keys[row] == CONTINUATION:
             row -= 1
         row = max(row, done)
@@ -42,6 +43,9 @@ def _cards(old: TextFile, new: TextFile) -> Iterator[str]:
                         break
                     if keys[k] == CONTINUATION:
                         rows.append(k)
-                lines = (new.line(r).decode(new.encoding, "replace").rstrip() for r in rows)
-                yield "\n".join(lines)
+                lines = [new.line(r).rstrip() for r in rows]
+                # new cards may end with the lines of the one before them
+                as_before = rows[0] < first and b"\n".join([*lines, b""]) in old.data
+                if not as_before:
+                    yield b"\n".join(lines).decode(new.encoding, "replace")
             row = done = rows[-1] + 1

@@ -33,7 +33,7 @@ from ..sensor_faults.diagnosis import Verdicts
 from .model_error_words import left_over
 from .narrative_numbers import NARRATIVE
 from .sensor_findings import accusations, remarks
-from .sentences import alternative, effects_said, magnitude_of, region, sentence_of
+from .sentences import alternative, effects_said, magnitude_of, sentence_of, spot_of
 
 
 def build_discovery(
@@ -165,7 +165,7 @@ class _Outcome:
     def region(self, s: Suspect, place: int = 0) -> str:
         """Say where a suspect is, or one of its places."""
         c, row = self.places(s)[place]
-        return region(self.request.structure.model.geometry, c.xyz[row])
+        return spot_of(self.request.structure.model.geometry, c, row)
 
 
 def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding:
@@ -252,7 +252,7 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
     out = []
     for kinds, f in islice(seen.items(), NARRATIVE.alternatives):
         xyz = [c.xyz[row] for c, row in named(f)]
-        regions = tuple(region(o.request.structure.model.geometry, x) for x in xyz)
+        regions = tuple(spot_of(o.request.structure.model.geometry, c, row) for c, row in named(f))
         said = effects_said(kinds, regions)
         out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions))
     if o.verdict.accepted:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...number_table import number
+from ...number_table import ROUNDING, number
 
 SIZE, READER = "of the structure's size", "what a reader takes in"
 CALIBRATED = "frozen cases 8000 to 8121 by `benchmarks.discovery.calibrate`"
@@ -33,6 +33,8 @@ class NarrativeNumbers:
     damper_credible: float = number(0.05, "of the likeliest place's weight", "below which a place is not listed")
     damper_places: int = number(40, "places", "that are listed, at most", READER)
 
+    grids_named: int = number(4, "grids", "of supports that give together, up to which each is named", READER)
+    at_zero: float = number(1e-9, SIZE, "below which a coordinate is said to be 0", ROUNDING)
     rim: float = number(0.95, "of the largest radius", "from which on grids are on the rim of a round structure")
     rim_filled: int = number(23, "of 24 sectors", "that hold grids of the rim if a structure is round", "one may be cut out")
 

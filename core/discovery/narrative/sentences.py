@@ -106,9 +106,20 @@ def sentence_of(
     return text + "."
 
 
+def spot_of(geometry: Geometry, c: Candidates, row: int) -> str:
+    """Say where a candidate is: supports that give together by their grids, else near which."""
+    grids, near = c.where[row].get("grids", ()), region(geometry, c.xyz[row])
+    if not c.law.shared or len(grids) < 2:
+        return near
+    if len(grids) <= NARRATIVE.grids_named:
+        return f"at grids {listed([str(g) for g in grids])} together"
+    return f"over {len(grids)} grids together {near}"
+
+
 def region(geometry: Geometry, xyz: Floats) -> str:
     """Say where a point (3,) of the analysis is, for round structures by angle and height."""
     nearest = int(geometry.ids[np.argmin(np.linalg.norm(geometry.xyz - xyz, axis=1))])
+    xyz = np.where(np.abs(xyz) < NARRATIVE.at_zero * geometry.size, 0.0, xyz)
     x, y, z = (float(v) for v in xyz)
     axis = _round_axis(geometry.xyz)
     if axis is None:

@@ -62,3 +62,12 @@ def test_free_continuations_belong_to_their_card(text):
 def test_several_changes_give_a_card_each_in_the_order_of_the_deck(text):
     done = set_values(text, {FieldRef("MAT1", 1, "E"): 71000.0, FieldRef("PBAR", 1, "K2"): 0.7})
     assert [c[:4] for c in written_cards(text, done)] == ["PBAR", "MAT1"]
+
+
+def test_a_new_card_that_ends_like_the_one_before_it_is_shown_alone(text):
+    mass = [None, 0.5, None, None, None, None, 0.002312, None, 0.002312]
+    first = add_cards(text, [["CONM2", 7, 1, *mass]], "", ("GRID", 1))
+    grid = ["GRID", 2, None, 1.0, 0.0, 0.0]
+    done = add_cards(first, [grid, ["CONM2", 8, 2, *mass]], "", ("CONM2", 7))
+    cards = written_cards(first, done)
+    assert [card.split()[:2] for card in cards] == [["GRID", "2"], ["CONM2", "8"]]
