@@ -45,10 +45,10 @@ from .search.model_selection import (
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import Ground, by_model_error, for_deck, polished
+from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
 from .search.robust_search import robust
 from .search.strategy import searched
-from .sensor_faults.diagnosis import Bench
+from .sensor_faults.diagnosis import Bench, Verdicts
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -75,15 +75,15 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
         trial = _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
     searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
-        tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
+        tested = _judged(bench, trial, searcher, found, verdict)
         if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | tested.doubtful
             trial = _Trial(request, ground, aside, tested.noise, modes_out, sensors_out)
             searcher, found, verdict = _searched(trial, progress)
-            tested = bench.judged_by(searcher.problem, _best(searcher, found, verdict))
     progress("weighing what was found against the error of the model")
     searcher, found, verdict, whole = _completed(trial, searcher, found, verdict)
+    tested = _judged(bench, trial, searcher, found, verdict)
     known = for_deck(trial.own, searcher.problem, found.levels[verdict.accepted])
     found = found.with_level(known)
     out = modes_out, sensors_out
@@ -133,6 +133,14 @@ class _Trial:
             with suppress(TrueupError):
                 self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
+
+
+def _judged(
+    bench: Bench, trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
+) -> Verdicts:
+    """Judge the sensors by what was accepted."""
+    best = found.levels[verdict.accepted]
+    return bench.judged(*completed_modes(trial.own, searcher.problem, best))
 
 
 def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:

@@ -27,9 +27,9 @@ from .model_selection import (
     Scored,
     by_such_a_test,
     contenders,
+    elsewhere,
     needed,
     ranked,
-    says_else,
     scored,
 )
 from .moves import Searcher
@@ -49,7 +49,8 @@ class Completeness:
     last : float
         The same beside one or more suspects fewer.
     ahead, beside : float
-        ln of how much likelier it is than its nearest rival elsewhere, and in the region beside it.
+        ln of how much likelier it is than its nearest rival elsewhere, and in the region beside it
+        or in another direction.
     agree : float
         By how many standard deviations modes that they were not fitted to agree that the best
         foretells them better than the known parameters alone do.
@@ -189,11 +190,11 @@ def completeness(
     best, places = _centred(searcher, levels[kept], verdict.scale)
     found = _led(found, best.fit)
     others = contenders(searcher, found, kept)
-    elsewhere = [s for s in fields[kept] if any(s.fit is f for f in others)]
-    far = [says_else(searcher, best.fit, s.fit, SEARCH.region) for s in elsewhere]
+    rivals = [s for s in fields[kept] if any(s.fit is f for f in others)]
+    far = [elsewhere(searcher, best.fit, s.fit) for s in rivals]
     ahead, beside = (
         best.score
-        - max((s.score for s, x in zip(elsewhere, far, strict=True) if x is there), default=-np.inf)
+        - max((s.score for s, x in zip(rivals, far, strict=True) if x is there), default=-np.inf)
         for there in (True, False)
     )
     assert best.judged is not None
@@ -253,12 +254,13 @@ def _centred(searcher: Searcher, best: Scored, scale: float) -> tuple[Scored, li
 
 
 def _near(found: Found, k: int) -> list[Fit]:
-    """Return the best with so many suspects and the others that gain nearly as much."""
-    best = found.levels[k]
-    far = SEARCH.rival_gain * (found.levels[0].objective - best.objective)
+    """Return the best with so many suspects and the others that come nearest to it.
+
+    However much less these gain: beside an error of the model what fits worse may be likelier.
+    """
     rivals = sorted(found.rivals[k], key=lambda f: f.objective)
-    near = (f for f in rivals if len(f.suspects) == k and f.objective - best.objective < far)
-    return [best, *islice(near, SEARCH.rivals_judged)]
+    alike = (f for f in rivals if len(f.suspects) == k)
+    return [found.levels[k], *islice(alike, SEARCH.rivals_judged)]
 
 
 def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:

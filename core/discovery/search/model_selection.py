@@ -115,11 +115,14 @@ def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
     return [f for level in found.rivals for f in level if says_else(searcher, best, f)]
 
 
-def says_else(
-    searcher: Searcher, best: Fit, f: Fit, apart: float = SEARCH.same_effect_apart
-) -> bool:
+def says_else(searcher: Searcher, best: Fit, f: Fit) -> bool:
     """Whether a hypothesis lacks an effect of the best one: another place, another nature."""
-    return bool(_unmatched(searcher, best, f, apart=apart)[0])
+    return bool(_unmatched(searcher, best, f)[0])
+
+
+def elsewhere(searcher: Searcher, best: Fit, f: Fit) -> bool:
+    """Whether it lacks one altogether, in its region and in any direction."""
+    return bool(_unmatched(searcher, best, f, apart=SEARCH.region, anyhow=True)[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,10 +222,12 @@ def _unmatched(
     f: Fit,
     by_nature: bool = True,
     apart: float = SEARCH.same_effect_apart,
+    anyhow: bool = False,
 ) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead.
 
-    A mass that is spread out and one that is not, at one place, say the same `by_nature`.
+    A mass that is spread out and one that is not, at one place, say the same `by_nature`; what has
+    another direction says the same where it may be `anyhow`.
     """
     catalogue = searcher.problem.catalogue
     near = apart * searcher.effort.apart * searcher.size
@@ -231,7 +236,7 @@ def _unmatched(
         a, b = catalogue[s.kind], catalogue[t.kind]
         alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
         alike = alike and a.many(s.row) == b.many(t.row)
-        along = a.where[s.row].get("components") == b.where[t.row].get("components")
+        along = anyhow or (a.where[s.row].get("components") == b.where[t.row].get("components"))
         return alike and along and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)

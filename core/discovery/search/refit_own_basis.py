@@ -7,6 +7,7 @@ modes of the deck and its responses to the known parameters.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -40,11 +41,13 @@ Places = tuple[tuple[Candidates, int], ...]
 class Own:
     """A basis for effects at some places: with the deck's masses, with better ones.
 
-    `seen` (n_sensor, r) is what sensors read, `mesh` see `Problem`, `factors` rows of the effects.
+    `added` (n_free, s) stands beside the modes of the ground, `seen` (n_sensor, r + s) is what
+    sensors read, `mesh` see `Problem`, `factors` rows of the effects.
     """
 
     plain: Basis
     better: Basis
+    added: Floats
     seen: Floats
     mesh: Floats
     factors: tuple[Floats, ...]
@@ -102,7 +105,7 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     follows the known parameters by its slopes alone, so it is made anew where they came to stand.
     """
     for _ in range(SEARCH.made_anew):
-        own, start = _own_problem(ground, problem, state)
+        own, start, _ = _own_problem(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
         new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
         moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
@@ -113,13 +116,25 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     return state
 
 
+def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Floats, Floats]:
+    """Return modes of a completed model on all analysis dofs (n_dof, n), their eigenvalues (n,).
+
+    Beside an effect they move as the basis of the search cannot: a support that gives.
+    """
+    own, start, added = _own_problem(ground, problem, state)
+    values, modes = _modes(own, state, start)
+    V = ground.basis.vectors
+    a, b, _ = np.split(modes, [V.shape[1], V.shape[1] + added.shape[1]])
+    return np.asarray(ground.structure.model.expansion @ (V @ a + added @ b)), values
+
+
 def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """Return a fit that knows its known parameters for a deck, the effects as found.
 
     A deck has neither the trend for the error of the mesh nor masses better than its elements':
     moduli, thicknesses and inertias have to absorb both.
     """
-    own, start = _own_problem(ground, problem, state, as_deck=True)
+    own, start, _ = _own_problem(ground, problem, state, as_deck=True)
     return replace(state, in_deck=_in_deck(own, replace(state, suspects=start)))
 
 
@@ -132,9 +147,8 @@ def by_model_error(
     suspension too; no fields where they could not bring it to the evidence `least`; where nothing
     is `moving`, the error of the mesh alone.
     """
-    own, start = _own_problem(ground, problem, state)
-    size = min(SEARCH.own_times * own.modes, len(own.mesh))
-    _, modes = solve(own, state.nuisance, start, size)
+    own, start, _ = _own_problem(ground, problem, state)
+    _, modes = _modes(own, state, start)
     T = structural(*np.split(modes, [len(own.mesh)]))
     small = own.turned(T).entire()
     here = evaluate(small, state.nuisance, start)
@@ -155,6 +169,11 @@ def by_model_error(
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
 
 
+def _modes(own: Problem, state: Fit, start: Sequence[Suspect]) -> tuple[Floats, Floats]:
+    size = min(SEARCH.own_times * own.modes, len(own.mesh))
+    return solve(own, state.nuisance, start, size)
+
+
 def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
     """Return suspects at their places with the magnitudes that were fitted."""
     both = zip(state.suspects, own.suspects, strict=True)
@@ -163,8 +182,11 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
 
 def _own_problem(
     ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
-) -> tuple[Problem, tuple[Suspect, ...]]:
-    """Return the problem on a basis of its own, masses better than a deck's or not, and a start."""
+) -> tuple[Problem, tuple[Suspect, ...], Floats]:
+    """Return the problem on a basis of its own, masses better than a deck's or not, and a start.
+
+    Also what the basis has beside the ground's, (n_free, s).
+    """
     deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
     if places != deck:
@@ -192,7 +214,7 @@ def _own_problem(
     values = evaluate(new, state.nuisance, start).eigenvalues
     if values[0] < -SEARCH.rigid * values[-1]:
         raise CheckError("the completed model has a negative stiffness")
-    return new, start
+    return new, start, own.added
 
 
 def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tuple[Candidates, int]:
@@ -223,6 +245,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     return Own(
         Basis(none, none, stiffness, mass),
         Basis(none, none, stiffness, mass.and_also(bars)),
+        W,
         seen,
         mesh.matrices[0],
         tuple(_factor(c, row, V, W)[None] for c, row in places),

@@ -113,13 +113,14 @@ def _swapped(weighed: Weighed, s: Swap) -> Fault:
 def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     """Return the likeliest kind of fault of a node, if it is likely enough.
 
-    One that an error of the model may look like has to be surer.
+    Where an error of the model may look like it, that there is a fault at all has to be surer.
     """
     share = weighed.shares(i)
     if sum(share.values()) < SENSORS.named:
         return []
     kind = max(share, key=lambda k: share[k])
-    if FAULTS[kind].like_model and share[kind] < SENSORS.sure:
+    unsure = share[kind] < SENSORS.named or sum(share.values()) < SENSORS.sure
+    if FAULTS[kind].like_model and unsure:
         return []
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
     return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]

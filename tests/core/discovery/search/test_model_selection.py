@@ -18,9 +18,11 @@ from trueup.core.discovery.search.model_selection import (
     complete,
     contenders,
     cost,
+    elsewhere,
     enough,
     instead,
     judge,
+    says_else,
     usual,
     with_unseen,
 )
@@ -196,3 +198,19 @@ def test_the_middle_is_nearest_to_where_a_suspect_may_be_each_place_as_likely_as
 
     assert at({7: 0.2, 8: 0.2, 9: 0.2, 10: 0.2, 11: 0.2}) == Suspect(0, 9, (9.0,))
     assert at({7: 0.6, 8: 0.1, 9: 0.1, 10: 0.1, 11: 0.1}).row == 7
+
+
+def test_the_same_spring_in_another_direction_says_else_and_is_not_elsewhere():
+    s = searcher(hidden())
+    spring = s.problem.catalogue[1]
+    turned = replace(spring, where=tuple({**w, "components": [2]} for w in spring.where))
+    s = replace(s, problem=replace(s.problem, catalogue=(*s.problem.catalogue, turned)))
+    number = len(s.problem.catalogue) - 1
+
+    def at(kind, row):
+        return Some(suspects=(Suspect(kind, row, (0.0,)),))
+
+    assert says_else(s, at(1, 7), at(number, 7))
+    assert not elsewhere(s, at(1, 7), at(number, 7))
+    assert elsewhere(s, at(1, 7), at(number, 25))
+    assert elsewhere(s, at(1, 7), at(0, 7))
