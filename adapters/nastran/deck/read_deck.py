@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -209,7 +209,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
     params = _cells(sections) | _params(bulk, sections.case)
-    not_followed = _not_followed(sections, params, case, others.get("MDLPRM", ()))
+    not_followed = _not_followed(sections, params, case, others)
     warnings += [f"{path}: {told}" for told in not_followed]
     if eigen is None and case.method is not None:
         warnings.append(
@@ -300,9 +300,9 @@ def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[s
 
 
 def _not_followed(
-    sections: Any, params: Mapping[str, str], case: CaseControl, mdlprm: Iterable[Raw]
+    sections: Any, params: Mapping[str, str], case: CaseControl, others: dict[str, list[Raw]]
 ) -> Iterator[str]:
-    """Say of parameters that shape stiffness or mass and are not read."""
+    """Say of parameters and selections that shape stiffness or mass and are not read."""
     for name, beside in (("CK1", "K2GG"), ("CM1", "M2GG"), ("CB1", "B2GG"), ("CK3", None)):
         try:
             given: float | None = parse_real(params.get(name, "1."))
@@ -315,7 +315,13 @@ def _not_followed(
             )
     if any(_BARE.search(line.text.split("$", 1)[0].upper()) for line in sections.executive):
         yield "SYSTEM(414) is not read: lumped masses of CBAR and CBEAM are as without it"
-    cells = [field for raw in mdlprm for field in fields_of(raw.lines)[1:] if field]
+    for raw in others.get("SET3", ()):
+        number, kind = [*fields_of(raw.lines)[1:3], None, None][:2]
+        if str(kind).upper() in ("RBEIN", "RBEEX") and number == str(case.mpc):
+            yield f"SET3 {number} selects rigid elements ({kind}), which is not read: all are used"
+    cells = [
+        field for raw in others.get("MDLPRM", ()) for field in fields_of(raw.lines)[1:] if field
+    ]
     for name, value in zip(cells, [*cells[1:], ""], strict=False):
         if name.upper() in _SHAPING and value.upper() not in _SHAPING[name.upper()]:
             yield f"MDLPRM {name.upper()} {value} is not read: elements are as without it"

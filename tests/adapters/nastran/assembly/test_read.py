@@ -255,10 +255,12 @@ def test_direct_matrices_that_are_left_out_are_said(tmp_path, command, said):
         ("MDLPRM,QR6ROT,1.+4,OFFDEF,NOMASS", "MDLPRM OFFDEF NOMASS is not read"),
         ("MDLPRM,HDF5,1,SHEARP,GARVEY", None),
         ("MDLPRM,DELMASS,.1", "MDLPRM DELMASS .1 is not read"),
+        ("SET3,5,RBEEX,7", "SET3 5 selects rigid elements (RBEEX), which is not read"),
+        ("SET3,6,RBEEX,7", None),
     ],
 )
 def test_parameters_of_matrices_that_are_not_read_are_said(tmp_path, card, said):
-    case = "NASTRAN SYSTEM(414)=0\nCEND\nM2GG = KX\nBEGIN BULK\n"
+    case = "NASTRAN SYSTEM(414)=0\nCEND\nM2GG = KX\nMPC = 5\nBEGIN BULK\n"
     (tmp_path / "a.bdf").write_text(f"{case}{card}\n{MASSES.format('1.')}")
     told = [w for w in read_deck(tmp_path / "a.bdf").warnings if "is not read" in w]
     assert any(said in w for w in told) if said else not told
