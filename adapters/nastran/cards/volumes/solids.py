@@ -69,7 +69,7 @@ def _group(context: Context, solid: Placed) -> Group:
     centre = xyz[:, : element.corners].mean(axis=1)
 
     def matrices(values: Bulk, rows: Ints, wanted: tuple[bool, bool]) -> Matrices:
-        C, rho = _materials(context, values, keys, of[rows], centre[rows])
+        C, rho = _materials(context, values, solid, centre[rows], rows)
         K = M = None
         if wanted[0]:
             K = _stiffness(element, xyz[rows], C, [schemes[k] for k in of[rows]])
@@ -120,9 +120,10 @@ def _scheme(context: Context, name: str, element: Element, key: Key) -> str:
 
 
 def _materials(
-    context: Context, bulk: Bulk, keys: list[Key], of: Ints, centre: Floats
+    context: Context, bulk: Bulk, solid: Placed, centre: Floats, rows: Ints
 ) -> tuple[Floats, Floats]:
-    """Elastic matrices in the basic frame, (n, 6, 6), and densities, (n,)."""
+    """Elastic matrices in the basic frame, (n, 6, 6), and densities, (n,), of these elements."""
+    keys, of = solid.keys, solid.of[rows]
     used, position = np.unique(of, return_inverse=True)
     places = [context.bulk.place(*keys[k]) for k in used]
     filled = [_fill(bulk, keys[k], place) for k, place in zip(used, places, strict=True)]
@@ -132,14 +133,16 @@ def _materials(
     for number, (fill, place) in enumerate(zip(filled, places, strict=True)):
         if found[number].isotropic:
             continue
-        if fill.cordm < 0:
+        # the element system of CPYRAM is the basic one (Quick Reference Guide, PSOLID)
+        cordm = max(fill.cordm, 0) if solid.name == "CPYRAM" else fill.cordm
+        if cordm < 0:
             raise place.error(
                 "CORDM = -1 (element coordinates) is not supported with MAT9 and MAT11: name a "
                 "coordinate system"
             )
-        rows = np.flatnonzero(position == number)
-        frame = context.points.frames.get(fill.cordm, place)
-        C[rows] = rotate_material(C[rows], fill.axes @ frame.directions(centre[rows]))
+        at = np.flatnonzero(position == number)
+        frame = context.points.frames.get(cordm, place)
+        C[at] = rotate_material(C[at], fill.axes @ frame.directions(centre[at]))
     return C, rho
 
 

@@ -116,3 +116,14 @@ def test_a_mat9_that_gives_energy_back_is_refused(solve, coupling, possible):
 def test_orthotropic_material_that_cannot_be_is_refused(solve):
     with pytest.raises(InputError, match=r"MAT11 1 .*NU12, NU13 and NU23 are not possible"):
         solve(BRICK, properties=PROPERTY + ORTHOTROPIC.replace(",.3,", ",2.,"))
+
+
+def test_element_axes_are_the_basic_ones_of_a_pyramid_and_not_known_of_others(solve):
+    stiff = "MAT9,1,9.E4,2.E4,2.E4,,,,5.E4\n,2.E4,,,,6.E4,,,\n,2.E4,,,1.E4,,3.E4\n"
+    own, basic = (
+        solve("CPYRAM,7,1,1,2,3,4,9\n", properties=f"PSOLID,1,1,{cordm}\n{stiff}")[0]
+        for cordm in (-1, 0)
+    )
+    np.testing.assert_array_equal(own, basic)
+    with pytest.raises(InputError, match="CORDM = -1"):
+        solve("CTETRA,7,1,1,2,3,9\n", properties=f"PSOLID,1,1,-1\n{stiff}")
