@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats, Ints, require_finite
+from ..arrays import Floats, Ints, frozen, require_finite
 from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
 from ..noun import Noun
@@ -89,13 +89,12 @@ class Pencil:
             raise CheckError("masses and stiffnesses differ by more decades than numbers have")
         return ratios
 
-    @cached_property
+    @property
     def groups(self) -> Ints | None:
         """Node of each degree of freedom by its label, (n,); None where there are no labels."""
         if len(self.labels) != self.n:
             return None
-        nodes = np.array([label.split(":", 1)[0] for label in self.labels])
-        return np.asarray(np.unique(nodes, return_inverse=True)[1], np.int64).reshape(-1)
+        return _nodes(self.labels)
 
     @property
     def least_shift(self) -> float:
@@ -124,6 +123,17 @@ class Pencil:
             single = sample.astype(np.float32).astype(np.float64)
         same = typical >= EIGEN.single_digits and np.array_equal(single, sample)
         return EIGEN.single if same else 0.0
+
+    def backward_error(self, values: Floats, X: Floats, KX: Floats, MX: Floats) -> float:
+        """Return the largest ||K x - lambda M x|| beside ||D x|| of modes X (n, k).
+
+        Forces are scaled by D^-1/2 and motions by D^1/2, D the diagonal of K + lambda M.
+        """
+        size = np.maximum(np.abs(values), self.least_shift)
+        D = np.abs(self.k_diagonal)[:, None] + self.m_diagonal[:, None] * size
+        D[D == 0.0] = 1.0
+        off = ((KX - MX * values) ** 2 / D).sum(axis=0) / np.einsum("ij,ij,ij->j", X, X, D)
+        return float(np.sqrt(off.max(initial=0.0)))
 
     @property
     def pattern(self) -> sp.csr_matrix:
@@ -169,6 +179,13 @@ class Pencil:
             raise InputError(
                 f"{names}{more} has neither stiffness nor mass: constrain it or connect it"
             )
+
+
+@lru_cache(maxsize=2)
+def _nodes(labels: tuple[str, ...]) -> Ints:
+    """Return the number of the node of each label, (n,), found once for all points of a model."""
+    nodes = np.array([label.split(":", 1)[0] for label in labels])
+    return frozen(np.unique(nodes, return_inverse=True)[1].reshape(-1).astype(np.int64))
 
 
 def magnitudes(matrix: sp.csr_matrix) -> sp.csr_matrix:
@@ -277,3 +294,17 @@ class Spectrum(Noun):
     factor: Factorisation | None = None
     ahead: Floats = field(default_factory=lambda: np.zeros(0))
     left_out: int = 0
+
+
+def widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:
+    """Return a position k >= first of a clear gap between values[k - 1] and values[k], else None.
+
+    Where values differ by their `rounding` only there is none.
+    """
+    step = np.diff(values[first - 1 :])
+    ahead = np.where(step > rounding, step / np.abs(values[first:]), 0.0)
+    clear = np.flatnonzero(ahead > EIGEN.clear)
+    if len(clear):
+        return first + int(clear[0])
+    k = int(np.argmax(ahead)) if len(ahead) else 0
+    return first + k if len(ahead) and ahead[k] > EIGEN.gap else None

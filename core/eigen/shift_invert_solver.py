@@ -12,7 +12,8 @@ from ..numerics.block_lanczos import NEGATIVE_MASS, BlockLanczos
 from ..numerics.factorisation import Backend, Factorisation, NotDefinite, factorise
 from .eigen_numbers import EIGEN
 from .mechanisms import diagnose, refuse_unresisted
-from .pencil import Pencil, Spectrum, refuse_indefinite_mass
+from .pencil import Pencil, Spectrum, refuse_indefinite_mass, widest_gap
+from .warm_modes import Near, warm_modes
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class Request:
     """What is asked of the iteration; see `normal_modes.solve`.
 
     `wanted` modes, rigid-body modes included, or where that is None all up to the eigenvalue
-    `limit`; `tolerance` is that of the Ritz residuals beside the Ritz values.
+    `limit`; `tolerance` is that of the Ritz residuals beside the Ritz values. Modes of a
+    number are begun with what is known `near` them.
     """
 
     wanted: int | None
@@ -30,6 +32,7 @@ class Request:
     count: bool
     keep_factor: bool
     seed: int
+    near: Near | None = None
 
 
 def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Request) -> Spectrum:
@@ -58,6 +61,10 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
             request = replace(request, wanted=EIGEN.most, limit=None)
     asked = min(x for x in (request.wanted, below) if x is not None)
     elastic = max(asked - n_rigid, 1)
+    if request.near is not None and request.limit is None:
+        warm = warm_modes(pencil, rigid, request.near, elastic, request.backend, request.seed)
+        if warm is not None:
+            return warm
     sigma, factor, lanczos = _started(model, pencil, rigid, elastic, request)
     found = _converged(pencil, rigid, sigma, factor, lanczos, elastic, request)
     if not request.keep_factor:  # two factors at a time only where the caller keeps one
@@ -199,7 +206,7 @@ def _converged(
                 firm = loose = int(np.count_nonzero(theta > EIGEN.zero * theta[0]))
                 break
             values = sigma + 1.0 / theta[:loose]
-            if tight and loose > elastic and _widest_gap(values, elastic) is not None:
+            if tight and loose > elastic and widest_gap(values, elastic) is not None:
                 firm = max(elastic, int(np.argmax(residual > EIGEN.firm * theta)))
                 break
             if lanczos.full:
@@ -236,20 +243,6 @@ def _polished(
     return Spectrum(sigma + alpha, np.matmul(Y, C, out=X), residual, sigma, False, None, factor)
 
 
-def _widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:
-    """Position k >= first of a clear gap between values[k - 1] and values[k], else None.
-
-    Where values differ by their `rounding` only there is none.
-    """
-    step = np.diff(values[first - 1 :])
-    ahead = np.where(step > rounding, step / np.abs(values[first:]), 0.0)
-    clear = np.flatnonzero(ahead > EIGEN.clear)
-    if len(clear):
-        return first + int(clear[0])
-    k = int(np.argmax(ahead)) if len(ahead) else 0
-    return first + k if len(ahead) and ahead[k] > EIGEN.gap else None
-
-
 def _estimates(found: Spectrum) -> Floats:
     return np.concatenate([found.values, found.ahead])
 
@@ -261,7 +254,7 @@ def _gap(pencil: Pencil, found: Spectrum, elastic: int) -> tuple[float, float] |
         top = abs(values[-1]) - found.sigma
         return EIGEN.above[0] * top, EIGEN.above[1] * top
     size = np.abs(pencil.k_diagonal) @ found.vectors**2
-    k = _widest_gap(values, elastic, EIGEN.signs * float(size.max()))
+    k = widest_gap(values, elastic, EIGEN.signs * float(size.max()))
     if k is None:
         return None
     wide = values[k] - values[k - 1]

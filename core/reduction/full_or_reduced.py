@@ -11,6 +11,8 @@ import scipy.sparse as sp
 from ..arrays import Floats
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution, solve
+from ..eigen.warm_modes import Near
+from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
 from .reduced_model import ReducedModel, ReducedModes, build_reduced
 
@@ -19,17 +21,20 @@ from .reduced_model import ReducedModel, ReducedModes, build_reduced
 class FullOrder:
     """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`.
 
-    The static answers to `forces` (n_force, n_free) are in what is reduced of it.
+    The static answers to `forces` (n_force, n_free) are in what is reduced of it. Where it is to
+    be solved the modes may be known nearly: no factor is kept then.
     """
 
     model: Model
     sensors: sp.csr_matrix
     n_modes: int
     forces: sp.csr_matrix | None = None
+    near: Near | None = None
 
     def solve(self, p: Floats) -> Eigensolution:
-        """Find and check the modes; the factor is kept."""
-        return solve(self.model, n_modes=self.n_modes, p=p, keep_factor=True)
+        """Find and check the modes."""
+        keep = self.near is None
+        return solve(self.model, n_modes=self.n_modes, p=p, keep_factor=keep, near=self.near)
 
     def sensitivities(
         self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool
@@ -67,9 +72,26 @@ class ReducedOrder:
         """The full model that is reduced."""
         return self.reduced.model
 
-    def with_modes(self, full: FullOrder, p: Floats, found: Eigensolution) -> ReducedOrder:
+    def with_modes(self, full: FullOrder, found: Eigensolution) -> ReducedOrder:
         """Return it with the modes of another point, found in full, in its basis."""
-        reduced = self.reduced.with_modes(p, found)
+        return self._on(full, self.reduced.with_modes(found))
+
+    def corrected(self, full: FullOrder, p: Floats) -> ReducedOrder:
+        """Return it with what its modes at `p`, and some above, lack in its basis."""
+        modes = self.reduced.solve(p, self.reduced.size).take(self._some_more)
+        return self._on(full, self.reduced.corrected(p, modes))
+
+    def near(self, p: Floats) -> Near:
+        """Return what it knows of the full model's modes at `p`."""
+        every = self.reduced.solve(p, self.reduced.size)
+        some, rigid = every.take(self._some_more), every.rigid_body_modes
+        return Near(every.eigenvalues[rigid:], self.reduced.vectors(some)[:, rigid:])
+
+    @property
+    def _some_more(self) -> int:
+        return self.n_modes + DERIVATIVES.guard
+
+    def _on(self, full: FullOrder, reduced: ReducedModel) -> ReducedOrder:
         return replace(self, reduced=reduced, sensors=reduced.project(full.sensors.T).T)
 
     def solve(self, p: Floats) -> ReducedModes:
@@ -101,15 +123,25 @@ Order = FullOrder | ReducedOrder
 
 
 def reduce_around(
-    full: FullOrder, p: Floats, solution: Eigensolution, active: Sequence[int]
+    full: FullOrder,
+    p: Floats,
+    solution: Eigensolution,
+    active: Sequence[int],
+    sketch: int | None = None,
 ) -> ReducedOrder:
     """Reduce a model around the factors `p` (n_parameter,), where its modes are `solution`.
 
-    `active` are the parameters that will move.
+    `active` are the parameters that will move; `sketch` is that of `build_reduced`.
     """
     count = len(solution.eigenvalues)
     elastic = np.arange(min(solution.rigid_body_modes, count - 1), count)
     reduced = build_reduced(
-        full.model, p, elastic, tuple(active), solution=solution, forces=full.forces
+        full.model,
+        p,
+        elastic,
+        tuple(active),
+        solution=solution,
+        forces=full.forces,
+        sketch=sketch,
     )
     return ReducedOrder(reduced, reduced.project(full.sensors.T).T, count)

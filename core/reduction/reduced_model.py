@@ -67,6 +67,8 @@ class ReducedModel(Noun):
     ----------
     model : Model
         The full model.
+    p0 : (n_parameter,) float
+        The parameter values around which it is made.
     Q : (n_free, n_basis) float
         Orthonormal with respect to K - sigma M at `p0`.
     stiffness, mass : ReducedSum
@@ -78,6 +80,7 @@ class ReducedModel(Noun):
     """
 
     model: Model
+    p0: Floats
     Q: Floats
     stiffness: ReducedSum
     mass: ReducedSum
@@ -128,16 +131,33 @@ class ReducedModel(Noun):
         rigid = min(self.solution.rigid_body_modes, wanted)
         return ReducedModes(sigma + 1.0 / theta, q / np.sqrt(theta), rigid)
 
-    def with_modes(self, p: Floats, found: Eigensolution) -> ReducedModel:
+    def with_modes(self, found: Eigensolution) -> ReducedModel:
         """Return the model with the modes of another parameter point in its basis: exact there."""
+        free, sigma = slice(found.rigid_body_modes, None), self.solution.sigma
+        X = found.vectors[:, free] / np.sqrt(found.eigenvalues[free] - sigma)
+        AX = self.model.K(self.p0) @ X - sigma * (self.model.M(self.p0) @ X)
+        return self._with(X, AX, DERIVATIVES.known_already)
+
+    def corrected(self, p: Floats, found: ReducedModes) -> ReducedModel:
+        """Return the model with what its modes at `p` lack, A^-1 (K - lambda M) phi, in its basis.
+
+        A is K - sigma M at `p0`: a step of Davidson's method (1975, Journal of Computational
+        Physics 17, 87), which leaves of an error the share by which K at `p` differs from that.
+        """
         free = slice(found.rigid_body_modes, None)
-        X, span = found.vectors[:, free], found.eigenvalues[free] - self.solution.sigma
-        AX = np.asarray(self.model.M(p) @ X) * span
-        A = self.stiffness.at(p) - self.solution.sigma * self.mass.at(p)
-        W = X - self.Q @ sl.solve(A, self.Q.T @ AX, assume_a="pos")
-        W /= np.sqrt(span)
-        size, turn = np.linalg.eigh(W.T @ (AX / np.sqrt(span)))
-        new = size > DERIVATIVES.known_already
+        lam = found.eigenvalues[free]
+        X = self.Q @ (found.vectors[:, free] / np.sqrt(lam - self.solution.sigma))
+        R = self.model.K(p) @ X - (self.model.M(p) @ X) * lam
+        factor = self.solution.factor
+        assert factor is not None
+        return self._with(factor.solve(R), R, DERIVATIVES.too_little)
+
+    def _with(self, W: Floats, AW: Floats, least: float) -> ReducedModel:
+        """Return the model with more vectors W, where they have at least so much energy."""
+        W = W - self.Q @ (self.Q.T @ AW)
+        energy = W.T @ AW
+        size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
+        new = size > least
         W = W @ (turn[:, new] / np.sqrt(size[new]))
         sums = (self.stiffness, self.mass, self.damping, self.loss)
         K, M, D, H = (terms.widened(self.Q, W) for terms in sums)
@@ -216,6 +236,7 @@ def build_reduced(
     more_modes: int = DERIVATIVES.more_modes,
     max_static: int = DERIVATIVES.most_static,
     least_energy: float = DERIVATIVES.least_energy,
+    sketch: int | None = None,
 ) -> ReducedModel:
     """Project a model onto its modes and their static answers to the parameters.
 
@@ -239,6 +260,10 @@ def build_reduced(
     least_energy : float
         Static vectors of less energy, beside that of a mode and for a factor moved by one, are
         left out; frequencies within 30 % are then good to about a tenth of this.
+    sketch : int, optional
+        Where there are more static vectors, so many combinations of them drawn at random are
+        solved for in their place (Halko, Martinsson and Tropp 2011, SIAM Review 53, 217): a
+        basis that is to be corrected where it is used.
 
     Returns
     -------
@@ -261,11 +286,10 @@ def build_reduced(
         solution = solve(model, last + 1 + more_modes, p=p0, keep_factor=True)
     if last < 0 or last >= len(solution.eigenvalues) or min(targets) < 0:
         raise InputError(f"mode {last + 1} is a target, the model has {len(solution.eigenvalues)}")
-    pencil = Pencil.of(model, p0)
-    factor = solution.factor or factorise(pencil.shifted(solution.sigma), True)
+    factor = solution.factor or factorise(Pencil.of(model, p0).shifted(solution.sigma), True)
     modes = solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma)
     answers = static_answers(
-        model, p0, solution, factor, targets, parameters, max_static, least_energy
+        model, p0, solution, factor, targets, parameters, max_static, least_energy, sketch
     )
     Q = np.hstack([modes, answers])
     if forces is not None:
@@ -273,7 +297,7 @@ def build_reduced(
     K, M, D, H = (
         reduced_sum(terms, Q) for terms in (model.stiffness, model.mass, model.damping, model.loss)
     )
-    return ReducedModel(model, Q, K, M, solution, D, H)
+    return ReducedModel(model, p0, Q, K, M, replace(solution, factor=factor), D, H)
 
 
 def _answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
@@ -295,44 +319,47 @@ def static_answers(
     parameters: Sequence[int],
     most: int,
     least: float,
+    sketch: int | None = None,
 ) -> Floats:
     """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi, (n_free, k).
 
     Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
     values, compare; of their principal directions at `most` so many are kept, those of largest
     energy, of at `least` a share of that of a mode for a factor moved by one. A-orthonormal,
-    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes.
+    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes. Of more than `sketch`
+    so many combinations stand for all, with coefficients drawn at random.
     """
     chosen = np.asarray(targets, np.int64)
     span = solution.eigenvalues - solution.sigma
     X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
     weight = 1.0 / np.sqrt(span[chosen])
     n, m = X.shape
-    group = max(1, DERIVATIVES.block // max(m, 1))
+    drawn = min(sketch or m * len(parameters), m * len(parameters))
+    mixed = drawn < m * len(parameters)
+    group = len(parameters) if mixed else max(1, DERIVATIVES.block // max(m, 1))
     groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
-    ends = np.cumsum([0] + [m * len(g) for g in groups])
+    ends = np.cumsum([0] + [drawn if mixed else m * len(g) for g in groups])
+    rng = np.random.default_rng(0)
 
     def loads(i: int) -> tuple[Ints, Floats]:
         dK, dM = model.dK(i, p0), model.dM(i, p0)
         rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
-        return rows, (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
+        part = (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
+        return rows, part @ rng.standard_normal((m, drawn)) if mixed else part
 
     S = np.empty((n, ends[-1]), order="F")
     energy = np.zeros((ends[-1],) * 2)
     modal = np.empty((len(span), ends[-1]))
     for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
-        parts = [
-            (slice(first, first + m), *loads(i))
-            for first, i in zip(range(start, end, m), members, strict=True)
-        ]
         F = np.zeros((n, end - start), order="F")
-        for at, rows, part in parts:
-            F[rows, at.start - start : at.stop - start] = part
+        for first, i in enumerate(members):
+            at = slice(None) if mixed else slice(first * m, (first + 1) * m)
+            rows, part = loads(i)
+            F[rows, at] += part
         S[:, start:end] = factor.solve(F)
-        for at, rows, part in parts:
-            energy[:end, at] = S[rows, :end].T @ part
-            modal[:, at] = (solution.vectors[rows].T @ part) / span[:, None]
+        energy[:end, start:end] = S[:, :end].T @ F
         energy[start:end, :start] = energy[:start, start:end].T
+        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
     energy -= modal.T @ (span[:, None] * modal)
     value, W = np.linalg.eigh((energy + energy.T) / 2.0)
     best = np.argsort(-value)[:most]

@@ -158,20 +158,34 @@ class Problem:
         """Every configuration in full."""
         return [part.full for part in self.parts]
 
-    def around(self, point: Point, active: Sequence[int]) -> Orders:
+    def around(
+        self, point: Point, active: Sequence[int], sketch: int | None = None
+    ) -> list[ReducedOrder]:
         """Reduce every configuration around a point where it was solved in full."""
         return [
-            reduce_around(part.full, s.factors, _in_full(s), part.moving(active)[0])
+            reduce_around(part.full, s.factors, _in_full(s), part.moving(active)[0], sketch)
             for part, s in zip(self.parts, point.states, strict=True)
         ]
 
-    def widened(self, orders: Orders, point: Point) -> Orders:
+    def widened(self, orders: Sequence[ReducedOrder], point: Point) -> list[ReducedOrder]:
         """Take the modes of a point where every configuration was solved in full into the bases."""
         return [
-            order.with_modes(part.full, s.factors, _in_full(s))
-            if isinstance(order, ReducedOrder)
-            else order
+            order.with_modes(part.full, _in_full(s))
             for part, order, s in zip(self.parts, orders, point.states, strict=True)
+        ]
+
+    def corrected(self, orders: Sequence[ReducedOrder], p: Floats) -> list[ReducedOrder]:
+        """Take what the modes at the factors `p` lack into the bases."""
+        return [
+            order.corrected(part.full, p[part.own])
+            for part, order in zip(self.parts, orders, strict=True)
+        ]
+
+    def nearly(self, orders: Sequence[ReducedOrder], p: Floats) -> Orders:
+        """Return every configuration in full, its modes at the factors `p` nearly known."""
+        return [
+            replace(part.full, near=order.near(p[part.own]))
+            for part, order in zip(self.parts, orders, strict=True)
         ]
 
     def at(self, orders: Orders, p: Floats, residuals: Sequence[Residual]) -> Point:

@@ -9,6 +9,7 @@ from ..arrays import Floats, frozen
 from ..correlation.criteria import Criteria
 from ..data.parametric_model import Model
 from ..errors import InputError
+from ..reduction.full_or_reduced import ReducedOrder
 from .identifiability import doubts
 from .problem import Configuration, Orders, Point, Problem
 from .residuals import Target, Weights
@@ -42,9 +43,10 @@ def update(
     of the criteria would, so gaining a pair is always a gain; losing a pair at the MAC limit
     does not stop a step that brings the frequencies of the other pairs closer.
 
-    The iterations run on a reduced model, made around the point where they start. Where they
-    end the full model is solved; unless both agree there, its modes widen the reduced model, or
-    far from where that was made it is made anew.
+    The iterations run on a reduced model, made around the point where they start and corrected
+    on the way by what its modes leave of the full matrices. Where they end the full model is
+    solved; unless both agree there, its modes widen the reduced model, or far from where that was
+    made it is made anew.
 
     Parameters
     ----------
@@ -181,59 +183,89 @@ def _work_off(
     Returned are where it ends, in full, the reduced models that were last used, how many full
     solves of each configuration it took, and why it stopped.
     """
-    solves = 0
-    near: Orders | None = None
-    centre = point
+    solves, missed = 0, False
+    near: list[ReducedOrder] | None = None
+    centre = arrived = point
     while left > 0:
         if near is not None and _apart(point, centre) < UPDATING.rebuild:
-            near = problem.widened(near, point)
+            near = problem.widened(near, arrived)
         else:
-            near, centre = problem.around(point, stage.parameters), point
-        trail, stop = _walk(problem, near, point, stage, left, tolerance)
-        if not trail and centre is not point:
-            near = None
-            continue
+            near, centre = problem.around(point, stage.parameters, UPDATING.sketch), point
+        most = 1 if missed else left
+        trail, near, stop = _walk(problem, near, point, stage, most, tolerance)
         if not trail:
-            assert stop is not None
-            return point, near, solves, stop
-        arrived = problem.at(problem.full, trail[-1].factors, stage.minimised)
+            return point, near, solves, _NO_STEP
+        nearly = problem.nearly(near, trail[-1].factors)
+        arrived = problem.at(nearly, trail[-1].factors, stage.minimised)
         solves += 1
         if not problem.closer(arrived, point, stage.minimised):
-            found, used = _descend(problem, problem.full, point, stage)
-            solves += used
-            if found is None:
+            if missed:
                 return point, near, solves, _NO_STEP
-            trail, stop, arrived = [found], None, found
+            missed = True
+            continue
+        missed, left = False, left - len(trail)
         for s in trail[:-1]:
             if abs(s.objective - arrived.objective) > UPDATING.same * arrived.objective:
                 note(s)
         note(arrived)
-        left -= len(trail)
         point = arrived
         if stop and _agree(trail[-1], arrived, UPDATING.agree * tolerance):
             return point, near, solves, stop
-    most = Stop(Reason.MOST_ITERATIONS, f"{stage.max_iterations} iterations")
-    return point, near, solves, most
+    ended = Stop(Reason.MOST_ITERATIONS, f"{stage.max_iterations} iterations")
+    return point, near, solves, ended
 
 
 def _walk(
-    problem: Problem, near: Orders, start: Point, stage: Stage, most: int, tolerance: float
-) -> tuple[list[Point], Stop | None]:
-    """Iterate on reduced models; return the points and why it ended, None if it should go on."""
-    point = problem.at(near, start.factors, stage.minimised)
+    problem: Problem,
+    near: list[ReducedOrder],
+    start: Point,
+    stage: Stage,
+    most: int,
+    tolerance: float,
+) -> tuple[list[Point], list[ReducedOrder], Stop | None]:
+    """Iterate on reduced models, corrected where they have come far and where they settle.
+
+    Returned are the points, the reduced models, and why it ended, None if it should go on.
+    """
+    sure = point = problem.at(near, start.factors, stage.minimised)
     trail: list[Point] = []
+    kept = 0
+    doubted = False
     while len(trail) < most:
         trial, _ = _descend(problem, near, point, stage)
-        if trial is None:
-            return trail, _NO_STEP
-        moved = float(np.max(np.abs(trial.factors / point.factors - 1.0)))
-        point = trial
-        trail.append(trial)
-        if moved < tolerance:
-            return trail, Stop(Reason.SETTLED, f"factors moved less than {tolerance:g}")
-        if _apart(point, start) > UPDATING.reach:
+        if trial is None and point is sure:
+            return trail, near, _NO_STEP
+        stop: Stop | None = _NO_STEP
+        if trial is not None:
+            moved = float(np.max(np.abs(trial.factors / point.factors - 1.0)))
+            settled = Stop(Reason.SETTLED, f"factors moved less than {tolerance:g}")
+            stop = settled if moved < tolerance else None
+            point = trial
+            trail.append(trial)
+        far = _apart(point, sure) > UPDATING.correct
+        fallen = point.objective < UPDATING.fallen * sure.objective
+        due = doubted or (far and fallen) or len(trail) - kept > UPDATING.uncorrected
+        if stop is None and not due:
+            continue
+        if stop is None and len(trail) == most:
             break
-    return trail, None
+        near = problem.corrected(near, point.factors)
+        better = problem.at(near, point.factors, stage.minimised)
+        if not problem.closer(better, sure, stage.minimised):
+            trail = trail[:kept]
+            if doubted:
+                return trail, near, _NO_STEP
+            doubted = True
+            sure = point = problem.at(near, sure.factors, stage.minimised)
+            continue
+        agreed = _agree(point, better, UPDATING.agree * tolerance)
+        trail[-1] = sure = point = better
+        kept, doubted = len(trail), False
+        if stop and agreed:
+            return trail, near, stop
+        if _apart(point, start) > UPDATING.rebuild:
+            break
+    return trail, near, None
 
 
 def _apart(a: Point, b: Point) -> float:

@@ -176,11 +176,44 @@ def test_modes_of_another_point_make_it_exact_there(grid):
     def off(by, p, truth):
         return np.abs(by.solve(p).eigenvalues[elastic] / truth.eigenvalues[elastic] - 1.0).max()
 
-    wide = reduced.with_modes(far, full)
+    wide = reduced.with_modes(full)
     assert off(reduced, far, full) > 1e-4
     assert off(wide, far, full) < 1e-8
     assert off(wide, model.deck_point, reduced.solution) < 1e-8
     near = shifted(far, 2.0, 0.57)
     there = solve(model, len(reduced.solution.eigenvalues), p=near)
     assert off(wide, near, there) < 0.1 * off(reduced, near, there)
-    assert wide.with_modes(far, full).size == wide.size
+    assert wide.with_modes(full).size == wide.size
+
+
+def test_a_correction_brings_it_close_where_it_is_used(grid):
+    model = grid()
+    reduced = build_reduced(model, model.deck_point, TARGETS, PARAMETERS, max_static=7)
+    far = shifted(model.deck_point, 1.4, 0.7)
+    elastic = slice(6, len(TARGETS) + 6)
+    full = solve(model, elastic.stop, p=far)
+    errors = []
+    for _ in range(3):
+        found = reduced.solve(far, elastic.stop)
+        errors.append(np.abs(found.eigenvalues / full.eigenvalues - 1.0)[elastic].max())
+        reduced = reduced.corrected(far, found)
+    assert errors[1] < 0.2 * errors[0]
+    assert errors[2] < 0.2 * errors[1]
+    A = model.K() - reduced.solution.sigma * model.M()
+    np.testing.assert_allclose(reduced.Q.T @ (A @ reduced.Q), np.eye(reduced.size), atol=1e-6)
+
+
+def test_a_sketch_of_static_answers_is_better_than_modes_and_within_all_of_them(grid):
+    model = grid()
+    p = np.array([1.3, 0.7, 1.0, 1.2])
+    full = solve(model, 14, p=p)
+    start = solve(model, 26, keep_factor=True)
+
+    def off(**options):
+        by = build_reduced(model, model.deck_point, TARGETS, PARAMETERS, solution=start, **options)
+        return by.size, np.abs(by.solve(p, 14).eigenvalues / full.eigenvalues - 1.0)[6:].max()
+
+    (whole, best), (some, sketched), (none, worst) = off(), off(sketch=12), off(max_static=0)
+    assert none < some == none + 12 < whole
+    assert best < sketched < 0.5 * worst
+    assert off(sketch=len(TARGETS) * len(PARAMETERS)) == (whole, best)

@@ -1,0 +1,87 @@
+"""Modes from what is nearly known of them: the same, none missed, none taken on trust."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from trueup.core.eigen import shift_invert_solver, warm_modes
+from trueup.core.eigen.eigen_numbers import EIGEN
+from trueup.core.eigen.normal_modes import solve
+from trueup.core.eigen.warm_modes import Near
+
+N_MODES = 12
+
+
+@pytest.fixture
+def plate(membrane):
+    """K and M of a plate of 900 points, nearly square so that modes come in near pairs."""
+    K, M, *_ = membrane(30)
+    return K, M @ sp.diags(1.0 + 0.01 * np.arange(M.shape[0]) / M.shape[0])
+
+
+def known(matrices, noise, seed=0):
+    """What would be known of the modes: their shapes and some above, mixed with eight more."""
+    found = solve(matrices, N_MODES + 12)
+    rng = np.random.default_rng(seed)
+    mixed = found.vectors @ (
+        np.eye(N_MODES + 12) + noise * rng.standard_normal((N_MODES + 12,) * 2)
+    )
+    quotients = np.einsum("ij,ij->j", mixed, matrices[0] @ mixed)
+    quotients /= np.einsum("ij,ij->j", mixed, matrices[1] @ mixed)
+    return found, Near(quotients, mixed[:, : N_MODES + 4])
+
+
+@pytest.fixture
+def cold(monkeypatch):
+    """How often a search from nothing was begun."""
+    begun = []
+    started = shift_invert_solver._started
+
+    def counted(*words):
+        begun.append(1)
+        return started(*words)
+
+    monkeypatch.setattr(shift_invert_solver, "_started", counted)
+    return begun
+
+
+@pytest.mark.parametrize("backend", ["superlu", None])
+def test_the_modes_are_those_of_a_search_from_nothing(plate, cold, backend):
+    truth, near = known(plate, 0.01)
+    begun = len(cold)
+    found = solve(plate, N_MODES, near=near, backend=backend)
+    assert len(cold) == begun
+    np.testing.assert_allclose(found.eigenvalues, truth.eigenvalues[:N_MODES], rtol=1e-6)
+    overlap = found.vectors.T @ (plate[1] @ truth.vectors[:, :N_MODES])
+    np.testing.assert_allclose(np.linalg.norm(overlap, axis=0), 1.0, atol=1e-5)
+    error = np.abs(found.eigenvalues / truth.eigenvalues[:N_MODES] - 1.0).max()
+    assert error < 2.0 * found.checks.residual + 1e-12  # of λ - σ, σ is half of the first λ
+    assert found.checks.missed == 0
+
+
+def test_a_mode_that_nobody_knew_is_there(plate):
+    truth, near = known(plate, 0.01)
+    lost = Near(near.values, np.delete(near.vectors, [3, 4], axis=1))
+    found = solve(plate, N_MODES, near=lost)
+    np.testing.assert_allclose(found.eigenvalues, truth.eigenvalues[:N_MODES], rtol=1e-6)
+
+
+def test_without_random_vectors_a_lost_mode_is_counted_and_searched_for(plate, cold, monkeypatch):
+    monkeypatch.setattr(warm_modes, "EIGEN", replace(EIGEN, guard=0))
+    truth, near = known(plate, 0.0)
+    lost = Near(np.delete(near.values, 3), np.delete(near.vectors, 3, axis=1))
+    begun = len(cold)
+    found = solve(plate, N_MODES, near=lost)
+    assert len(cold) > begun
+    np.testing.assert_allclose(found.eigenvalues, truth.eigenvalues[:N_MODES], rtol=1e-9)
+
+
+def test_what_is_not_near_is_no_harm(plate, cold):
+    truth, near = known(plate, 0.0)
+    noise = np.random.default_rng(1).standard_normal(near.vectors.shape)
+    begun = len(cold)
+    found = solve(plate, N_MODES, near=Near(near.values, noise))
+    assert len(cold) > begun
+    np.testing.assert_allclose(found.eigenvalues, truth.eigenvalues[:N_MODES], rtol=1e-9)
