@@ -24,6 +24,7 @@ from ..properties.damping_tables import selected_ratios
 from ..properties.deck_constraints import read_constraints
 from ..properties.dmig_input import direct_matrices, external_matrices
 from ..properties.grids import Points, point_dofs, to_basic
+from ..properties.thermal import unused_tables
 from ..properties.unit_slips import unit_slips
 from .deck_damping import damping_terms, linear, params_moved
 from .deck_elements import Structure, read_structure
@@ -112,6 +113,7 @@ def assemble(
         free_labels=tuple(points.label(d) for d in kept),
         warnings=(
             *unit_slips(deck, geometry.size),
+            *unused_tables(deck),
             *structure.notes,
             *constraints.notes,
             *narrowed,

@@ -33,7 +33,8 @@ class CaseControl:
     subcase : int
         Number of the subcase, 0 when the deck has none.
     spc, mpc, method, nsm, suport1, temperature : int or None
-        Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (BOTH) or (MATERIAL).
+        Set numbers; `temperature` is that of TEMPERATURE(INITIAL), or (MATERIAL) or (BOTH),
+        which is meant without an option.
     k2gg, m2gg, b2gg, k42gg : tuple of (name, factor)
         Names of DMIG matrices.
     not_added : tuple of (command, (name, ...))
@@ -142,10 +143,9 @@ def _apply(case: CaseControl, key: str, option: str | None, value: str) -> CaseC
         return replace(case, **{_SETS[key]: number})  # type: ignore[arg-type]
     if key.startswith("METH") and not option.startswith("FLU"):
         return replace(case, method=number)
-    if key.startswith("TEMP") and option[:4] in ("INIT", "BOTH", "MATE", ""):
-        if option[:4] in ("BOTH", "MATE", "") and case.temperature is not None:
-            return case
-        return replace(case, temperature=number) if option else case
+    if key.startswith("TEMP") and option[:3] in ("INI", "BOT", "MAT", ""):
+        taken = case.temperature is not None and not option.startswith("INI")
+        return case if taken else replace(case, temperature=number)
     if key.startswith("SDAM") and not option.startswith("FLU"):
         return replace(case, sdamping=number)
     if key == "SUPER":

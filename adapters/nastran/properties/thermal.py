@@ -125,6 +125,17 @@ def read_thermal(deck: Deck) -> Thermal:
     return Thermal(_uniform(deck, number), tables)
 
 
+def unused_tables(deck: Deck) -> tuple[str, ...]:
+    """Say that materials follow a temperature, but that none is selected."""
+    named = [name for name in _MATERIALS if deck.bulk.table(name)]
+    if not named or deck.case.temperature is not None:
+        return ()
+    return (
+        f"{deck.path}: {', '.join(named)} are not used: case control selects no temperature "
+        "(TEMPERATURE(INITIAL), (MATERIAL) or (BOTH)); materials are as their own cards have them",
+    )
+
+
 def _uniform(deck: Deck, number: int) -> float:
     """Return the one temperature of a set: TEMP of the grids, TEMPD of those without."""
     own = {

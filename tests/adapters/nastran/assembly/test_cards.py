@@ -229,6 +229,23 @@ class TestTemperature:
         assert hot.K().diagonal() == pytest.approx(4.0 * cold.K().diagonal())
 
     @pytest.mark.parametrize(
+        ("case", "factor"),
+        [
+            ("TEMPERATURE = 4", 16.0),
+            ("TEMP(MAT) = 4", 16.0),
+            ("TEMPERATURE(BOTH) = 4", 16.0),
+            ("TEMP(INIT) = 5\nTEMP = 4", 4.0),
+            ("TEMP = 4\nTEMPERATURE(INITIAL) = 5", 4.0),
+            ("TEMP(LOAD) = 4", 1.0),
+        ],
+    )
+    def test_the_temperature_of_materials_is_the_one_selected(self, model, case, factor):
+        found = model(self.rod + self.table + "TEMPD,4,100.,5,0.", case=case)
+        plain = model(self.rod)
+        assert found.K().diagonal() == pytest.approx(factor * plain.K().diagonal())
+        assert any("no temperature" in w for w in found.warnings) == ("LOAD" in case)
+
+    @pytest.mark.parametrize(
         "material",
         [
             "MAT1,1,1.,,.3,1.,,,.5\nMATT1,1,,,,,,,3",
