@@ -72,13 +72,14 @@ class CaseControl:
 
 
 def read_case_control(
-    lines: Iterable[Line], files: Sequence[Path]
+    lines: Iterable[Line], files: Sequence[Path], in_turn: bool = True
 ) -> tuple[CaseControl, tuple[str, ...]]:
     """Return the facts of the first normal modes subcase, and warnings.
 
     A subcase that asks for modes is the first with METHOD (its own or the one above all
     subcases) and no other ANALYSIS; without one it is the first that is not for heat. Subcases
-    that select other constraints are named in a warning.
+    that select other constraints are named in a warning. Where subcases follow each other
+    (`in_turn`: the nonlinear solutions), loads of those before stiffen the structure.
 
     Raises
     ------
@@ -118,7 +119,7 @@ def read_case_control(
     chosen = replace(candidates[0], of_parts=parts)
     others = [c.subcase for c in candidates[1:] if (c.spc, c.mpc) != (chosen.spc, chosen.mpc)]
     before = [c for c in subcases if c.subcase < chosen.subcase]
-    steps = chosen.analysis == "MODES" and any(c.analysis == "STATICS" for c in before)
+    steps = in_turn and chosen.analysis == "MODES" and any(c.analysis == "STATICS" for c in before)
     loaded = _LOADED * (chosen.loaded or steps)
     if not others:
         return chosen, loaded

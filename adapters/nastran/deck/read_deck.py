@@ -190,7 +190,9 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
             others.setdefault(name, []).extend(raws)
     if not (bulk.raw or parts):
         raise Place(path).error("no bulk data card was found: is this a Nastran deck?")
-    case, case_warnings = read_case_control(sections.case, sections.files)
+    solution = _solution(sections)
+    in_turn = solution not in _MODAL
+    case, case_warnings = read_case_control(sections.case, sections.files, in_turn)
     every_line = (*sections.executive, *sections.case, *sections.bulk)
     every_bulk = (bulk, *parts.values())
     unit, unit_warnings = find_length_unit(every_line, bulk)
@@ -205,7 +207,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *bulk_warnings,
         *unit_warnings,
         *skip_warnings,
-        *_solution(sections),
+        *_other_solution(solution),
         *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
     params = _cells(sections) | _params(bulk, sections.case)
@@ -279,12 +281,17 @@ def _assigned(sections: Any, path: Path) -> dict[int, Path]:
     return {int(m["unit"]): path.parent / m["file"].strip() for m in _ASSIGN.finditer(text)}
 
 
-def _solution(sections: Any) -> tuple[str, ...]:
+def _solution(sections: Any) -> str:
     for line in sections.executive:
         words = line.text.split("$", 1)[0].upper().replace(",", " ").split()
-        if len(words) > 1 and words[0] == "SOL" and words[1] not in _MODAL:
-            return (f"the deck is for SOL {words[1]}; trueup takes its structure for normal modes",)
-    return ()
+        if len(words) > 1 and words[0] == "SOL":
+            return str(words[1])
+    return ""
+
+
+def _other_solution(solution: str) -> Iterator[str]:
+    if solution and solution not in _MODAL:
+        yield f"the deck is for SOL {solution}; trueup takes its structure for normal modes"
 
 
 def _direct_matrices(sections: Any, bulk: Bulk, case: CaseControl) -> Iterator[str]:

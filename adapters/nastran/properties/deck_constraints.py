@@ -91,18 +91,27 @@ def _unselected(deck: Deck) -> Iterator[str]:
 def _selected(
     deck: Deck, number: int, names: tuple[str, ...], notes: list[str]
 ) -> Iterator[tuple[Values, Place]]:
-    """Cards of a set, sets added together resolved; what is missing goes to `notes`."""
-    kind = names[0]
-    wanted = {number: f"{deck.path}: case control asks for {kind} = {number}"}
-    for card, place in deck.bulk.placed(f"{kind}ADD"):
-        if card.sid == number:
-            wanted.update({s: f"{place} adds set {s}" for s in card.sets})
-    found = {number} if len(wanted) > 1 else set()
+    """Cards of a set, sets added together resolved; what is missing goes to `notes`.
+
+    SPCADD and MPCADD stand for the cards of their own number, which superelements join.
+    """
+    kind, joined = names[0], bool(deck.parts or deck.case.of_parts)
+    wanted = {
+        s: f"{place} adds set {s}"
+        for card, place in deck.bulk.placed(f"{kind}ADD")
+        if card.sid == number
+        for s in card.sets
+    }
+    found = {number} if wanted else set()
+    if joined or not wanted:
+        wanted.setdefault(number, f"{deck.path}: case control asks for {kind} = {number}")
     for name in names:
         for card, place in deck.bulk.placed(name):
             if card.sid in wanted:
                 found.add(card.sid)
                 yield card, place
+            elif card.sid == number:
+                notes.append(f"{place} is not used: {kind}ADD {number} takes its place")
     notes.extend(
         f"{asked}, but the deck has no {kind} cards of that set: nothing is constrained by it"
         for missing, asked in wanted.items()

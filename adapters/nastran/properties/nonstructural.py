@@ -108,10 +108,8 @@ def read_nonstructural(deck: Deck, points: Points) -> Nonstructural:
     if deck.case.nsm is None:
         return Nonstructural()
     bulk = deck.bulk
-    wanted = {deck.case.nsm}
-    for card in bulk.table("NSMADD").values():
-        if card.sid == deck.case.nsm:
-            wanted.update(card.sets)
+    added = (c.sets for c in bulk.table("NSMADD").values() if c.sid == deck.case.nsm)
+    wanted = {s for sets in added for s in sets} or {deck.case.nsm}
     measure = _Measures(bulk, points)
     shares: list[_Share] = []
     for name in ("NSM", "NSM1", "NSML", "NSML1"):

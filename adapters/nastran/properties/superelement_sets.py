@@ -17,7 +17,8 @@ def with_sets_of_parts(deck: Deck, notes: list[str]) -> Deck:
     `notes`.
     """
     bulks, case, kinds = (*deck.parts.values(), deck.bulk), deck.case, deck.bulk.table("SEBULK")
-    sids = (c.sid for b in bulks for names in _HOLDING.values() for n in names for c in b.listed(n))
+    names = (*_HOLDING["SPC"], *_HOLDING["MPC"], "SPCADD", "MPCADD")
+    sids = (card.sid for bulk in bulks for name in names for card in bulk.listed(name))
     free = 1 + max(sids, default=0)
     whole = {"SPC": case.spc, "MPC": case.mpc}
     lists, raw = dict(deck.bulk.lists), dict(deck.bulk.raw)

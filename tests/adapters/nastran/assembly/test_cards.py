@@ -63,6 +63,15 @@ class TestSets:
         found = model(cards + "PROD,1,1,1.\nMAT1,1,1.,,.3,1.", case="SPC = 3")
         assert any("adds set 2, but the deck has no SPC cards" in w for w in found.warnings)
 
+    def test_added_sets_stand_for_the_cards_of_their_own_number(self, model):
+        points = "SPOINT,1,2,3\nCELAS4,4,1.,1,2\nCELAS4,5,1.,2,3\nCMASS4,6,1.,2\n"
+        held = points + "SPC1,7,0,1\nSPC1,9,0,3\nMPC,7,1,,1.,2,,-1.\n"
+        found = model(held + "SPCADD,9,7\n", case="SPC = 9")
+        assert found.free_labels == model(held, case="SPC = 7").free_labels
+        assert any("SPCADD 9 takes its place" in w for w in found.warnings)
+        found = model(held + "MPC,8,3,,1.,2,,-1.\nMPCADD,7,8\n", case="MPC = 7")
+        assert found.free_labels == ("1:0", "2:0")
+
     def test_a_range_of_dependent_grids(self, model):
         grids = "".join(f"GRID,{k},,{k}.,0.,0.\n" for k in range(1, 6))
         rest = "CELAS2,9,1.,1,1\nCONM2,8,3,,1.\n"
@@ -100,7 +109,10 @@ class TestWhatIsLeftOut:
         rod = "GRID,1,,,,,,123456\nGRID,2,,1.\nCROD,1,1,1,2\nPROD,1,1,1.\nMAT1,1,1.,,.3,1.\n"
         nsm = "NSM1,4,PROD,2.,1\n"
         assert any("NSM1 cards are not used" in w for w in model(rod + nsm).warnings)
-        assert not any("NSM" in w for w in model(rod + nsm, case="NSM = 4").warnings)
+        found = model(rod + nsm, case="NSM = 4")
+        assert not any("NSM" in w for w in found.warnings)
+        added = model(f"{rod}NSM1,5,PROD,9.,1\nNSMADD,5,4\n{nsm}", case="NSM = 5")
+        assert added.M().diagonal() == pytest.approx(found.M().diagonal())
 
     @pytest.mark.parametrize(
         ("element", "coupled", "said"),

@@ -6,6 +6,7 @@ import pytest
 
 from trueup.adapters.nastran.deck.case_control import read_case_control
 from trueup.adapters.nastran.deck.logical_lines import Line
+from trueup.adapters.nastran.deck_reader import read_deck
 from trueup.core.errors import InputError
 
 
@@ -44,6 +45,15 @@ def test_loads_that_would_stiffen_the_structure_are_said(text):
     assert any("unloaded structure" in w for w in warnings)
     _, quiet = read_all("SUBCASE 1\nANALYSIS = MODES\nMETHOD = 1\nSUBCASE 2\nANALYSIS = STATICS")
     assert not quiet
+
+
+def test_subcases_of_an_optimisation_do_not_load_each_other(tmp_path):
+    cases = "SUBCASE 1\nANALYSIS = STATICS\nSUBCASE 2\nANALYSIS = MODES\nMETHOD = 1\n"
+    bulk = "BEGIN BULK\nEIGRL,1,,,1\nGRID,1\nCELAS2,1,1.,1,1\nCONM2,2,1,,1.\nENDDATA\n"
+    for number, loaded in (("200", False), ("401", True)):
+        path = tmp_path / "deck.bdf"
+        path.write_text(f"SOL {number}\nCEND\n{cases}{bulk}")
+        assert any("unloaded" in w for w in read_deck(path).warnings) is loaded
 
 
 def test_of_subcases_without_modes_the_first_of_structure_is_taken_and_said():
