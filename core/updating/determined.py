@@ -25,7 +25,9 @@ def update_determined(
     Where an update ends with parameters whose values the test leaves open, it is made again
     without them, unless it determines none of them all by itself: of those that it cannot tell
     apart the one that moves the residuals most stands for their combination (see
-    `identifiability`), so that the others come out as they are. `put_back` takes that back.
+    `identifiability`), so that the others come out as they are. `put_back` takes that back. Where
+    a value that it determines comes out elsewhere without them, by more than its standard error,
+    theirs in the deck are wrong: then those of all moving together are taken, and put back.
 
     Parameters
     ----------
@@ -67,6 +69,8 @@ def update_determined(
     if not left:
         return done
     warnings = (*dict.fromkeys(told), _stay(problem, left), *done.warnings)
+    if _led_astray(done, every, alone):
+        done, left, warnings = every, set(), every.warnings
     combined = tuple(k for k in named if k not in left and not alone[k])
     done = replace(
         done,
@@ -113,6 +117,12 @@ def _known_of(done: Updated, every: Updated, alone: Bools) -> Updated:
         standard_error=frozen(np.where(known, every.standard_error, np.nan)),
         covariance=None if covariance is None else frozen(np.where(both, covariance, np.nan)),
     )
+
+
+def _led_astray(done: Updated, every: Updated, alone: Bools) -> bool:
+    """Whether what is known by itself is another value without those that were left."""
+    off = np.abs(done.factors - every.factors)
+    return bool((off > np.nan_to_num(every.standard_error, nan=np.inf))[alone].any())
 
 
 def _without(stages: Sequence[Stage], left: Collection[int]) -> tuple[Stage, ...]:

@@ -99,7 +99,7 @@ def doubts(names: Sequence[str], factors: Floats, said: Identifiability) -> Iter
             + ("a common change leaves" if len(part) > 1 else "a change leaves")
             + " every residual the same; fix one of them"
         )
-    for k in np.flatnonzero(said.standard_error > UPDATING.unsure * factors):
+    for k in np.flatnonzero(said.standard_error > unsure(factors)):
         yield (
             f"the test hardly determines {names[k]}: its factor {factors[k]:.3g} has a standard "
             f"error of {said.standard_error[k]:.2g}"
@@ -115,9 +115,19 @@ def doubts(names: Sequence[str], factors: Floats, said: Identifiability) -> Iter
         )
 
 
+def unsure(factors: Floats) -> Floats:
+    """Return the standard errors above which factors are not determined, (n,).
+
+    A share of each, as well as the deck knows it; more where the test excludes the deck's value:
+    what was fitted beside it would be led astray by that.
+    """
+    away = np.abs(np.log(factors)) / UPDATING.excluded
+    return np.asarray(factors * np.maximum(UPDATING.unsure, away))
+
+
 def told_alone(factors: Floats, error: Floats) -> Bools:
     """Whether each of all that moved is determined by itself, not in combination alone, (n,)."""
-    return np.asarray(np.nan_to_num(error, nan=np.inf) <= UPDATING.unsure * factors)
+    return np.asarray(np.nan_to_num(error, nan=np.inf) <= unsure(factors))
 
 
 def combinations(factors: Floats, said: Identifiability) -> Iterator[tuple[Floats, float]]:

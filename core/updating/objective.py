@@ -1,7 +1,8 @@
 """What an update minimises, equation (2) of the source paper, and its linearisation."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -111,6 +112,12 @@ class Objective:
         own = residual.error(self.target)
         whole = stated if own is None else np.hypot(stated, own[modes])
         return np.asarray(whole / np.sqrt(self.weights.of(modes)))
+
+    def with_wider(self, residuals: Sequence[Residual], times: float) -> Self:
+        """Return the same with the standard deviations of residuals so many times as large."""
+        wider = {r.weight: times * self.weights.sigma(r) for r in residuals}
+        weights = replace(self.weights, sigmas={**self.weights.sigmas, **wider})
+        return replace(self, weights=weights)
 
     def _cost(self, seen: Seen, missing: float, residuals: Sequence[Residual]) -> float:
         """Equation (2) over pairs, with what is due for `missing` modes that have none."""

@@ -33,11 +33,12 @@ class Start(Noun):
 
 @dataclass(frozen=True, eq=False)
 class _Near:
-    """A problem on models reduced around its optimum."""
+    """A problem on models reduced around its optimum, and how far its objective is followed up."""
 
     problem: Problem
     orders: Orders
     residuals: tuple[Residual, ...]
+    rise: float
 
     def least(self, state: Point, k: int, value: float, others: Sequence[int]) -> Point:
         """Return the optimum of the other parameters where parameter `k` has a value."""
@@ -47,7 +48,7 @@ class _Near:
         for _ in range(UPDATING.profile_iterations * bool(others)):
             step = self.problem.step(self.orders, best, others, self.residuals)
             trial = self.problem.at(self.orders, best.factors + step, self.residuals)
-            if trial.objective > best.objective - UPDATING.profile_accuracy:
+            if trial.objective > best.objective - UPDATING.profile_accuracy * self.rise:
                 break
             best = trial
         return best
@@ -83,10 +84,12 @@ def profile_intervals(
     if not active:
         return known
     there = problem.at(problem.full, np.array(done.factors), residuals)
-    near = _Near(problem, problem.around(there, active), residuals)
-    top = problem.at(near.orders, there.factors, residuals)
-    lin = problem.linearise(near.orders, top, active, residuals)
-    rise = UPDATING.chi_square * problem.scatter(lin, top, len(active), residuals)
+    orders = problem.around(there, active)
+    top = problem.at(orders, there.factors, residuals)
+    problem, scatter = problem.scattered(orders, top, active, residuals)
+    rise = UPDATING.chi_square * scatter
+    near = _Near(problem, orders, residuals, rise)
+    top = problem.at(orders, there.factors, residuals)
     lower, upper = problem.bounds
     for k in active:
         others = [j for j in active if j != k]

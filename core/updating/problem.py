@@ -19,7 +19,7 @@ from ..eigen.normal_modes import Eigensolution
 from ..errors import InputError
 from ..noun import Noun
 from ..reduction.full_or_reduced import FullOrder, Order, ReducedOrder, reduce_around
-from .identifiability import Identifiability, identifiability
+from .identifiability import Identifiability, identifiability, unsure
 from .objective import Objective, State
 from .residuals import Linearisation, Residual, Target, Weights
 from .updating_numbers import UPDATING
@@ -281,22 +281,32 @@ class Problem:
         """Return what the tests say of the `active` parameters here; None where nothing pairs."""
         if not any(s.seen.pairs for s in point.states):
             return None
-        lin = self.linearise(orders, point, active, residuals)
-        scatter = self.scatter(lin, point, len(active), residuals)
+        believed, scatter = self.scattered(orders, point, active, residuals)
+        lin = believed.linearise(orders, point, active, residuals)
         factors = np.asarray(point.factors)[list(active)]
-        return identifiability(lin.gradient, scatter, UPDATING.unsure * factors)
+        return identifiability(lin.gradient, scatter, unsure(factors))
 
-    def scatter(
-        self, lin: Linearisation, point: Point, active: int, residuals: Sequence[Residual]
-    ) -> float:
+    def scattered(
+        self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
+    ) -> tuple[Self, float]:
         """Variance of the weighted residuals beside `active` parameters: what is left of them.
 
-        With a prior it is 1: their standard deviations are believed.
+        With a prior it is 1: their standard deviations are believed. They are, too, where as many
+        parameters as data leave nothing. Returned is before it the problem whose objective over
+        the scatter counts what is `stated` by its own standard deviation, where less is left.
         """
-        if any(r.believes_sigmas for r in residuals):
-            return 1.0
         data = sum(len(r.squared(s.seen)) for r in residuals for s in point.states)
-        return float(np.sum(lin.values**2)) / max(data - active, 1)
+        if data <= len(active) or any(r.believes_sigmas for r in residuals):
+            return self, 1.0
+        lin = self.linearise(orders, point, active, residuals)
+        left = float(np.sum(lin.values**2)) / (data - len(active))
+        if left >= 1.0 or not (stated := [r for r in residuals if r.stated]):
+            return self, left
+        left = max(left, UPDATING.least_scatter)
+        parts = (
+            replace(p, objective=p.objective.with_wider(stated, left**-0.5)) for p in self.parts
+        )
+        return replace(self, parts=tuple(parts)), left
 
     @property
     def tests(self) -> tuple[int, ...]:

@@ -86,8 +86,7 @@ def sample_posterior(
     there = problem.at(problem.full, np.array(done.factors), residuals)
     orders = problem.around(there, active)
     top = problem.at(orders, there.factors, residuals)
-    lin = problem.linearise(orders, top, active, residuals)
-    scatter = problem.scatter(lin, top, len(active), residuals)
+    problem, scatter = problem.scattered(orders, top, active, residuals)
     if not scatter > 0.0:
         raise InputError("nothing is left of the residuals, so the posterior is a point")
     centre = np.asarray(top.factors)[active]
@@ -105,6 +104,7 @@ def sample_posterior(
         upper,
         scatter,
     )
+    lin = problem.linearise(orders, top, active, residuals)
     normal = scatter * np.linalg.pinv(lin.gradient.T @ lin.gradient)
     width = np.minimum(1.0, (upper - lower) / np.sqrt(np.maximum(12.0 * np.diag(normal), 1e-300)))
     normal = normal * np.outer(width, width)

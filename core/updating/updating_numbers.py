@@ -29,6 +29,8 @@ class UpdatingNumbers:
 
     unidentifiable: float = number(1e-4, "of the largest singular value, at least of 1", "of a direction that the test does not determine", CHECK)
     unsure: float = number(0.2, "of a factor", "standard error above which it is not determined: the deck knows it as well", "as prior")
+    least_scatter: float = number(1e-4, "of the variances of residuals", "that modes are believed to, beside what has a standard deviation of its own", CHECK)
+    excluded: float = number(3.0, "standard errors", "of ln of a factor from the deck's value, from which on that is not it: determined whatever its error", "statistics")
     part: float = number(0.1, "-", "of such a direction that a parameter has, for it to be named", CHECK)
     alike: float = number(1e-6, "of what a parameter moves", "difference below which the first named is taken", ROUNDING)
     indistinct: float = number(0.98, "cosine", "of two columns of derivatives from which on they are not told apart", "angles of 11 degrees")
@@ -52,7 +54,7 @@ class UpdatingNumbers:
     chi_square: float = number(3.84, "χ²", "95 % of it with one degree of freedom", "statistics")
     profile_iterations: int = number(8, "iterations", "of the others as one parameter is moved", CHECK)
     profile_steps: int = number(12, "steps", "to the end of an interval, at most", CHECK)
-    profile_accuracy: float = number(1e-3, "-", "of the root of a rise, and of the objective while others follow", CHECK)
+    profile_accuracy: float = number(1e-3, "-", "of the root of a rise, and of a rise while others follow", CHECK)
     start_spread: float = number(0.3, "ln of a factor", "standard deviation of other starts", CHECK)
     same_optimum: float = number(0.01, "of a factor", "or its standard error, within which optima are one", CHECK)
     chains: int = number(4, "chains", "of samples, side by side", "Gelman et al. 2013, section 11.4")

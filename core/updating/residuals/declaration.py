@@ -268,6 +268,9 @@ class Residual:
     believes_sigmas : bool
         Whether the standard deviations are those of a posterior with it: else the scatter of all
         residuals is that which is left.
+    stated : bool
+        Whether its own standard deviation is known apart from the modes (scales, a ± by hand): that
+        modes fit better than theirs makes it no smaller.
     damped : bool
         Whether the damping of the model counts.
     hears : bool
@@ -285,6 +288,7 @@ class Residual:
     error: Callable[[Target], Floats | None] | None = None
     tells_pairs: bool = False
     believes_sigmas: bool = False
+    stated: bool = False
     damped: bool = False
     hears: bool = False
 

@@ -74,5 +74,7 @@ def _derivative(seen: Seen, slopes: Slopes) -> Floats:
     return np.asarray(np.concatenate([np.zeros((0, len(changes))), *parts])[:, None, :])
 
 
-DEFLECTIONS = Residual("deflections", "deflection_sigma", UPDATING.deflection, _value, _derivative)
+DEFLECTIONS = Residual(
+    "deflections", "deflection_sigma", UPDATING.deflection, _value, _derivative, stated=True
+)
 """Differences of displacement over the largest reading of their load case."""

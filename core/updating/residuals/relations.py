@@ -27,5 +27,7 @@ def _derivative(seen: Seen, slopes: Slopes) -> Floats:
     return np.reshape(moved, (len(known), 1, len(at)))
 
 
-RELATIONS = Residual("relations", "relation_sigma", UPDATING.relation, _value, _derivative)
+RELATIONS = Residual(
+    "relations", "relation_sigma", UPDATING.relation, _value, _derivative, stated=True
+)
 """Differences of ratios and sums from what is known of them, over their own standard deviations."""

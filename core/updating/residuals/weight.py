@@ -68,7 +68,7 @@ def _centre_derivative(seen: Seen, slopes: Slopes) -> Floats:
     return np.asarray(np.array(moves).T[known][:, None, :] / seen.model.geometry.size)
 
 
-MASS = Residual("mass", "mass_sigma", UPDATING.mass, _mass_value, _mass_derivative)
+MASS = Residual("mass", "mass_sigma", UPDATING.mass, _mass_value, _mass_derivative, stated=True)
 """Relative difference of mass."""
 
 CENTRE_OF_GRAVITY = Residual(
@@ -77,5 +77,6 @@ CENTRE_OF_GRAVITY = Residual(
     UPDATING.centre_of_gravity,
     _centre_value,
     _centre_derivative,
+    stated=True,
 )
 """Difference of each coordinate of the centre of gravity over the size of the structure."""

@@ -13,7 +13,7 @@ from tests.core.updating.test_update import HALVES, N, chain, measured
 
 from trueup.core.data.parameter import Parameter
 from trueup.core.updating.determined import put_back, update_determined
-from trueup.core.updating.identifiability import identifiability
+from trueup.core.updating.identifiability import identifiability, unsure
 from trueup.core.updating.problem import Configuration
 from trueup.core.updating.stages import Reason
 from trueup.core.updating.update import Stage
@@ -106,3 +106,33 @@ def test_fewer_residuals_than_parameters_determine_as_many():
     said = identifiability(np.random.default_rng(2).standard_normal((2, 5)), 1e-6, 0.5)
     assert len(said.determined) == 2
     assert said.unseen.shape == (3, 5)
+
+
+def _stiff_to_ground(factor: float, noise: float, **limits: float):
+    """A spring to ground that hardly matters once it is stiff, and the other springs, at 1.1."""
+    model = chain([[0], range(1, N)], **limits)
+    one = Configuration(model, measured(model, [factor, 1.1], noise=noise, seed=1), n_modes=8)
+    stage = Stage((0, 1), "frequencies", 40)
+    return put_back([one], stage, update_determined([one], [stage]))
+
+
+def test_what_the_deck_has_wrong_moves_however_large_its_error():
+    done = _stiff_to_ground(6.0, 0.005, upper=9.0)
+    assert done.undetermined == ()
+    assert done.standard_error[0] > 0.3 * done.factors[0]
+    assert (np.abs(done.factors - [6.0, 1.1]) < done.standard_error).all()
+
+
+def test_what_stays_as_in_the_deck_does_not_lead_the_others_astray():
+    """The spring's own value is open; held to the deck's, a sixth, the others would be 1.26."""
+    done = _stiff_to_ground(6.0, 0.01)
+    assert done.factors[0] == 1.0
+    assert done.undetermined == (0,)
+    assert abs(done.factors[1] - 1.1) < done.standard_error[1] < 0.04
+    assert sum("k0 stays as in the deck" in w for w in done.warnings) == 1
+
+
+def test_the_error_from_which_on_a_value_is_open():
+    assert unsure(np.array([1.0, 1.5, np.e**3, np.e**-3])) == pytest.approx(
+        [0.2, 0.3, np.e**3, np.e**-3]
+    )

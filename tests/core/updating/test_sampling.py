@@ -132,7 +132,7 @@ def test_few_samples_are_doubted():
 
 
 def test_where_nothing_is_left_of_the_residuals_there_is_no_posterior(monkeypatch):
-    monkeypatch.setattr(Problem, "scatter", lambda *_: 0.0)
+    monkeypatch.setattr(Problem, "scattered", lambda problem, *_: (problem, 0.0))
     weights = Weights({"frequency_sigma": 0.02, "prior_sigma": 0.05}, 0.0)
     with pytest.raises(InputError, match="the posterior is a point"):
         sampled(chain([range(1)], n=1), [1.2], weights)

@@ -18,9 +18,11 @@ from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 from trueup.core.reduction import full_or_reduced
 from trueup.core.updating import objective
-from trueup.core.updating.residuals import Weights
+from trueup.core.updating.posterior import profile_intervals
+from trueup.core.updating.residuals import Beside, Relation, Weights
 from trueup.core.updating.residuals.shapes import SHAPES
-from trueup.core.updating.update import Reason, Stage, Target, update
+from trueup.core.updating.update import Configuration, Reason, Stage, Target, update
+from trueup.core.updating.updating_numbers import UPDATING
 
 N = 8
 
@@ -263,6 +265,30 @@ def test_the_standard_error_is_the_scatter_of_repeated_tests():
     expected = 1.1 * 2.0 * sigma / np.sqrt(6)
     assert np.std(found) == pytest.approx(expected, rel=0.25)
     assert np.sqrt(np.mean(said**2)) == pytest.approx(expected, rel=0.15)
+
+
+def test_as_many_parameters_as_data_have_the_errors_that_are_stated():
+    """Nothing is left of the residuals, which says nothing of how good they are."""
+    model = chain([range(N)])
+    done = update(
+        model, measured(model, [1.1], slice(0, 1)), [Stage((0,), "frequencies")], n_modes=8
+    )
+    assert done.standard_error == pytest.approx([1.1 * 2.0 * UPDATING.frequency], rel=1e-3)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_what_is_stated_by_itself_is_known_no_better_where_modes_fit_well(noise):
+    """Frequencies know the ratio of stiffness and mass, the size only what is said of it."""
+    model = chain([range(N), range(N)], ["k", "m"])
+    said = Relation(np.array([1.0, 0.0]), np.zeros(2), 1.2, 0.12)
+    target = replace(measured(model, [1.2, 1.0], noise=noise), beside=Beside(relations=(said,)))
+    stage = Stage((0, 1), "frequencies, relations")
+    done = update(model, target, [stage], weights=Weights(regularisation=0.0), n_modes=8)
+    assert done.factors == pytest.approx([1.2, 1.0], rel=3e-3)
+    assert done.standard_error == pytest.approx([0.12, 0.1], rel=2e-3)
+    one = Configuration(model, target, weights=Weights(regularisation=0.0), n_modes=8)
+    half = np.diff(profile_intervals([one], stage, done), axis=1)[:, 0] / 2.0
+    assert half == pytest.approx(1.96 * done.standard_error, rel=0.05)
 
 
 def test_what_the_test_cannot_tell_is_said():
