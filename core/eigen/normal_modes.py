@@ -309,12 +309,19 @@ def _joined(pencil: Pencil, rigid: Floats, spectrum: Spectrum) -> tuple[Floats, 
 def _refuse_mechanism(
     model: Model | None, pencil: Pencil, body: RigidBody | None, Z: Floats
 ) -> list[str]:
-    """Raise for motions Z, (n, k), without strain energy that no rigid body makes."""
-    if body is None or not Z.shape[1]:
+    """Raise for motions Z, (n, k), without strain energy that no rigid body makes.
+
+    Scalar points have no place, and move as rigid bodies in any ratio (a shaft with gears).
+    """
+    if model is None or body is None or not Z.shape[1]:
         return []
     nearly, mechanisms, replaced = body.split(pencil, Z)
-    if mechanisms.shape[1]:
+    moved = np.abs(model.expansion @ mechanisms)
+    placed = moved[model.geometry.index_of(model.dofs.node) >= 0].max(initial=0.0)
+    if mechanisms.shape[1] and placed > EIGEN.moved * moved.max():
         raise mechanism(model, pencil, mechanisms, body.modes)
+    if not nearly.shape[1]:
+        return []
     rows = np.argsort(-np.abs(pencil.K @ replaced).max(axis=1))[: EIGEN.few_named]
     return [
         f"{nearly.shape[1]} of the rigid-body modes are not quite those of a rigid body: springs "

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.linalg as sl
 
 from trueup.adapters.nastran import build_model, read_deck, weight
 from trueup.adapters.nastran.properties.thermal import read_thermal
@@ -382,6 +383,19 @@ def test_a_linkage_is_not_a_rigid_body(model):
     )
     with pytest.raises(InputError, match=r"mechanism: a motion .* at 2:1, 3:1;"):
         solve(found, 3)
+
+
+def test_shafts_of_scalar_points_turn_freely_through_gears(model):
+    masses = "".join(f"CMASS4,{k},1.,{k},0\n" for k in (1, 2, 3, 4))
+    shafts = "SPOINT,1,2,3,4\nCELAS4,11,100.,1,2\nCELAS4,12,50.,3,4\nMPC,5,3,,1.,2,,-2.\n"
+    found = solve(model(masses + shafts, case="MPC = 5"), 3)
+    assert found.rigid_body_modes == 1
+    shape = found.vectors[:, 0] / found.vectors[0, 0]
+    np.testing.assert_allclose(shape, [1.0, 1.0, 2.0], rtol=1e-9)
+    T = np.array([[1.0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 0, 1]])
+    K = np.array([[100.0, -100, 0], [-100, 300, -100], [0, -100, 50]])
+    exact = np.sqrt(sl.eigh(K, T.T @ T, eigvals_only=True)[1:]) / (2 * np.pi)
+    np.testing.assert_allclose(found.frequencies_hz[1:], exact, rtol=1e-9)
 
 
 def test_a_pendulum_is_a_rigid_body(model):
