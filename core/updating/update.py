@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..reduction.full_or_reduced import ReducedOrder
 from .identifiability import doubts
 from .problem import Configuration, Orders, Point, Problem
-from .residuals import Target, Weights
+from .residuals import Residual, Target, Weights
 from .stages import Iteration, Reason, Stage, Stop, Updated
 from .updating_numbers import UPDATING
 
@@ -148,9 +148,9 @@ def update_configurations(
     active = sorted({k for s in stages for k in s.parameters})
     if near is None or active != sorted(stages[-1].parameters):
         near = problem.around(point, active)
-    last = stages[-1].minimised
-    there = problem.at(near, point.factors, last)
-    said = problem.identified(near, there, active, last)
+    counted = _moved_by(stages)
+    there = problem.at(near, point.factors, counted)
+    said = problem.identified(near, there, active, counted)
     error, covariance = np.full(known, np.nan), np.full((known, known), np.nan)
     doubtful: tuple[str, ...] = ()
     if said is not None:
@@ -266,6 +266,12 @@ def _walk(
         if _apart(point, start) > UPDATING.rebuild:
             break
     return trail, near, None
+
+
+def _moved_by(stages: Sequence[Stage]) -> tuple[Residual, ...]:
+    """Return the residuals that each parameter was last moved by, of all in one."""
+    last = {k: stage for stage in stages for k in stage.parameters}
+    return tuple(dict.fromkeys(r for stage in last.values() for r in stage.minimised))
 
 
 def _apart(a: Point, b: Point) -> float:

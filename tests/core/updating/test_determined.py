@@ -15,6 +15,7 @@ from trueup.core.data.parameter import Parameter
 from trueup.core.updating.determined import put_back, update_determined
 from trueup.core.updating.identifiability import identifiability, unsure
 from trueup.core.updating.problem import Configuration
+from trueup.core.updating.residuals import Beside, Relation
 from trueup.core.updating.stages import Reason
 from trueup.core.updating.update import Stage
 
@@ -136,3 +137,15 @@ def test_the_error_from_which_on_a_value_is_open():
     assert unsure(np.array([1.0, 1.5, np.e**3, np.e**-3])) == pytest.approx(
         [0.2, 0.3, np.e**3, np.e**-3]
     )
+
+
+def test_a_stage_before_the_last_determines_what_it_moved_last():
+    """Mass by what is said of it, then stiffness by frequencies, which know their ratio alone."""
+    model = chain([range(N), range(N)], ["k", "m"])
+    said = Relation(np.array([0.0, 1.0]), np.zeros(2), 0.9, 0.009)
+    target = replace(measured(model, [1.2, 0.9], noise=1e-3), beside=Beside(relations=(said,)))
+    stages = [Stage((1,), "relations"), Stage((0,), "frequencies")]
+    done = update_determined([Configuration(model, target, n_modes=8)], stages)
+    assert done.undetermined == done.combined == ()
+    assert done.factors == pytest.approx([1.2, 0.9], rel=5e-3)
+    assert done.standard_error == pytest.approx([0.012, 0.009], rel=0.02)
