@@ -295,7 +295,7 @@ class Problem:
         parameters as data leave nothing. Returned is before it the problem whose objective over
         the scatter counts what is `stated` by its own standard deviation, where less is left.
         """
-        data = sum(len(r.squared(s.seen)) for r in residuals for s in point.states)
+        data = sum(r.data(s.seen) for r in residuals for s in point.states)
         if data <= len(active) or any(r.believes_sigmas for r in residuals):
             return self, 1.0
         lin = self.linearise(orders, point, active, residuals)

@@ -38,6 +38,10 @@ def _derivative(seen: Seen, slopes: Slopes) -> Floats:
     return np.asarray((moved / known[:, None])[:, None, :])
 
 
+def _readings(seen: Seen) -> int:
+    return int(np.isfinite(_of(seen)[1]).sum())
+
+
 def _error(target: Target) -> Floats | None:
     if target.damping_std is None or target.damping is None:
         return None
@@ -51,6 +55,7 @@ DAMPING = Residual(
     sigma=UPDATING.damping,
     value=_value,
     derivative=_derivative,
+    readings=_readings,
     unpaired=lambda _: 1.0,
     error=_error,
     damped=True,

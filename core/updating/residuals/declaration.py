@@ -257,6 +257,8 @@ class Residual:
         Whether the derivative looks at ``Slopes.analysis``, which costs a solve a mode.
     size : callable, optional
         Squared length of each row of the value, (n_row,), where it is known for less.
+    readings : callable, optional
+        How many of the rows are of something that was measured; default all.
     unpaired : callable
         The squared length that is due for a test mode without a partner.
     error : callable
@@ -284,6 +286,7 @@ class Residual:
     derivative: Callable[[Seen, Slopes], Floats]
     needs_shapes: bool = False
     size: Callable[[Seen], Floats] | None = None
+    readings: Callable[[Seen], int] | None = None
     unpaired: Callable[[Criteria], float] = lambda _: 0.0
     error: Callable[[Target], Floats | None] | None = None
     tells_pairs: bool = False
@@ -295,6 +298,10 @@ class Residual:
     def squared(self, seen: Seen) -> Floats:
         """Squared length of each row of the value, (n_row,)."""
         return np.sum(self._value(seen) ** 2, axis=1) if self.size is None else self.size(seen)
+
+    def data(self, seen: Seen) -> int:
+        """Count what was measured."""
+        return len(self.squared(seen)) if self.readings is None else self.readings(seen)
 
     def _value(self, seen: Seen) -> Floats:
         values = self.value(seen)

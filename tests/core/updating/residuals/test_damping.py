@@ -46,6 +46,17 @@ def test_a_mode_without_a_ratio_says_nothing():
     assert left[[0, 2, 3, 5]].all()
 
 
+def test_modes_without_a_ratio_make_the_others_scatter_no_less():
+    """Standard errors are those of a test that never saw the modes without one."""
+    start, stage = np.array([1.2, 0.9, 1.0, 1.0, 1.0]), Stage((2,), "damping", 20)
+    model, target = case(unknown=(3, 4, 5))
+    found = [
+        update(model, t, [stage], n_modes=8, start=start).standard_error[2]
+        for t in (target, replace(target, modes=(0, 1, 2)))
+    ]
+    assert found[0] == pytest.approx(found[1], rel=1e-3)
+
+
 def test_standard_errors_of_the_ratios_weigh():
     _, target = case()
     target = replace(target, damping_std=0.3 * target.damping)
