@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import qr
+from scipy.linalg import qr, solve_triangular
 from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Floats, Ints, Numbers
@@ -107,6 +107,7 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
             motions.append((rows, _orthonormal(u, mu)))
     found, moved = (_assembled(parts, pencil.n) for parts in (modes, motions))
     force[np.abs(force) <= noise[:, None]] = 0.0
+    found = _again(found, pencil.M)
     return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held, U, force, label)
 
 
@@ -194,6 +195,14 @@ def _strain_free(U: Floats, MU: Floats, KU: Floats, noise: Floats) -> Floats:
     C = vt.T[:, free]
     scale = np.sum(U[:, basis] * MU[:, basis], axis=0).max(initial=0.0)
     return _orthonormal(U[:, basis] @ C, MU[:, basis] @ C, scale)
+
+
+def _again(modes: Floats, M: sp.spmatrix) -> Floats:
+    """Make orthonormal modes so once more: a large mass in their products costs them digits."""
+    if not modes.shape[1]:
+        return modes
+    L = np.linalg.cholesky(modes.T @ (M @ modes))
+    return np.asarray(solve_triangular(L, modes.T, lower=True).T)
 
 
 def _orthonormal(V: Floats, MV: Floats, scale: float = 0.0) -> Floats:

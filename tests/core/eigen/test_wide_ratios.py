@@ -67,6 +67,18 @@ def test_a_free_beam_on_a_large_mass_is_a_clamped_one(line, section):
     np.testing.assert_allclose(found.eigenvalues[6:], exact.eigenvalues, rtol=1e-7)
 
 
+@pytest.mark.parametrize("ratio", [1e6, 1e9])
+def test_a_free_beam_on_a_large_mass_without_inertia_is_a_pinned_one(line, ratio):
+    free, pinned = line(30), line(30, fixed=[(0, c) for c in (1, 2, 3)])
+    M = free.M().tolil()
+    for row in range(3):
+        M[row, row] += ratio * free.M().diagonal()[:3].max()
+    found = solve(replace(free, mass=(Term(M.tocsr()),)), 12)
+    exact = solve(pinned, 9)
+    assert (found.rigid_body_modes, exact.rigid_body_modes) == (6, 3)
+    np.testing.assert_allclose(found.eigenvalues[6:], exact.eigenvalues[3:], rtol=100.0 / ratio)
+
+
 def test_masses_that_get_lost_are_noticed(monkeypatch):
     """The check by the matrices as they were given sees what was done to them."""
     K, M = chain(30)
