@@ -120,7 +120,12 @@ def _known_of(done: Updated, every: Updated, alone: Bools) -> Updated:
 
 
 def _led_astray(done: Updated, every: Updated, alone: Bools) -> bool:
-    """Whether what is known by itself is another value without those that were left."""
+    """Whether what is known by itself is another value without those that were left.
+
+    Where they moved to something worse than they were left at, that tells nothing.
+    """
+    if every.after.objective > done.after.objective:
+        return False
     off = np.abs(done.factors - every.factors)
     return bool((off > np.nan_to_num(every.standard_error, nan=np.inf))[alone].any())
 

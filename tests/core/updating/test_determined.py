@@ -12,12 +12,13 @@ from tests.core.chains import proportional
 from tests.core.updating.test_update import HALVES, N, chain, measured
 
 from trueup.core.data.parameter import Parameter
+from trueup.core.updating import determined
 from trueup.core.updating.determined import put_back, update_determined
 from trueup.core.updating.identifiability import identifiability, unsure
 from trueup.core.updating.problem import Configuration
 from trueup.core.updating.residuals import Beside, Relation
 from trueup.core.updating.stages import Reason
-from trueup.core.updating.update import Stage
+from trueup.core.updating.update import Stage, update_configurations
 
 
 def test_of_stiffness_and_mass_in_common_none_moves_and_the_ratio_is_said():
@@ -131,6 +132,18 @@ def test_what_stays_as_in_the_deck_does_not_lead_the_others_astray():
     assert done.undetermined == (0,)
     assert abs(done.factors[1] - 1.1) < done.standard_error[1] < 0.04
     assert sum("k0 stays as in the deck" in w for w in done.warnings) == 1
+
+
+def test_what_ended_worse_with_more_parameters_is_not_taken(monkeypatch):
+    """As where modes were lost on the way: what was found without the others is better."""
+
+    def worse(configurations, stages, **more):
+        done = update_configurations(configurations, stages, **more)
+        lost = replace(done.after, objective=1e6)
+        return replace(done, after=lost) if len(stages[0].parameters) > 1 else done
+
+    monkeypatch.setattr(determined, "update_configurations", worse)
+    assert _stiff_to_ground(6.0, 0.01).factors[1] == pytest.approx(1.264, abs=1e-3)
 
 
 def test_the_error_from_which_on_a_value_is_open():
