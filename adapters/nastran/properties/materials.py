@@ -122,14 +122,17 @@ class Elastic:
 
 
 def isotropic(bulk: Bulk, mid: int | None, asked_by: Place) -> Isotropic:
-    """Return the constants of a MAT1.
+    """Return the constants of a MAT1 for an element that takes E and G apart.
+
+    Where NU is blank nothing follows from it, and E and G may be in any ratio.
 
     Raises
     ------
     InputError
         No such MAT1, or one that is not physical.
     """
-    return _constants(bulk, _found(bulk, ("MAT1",), mid, asked_by)[1])
+    card = _found(bulk, ("MAT1",), mid, asked_by)[1]
+    return _constants(bulk, card, any_ratio=card.nu is None)
 
 
 def _found(
@@ -143,13 +146,13 @@ def _found(
     return found
 
 
-def _constants(bulk: Bulk, card: Values) -> Isotropic:
+def _constants(bulk: Bulk, card: Values, any_ratio: bool = False) -> Isotropic:
     place = bulk.place("MAT1", card.mid)
     E, G, nu = _derived(card, place)
     if E < 0.0 or G < 0.0:
         name, value = ("E", E) if E < 0.0 else ("G", G)
         raise place.error(f"{name} is {value:g}; a modulus must not be negative")
-    if not -1.0 < nu <= 0.5:
+    if not (any_ratio or -1.0 < nu <= 0.5):
         raise place.error(
             f"Poisson's ratio is {nu:g}; it must lie between -1 and 0.5 (check E and G where NU is "
             "blank)"

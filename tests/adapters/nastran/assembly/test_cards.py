@@ -1,5 +1,7 @@
 """Cards in the forms decks in the wild have them, against closed forms and each other."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 import scipy.linalg as sl
@@ -383,6 +385,18 @@ def test_a_linkage_is_not_a_rigid_body(model):
     )
     with pytest.raises(InputError, match=r"mechanism: a motion .* at 2:1, 3:1;"):
         solve(found, 3)
+
+
+@pytest.mark.parametrize("shear", [1e-6, 1.0, 1e3])
+def test_lines_have_any_modulus_of_shear(model, shear):
+    """A stick model's material: shells refuse a Poisson's ratio of 49."""
+    cards = f"GRID,1,,,,,,123456\nGRID,2,,2.,0.,0.,,2356\nMAT1,1,100.,{shear}\n"
+    for element in ("CROD,1,1,1,2\nPROD,1,1,3.,5.", "CBAR,1,1,1,2,0.,1.\nPBAR,1,1,3.,1.,1.,5."):
+        found = model(f"{cards}{element}\nPARAM,AUTOSPC,NO\n")
+        np.testing.assert_allclose(found.K().diagonal(), [150.0, 2.5 * shear], rtol=1e-12)
+    plate = "GRID,3,,0.,1.\nCTRIA3,1,1,1,2,3\nPSHELL,1,1,.1\n"
+    with pytest.raises(InputError, match="Poisson's ratio") if shear < 30.0 else nullcontext():
+        model(cards + plate)
 
 
 def test_shafts_of_scalar_points_turn_freely_through_gears(model):
