@@ -81,6 +81,10 @@ class ReducedOrder:
         modes = self.reduced.solve(p, self.reduced.size).take(self._some_more)
         return self._on(full, self.reduced.corrected(p, modes))
 
+    def seen(self, full: FullOrder) -> ReducedOrder:
+        """Return it with derivatives that are right where the sensors read them."""
+        return self._on(full, self.reduced.seen_by(full.sensors))
+
     def near(self, p: Floats) -> Near:
         """Return what it knows of the full model's modes at `p`."""
         every = self.reduced.solve(p, self.reduced.size)

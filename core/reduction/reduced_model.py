@@ -152,13 +152,28 @@ class ReducedModel(Noun):
         assert factor is not None
         return self._with(factor.solve(R), R, DERIVATIVES.too_little)
 
+    def seen_by(self, sensors: sp.csr_matrix) -> ReducedModel:
+        """Return the model with the static answers to forces at sensors, (n_sensor, n_free), in it.
+
+        What parameters change of modes is then right where the sensors read it, whether or not
+        the basis has the static answers to the parameters: C A^-1 f is the work of f along
+        A^-1 C^T, which is in the basis (the adjoint method: Haug, Choi and Komkov 1986, Design
+        Sensitivity Analysis of Structural Systems).
+        """
+        factor = self.solution.factor
+        assert factor is not None
+        return self._beside(_answers_to(sensors, factor, self.Q))
+
     def _with(self, W: Floats, AW: Floats, least: float) -> ReducedModel:
         """Return the model with more vectors W, where they have at least so much energy."""
         W = W - self.Q @ (self.Q.T @ AW)
         energy = W.T @ AW
         size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
         new = size > least
-        W = W @ (turn[:, new] / np.sqrt(size[new]))
+        return self._beside(W @ (turn[:, new] / np.sqrt(size[new])))
+
+    def _beside(self, W: Floats) -> ReducedModel:
+        """Return the model with further vectors, orthonormal with those it has."""
         sums = (self.stiffness, self.mass, self.damping, self.loss)
         K, M, D, H = (terms.widened(self.Q, W) for terms in sums)
         return replace(self, Q=np.hstack([self.Q, W]), stiffness=K, mass=M, damping=D, loss=H)

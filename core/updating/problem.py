@@ -181,6 +181,25 @@ class Problem:
             for part, order in zip(self.parts, orders, strict=True)
         ]
 
+    def differentiable(
+        self, orders: Sequence[ReducedOrder], point: Point, active: Sequence[int], sketch: int
+    ) -> list[ReducedOrder]:
+        """Return bases of `sketch` combinations with what derivatives at the sensors want.
+
+        That is the static answers to the sensors, or those to the parameters where these are fewer.
+        """
+        out = []
+        for part, order, s in zip(self.parts, orders, point.states, strict=True):
+            moving, found = part.moving(active)[0], _in_full(s)
+            answers = (len(found.eigenvalues) - found.rigid_body_modes) * len(moving)
+            if answers <= sketch:
+                out.append(order)
+            elif part.full.sensors.shape[0] < answers:
+                out.append(order.seen(part.full))
+            else:
+                out.append(reduce_around(part.full, s.factors, found, moving))
+        return out
+
     def nearly(self, orders: Sequence[ReducedOrder], p: Floats) -> Orders:
         """Return every configuration in full, its modes at the factors `p` nearly known."""
         return [

@@ -136,7 +136,7 @@ def update_configurations(
     else:
         note(0, before)
     stopped = Stop(Reason.NO_STAGE, "no stage")
-    near: Orders | None = None
+    near: list[ReducedOrder] | None = None
     before = before.without_factors()
     for number, stage in list(enumerate(stages))[first:]:
         point = problem.valued(point, stage.minimised)
@@ -148,6 +148,8 @@ def update_configurations(
     active = sorted({k for s in stages for k in s.parameters})
     if near is None or active != sorted(stages[-1].parameters):
         near = problem.around(point, active)
+    else:
+        near = problem.differentiable(near, point, active, UPDATING.sketch)
     counted = _moved_by(stages)
     there = problem.at(near, point.factors, counted)
     said = problem.identified(near, there, active, counted)
@@ -177,7 +179,7 @@ def _work_off(
     left: int,
     tolerance: float,
     note: Callable[[Point], None],
-) -> tuple[Point, Orders | None, int, Stop]:
+) -> tuple[Point, list[ReducedOrder] | None, int, Stop]:
     """Work off a stage of which so many iterations are left.
 
     Returned are where it ends, in full, the reduced models that were last used, how many full

@@ -37,7 +37,7 @@ def test_quiet_keeps_the_warnings(call, duct, tmp_path):
              "-q")  # fmt: skip
     said = call(*asked)
     assert said.out == ""
-    assert "stays as in the deck" in said.err
+    assert "stay as in the deck" in said.err
 
 
 def test_a_test_mode_without_a_partner_cannot_be_moved_to(call, duct, tmp_path):

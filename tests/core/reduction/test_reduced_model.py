@@ -217,3 +217,18 @@ def test_a_sketch_of_static_answers_is_better_than_modes_and_within_all_of_them(
     assert none < some == none + 12 < whole
     assert best < sketched < 0.5 * worst
     assert off(sketch=len(TARGETS) * len(PARAMETERS)) == (whole, best)
+
+
+def test_derivatives_at_sensors_want_the_static_answers_to_the_sensors_alone(grid):
+    model = grid()
+    p = model.deck_point
+    start = solve(model, 30, keep_factor=True)
+    C = sp.identity(model.n_free, format="csr")[::11]
+    full = sensitivities(model, p, start, TARGETS, PARAMETERS, C).shapes
+
+    def off(reduced):
+        found = reduced.sensitivities(p, TARGETS, PARAMETERS, reduced.project(C.T).T).shapes
+        return np.abs(abs(found) - abs(full)).max() / abs(full).max()
+
+    sketched = build_reduced(model, p, TARGETS, PARAMETERS, solution=start, sketch=12)
+    assert off(sketched.seen_by(C)) < 2e-3 < off(sketched)
