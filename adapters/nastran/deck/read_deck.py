@@ -210,7 +210,7 @@ def read_deck(source: str | Path | DeckText, definitions: Mapping[str, Card]) ->
         *_other_solution(solution),
         *(f"{path}: {told}" for told in _direct_matrices(sections, bulk, case)),
     ]
-    params = _cells(sections) | _params(bulk, sections.case)
+    params = _cells(sections) | _params(bulk, sections.case, case.subcase)
     not_followed = _not_followed(sections, params, case, others)
     warnings += [f"{path}: {told}" for told in not_followed]
     if eigen is None and case.method is not None:
@@ -244,15 +244,16 @@ def _cells(sections: Any) -> dict[str, str]:
     return {"BARMASS": found[1]} if found else {}
 
 
-def _params(bulk: Bulk, case_lines: Any) -> dict[str, str]:
-    """Values of PARAM: bulk data overrides subcases, and what stands above them bulk data."""
+def _params(bulk: Bulk, case_lines: Any, subcase: int) -> dict[str, str]:
+    """Values of PARAM: bulk data overrides the subcase, what stands above subcases bulk data."""
     above: dict[str, str] = {}
     inside: dict[str, str] = {}
     params = above
     for line in case_lines:
         words = re.split(r"[\s,=]+", line.text.split("$", 1)[0].strip().upper())
         if words[0].startswith("SUBC"):
-            params = inside
+            others = words[1:] and words[1].isdecimal() and int(words[1]) != subcase
+            params = {} if others else inside
         if words[0] == "PARAM" and len(words) > 2:
             params[words[1]] = words[2]
         if words[0].startswith("AUTOSPC") and len(words) > 1:

@@ -174,7 +174,10 @@ def _value(bulk: Bulk, table: int, x: float, asked_by: Key) -> tuple[float, bool
             f"refers to table {table}, but there is no TABLEM1, TABLEM2, TABLEM3 or TABLEM4 {table}"
         )
     name, card = found
-    return _EVALUATE[name](card, x), name == "TABLEM1"
+    value = _EVALUATE[name](card, x)
+    if not np.isfinite(value):
+        raise bulk.place(name, table).error(f"has no finite value at the temperature {x:g}")
+    return value, name == "TABLEM1"
 
 
 def interpolated(card: Values, x: float) -> float:
@@ -193,9 +196,25 @@ def _polynomial(card: Values, x: float) -> float:
     return float(sum(a * t**i for i, a in enumerate(card.a)))
 
 
+def _on_axes(card: Values, x: float) -> float:
+    """Value of a TABLEM1, of which each axis may be logarithmic."""
+    across, up = card.xaxis == "LOG", card.yaxis == "LOG"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        card = card._replace(
+            x=np.log(card.x) if across else card.x, y=np.log(card.y) if up else card.y
+        )
+        value = interpolated(card, float(np.log(x)) if across else x)
+    return float(np.exp(value)) if up else value
+
+
+def _held(card: Values, x: float) -> float:
+    """Value of a TABLEM2 or TABLEM3, which may keep its end values beyond its points."""
+    return interpolated(card, float(np.clip(x, min(card.x), max(card.x))) if card.extrap else x)
+
+
 _EVALUATE: Mapping[str, Callable[[Values, float], float]] = {
-    "TABLEM1": interpolated,
-    "TABLEM2": lambda card, x: interpolated(card, x - card.x1),
-    "TABLEM3": lambda card, x: interpolated(card, (x - card.x1) / card.x2),
+    "TABLEM1": _on_axes,
+    "TABLEM2": lambda card, x: _held(card, x - card.x1),
+    "TABLEM3": lambda card, x: _held(card, (x - card.x1) / card.x2),
     "TABLEM4": _polynomial,
 }

@@ -261,6 +261,26 @@ class TestTemperature:
         assert any("no temperature" in w for w in found.warnings) == ("LOAD" in case)
 
     @pytest.mark.parametrize(
+        ("table", "modulus"),
+        [
+            ("TABLEM1,3,LOG,LOG\n,10.,4.,1000.,400.,ENDT", 40.0),
+            ("TABLEM1,3,LOG\n,10.,4.,1000.,16.,ENDT", 10.0),
+            ("TABLEM1,3,,LOG\n,0.,4.,200.,16.,ENDT", 8.0),
+            ("TABLEM2,3,,1\n,0.,4.,50.,16.,ENDT", 16.0),
+            ("TABLEM2,3\n,0.,4.,50.,16.,ENDT", 28.0),
+            ("TABLEM3,3,0.,1.,1\n,0.,4.,50.,16.,ENDT", 16.0),
+        ],
+    )
+    def test_axes_and_ends_of_tables(self, model, table, modulus):
+        hot = model(f"{self.rod}MATT1,1,3\n{table}\nTEMPD,4,100.\n", case="TEMP(INIT) = 4")
+        assert hot.K().diagonal() == pytest.approx(modulus * model(self.rod).K().diagonal())
+
+    def test_a_logarithm_of_nothing_is_refused(self, model):
+        table = "MATT1,1,3\nTABLEM1,3,LOG\n,0.,4.,100.,16.,ENDT\nTEMPD,4,50.\n"
+        with pytest.raises(InputError, match=r"TABLEM1 3 .*has no finite value at the temperature"):
+            model(self.rod + table, case="TEMP(INIT) = 4")
+
+    @pytest.mark.parametrize(
         "material",
         [
             "MAT1,1,1.,,.3,1.,,,.5\nMATT1,1,,,,,,,3",

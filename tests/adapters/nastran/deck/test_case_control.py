@@ -56,6 +56,14 @@ def test_subcases_of_an_optimisation_do_not_load_each_other(tmp_path):
         assert any("unloaded" in w for w in read_deck(path).warnings) is loaded
 
 
+def test_parameters_of_other_subcases_are_theirs(tmp_path):
+    path = tmp_path / "deck.bdf"
+    for first, mine in ((1, "2."), (2, "3.")):
+        cases = f"SUBCASE {first}\nMETHOD = 1\nPARAM,WTMASS,{mine}\nSUBCASE 7\nPARAM,WTMASS,4.\n"
+        path.write_text(f"SOL 103\nCEND\n{cases}BEGIN BULK\nEIGRL,1,,,1\nGRID,1\nENDDATA\n")
+        assert read_deck(path).param("WTMASS", 1.0) == float(mine)
+
+
 def test_of_subcases_without_modes_the_first_of_structure_is_taken_and_said():
     text = "SUBCASE 1\nSPC = 1\nTHERMAL = ALL\nSUBCASE 2\nSPC = 2\nSUBCASE 3\nSPC = 3\n"
     case, (told,) = read_all(text)
