@@ -356,6 +356,18 @@ class Problem:
                 )
         return tuple(told)
 
+    def farther(
+        self, before: Point, after: Point, residuals: Sequence[Residual]
+    ) -> tuple[str, ...]:
+        """Say where pairs were lost step by step so that the end is no closer than the start."""
+        begin, end = (self.valued(p, residuals) for p in (before, after))
+        if not self.lost(before, after) or self.closer(end, begin, residuals):
+            return ()
+        return (
+            "the updated model is farther from the test than the given one, for the pairs it "
+            "lost on the way; move fewer parameters, or those the model is most wrong in first",
+        )
+
 
 def _without_factor(state: State) -> State:
     bare, damped = replace(_in_full(state), factor=None), state.seen.damped

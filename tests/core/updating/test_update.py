@@ -19,6 +19,7 @@ from trueup.core.errors import InputError
 from trueup.core.reduction import full_or_reduced
 from trueup.core.updating import objective
 from trueup.core.updating.posterior import profile_intervals
+from trueup.core.updating.problem import Problem
 from trueup.core.updating.residuals import Beside, Relation, Weights
 from trueup.core.updating.residuals.shapes import SHAPES
 from trueup.core.updating.update import Configuration, Reason, Stage, Target, update
@@ -199,6 +200,18 @@ def test_a_pair_lost_at_the_mac_limit_does_not_stop_the_others(monkeypatch):
     done = update(model, target, [Stage((0,), "frequencies", 20)], n_modes=8, tolerance=1e-6)
     assert done.factors[0] == pytest.approx(1.5, rel=1e-4)
     assert any("test mode 4 paired with the model as given" in w for w in done.warnings)
+
+
+def test_what_ends_farther_from_the_test_than_it_began_is_said():
+    """Pairs are lost step by step, each of which is one."""
+    model = chain([range(N)])
+    problem = Problem.of([Configuration(model, measured(model, [1.0]), n_modes=8)])
+    residuals = Stage((0,)).minimised
+    near, far = (problem.at(problem.full, np.array([p]), residuals) for p in (1.01, 3.0))
+    (said,) = problem.farther(near, far, residuals)
+    assert "farther from the test than the given one" in said
+    assert problem.farther(far, near, residuals) == ()
+    assert problem.farther(near, near, residuals) == ()
 
 
 def test_an_update_that_has_not_settled_says_so():
