@@ -178,6 +178,8 @@ def _remove_singular(
     """
     terms = _each(terms, reduced.apply)
     K, M = (_total(part) for part in terms)
+    if not K.shape[0]:
+        raise Place(deck.path).error("the constraints leave no free degree of freedom")
     if not K.nnz:
         raise Place(deck.path).error("the deck has no element that carries stiffness")
     refuse_negative_masses(deck, points, reduced.kept, M.diagonal())

@@ -407,6 +407,11 @@ def test_a_linkage_is_not_a_rigid_body(model):
         solve(found, 3)
 
 
+def test_a_deck_that_is_held_everywhere_is_told_so(model):
+    with pytest.raises(InputError, match="constraints leave no free degree of freedom"):
+        model("SPOINT,1\nCELAS4,1,1.,1,0\nCMASS4,2,1.,1,0\nSPC1,3,,1\n", case="SPC = 3")
+
+
 @pytest.mark.parametrize("shear", [1e-6, 1.0, 1e3])
 def test_lines_have_any_modulus_of_shear(model, shear):
     """A stick model's material: shells refuse a Poisson's ratio of 49."""
