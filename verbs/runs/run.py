@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 from ...adapters.nastran.editing.changed_deck import ChangedDeck
 from ...adapters.store import StoreContent
 from ...core.correlation.comparison import Comparison
@@ -164,7 +166,7 @@ def content_of(
         Test shapes on the dofs of the analysis.
     """
     last = after or before
-    modes = {"test": before.test, "analysis": before.analysis}
+    modes = {"test": _as_seen(before.test, last.test), "analysis": before.analysis}
     if expanded is not None:
         modes[EXPANDED] = expanded
     heard = model_responses(last)
@@ -183,3 +185,12 @@ def content_of(
         },
         history=Table(history).to_dict(),
     )
+
+
+def _as_seen(measured: Modes, last: Modes) -> Modes:
+    """Return a test as it was measured, at the sensors that the last comparison still sees."""
+    key, kept = (10 * m.dofs.node + m.dofs.component for m in (measured, last))
+    rows = np.flatnonzero(np.isin(key, kept))
+    if len(rows) == len(key):
+        return measured
+    return replace(measured, shapes=measured.shapes[rows], dofs=measured.dofs.take(rows))
