@@ -15,7 +15,7 @@ from .files.read import DECK, kind_of_file
 from .files.sources import Source, existing
 from .files.write_fmu import OTHERS, PLANTS, Converted, write_fmu
 from .studies.options import Files, PlantOptions, Say, checked_call, unheard
-from .studies.study import converted
+from .studies.values import converted
 
 _MOST, _LONGEST, _MODES = 4, 200, 20
 

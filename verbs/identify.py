@@ -30,7 +30,8 @@ from .files.sources import Source, existing, files_of
 from .runs.identified import Identified
 from .studies.imprint import imprint_of
 from .studies.options import Files, Say, checked_call, study_of, unheard
-from .studies.study import Study, converted
+from .studies.study import Study
+from .studies.values import converted
 
 if TYPE_CHECKING:
     from ..adapters.universal import Function

@@ -18,7 +18,8 @@ from .files.sources import Source, geometry_of, read_deck
 from .runs.solved import Solved
 from .studies.imprint import imprint_of
 from .studies.options import Files, Say, checked_call, study_of, unheard
-from .studies.study import Study, converted
+from .studies.study import Study
+from .studies.values import converted
 
 if TYPE_CHECKING:
     from ..adapters.nastran.deck.read_deck import EigenRequest

@@ -14,7 +14,7 @@ from ...core.results.inspection import ConvertTables
 from ...core.statespace.modal_plant import ModalPlant
 from ...core.statespace.statespace_numbers import STATESPACE
 from ..studies.options import Files, PlantOptions, Say, checked_call, unheard
-from ..studies.study import converted
+from ..studies.values import converted
 from .plant import plant_of
 from .sources import Source
 

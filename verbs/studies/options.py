@@ -10,9 +10,10 @@ from typing import ParamSpec, TypedDict, TypeVar
 
 from ...core.errors import InputError, path_of
 from ...core.statespace.damping_choice import Asked
-from .study import Study, merge, read_study, unknown
+from .study import Study, merge, read_study
 from .study_tables import ConfigurationRequest, LoadRequest, StageRequest
 from .taking_part import refuse_idle
+from .values import unknown
 
 Files = str | os.PathLike[str]
 P = ParamSpec("P")

@@ -12,7 +12,7 @@ from ...core.arrays import Floats
 from ...core.data.parameter import Parameter
 from ...core.errors import InputError
 from ...core.updating.residuals import Relation
-from .study import meant
+from .values import meant
 
 _FORM = re.compile(r"(?P<left>.+)=(?P<value>[^=±]+?)(?:±|\+-)(?P<sigma>[^=±]+)")
 _EXAMPLE = "write it as in 'skin / web = 2 ± 0.1' or 'front + rear = 12.5 +- 0.2'"

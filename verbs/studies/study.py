@@ -3,31 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-import datetime
 import math
-import numbers
 import os
-import sys
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
-from types import NoneType
-from typing import TYPE_CHECKING, Any, cast, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, cast, get_type_hints
 
 from ...core.errors import InputError, Place
 from .study_tables import ConfigurationRequest, LoadRequest, StageRequest
-from .taking_part import READERS
+from .values import Hertz, checked, converted
 
 if TYPE_CHECKING:
     from ...core.correlation.criteria import Criteria
     from ...core.identification.measured_modes import IdentifyOptions
     from ...core.updating.residuals import Residual, Weights
 
-Hertz = tuple[float, float]
-"""A band of frequencies; written as "15:60", too."""
 UNITS, ADOPT = ("m", "mm", "in", "ft"), ("significant", "all", "none")
 _NO_MATTER = {"deck", "title", "author", "company", "logo", "date", "out", "source"}
 """Of a study, what any run accepts."""
@@ -232,12 +225,6 @@ _HINTS = get_type_hints(Study)
 FIELDS = {
     f.name: _HINTS[f.name] for f in dataclasses.fields(Study) if f.metadata.get("file_key", True)
 }
-TABLES: dict[str, type] = {
-    "stages": StageRequest,
-    "load_cases": LoadRequest,
-    "configurations": ConfigurationRequest,
-}
-"""Keys that hold tables, and what each is."""
 
 
 def study_keys() -> tuple[str, ...]:
@@ -255,7 +242,7 @@ def _study_values(
     table: Mapping[str, object], fields: Mapping[str, Any], who: Place
 ) -> dict[str, Any]:
     """Check values by key of the file and put the standard deviations of residuals together."""
-    values = _checked(table, fields, who)
+    values = checked(table, fields, who)
     sigmas = {name: values.pop(name) for name in _sigma_fields() if name in values}
     return {**values, "sigmas": sigmas} if sigmas else values
 
@@ -332,72 +319,3 @@ def merge(
         raise InputError(f"{who}: test_modes is empty; give mode numbers, or None for all modes")
     values["sigmas"] = {**study.sigmas, **values.get("sigmas", {})}
     return dataclasses.replace(study, **values)
-
-
-def _checked(table: Mapping[str, object], fields: Mapping[str, Any], who: Place) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for name, value in table.items():
-        if name not in fields:
-            raise who.error(unknown(name, fields))
-        values[name] = converted(name, value, fields[name], who)
-    return values
-
-
-def unknown(name: str, known: Iterable[str]) -> str:
-    """Say that a key is not known, and which may have been meant."""
-    return f"unknown key '{name}'{meant(name, list(known))}"
-
-
-def meant(name: str, known: Sequence[str]) -> str:
-    """Return the end of a sentence: which name may have been meant, or all that are known."""
-    near = get_close_matches(name, known, n=1)
-    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(known)}"
-
-
-def converted(name: str, value: object, kind: Any, who: Place) -> Any:
-    """Return a value as of the kind that is wanted; `InputError` where it cannot be."""
-    wrong = who.error(f"'{name}' has a value of the wrong type: {value!r}")
-    if name in READERS:
-        return READERS[name](name, value, who)
-    of = get_args(kind)
-    if value is None and NoneType in of:
-        return None
-    if name in TABLES:
-        if not isinstance(value, list | tuple):
-            raise wrong
-        return tuple(_table(TABLES[name], v, who, wrong) for v in value)
-    if kind == Hertz:
-        ends = value.split(":") if isinstance(value, str) else value
-        try:
-            low, high = map(float, cast(Iterable[float | str], ends))
-        except (TypeError, ValueError):
-            raise who.error(f"'{name}' holds {value!r}, which is no band as 15:60 is") from None
-        return tuple(converted(name, end, float, who) for end in (low, high))
-    if get_origin(kind) is tuple:
-        items = value if isinstance(value, list | tuple) else [value]
-        return tuple(converted(name, v, of[0], who) for v in items)
-    makes = [k for k in of or (kind,) if isinstance(value, _MADE_FROM.get(k, ()))]
-    if isinstance(value, bool) != (kind is bool) or not makes:
-        raise wrong
-    make = makes[0]
-    if make is float and not abs(cast(float, value)) <= sys.float_info.max:
-        raise who.error(f"'{name}' must be a finite number")
-    return make(value)
-
-
-_MADE_FROM: dict[Any, tuple[type, ...]] = {
-    Path: (str, os.PathLike),
-    str: (str, datetime.date),
-    int: (numbers.Integral,),
-    float: (numbers.Real,),
-    bool: (bool,),
-}
-"""What a value of each type may be made from."""
-
-
-def _table(kind: type, value: object, who: Place, wrong: InputError) -> object:
-    if isinstance(value, kind):
-        return value
-    if not isinstance(value, Mapping):
-        raise wrong
-    return kind(**_checked(value, get_type_hints(kind), who))

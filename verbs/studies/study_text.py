@@ -8,8 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from .study import FIELDS, TABLES, Study, moved
+from .study import FIELDS, Study, moved
 from .study_tables import LoadRequest
+from .values import TABLES
 
 
 def seen_from(folder: Path, study: Study) -> Study:

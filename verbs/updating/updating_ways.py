@@ -25,7 +25,8 @@ from ...core.updating.sampling import Sampled, sample_posterior
 from ..analysis import Analysis, target_of
 from ..files.sources import Measured
 from ..studies.options import Say
-from ..studies.study import Study, meant
+from ..studies.study import Study
+from ..studies.values import meant
 from .kept import Kept
 
 if TYPE_CHECKING:

@@ -4,11 +4,9 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
-import scipy.linalg as sl
 
 from trueup.adapters.nastran import build_model, read_deck, weight
 from trueup.adapters.nastran.properties.thermal import read_thermal
-from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
 
 GRID = "GRID,1,,0.,0.,0.,,23456\n"
@@ -359,59 +357,6 @@ def test_direct_masses_weigh_and_are_where_they_are(tmp_path):
     assert said.startswith("masses along x, y and z are 0, 0 and 1.5; the largest")
 
 
-@pytest.mark.parametrize(
-    ("shape", "nodes", "edges"),
-    [
-        ("CQUAD8", "1,2,3,4", ((1, 2), (2, 3), (3, 4), (4, 1))),
-        ("CTRIA6", "1,2,3", ((1, 2), (2, 3), (3, 1))),
-    ],
-)
-def test_offset_of_a_second_order_shell_is_a_rigid_arm(model, shape, nodes, edges):
-    xyz = {1: (0.0, 0.0), 2: (2.0, 0.0), 3: (2.0, 1.0), 4: (0.0, 1.0)}
-    corners = list(range(1, len(edges) + 1))
-    for k, (i, j) in enumerate(edges):
-        xyz[11 + k] = tuple((a + b) / 2 for a, b in zip(xyz[i], xyz[j], strict=True))
-    used = [*corners, *(11 + k for k in range(len(edges)))]
-    middles = ",".join(str(11 + k) for k in range(len(edges)))
-    z = 0.25
-    prop = "PSHELL,1,1,.2,1,,1\nMAT1,1,7.,,.3,1.\nPARAM,AUTOSPC,NO\n"
-    first = ",".join(f"{nodes},{middles}".split(",")[:6])
-    second = f"{nodes},{middles}".split(",")[6:]
-    fields = [*second, *[""] * (2 - len(second))] if shape == "CQUAD8" else []
-    lines = {
-        "CQUAD8": f"CQUAD8,1,1,{first}\n,{','.join(fields)},,,,,,{{z}}\n",
-        "CTRIA6": f"CTRIA6,1,1,{first}\n,,{{z}}\n",
-    }
-    flat = "".join(f"GRID,{n},,{xyz[n][0]},{xyz[n][1]},0.\n" for n in used)
-    offset = model(flat + lines[shape].format(z=z) + prop)
-    arms = "".join(f"GRID,{100 + n},,{xyz[n][0]},{xyz[n][1]},{z}\n" for n in used)
-    rigid = "".join(f"RBE2,{200 + n},{n},123456,{100 + n}\n" for n in used)
-    moved = lines[shape].format(z="")
-    for n in sorted(used, reverse=True):
-        moved = moved.replace(f",{n},", f",{100 + n},").replace(f",{n}\n", f",{100 + n}\n")
-    moved = f"{shape},1,1," + moved.split(",", 3)[3]
-    apart = model(flat + arms + rigid + moved + prop)
-    assert _max_change(offset, apart) < 1e-12
-
-
-RODS = "PROD,1,1,1.\nMAT1,1,1.,,.3,1.\nPARAM,AUTOSPC,NO\n"
-
-
-def test_a_linkage_is_not_a_rigid_body(model):
-    """Two cranks and a bar between them: the bar goes sideways, the cranks turn."""
-    found = model(
-        "GRDSET,,,,,,,3456\nGRID,1,,,,,,123456\nGRID,2,,0.,1.\nGRID,3,,2.,1.\n"
-        "GRID,4,,2.,0.,0.,,123456\nCROD,1,1,1,2\nCROD,2,1,2,3\nCROD,3,1,3,4\n" + RODS
-    )
-    with pytest.raises(InputError, match=r"mechanism: a motion .* at 2:1, 3:1;"):
-        solve(found, 3)
-
-
-def test_a_deck_that_is_held_everywhere_is_told_so(model):
-    with pytest.raises(InputError, match="constraints leave no free degree of freedom"):
-        model("SPOINT,1\nCELAS4,1,1.,1,0\nCMASS4,2,1.,1,0\nSPC1,3,,1\n", case="SPC = 3")
-
-
 @pytest.mark.parametrize("shear", [1e-6, 1.0, 1e3])
 def test_lines_have_any_modulus_of_shear(model, shear):
     """A stick model's material: shells refuse a Poisson's ratio of 49."""
@@ -424,46 +369,6 @@ def test_lines_have_any_modulus_of_shear(model, shear):
         model(cards + plate)
 
 
-def test_shafts_of_scalar_points_turn_freely_through_gears(model):
-    masses = "".join(f"CMASS4,{k},1.,{k},0\n" for k in (1, 2, 3, 4))
-    shafts = "SPOINT,1,2,3,4\nCELAS4,11,100.,1,2\nCELAS4,12,50.,3,4\nMPC,5,3,,1.,2,,-2.\n"
-    found = solve(model(masses + shafts, case="MPC = 5"), 3)
-    assert found.rigid_body_modes == 1
-    shape = found.vectors[:, 0] / found.vectors[0, 0]
-    np.testing.assert_allclose(shape, [1.0, 1.0, 2.0], rtol=1e-9)
-    T = np.array([[1.0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 0, 1]])
-    K = np.array([[100.0, -100, 0], [-100, 300, -100], [0, -100, 50]])
-    exact = np.sqrt(sl.eigh(K, T.T @ T, eigvals_only=True)[1:]) / (2 * np.pi)
-    np.testing.assert_allclose(found.frequencies_hz[1:], exact, rtol=1e-9)
-
-
-def test_a_pendulum_is_a_rigid_body(model):
-    found = model("GRID,1,,,,,,123456\nGRID,2,,1.,,,,3456\nCROD,1,1,1,2\n" + RODS)
-    assert solve(found, 2).rigid_body_modes == 1
-
-
-def test_a_door_turns_on_its_hinges(model):
-    found = model(
-        "GRID,1,,0.,0.,0.,,123\nGRID,2,,2.,0.,0.,,123\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\n"
-        "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,7.+4,,.3,1.\n"
-    )
-    assert solve(found, 3).rigid_body_modes == 1
-
-
-PLATE = (
-    "GRID,1,,0.,0.,0.,,123456\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.,,123456\n"
-    "CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.01,1,,1\nMAT1,1,7.+10,,.3,2700.\n"
-)
-
-
-def test_a_part_that_is_not_connected_is_named(model):
-    """A bar that floats beside a clamped plate, and a clamped plate alone."""
-    bar = "GRID,81,,0.,0.,2.\nGRID,82,,1.,0.,2.\nCBAR,9,9,81,82,0.,0.,1.\nPBAR,9,1,1.,1.,1.,1.\n"
-    found = solve(model(PLATE + bar), 12)
-    assert any("not connected to the rest" in w and "81, 82" in w for w in found.warnings)
-    assert not solve(model(PLATE), 4).warnings
-
-
 def test_a_solid_that_names_a_grid_twice_is_refused(model):
     grids = "".join(
         f"GRID,{1 + i + 2 * j + 4 * k},,{i}.,{j}.,{k}.\n"
@@ -473,9 +378,3 @@ def test_a_solid_that_names_a_grid_twice_is_refused(model):
     )
     with pytest.raises(InputError, match=r"CHEXA 5 \(.*\) names a grid twice"):
         model(grids + "CHEXA,5,1,1,2,4,3,5,6\n,8,8\nPSOLID,1,1\nMAT1,1,1.,,.3,1.")
-
-
-def test_elements_of_different_cards_with_one_number_are_said(model):
-    bar = "CBAR,1,9,2,3,0.,0.,1.\nPBAR,9,1,1.,1.,1.,1.\n"
-    found = model(PLATE + bar)
-    assert any("share the number 1" in w for w in found.warnings)
