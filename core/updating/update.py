@@ -236,7 +236,7 @@ def _walk(
     kept = 0
     doubted = False
     while len(trail) < most:
-        trial, _ = _descend(problem, near, point, stage)
+        trial = _descend(problem, near, point, stage)
         if trial is None and point is sure:
             return trail, near, _NO_STEP
         stop: Stop | None = _NO_STEP
@@ -283,18 +283,16 @@ def _apart(a: Point, b: Point) -> float:
     return float(np.exp(np.max(np.abs(np.log(a.factors / b.factors)))))
 
 
-def _descend(
-    problem: Problem, orders: Orders, point: Point, stage: Stage
-) -> tuple[Point | None, int]:
-    """Take the step, halved until it is one; return where it leads and how many were tried."""
+def _descend(problem: Problem, orders: Orders, point: Point, stage: Stage) -> Point | None:
+    """Take the step, halved until it is one; return where it leads, None where none is."""
     lower, upper = problem.bounds
     step = problem.step(orders, point, stage.parameters, stage.minimised)
     for halving in range(UPDATING.halvings):
         p = np.clip(point.factors + step / 2**halving, lower, upper)
         trial = problem.at(orders, p, stage.minimised)
         if problem.closer(trial, point, stage.minimised):
-            return trial, halving + 1
-    return None, UPDATING.halvings
+            return trial
+    return None
 
 
 def _agree(reduced: Point, full: Point, tolerance: float) -> bool:
