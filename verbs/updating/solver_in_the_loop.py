@@ -63,7 +63,7 @@ def by_solver(
             every = [configuration(s, f) for s, f in zip(states, factors, strict=True)]
             found = moved(every, asked, kept)
             own = apart(found, every)
-            decks = [written(s.analysis, m.done)[0] for s, m in zip(states, own, strict=True)]
+            decks = [deck for deck, _ in written(states, own, asked)]
             progress("your solver solves the updated deck")
             after = judged([changed for changed, _ in decks])
             last = factors

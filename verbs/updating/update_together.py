@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ...core.errors import InputError
 from ...core.results.plain import Table
@@ -12,7 +13,7 @@ from ...core.results.together import configuration_rows, pair_rows, shared_rows
 from ...core.results.update import drawn, posterior_table, sample_rows, start_rows
 from ...core.updating.problem import Problem
 from ...core.version import VERSION
-from ..analysis import correlated, read_analysis
+from ..analysis import correlated
 from ..files.made_of import made_of
 from ..files.sources import measured, read_deck
 from ..runs.run import Updated
@@ -22,9 +23,13 @@ from ..studies.relations import names_in, read_relation
 from ..studies.study import Study
 from ..studies.study_tables import ConfigurationRequest
 from .kept import kept_in
+from .solved_decks import analyses
 from .solver_in_the_loop import by_solver
 from .updated import updated
 from .updating_ways import State, by_itself, configuration
+
+if TYPE_CHECKING:
+    from ...adapters.nastran import Deck
 
 
 def update_together(asked: Study, progress: Say, keep: Files | None = None) -> UpdatedTogether:
@@ -45,13 +50,19 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     if not any((asked.parameters, *(c.parameters for c in asked.configurations))):
         raise InputError("no parameter is named; say what may move, for example 'PBAR 11 I1'")
     _require_one_meaning(asked)
-    states: list[State] = []
-    relations = asked.relations
+    progress(f"reading and correlating {', '.join(c.name for c in asked.configurations)}")
+    requests, relations = [], asked.relations
     for one in asked.configurations:
-        progress(f"reading and correlating {one.name}")
-        states.append(_read(replace(asked, relations=relations), one))
-        here = states[-1].asked.relations
+        requests.append(_read(replace(asked, relations=relations), one))
+        here = requests[-1][1].relations
         relations = tuple(text for text in relations if text not in here)
+    sides = [measured(own.test, own) for _, own in requests]
+    decks = [(d, own, s.highest(own)) for (d, own), s in zip(requests, sides, strict=True)]
+    every = zip(asked.configurations, sides, analyses(decks, asked.executor), requests, strict=True)
+    states = [
+        State(one.name, own, side, a, correlated(a, side, own).placed)
+        for one, side, a, (_, own) in every
+    ]
     problem = Problem.of([configuration(s) for s in states])
     _require_all_used(asked, problem)
     _require_all_told(relations, problem)
@@ -84,8 +95,8 @@ def update_together(asked: Study, progress: Say, keep: Files | None = None) -> U
     )
 
 
-def _read(asked: Study, one: ConfigurationRequest) -> State:
-    """Read a configuration with those of the parameters that its deck has, and their relations."""
+def _read(asked: Study, one: ConfigurationRequest) -> tuple[Deck, Study]:
+    """Read the deck of a configuration; ask of it what it has of the parameters and relations."""
     from ...adapters.nastran.assembly.wide_parameters import stands_in
     from ...adapters.nastran.fields.parameter_references import parse_request
 
@@ -99,10 +110,7 @@ def _read(asked: Study, one: ConfigurationRequest) -> State:
         )
     names = {parse_request(text).name for text in there}
     known = tuple(text for text in own.relations if names_in(text) <= names)
-    own = replace(own, parameters=there, relations=known)
-    side = measured(own.test, own)
-    analysis = read_analysis(deck, own, side.highest(own))
-    return State(one.name, own, side, analysis, correlated(analysis, side, own).placed)
+    return deck, replace(own, parameters=there, relations=known)
 
 
 def _require_one_meaning(asked: Study) -> None:

@@ -28,9 +28,10 @@ from ..studies.options import Say
 from ..studies.study import Study
 from ..studies.values import meant
 from .kept import Kept
+from .solved_decks import Solved, solved_again
 
 if TYPE_CHECKING:
-    from ...adapters.nastran.assembly.read_back import ReadBack
+    from ...adapters.nastran import Deck
     from ...adapters.nastran.editing.changed_deck import ChangedDeck
     from ...adapters.nastran.fields.parameter_references import FieldRef
 
@@ -93,11 +94,10 @@ def by_itself(
     progress("updating")
     every = [configuration(s) for s in states]
     found = moved(every, asked, kept)
-    ways = []
-    for s, own in zip(states, apart(found, every), strict=True):
-        progress(f"writing the updated deck{s.named} and solving it again")
-        ways.append(_way_of(s, own))
-    return found, ways
+    own = apart(found, every)
+    progress("writing the updated deck and solving it again")
+    decks = written(states, own, asked)
+    return found, [_way_of(*of) for of in zip(states, own, decks, strict=True)]
 
 
 def apart(found: Moved, every: Sequence[core.Configuration]) -> list[Moved]:
@@ -111,7 +111,7 @@ def apart(found: Moved, every: Sequence[core.Configuration]) -> list[Moved]:
     ]
 
 
-def _way_of(state: State, found: Moved) -> Way:
+def _way_of(state: State, found: Moved, again: tuple[Written, Solved]) -> Way:
     """Return what an update by the embedded solver did to a deck, both states compared."""
     analysis, placed, criteria = state.analysis, state.placed, state.asked.criteria
 
@@ -119,9 +119,9 @@ def _way_of(state: State, found: Moved) -> Way:
         modes = modes_of(model, solution)
         return compare(analysis.geometry, modes, placed, criteria, solution.rigid_body_modes)
 
-    deck, again = written(analysis, found.done)
+    deck, solved = again
     before = comparison(analysis.model, found.done.before.solution)
-    return Way(found, before, comparison(again.model, again.solution), deck)
+    return Way(found, before, comparison(*solved), deck)
 
 
 def configuration(state: State, corrected: Floats | float = 1.0) -> core.Configuration:
@@ -163,37 +163,44 @@ def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Move
     return Moved(put_back(every, last, best), starts, intervals, told, evidence)
 
 
-def written(analysis: Analysis, done: core.Updated) -> tuple[Written, ReadBack]:
-    """Return the updated deck and the values of its parameters' fields; and it read back, solved.
+def written(
+    states: Sequence[State], every: Sequence[Moved], asked: Study
+) -> list[tuple[Written, Solved]]:
+    """Return the updated decks, the values of their parameters' fields; each read back, solved.
 
     Raises
     ------
     CheckError
-        When the deck read back does not give the frequencies of the updated model.
+        When a deck read back does not give the frequencies of its updated model.
     """
     from ...adapters.nastran import read_value, set_values
-    from ...adapters.nastran.assembly.read_back import read_back
     from ...adapters.nastran.editing.changed_deck import ChangedDeck
     from ...adapters.nastran.fields.parameter_references import moved_as_known
 
-    assert analysis.deck is not None
-    assert analysis.given is not None
-    parameters = analysis.model.parameters
-    wanted = moved_as_known(analysis.specs, parameters, done.factors, done.standard_error)
-    text, given = set_values(analysis.deck.text, wanted), analysis.given.text
-    changed = ChangedDeck.of(given, text if wanted else given)
-    target, unsure = _as_written(analysis, done, wanted)
-    again = read_back(changed, len(target))
-    elastic = slice(again.solution.rigid_body_modes, None)
-    found = again.solution.eigenvalues[elastic]
-    off = np.max(np.abs(found / target[elastic] - 1.0), initial=0.0)
-    if not off < _AGREES + unsure:
-        raise CheckError(
-            f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
-            "updated model's; nothing was written"
-        )
-    values = [[read_value(text, r) for r in s.fields] for s in analysis.specs]
-    return (changed, values), again
+    told: list[Written] = []
+    due: list[tuple[Floats, float]] = []
+    given: list[Deck] = []
+    for analysis, done in ((s.analysis, m.done) for s, m in zip(states, every, strict=True)):
+        assert analysis.deck is not None
+        assert analysis.given is not None
+        parameters = analysis.model.parameters
+        wanted = moved_as_known(analysis.specs, parameters, done.factors, done.standard_error)
+        text, before = set_values(analysis.deck.text, wanted), analysis.given.text
+        values = [[read_value(text, r) for r in s.fields] for s in analysis.specs]
+        told.append((ChangedDeck.of(before, text if wanted else before), values))
+        due.append(_as_written(analysis, done, wanted))
+        given.append(analysis.given)
+    decks = [(changed, len(due[k][0])) for k, (changed, _) in enumerate(told)]
+    again = list(solved_again(decks, given, asked.executor))
+    for (_, solution), (target, unsure) in zip(again, due, strict=True):
+        elastic = slice(solution.rigid_body_modes, None)
+        off = np.abs(solution.eigenvalues[elastic] / target[elastic] - 1.0).max(initial=0.0)
+        if not off < _AGREES + unsure:
+            raise CheckError(
+                f"the updated deck, read back, gives frequencies up to {50 * off:.2g} % from the "
+                "updated model's; nothing was written"
+            )
+    return list(zip(told, again, strict=True))
 
 
 def _as_written(

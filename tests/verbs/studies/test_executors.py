@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from trueup.core.independent import Each, in_turn
 from trueup.core.updating.metropolis import adaptive_metropolis
 from trueup.verbs.studies import executors
 from trueup.verbs.studies.executors import executor
+from trueup.verbs.updating import solved_decks
 from trueup.verbs.updating.outside_solver import _run
 
 NUMBERS = [3.0, 1.0, 4.0, 1.5, 9.0]
@@ -196,3 +198,35 @@ def test_an_update_goes_on_where_it_was_cut_off(files: tuple[Path, Path], tmp_pa
     ]
     with pytest.raises(InputError, match="is not of this study, deck, test and version"):
         updated(files, keep=keep, seed=7)
+
+
+@pytest.mark.filterwarnings("default")
+def test_configurations_are_solved_alike_wherever_that_is(
+    files: tuple[Path, Path], asked: str, monkeypatch: pytest.MonkeyPatch
+):
+    """Each deck is read and solved, and the updated one again, by the executor."""
+    sent: list[str] = []
+
+    @contextmanager
+    def told(who: str) -> Iterator[Each]:
+        with executor(who) as each:
+            yield lambda work, items: (sent.append(work.__name__), each(work, items))[1]
+
+    monkeypatch.setattr(solved_decks, "executor", told)
+    states = [{"name": n, "deck": files[0], "test": files[1]} for n in ("one", "other")]
+
+    def together(who: str) -> trueup.UpdatedTogether:
+        done = trueup.update(parameters=["MAT1 1 E"], configurations=states, executor=who,
+                             residuals="frequencies", deck_length_unit="mm")  # fmt: skip
+        assert isinstance(done, trueup.UpdatedTogether)
+        return done
+
+    here = together("processes:1")
+    assert not sent
+    monkeypatch.setattr(solved_decks, "_WORTH_SENDING", 1)
+    there = together(asked)
+    assert sent == ["_analysis", "_solved_again"]
+    assert [q.factor for q in there.parameters] == [q.factor for q in here.parameters]
+    for name, own in here.results.items():
+        assert there.results[name].pairs == own.pairs
+        assert there.results[name].deck.diff == own.deck.diff
