@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,10 +40,10 @@ def free_folder(name: str) -> Path:
     return path
 
 
-def answer_changed(found: Changing, folder: Path, output: Output) -> None:
-    """Write the run folder and, where asked, the changed deck over the user's own; answer.
+def answer_changed(found: Changing | UpdatedTogether, folder: Path, output: Output) -> None:
+    """Write the run folder and, where asked, the changed decks over the user's own; answer.
 
-    The deck is changed when everything else is written and checked: a run that fails leaves it
+    A deck is changed when everything else is written and checked: a run that fails leaves it
     alone.
     """
     from ..adapters.run_folder.write_run import run_folder, write_json
@@ -51,11 +52,21 @@ def answer_changed(found: Changing, folder: Path, output: Output) -> None:
         found.fill(work)
         if output.in_place:
             found = found.put_in_place()
-            write_json(work / "result.json", found.to_dict())
+            for name, own in _decks(found).items():
+                write_json(work / name / "result.json", own.to_dict())
     answer(found, folder, output)
-    if found.in_place and speaks(output):
-        for file, backup in zip(found.in_place.files, found.in_place.backups, strict=True):
+    if speaks(output):
+        put = [d.in_place for d in _decks(found).values() if d.in_place]
+        both = (row for p in put for row in zip(p.files, p.backups, strict=True))
+        for file, backup in dict.fromkeys(both):
             stdout().print(f"changed in place: {file} (before: {backup})", markup=False)
+
+
+def _decks(found: Changing | UpdatedTogether) -> Mapping[str, Changing]:
+    """Return what was changed, by the folder of its own below the run folder."""
+    from ..verbs.runs.together import UpdatedTogether
+
+    return found.results if isinstance(found, UpdatedTogether) else {"": found}
 
 
 def answer(found: Run | UpdatedTogether, folder: Path, output: Output) -> None:

@@ -23,13 +23,9 @@ def correlate(study: Study, output: Output) -> None:
 
 def update(study: Study, output: Output) -> None:
     """Move the named parameters to the test, by sensitivities."""
-    from ...verbs.runs.run import Updated
     from ...verbs.studies.design_variables import NOT_NAMED
     from ...verbs.update import update as move
 
-    if study.configurations and output.in_place:
-        raise typer.BadParameter("--in-place changes one deck; take those of configurations "
-                                 "from the run folder")  # fmt: skip
     folder = new_folder(study, "update", output)
     keep = folder.with_name(f"{folder.name}.unfinished")
     if not output.resume:
@@ -43,10 +39,7 @@ def update(study: Study, output: Output) -> None:
         if str(error).startswith(NOT_NAMED):
             raise typer.BadParameter(str(error)) from None
         raise
-    if isinstance(done, Updated):
-        answer_changed(done, folder, output)
-    else:
-        answer(done, done.save(folder, output.force), output)
+    answer_changed(done, folder, output)
     shutil.rmtree(keep, ignore_errors=True)
 
 

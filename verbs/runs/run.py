@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TypeVar
 
 import numpy as np
 
@@ -129,8 +129,27 @@ class Changing(ChangingTables, Run):
         InputError
             A file changed on disk meanwhile, or cannot be written; then none is.
         """
-        written = (tuple(map(str, paths)) for paths in self.deck.write_in_place())
-        return replace(self, in_place=InPlace(*written))
+        return put_in_place([self])[0]
+
+
+_C = TypeVar("_C", bound=Changing)
+
+
+def put_in_place(found: Sequence[_C]) -> list[_C]:
+    """Write the files of several changed decks over the originals, all or none; say so in each.
+
+    Raises
+    ------
+    InputError
+        As `Changing.put_in_place`; a file of several decks would be another in each.
+    """
+    from ...adapters.nastran.editing.changed_deck import put_in_place as put
+
+    written = put([one.deck for one in found])
+    return [
+        replace(one, in_place=InPlace(*(tuple(map(str, paths)) for paths in both)))
+        for one, both in zip(found, written, strict=True)
+    ]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

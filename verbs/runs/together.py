@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Self
 
@@ -14,7 +14,7 @@ from ..studies.imprint import imprint_of
 from ..studies.study import Study, read_study
 from ..studies.study_text import write_study
 from .folder import Folder
-from .run import Updated
+from .run import Updated, put_in_place
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -44,6 +44,17 @@ class UpdatedTogether(TogetherTables, Folder):
         write_study(work, self.study)
         page = together_page(self, imprint_of(self.study))
         (work / "report.html").write_text(page, encoding="utf-8")
+
+    def put_in_place(self) -> Self:
+        """Write the files of all decks that changed over the originals, with backups.
+
+        Raises
+        ------
+        InputError
+            As of one deck; a file that decks share would be another in each; then none is written.
+        """
+        put = put_in_place([*self.results.values()])
+        return replace(self, results=dict(zip(self.results, put, strict=True)))
 
     @classmethod
     def of_folder(cls, run: Path, result: Mapping[str, object]) -> Self:

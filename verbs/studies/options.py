@@ -95,8 +95,9 @@ class UpdateOptions(CompareOptions, total=False):
     What was measured beside modes, in deck units, each for a residual of its own:
     ``measured_mass`` ("mass"), ``measured_centre_of_gravity`` (x, y, z: "centre_of_gravity"),
     ``load_cases`` ("deflections"): each with ``loads`` as "1187:-Z=100" and ``readings`` as
-    "40:+Z=-1.25". ``mass_sigma``, ``centre_of_gravity_sigma`` and ``deflection_sigma`` are their
-    standard deviations, of the mass, of the structure's size, and of the largest reading of a case.
+    "40:+Z=-1.25", grids along basic axes. ``mass_sigma``, ``centre_of_gravity_sigma`` and
+    ``deflection_sigma`` are their standard deviations, of the mass, of the structure's size, and of
+    the largest reading of a case.
     "damping" moves the ratios of complex modes to the test's; ``damping_sigma`` is of a ratio.
     "frfs" moves the log magnitudes of frequency responses (``frf_sigma``), "antiresonances" the
     dips of driving points (``antiresonance_sigma`` of a frequency).

@@ -1,5 +1,6 @@
 """A deck that was changed: to be looked at, compared with what it was, and written."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -7,7 +8,7 @@ from typing import Self
 from ....core.noun import Noun
 from ..text.deck_text import DeckText
 from .deck_diff import unified_diff
-from .write_deck import names_in_tree, write_deck, write_in_place
+from .write_deck import names_in_tree, write_all_in_place, write_deck
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +50,15 @@ class ChangedDeck(Noun):
         """Return what a deck became."""
         return cls(text, unified_diff(original, text))
 
-    def write_in_place(self) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
-        """Write the files that changed over the originals; return them and their backups.
 
-        Raises
-        ------
-        InputError
-            A file changed on disk meanwhile, or cannot be written; then none is.
-        """
-        files = tuple(f.path for f in self.text.files if f.edited)
-        return files, write_in_place(self.text)
+def put_in_place(decks: Sequence[ChangedDeck]) -> list[tuple[tuple[Path, ...], tuple[Path, ...]]]:
+    """Write the files that changed over the originals; return those of each deck, their backups.
+
+    Raises
+    ------
+    InputError
+        As `write_all_in_place`; then none is written.
+    """
+    backups = {f.resolve(): b for f, b in write_all_in_place([d.text for d in decks]).items()}
+    files = [tuple(f.path for f in d.text.files if f.edited) for d in decks]
+    return [(own, tuple(backups[f.resolve()] for f in own)) for own in files]

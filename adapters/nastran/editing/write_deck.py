@@ -3,7 +3,7 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from ....core.errors import InputError, Place, path_of
 from ..text.deck_text import DeckText
 from ..text.includes import is_anchored
-from ..text.source_file import key_of
+from ..text.source_file import TextFile, key_of
 from .set_values import splice
 
 ELSEWHERE = "included"
@@ -82,15 +82,32 @@ def merged(deck: DeckText) -> bytes:
 def write_in_place(deck: DeckText) -> tuple[Path, ...]:
     """Write the files that changed over the originals; return the backups made of them.
 
+    As `write_all_in_place` does of several decks.
+    """
+    return tuple(write_all_in_place([deck]).values())
+
+
+def write_all_in_place(decks: Sequence[DeckText]) -> dict[Path, Path]:
+    """Write the files of decks that changed over the originals; return the backup of each.
+
     All files are written beside the originals first and then put in their place; if that fails,
     the originals are restored. A backup is named ``FILE.bak``, ``FILE.bak2`` where that exists.
 
     Raises
     ------
     InputError
-        A file changed on disk since it was read, or cannot be written.
+        A file changed on disk since it was read, or cannot be written; a file of several decks
+        would be another in each.
     """
-    edited = [f for f in deck.files if f.edited]
+    every: dict[Path, TextFile] = {}
+    for f in (f for deck in decks for f in deck.files):
+        known = every.setdefault(f.path.resolve(), f)
+        if known.data != f.data:
+            raise Place(f.path).fault(
+                "is part of several decks and would be another file in each: nothing is written; "
+                "leave --in-place out and take the decks from the run folder"
+            )
+    edited = [f for f in every.values() if f.edited]
     for f in edited:
         if not f.path.is_file() or f.path.read_bytes() != f.original:
             raise Place(f.path).fault("changed on disk since it was read: nothing is written")
@@ -112,7 +129,7 @@ def write_in_place(deck: DeckText) -> tuple[Path, ...]:
         for path in (*fresh, *backups.values()):
             path.unlink(missing_ok=True)
         raise InputError(f"cannot write the deck in place: {error.strerror}") from None
-    return tuple(backups.values())
+    return {f.path: backup for f, backup in zip(edited, backups.values(), strict=True)}
 
 
 def names_in_tree(deck: DeckText) -> list[str]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 import trueup
 from trueup.cli.app import app
@@ -199,6 +200,49 @@ def test_a_study_names_decks_and_tests(files: Path, tmp_path: Path) -> None:
     assert len(one["parameters"]) == 3
     alone = trueup.open_run(out / "with_store")
     assert [p.name for p in alone.parameters] == ["stiffness", "store", "density"]
+
+
+def in_place(files: Path, folder: Path, study: str) -> tuple[Path, Result]:
+    """Ask for both decks to be changed where they stand; the folder they are in."""
+    here = folder / "in_place"
+    shutil.copytree(files, here)
+    (here / "study.toml").write_text("write_undetermined = true\nmax_iterations = 3\n" + study)
+    words = ["update", "--study", str(here / "study.toml"), "--out", str(folder / "run"), "-ip"]
+    return here, CliRunner().invoke(app, words)
+
+
+def test_decks_are_changed_in_place_a_file_that_they_share_once(
+    files: Path, tmp_path: Path
+) -> None:
+    whole = STUDY.replace("parameters = [", 'parameters = ["density = MAT1 1 RHO", ', 1)
+    here, said = in_place(
+        files, tmp_path, whole.replace('parameters = ["density = MAT1 1 RHO"]', "")
+    )
+    assert said.exit_code == 0, said.output
+    now = {p.name: p.read_bytes() for p in here.iterdir() if p.suffix in (".inc", ".bdf", ".bak")}
+    was = {name: (files / name).read_bytes() for name in now if (files / name).exists()}
+    changed = {name for name in now if now[name] != was.get(name)}
+    assert changed == {"wing.inc", "wing.inc.bak", "with_store.bdf", "with_store.bdf.bak"}
+    assert now["wing.inc.bak"] == was["wing.inc"]
+    assert now["wing.inc"] == (tmp_path / "run/as built/deck/wing.inc").read_bytes()
+    for name, own in (("as built", ["wing.inc"]), ("with_store", ["with_store.bdf", "wing.inc"])):
+        told = json.loads((tmp_path / "run" / name / "result.json").read_text())["in_place"]
+        assert [Path(f).name for f in told["files"]] == own
+        assert [Path(f).name for f in told["backups"]] == [f"{f}.bak" for f in own]
+    assert said.output.replace("\n", "").count("changed in place") == 2
+
+
+def test_a_shared_file_that_would_be_two_is_not_changed_in_place(
+    files: Path, tmp_path: Path
+) -> None:
+    """The density is one configuration's own parameter, its card in the file that both include."""
+    named = '"stiffness = MAT1 1 E", "store = CONM2 900 M"'
+    here, said = in_place(files, tmp_path, STUDY.replace(named, '"skin = PSHELL 1 T"'))
+    assert said.exit_code == 1, said.output
+    assert "would be another file in each" in str(said.exception)
+    assert all((here / p.name).read_bytes() == p.read_bytes() for p in files.glob("*.[bi]*"))
+    assert not (tmp_path / "run").exists()
+    assert not [*here.glob("*.bak")]
 
 
 @pytest.mark.parametrize(

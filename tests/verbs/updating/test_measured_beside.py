@@ -22,7 +22,8 @@ TIP = 50.0 * LENGTH**3 / (3.0 * TRUTH[0] * E * INERTIA)
 def cantilever(e: float = E, rho: float = RHO) -> str:
     n = 12
     xyz = np.linspace(0.0, LENGTH, n + 1)
-    rows = [f"GRID,{k + 1},,{x:.4f},0.,0." for k, x in enumerate(xyz)]
+    rows = [f"GRID,{k + 1},,{x:.4f},0.,0.,{7 * (k == n)}" for k, x in enumerate(xyz)]
+    rows += ["CORD2R,7,,0.,0.,0.,0.,1.,0.", ",0.,0.,1."]  # turns the tip alone: loads are basic
     rows += [f"CBAR,{k + 1},1,{k + 1},{k + 2},0.,0.,1." for k in range(n)]
     rows += [f"PBAR,1,1,{AREA},{INERTIA},9000.,12000.", f"MAT1,1,{e:.1f},,0.3,{rho:.4e}"]
     rows += ["CONM2,90,1,,2.-4", "SPC1,1,123456,1", "EIGRL,1,,,6"]
