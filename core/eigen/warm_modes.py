@@ -11,6 +11,7 @@ another such square (Mathias 1998, SIAM Journal on Matrix Analysis 19, 541).
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as sl
@@ -24,18 +25,37 @@ from .pencil import Pencil, Spectrum, widest_gap
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """What is known of the elastic modes before they are solved for.
+    """What is known of the elastic modes before they are solved for, by the method of Ritz.
 
     Parameters
     ----------
     values : (k,) float
         Rough eigenvalues, ascending, some more than are wanted: a gap is looked for there.
     vectors : (n_free, m) float
-        Span the lowest modes nearly, m <= k.
+        Those of the first m <= k, mass-orthonormal and orthogonal by the stiffness.
     """
 
     values: Floats
     vectors: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """Vectors Z (n, k) and Y = (K - s M)^-1 M Z, with M Z, M Y and what products of them need.
+
+    No product with K is wanted: Z^T K Y and Y^T K Y follow from these.
+    """
+
+    Z: Floats
+    Y: Floats
+    MZ: Floats
+    MY: Floats
+
+    @cached_property
+    def grams(self) -> tuple[Floats, Floats, Floats]:
+        """Z^T M Z, Z^T M Y and Y^T M Y."""
+        crossed = self.MZ.T @ self.Y
+        return self.Z.T @ self.MZ, (crossed + crossed.T) / 2.0, self.Y.T @ self.MY
 
 
 def warm_modes(
@@ -43,8 +63,7 @@ def warm_modes(
 ) -> Spectrum | None:
     """Find the `elastic` lowest modes that are M-orthogonal to `rigid`, (n, n_rigid).
 
-    Vectors drawn at random begin beside those that are near, so that a mode is found of which
-    these know nothing.
+    Where these show fewer modes than the count, vectors drawn at random go on beside them.
 
     Returns
     -------
@@ -63,52 +82,71 @@ def warm_modes(
     except CheckError:
         return None
     X, values = near.vectors, near.values[: near.vectors.shape[1]]
-    fresh = np.random.default_rng(seed).standard_normal((pencil.n, EIGEN.guard))
+    MX, rigid_mass = pencil.M @ X, pencil.M @ rigid
+    rng = np.random.default_rng(seed)
     for _ in range(EIGEN.warm_steps):
-        Y = factor.solve(pencil.M @ np.hstack([X, fresh]))
-        Y -= rigid @ (rigid.T @ (pencil.M @ Y))
-        if np.count_nonzero(values < s) == below and not fresh.shape[1]:
-            found = _polished(pencil, s, X[:, :below], Y[:, :below], elastic)
-            if found is not None:
-                return found
-        Y[:, : len(values)] = X - Y[:, : len(values)] * (values - s)
-        values, X = _ritz(pencil, np.hstack([X, Y]), max(below, elastic) + EIGEN.guard)
-        fresh = fresh[:, :0]
+        counted = np.count_nonzero(values < s) == below
+        if not counted:
+            fresh = rng.standard_normal((pencil.n, EIGEN.guard))
+            fresh -= rigid @ (rigid_mass.T @ fresh)
+            X, MX = np.hstack([X, fresh]), np.hstack([MX, pencil.M @ fresh])
+        Y = factor.solve(MX)
+        Y -= rigid @ (rigid_mass.T @ Y)
+        step = _Step(X, Y, MX, pencil.M @ Y)
+        found = _polished(pencil, s, step, below, elastic) if counted else None
+        if found is not None:
+            return found
+        values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
+        k = X.shape[1]
+        X, MX = (np.asarray(a @ C[:k] + b @ C[k:]) for a, b in ((X, Y), (MX, step.MY)))
     return None
 
 
-def _polished(pencil: Pencil, s: float, X: Floats, Y: Floats, elastic: int) -> Spectrum | None:
-    """Ritz pairs of Y = (K - s M)^-1 M X, X being as many as there are modes below s.
+def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -> Spectrum | None:
+    """Ritz pairs of the first vectors of Y, as many as there are modes below s.
 
-    None where those of X are not accurate, or a mode is so near to s that its sign is rounding.
+    None where those of Z are not accurate, or a mode is so near to s that its sign is rounding.
     """
-    MX, MY = pencil.M @ X, pencil.M @ Y
-    stiff = MX.T @ Y
-    rho, turn = np.linalg.eigh((stiff + stiff.T) / 2.0)
+    some = slice(below)
+    mass, stiff, moved = (gram[some, some] for gram in step.grams)
+    rho, turn = sl.eigh(stiff, mass)
     rho, turn = rho[::-1], turn[:, ::-1]  # 1 / (lambda - s): the lowest mode is next to zero
     if rho[0] >= 0.0:
         return None
-    alpha, C = sl.eigh((stiff + stiff.T) / 2.0, Y.T @ MY)
-    R, MR = Y @ turn - (X @ turn) * rho, MY @ turn - (MX @ turn) * rho
-    off = np.abs(1.0 / rho**3) * np.einsum("ij,ij->j", R, MR) + np.abs(alpha - 1.0 / rho)
+    alpha, C = sl.eigh(stiff, moved)
+    residual = np.einsum("ij,ij->j", turn, moved @ turn) - rho**2
+    off = np.abs(residual / rho**3) + np.abs(alpha - 1.0 / rho)
     values, first = s + alpha, slice(elastic)
     sigma = -max(pencil.least_shift, EIGEN.nearer[0] * float(values[0]))
     error = off / (values - sigma)
     if error[first].max() > EIGEN.warm:
         return None
-    X = Y @ C
+    X, MX = step.Y[:, some] @ C, step.MY[:, some] @ C
     size = float((np.abs(pencil.k_diagonal) @ X**2).max())
-    backward = pencil.backward_error(values, X, pencil.K @ X, MY @ C)
+    backward = pencil.backward_error(values, X, step.MZ[:, some] @ C + s * MX, MX)
     if backward > EIGEN.backward or -alpha[-1] <= EIGEN.signs * size:
         return None
     return Spectrum(values[first], X[:, first], error[first], sigma, complete=False, missed=0)
 
 
-def _ritz(pencil: Pencil, S: Floats, most: int) -> tuple[Floats, Floats]:
-    """Find the `most` lowest Ritz pairs in the span of S (n, k)."""
-    stiff, mass = S.T @ (pencil.K @ S), S.T @ (pencil.M @ S)
-    massive = mass.diagonal() > 0.0
-    lowest = (stiff.diagonal()[massive] / mass.diagonal()[massive]).min()
+def _ritz(
+    pencil: Pencil, s: float, values: Floats, step: _Step, most: int
+) -> tuple[Floats, Floats]:
+    """Find the `most` lowest Ritz pairs in the span of Z and Y: coefficients, (2 k, most).
+
+    The first vectors of Z are Ritz vectors of `values`; the others are taken by their Y alone.
+    """
+    k, m = step.Z.shape[1], len(values)
+    massive, crossed, moved = step.grams
+    mass = np.block([[massive, crossed], [crossed, moved]])
+    mixed = massive + s * crossed
+    stiff = np.block(
+        [[np.diag(np.append(values, np.zeros(k - m))), mixed], [mixed.T, crossed + s * moved]]
+    )
+    taken = np.r_[:m, k : 2 * k]
+    stiff, mass = (whole[np.ix_(taken, taken)] for whole in (stiff, mass))
+    positive = mass.diagonal() > 0.0
+    lowest = (stiff.diagonal()[positive] / mass.diagonal()[positive]).min()
     shift = max(pencil.least_shift, float(lowest))
     A = stiff + shift * mass
     scale = 1.0 / np.sqrt(A.diagonal())
@@ -117,6 +155,7 @@ def _ritz(pencil: Pencil, S: Floats, most: int) -> tuple[Floats, Floats]:
     W = scale[:, None] * W[:, kept] / np.sqrt(size[kept])
     theta, C = np.linalg.eigh(W.T @ mass @ W)
     theta, C = theta[::-1][:most], C[:, ::-1][:, :most]
-    massive = theta > EIGEN.zero * theta[0]
-    C = W @ (C[:, massive] / np.sqrt(theta[massive]))
-    return 1.0 / theta[massive] - shift, S @ C
+    finite = theta > EIGEN.zero * theta[0]
+    out = np.zeros((2 * k, np.count_nonzero(finite)))
+    out[taken] = W @ (C[:, finite] / np.sqrt(theta[finite]))
+    return 1.0 / theta[finite] - shift, out

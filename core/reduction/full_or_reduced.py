@@ -60,12 +60,14 @@ class FullOrder:
 class ReducedOrder:
     """The model on the modes of one parameter point and their static answers to parameters.
 
-    `sensors` (n_sensor, n_basis) read the vectors of `solve`.
+    `sensors` (n_sensor, n_basis) read the vectors of `solve`; `answers` (n_free, n_sensor) are the
+    static answers to them at the factors where derivatives are wanted.
     """
 
     reduced: ReducedModel
     sensors: Floats
     n_modes: int
+    answers: Floats | None = None
 
     @property
     def model(self) -> Model:
@@ -81,9 +83,9 @@ class ReducedOrder:
         modes = self.reduced.solve(p, self.reduced.size).take(self._some_more)
         return self._on(full, self.reduced.corrected(p, modes))
 
-    def seen(self, full: FullOrder) -> ReducedOrder:
-        """Return it with derivatives that are right where the sensors read them."""
-        return self._on(full, self.reduced.seen_by(full.sensors))
+    def seen(self, full: FullOrder, p: Floats) -> ReducedOrder:
+        """Return it with derivatives at `p` that are right where the sensors read them."""
+        return replace(self, answers=self.reduced.answers_at(p, full.sensors))
 
     def near(self, p: Floats) -> Near:
         """Return what it knows of the full model's modes at `p`."""
@@ -108,7 +110,7 @@ class ReducedOrder:
         """Differentiate within the basis."""
         assert isinstance(solution, ReducedModes)
         at = self.sensors if with_shapes else None
-        return self.reduced.sensitivities(p, T, tuple(active), at, solution)
+        return self.reduced.sensitivities(p, T, tuple(active), at, solution, self.answers)
 
     def damping_on_modes(self, p: Floats, solution: Spectral) -> tuple[Floats, Floats]:
         """Return D and H on the modes, each (n_mode, n_mode)."""

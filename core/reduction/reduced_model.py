@@ -152,17 +152,18 @@ class ReducedModel(Noun):
         assert factor is not None
         return self._with(factor.solve(R), R, DERIVATIVES.too_little)
 
-    def seen_by(self, sensors: sp.csr_matrix) -> ReducedModel:
-        """Return the model with the static answers to forces at sensors, (n_sensor, n_free), in it.
+    def answers_at(self, p: Floats, sensors: sp.csr_matrix) -> Floats:
+        """Find static answers to sensors C (n_sensor, n_free) at `p`, A^-1 C^T, (n_free, n_sensor).
 
-        What parameters change of modes is then right where the sensors read it, whether or not
-        the basis has the static answers to the parameters: C A^-1 f is the work of f along
-        A^-1 C^T, which is in the basis (the adjoint method: Haug, Choi and Komkov 1986, Design
-        Sensitivity Analysis of Structural Systems).
+        What parameters change of modes is right with them where the sensors read it, whether or
+        not the basis has the static answers to the parameters: C A^-1 f is the work of f along
+        A^-1 C^T (the adjoint method: Haug, Choi and Komkov 1986, Design Sensitivity Analysis of
+        Structural Systems). The factor of the model becomes that at `p`: this ends its use.
         """
         factor = self.solution.factor
         assert factor is not None
-        return self._beside(_answers_to(sensors, factor, self.Q))
+        factor.refactorise(Pencil.of(self.model, p).shifted(self.solution.sigma))
+        return np.asarray(factor.solve(sensors.T.toarray()))
 
     def _with(self, W: Floats, AW: Floats, least: float) -> ReducedModel:
         """Return the model with more vectors W, where they have at least so much energy."""
@@ -189,6 +190,7 @@ class ReducedModel(Noun):
         parameters: Sequence[int],
         sensors: Floats | None = None,
         solution: ReducedModes | None = None,
+        answers: Floats | None = None,
     ) -> Sensitivities:
         """Differentiate modes within the basis, exactly.
 
@@ -202,6 +204,8 @@ class ReducedModel(Noun):
             C Q of the sensors.
         solution : ReducedModes, optional
             At `p`, with its `whole`: repeated modes are those that the coefficients combine.
+        answers : (n_free, n_sensor) float, optional
+            `answers_at` of the sensors at `p`: what of them the basis lacks is added.
 
         Returns
         -------
@@ -232,12 +236,40 @@ class ReducedModel(Noun):
             G = dK - dM * lam[cluster]
             return (G + G.swapaxes(1, 2)) / 2.0
 
-        def change_of(cluster: Ints) -> Floats:
-            return modal_change(lam, cluster, *part(cluster))
-
         at_modes = None if sensors is None else sensors @ X
+        beside = None
+        if at_modes is not None and answers is not None:
+            static = (K - M * lam[near]) / (lam[:, None] - self.solution.sigma)
+            seen = np.einsum("sk,ikj->sji", at_modes, static, optimize=True)
+            beside = seen - self._seen_in_full(p, parameters, X[:, near], lam[near], answers)
+            at_modes = np.hstack([at_modes, np.eye(len(beside))])
+
+        def change_of(cluster: Ints) -> Floats:
+            change = modal_change(lam, cluster, *part(cluster))
+            if beside is None:
+                return change
+            return np.concatenate([change, beside[:, np.searchsorted(near, cluster)]])
+
         size = len(parameters)
         return differentiate(T, by_position, everything, size, matrices_of, at_modes, change_of)
+
+    def _seen_in_full(
+        self, p: Floats, parameters: Sequence[int], x: Floats, lam: Floats, answers: Floats
+    ) -> Floats:
+        """Work of (K' - lambda M') Q x along static answers, (n_sensor, n, n_parameter)."""
+        out = np.empty((answers.shape[1], len(lam), len(parameters)))
+        X = self.Q @ x
+        for k, i in enumerate(parameters):
+            rows, load = _loads(self.model, p, i, X, lam)
+            out[:, :, k] = answers[rows].T @ load
+        return out
+
+
+def _loads(model: Model, p: Floats, i: int, X: Floats, lam: Floats) -> tuple[Ints, Floats]:
+    """Find (K' - lambda M') phi of modes by a parameter, on the rows that it has."""
+    dK, dM = model.dK(i, p), model.dM(i, p)
+    rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
+    return rows, np.asarray(dK[rows] @ X - (dM[rows] @ X) * lam)
 
 
 def build_reduced(
@@ -356,12 +388,6 @@ def static_answers(
     ends = np.cumsum([0] + [drawn if mixed else m * len(g) for g in groups])
     rng = np.random.default_rng(0)
 
-    def loads(i: int) -> tuple[Ints, Floats]:
-        dK, dM = model.dK(i, p0), model.dM(i, p0)
-        rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
-        part = (dK[rows] @ X - (dM[rows] @ X) * lam) * weight
-        return rows, part @ rng.standard_normal((m, drawn)) if mixed else part
-
     S = np.empty((n, ends[-1]), order="F")
     energy = np.zeros((ends[-1],) * 2)
     modal = np.empty((len(span), ends[-1]))
@@ -369,8 +395,9 @@ def static_answers(
         F = np.zeros((n, end - start), order="F")
         for first, i in enumerate(members):
             at = slice(None) if mixed else slice(first * m, (first + 1) * m)
-            rows, part = loads(i)
-            F[rows, at] += part
+            rows, part = _loads(model, p0, i, X, lam)
+            part *= weight
+            F[rows, at] += part @ rng.standard_normal((m, drawn)) if mixed else part
         S[:, start:end] = factor.solve(F)
         energy[:end, start:end] = S[:, :end].T @ F
         energy[start:end, :start] = energy[:start, start:end].T

@@ -184,7 +184,7 @@ class Problem:
     def differentiable(
         self, orders: Sequence[ReducedOrder], point: Point, active: Sequence[int], sketch: int
     ) -> list[ReducedOrder]:
-        """Return bases of `sketch` combinations with what derivatives at the sensors want.
+        """Return bases of `sketch` combinations with what derivatives at a point want.
 
         That is the static answers to the sensors, or those to the parameters where these are fewer.
         """
@@ -195,7 +195,7 @@ class Problem:
             if answers <= sketch:
                 out.append(order)
             elif part.full.sensors.shape[0] < answers:
-                out.append(order.seen(part.full))
+                out.append(order.seen(part.full, point.factors[part.own]))
             else:
                 out.append(reduce_around(part.full, s.factors, found, moving))
         return out
