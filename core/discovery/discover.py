@@ -18,6 +18,7 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates, factors_of, lacking
 from .effects.effect_kind import Scale
+from .effects.support_reach import reaches_of
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
@@ -47,6 +48,7 @@ from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
 from .search.robust_search import robust
+from .search.set_up import beside_reach
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench, Verdicts
 
@@ -335,6 +337,8 @@ def _completed(
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, careful = found.levels, verdict.accepted
     searcher, found, kept, whole = completeness(searcher, found, verdict, deck)
+    reaches = reaches_of(trial.request.structure)
+    kept, whole = beside_reach(searcher, found, kept, whole, reaches)
     best = found.levels[kept]
     if kept:
         structure, densest = trial.request.structure, trial.request.densest

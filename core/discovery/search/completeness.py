@@ -56,6 +56,8 @@ class Completeness:
         foretells them better than the known parameters alone do.
     places : list of list of Place
         Where each suspect of the best may be.
+    reach : float or None
+        How far in supports that hold more than the deck says explain the test as well or better.
     """
 
     deck: Judged
@@ -67,6 +69,7 @@ class Completeness:
     beside: float
     agree: float
     places: list[list[Place]]
+    reach: float | None = None
 
     @property
     def moved(self) -> float:
