@@ -20,8 +20,14 @@ _FITTED = 24
 Known = tuple[Floats, int, Expansion]
 """Bounds (2, k), kind (0 stiffness, 1 mass), functions."""
 
-_TOLERANCE = 3e-7
 _ALLOWED = 1e-6
+"""Error of an element's energy."""
+_ALLOWED_MOVING = 1e-9
+"""The same where its shape moves: rigid motions then count, which are many times the strains."""
+_NEAR = 4
+"""Power of the ratio of two energies by which the larger counts less."""
+_TOLERANCE = 0.3
+"""Of the error that is allowed, in the features that functions are found by."""
 
 
 def parametric_terms(
@@ -36,7 +42,8 @@ def parametric_terms(
     n_dof : int
         Size of the matrices.
     lower, upper : (n_parameter,) float
-        Bounds of the parameters; the terms hold between them to 1e-6 of the elements' energy.
+        Bounds of the parameters; the terms hold between them to 1e-6 of the elements' energy,
+        those of elements whose shape moves to 1e-9.
 
     Returns
     -------
@@ -133,17 +140,17 @@ def _expansion(
         same = other_kind == kind and np.array_equal(bounds, [low, high])
         if same and _fits(found, every, checks, low, high):
             return found
-    tolerance = _TOLERANCE
+    tolerance = every.tolerance
     for samples in (fitted, every, every):
         samples.set_scale(checks)
         found = expand(samples.features, low, high, tolerance)
-        if _worst(found, every, checks, low, high) <= _ALLOWED:
+        if _worst(found, every, checks, low, high) <= every.allowed:
             known.insert(0, (np.array([low, high]), kind, found))
             return found
         tolerance *= 1e-2 if samples is every else 1.0
     raise CheckError(
         f"the dependence of {members[0].block.name} on its parameters could not be expanded to "
-        f"{_ALLOWED:g} over their bounds: give narrower bounds"
+        f"{every.allowed:g} over their bounds: give narrower bounds"
     )
 
 
@@ -151,8 +158,8 @@ def _fits(found: Expansion, samples: _Samples, points: Floats, low: Floats, high
     """Whether functions found for other elements hold for these, none of them in vain."""
     amounts = np.abs(found.weights @ samples.features(found.points)).max(axis=1)
     largest = np.abs(found.values(points, low, high)).max(axis=0)
-    needed = bool((amounts * largest > _TOLERANCE).all())
-    return needed and _worst(found, samples, points, low, high) <= _ALLOWED
+    needed = bool((amounts * largest > samples.tolerance).all())
+    return needed and _worst(found, samples, points, low, high) <= samples.allowed
 
 
 def _pick(m: Members, n: int, generator: np.random.Generator) -> Members:
@@ -175,8 +182,9 @@ def _check_points(low: Floats, high: Floats, generator: np.random.Generator) -> 
 
 @dataclass(eq=False)
 class _Scale:
-    """Transformation of an element's matrix that makes its energy at some point the unit."""
+    """An element's matrix that gives the unit of energy, and the transformation to it."""
 
+    unit: Floats
     W: Floats
     noise: Floats
 
@@ -193,6 +201,9 @@ class _Samples:
         self._n = n_parameter
         self._scales: list[_Scale] = []
         self._known: dict[bytes, list[Floats]] = {}
+        moving = any(m.block.shape_moves for m in members)
+        self.allowed = _ALLOWED_MOVING if moving else _ALLOWED
+        self.tolerance = _TOLERANCE * self.allowed
 
     def matrices(self, point: Floats) -> list[Floats]:
         """Matrices at one point, (k,): for each kind of element (n, m, m); kept."""
@@ -212,18 +223,37 @@ class _Samples:
         return out
 
     def set_scale(self, points: Floats) -> bool:
-        """Take each element's energy where it is smallest as its unit; False when all is zero."""
+        """Take each element's energy where it is smallest as its unit; False when all is zero.
+
+        Where its shape moves rigid motions do too: then it is the mean of those near the smallest.
+        """
         trials = [self.matrices(p) for p in points]
         self._scales = []
         for k in range(len(self._members)):
             stack = np.stack([t[k] for t in trials])
             traces = np.abs(np.einsum("pnii->pni", stack)).sum(axis=2)
-            smallest = stack[np.argmin(traces, axis=0), np.arange(stack.shape[1])]
-            W = _whitener(smallest)
+            unit = stack[np.argmin(traces, axis=0), np.arange(stack.shape[1])]
+            if self._members[k].block.shape_moves:
+                least = traces.min(axis=0)
+                near = np.divide(least, traces, np.ones_like(traces), where=traces > 0.0) ** _NEAR
+                unit = np.einsum("pn,pnij->nij", near / near.sum(axis=0), stack)
+            W = _whitener(unit)
             largest = np.abs(stack).max(axis=(0, 2, 3), initial=0.0)
             noise = np.finfo(float).eps * largest * np.einsum("nij->n", W**2)
-            self._scales.append(_Scale(W, noise))
+            self._scales.append(_Scale(unit, W, noise))
         return any(bool(m.any()) for t in trials for m in t)
+
+    def energy(self, k: int, K: Floats) -> Floats:
+        """Return what errors of elements of a kind are measured by beside their matrices `K`.
+
+        Where their shape moves, motions that are rigid there alone count as elsewhere.
+        """
+        if not self._members[k].block.shape_moves:
+            return K
+        unit = self._scales[k].unit
+        own, other = (np.abs(np.einsum("nii->ni", X)).sum(axis=1) for X in (K, unit))
+        share = np.divide(own, other, np.zeros_like(own), where=other > 0.0)
+        return np.asarray(K + share[:, None, None] * unit)
 
     def features(self, points: Floats) -> Floats:
         """Scaled matrix entries, (n_point, n_feature); entries below rounding shrunk to nothing."""
@@ -233,7 +263,7 @@ class _Samples:
             for scale, K in zip(self._scales, self.matrices(point), strict=True):
                 upper = np.triu_indices(K.shape[1])
                 scaled = scale.W.swapaxes(1, 2) @ K @ scale.W
-                trust = np.minimum(1.0, _TOLERANCE / np.maximum(20.0 * scale.noise, 1e-300))
+                trust = np.minimum(1.0, self.tolerance / np.maximum(20.0 * scale.noise, 1e-300))
                 parts.append((scaled[:, upper[0], upper[1]] * trust[:, None]).reshape(-1))
             rows.append(np.concatenate(parts))
         return np.stack(rows)
@@ -261,7 +291,7 @@ def _worst(found: Expansion, samples: _Samples, points: Floats, low: Floats, hig
             approximate = sum(
                 (c * at[k] for c, at in zip(combined, at_points, strict=True)), np.zeros_like(K)
             )
-            W = _whitener(K)
+            W = _whitener(samples.energy(k, K))
             difference = W.swapaxes(1, 2) @ (approximate - K) @ W
             error = np.abs(difference).max(axis=(1, 2), initial=0.0)
             noise = np.finfo(float).eps * np.abs(K).max(axis=(1, 2), initial=0.0)

@@ -39,6 +39,8 @@ class ElementBlock:
         Which of `depends` each element's matrices depend on.
     name : str
         For messages.
+    shape_moves : bool
+        Whether positions of nodes are among the parameters.
     """
 
     places: Ints
@@ -47,6 +49,7 @@ class ElementBlock:
     depends: tuple[tuple[int, ...], ...] = ((),)
     depends_of: Ints = None  # type: ignore[assignment]
     name: str = ""
+    shape_moves: bool = False
 
     def __post_init__(self) -> None:
         if self.depends_of is None:

@@ -30,7 +30,7 @@ from .deck_damping import damping_terms, linear, params_moved
 from .deck_elements import Structure, read_structure
 from .negative_masses import refuse_negative_masses
 from .parameter_bounds import admissible
-from .variation import Variation, read_variation
+from .variation import GRID, Variation, read_variation
 
 Pair = tuple[tuple[Term, ...], tuple[Term, ...]]
 """Terms of stiffness and of mass."""
@@ -122,7 +122,7 @@ def assemble(
             *((uneven,) if uneven else ()),
         ),
         idle=idle,
-        rigid_mass=rigid_mass,
+        rigid_mass=() if any(card == GRID for card, _ in variation.moves) else rigid_mass,
         ratios=selected_ratios(deck),
     )
     if damped or _idle(model):

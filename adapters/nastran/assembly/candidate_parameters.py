@@ -14,7 +14,7 @@ from ..deck.read_deck import Deck
 from ..fields.layouts import movable, value_names
 from ..fields.parameter_references import FieldRef, ParameterSpec
 from .deck_elements import read_structure
-from .variation import read_variation, value_of
+from .variation import GRID, read_variation, value_of
 
 _BOUNDS = (0.9, 1.1)
 """Nothing moves: so near the deck that any value may be there."""
@@ -23,7 +23,7 @@ _BOUNDS = (0.9, 1.1)
 def properties_of(deck: Deck) -> tuple[PropertyRow, ...]:
     """Return every card with values that may move, and how many elements have it.
 
-    Offsets and thicknesses of single elements, which may move too, are left out.
+    Offsets and thicknesses of single elements and positions, which may move too, are left out.
     """
     held, users = _holding(deck.bulk), referring(deck.bulk)
 
@@ -37,7 +37,7 @@ def properties_of(deck: Deck) -> tuple[PropertyRow, ...]:
     return tuple(
         PropertyRow(card, number, elements(card, number), dict(_values(deck, card, number)))
         for card in movable()
-        if not definitions()[card].properties
+        if card != GRID and not definitions()[card].properties
         for number in sorted(deck.bulk.table(card))
     )
 

@@ -10,10 +10,12 @@ from ....core.assembly.element_assembly import ElementBlock
 from ....core.errors import InputError
 from ....core.noun import Noun
 from ..cards import FAMILIES, Context, Group, Settings
+from ..deck.bulk import Bulk
 from ..deck.read_deck import Deck
 from ..properties.grids import Points, read_points
 from ..properties.nonstructural import read_nonstructural
-from .variation import Variation
+from .moving_grids import following_grids
+from .variation import GRID, Variation
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +58,18 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
         bars_spin=deck.param("BARMASS", 0.0) > 0.0,
     )
     nonstructural = read_nonstructural(deck, points)
-    context = Context(
-        variation.bulk, points, settings, nonstructural, moved=frozenset(variation.moves)
-    )
-    groups = tuple(g for f in FAMILIES if f.groups for g in f.groups(context))
+    moved = frozenset(variation.moves)
+
+    def made(bulk: Bulk, there: Points, notes: list[str]) -> tuple[Group, ...]:
+        context = Context(bulk, there, settings, nonstructural, notes, moved)
+        return tuple(g for f in FAMILIES if f.groups for g in f.groups(context))
+
+    left_out: list[str] = []
+    groups = made(variation.bulk, points, left_out)
+    groups = following_grids(deck, variation, points, groups, lambda b, p: made(b, p, []))
     wtmass = deck.param("WTMASS", 1.0)
     blocks = tuple(element_block(g, points, variation, wtmass) for g in groups)
-    notes = (*context.notes, *_unused_masses(deck), *_shared_numbers(deck, groups))
+    notes = (*left_out, *_unused_masses(deck), *_shared_numbers(deck, groups))
     return Structure(points, groups, blocks, notes)
 
 
@@ -144,6 +151,7 @@ def element_block(
         depends=distinct,
         depends_of=of_source[group.source_of],
         name=group.card,
+        shape_moves=any(card == GRID for source in group.sources for card, _ in source),
     )
 
 

@@ -23,6 +23,7 @@ from ..properties.thermal import Thermal, read_thermal
 from ..text.real_numbers import parse_real
 
 Key = tuple[str, int]
+GRID = "GRID"
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Grid and scalar points: positions, displacement systems, numbering of the g-set."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +13,17 @@ from ....core.errors import Place
 from ....core.noun import Noun
 from ..deck.bulk import Bulk
 from ..deck.card_definition import Card, Values
+from ..deck.movable_values import Moves
 from .deck_coordinate_systems import Frames
 
 CARDS = (
-    Card("GRID", "ID:i! CP:i=0 X1,X2,X3>xyz:r=0. CD:i=0 PS:c SEID:i=0", "id", blanks_from="GRDSET"),
+    Card(
+        "GRID",
+        "ID:i! CP:i=0 X1,X2,X3>xyz:r=0. CD:i=0 PS:c SEID:i=0",
+        "id",
+        blanks_from="GRDSET",
+        moves=Moves(),
+    ),
     Card("GRDSET", "- CP:i=0 - - - CD:i=0 PS:c SEID:i=0"),
     Card("SPOINT", "ID>nodes:*"),
     Card("EPOINT", "ID>nodes:*", ignored="it belongs to response analyses"),
@@ -204,6 +211,18 @@ def read_points(bulk: Bulk) -> Points:
         if card.ps:
             permanent[i, [int(c) - 1 for c in card.ps.strip("0")]] = True
     return Points(bulk, ids, xyz, rotated, directions, permanent, scalar, frames)
+
+
+def moved_points(points: Points, values: Bulk, grids: Ints) -> Points:
+    """Return the points with some grids, (n,), where other cards have them; systems stay."""
+    rows = np.searchsorted(points.ids, grids)
+    cards = [values.table("GRID")[int(g)] for g in grids]
+    given = np.array([c.xyz for c in cards], dtype=np.float64)
+    cp, cd = (np.array([getattr(c, name) for c in cards]) for name in ("cp", "cd"))
+    xyz, directions = points.xyz.copy(), points.directions.copy()
+    xyz[rows] = _positions(values, grids, given, cp, points.frames)
+    _, directions[rows] = _directions(values, grids, xyz[rows], cd, points.frames)
+    return replace(points, xyz=xyz, directions=directions)
 
 
 def _positions(bulk: Bulk, ids: Ints, given: Floats, cp: Ints, frames: Frames) -> Floats:
