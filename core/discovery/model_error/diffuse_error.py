@@ -198,13 +198,11 @@ def _shapes(seen: Seen, error: float, noises: Floats, columns: Ints) -> Floats:
     mu, U = np.linalg.eigh(root[:, :, None] * G * root[:, None, :])
     mu = np.maximum(mu, 0.0)
     Y2 = np.matmul(U.transpose(0, 2, 1), root[:, :, None] * X) ** 2
-    out = np.empty((len(noises), T.shape[1], len(columns)))
-    for k, noise in enumerate(noises):
-        s2 = noise**2 / n
-        log_det = n * np.log(s2) + np.sum(np.log1p(mu / s2), axis=1)
-        left = (1.0 - np.sum(Y2 / (s2 + mu)[:, :, None], axis=1)) / s2
-        out[k] = -0.5 * (log_det[:, None] + np.maximum(left, 0.0)).T
-    return _weight(seen) * out
+    s2 = noises[:, None] ** 2 / n
+    log_det = n * np.log(s2[:, 0]) + np.sum(np.log1p(mu[:, None] / s2), axis=2)
+    left = (1.0 - np.matmul(1.0 / (s2 + mu[:, None]), Y2)) / s2
+    out = -0.5 * (log_det[:, :, None] + np.maximum(left, 0.0)).transpose(1, 2, 0)
+    return np.asarray(_weight(seen) * out)
 
 
 def covariances(seen: Seen, found: Diffuse) -> Callable[[int, Floats], Floats]:

@@ -161,10 +161,10 @@ def completeness(
     The searcher that comes with it knows the places that were tried on the way.
 
     The levels up to the accepted one compete, one suspect where the deck lacks something and
-    the known parameters alone leave more than right models do; of each the likeliest, its rivals
-    and the richer one less a suspect among them, and what another look finds where that may change
-    what is said. What is not clear is none in a deck that lacks nothing. `deck` is how likely the
-    test is by the deck as it is.
+    the known parameters alone leave more than right models do; of each the likeliest, the richer
+    one less a suspect among them, and, where the richer one does not earn its place over these, its
+    rivals and what another look finds. What is not clear is none in a deck that lacks nothing.
+    `deck` is how likely the test is by the deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
     alone = levels[0].judged
@@ -175,12 +175,16 @@ def completeness(
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
-        tried = ranked(searcher, (*_near(found, k), *poorer))
-        first = tried[0]
-        if _unsettled(first, fields[k + 1][0] if k < most else None):
-            searcher, again = looked_again(searcher, first)
-            tried += (s for s in again if s is not first)
-            found = found.with_rivals(s.fit for s in again if s is not first)
+        richer = fields[k + 1][:1] if k < most else []
+        tried = ranked(searcher, (found.levels[k], *poorer), richer)
+        tried = [s for s in tried if s not in richer]
+        if not richer or not _earned(richer[0], tried[0]):
+            tried = ranked(searcher, _nearest(found, k), tried)
+            first = tried[0]
+            if _unsettled(first):
+                searcher, again = looked_again(searcher, first)
+                tried += (s for s in again if s is not first)
+                found = found.with_rivals(s.fit for s in again if s is not first)
         found = found.with_rivals(poorer)
         fields[k] = sorted(tried, key=lambda s: -s.score)
         found = _led(found, fields[k][0].fit)
@@ -220,14 +224,11 @@ def _earned(richer: Scored, poorer: Scored) -> bool:
     return gain > needed(richer.judged)
 
 
-def _unsettled(best: Scored, richer: Scored | None) -> bool:
+def _unsettled(best: Scored) -> bool:
     """Whether another look at a hypothesis may change what is said.
 
-    Not where a richer one earns its place anyway, nor at several suspects that leave more error
-    than a right model does.
+    Not at several suspects that leave more error than a right model does.
     """
-    if richer is not None and _earned(richer, best):
-        return False
     several = len(best.fit.suspects) > 1
     adequate = best.judged is not None and by_such_a_test(best.judged) > MODEL_ERROR.adequate
     return adequate or not several
@@ -256,14 +257,13 @@ def _centred(searcher: Searcher, best: Scored, scale: float) -> tuple[Scored, li
     return best, every
 
 
-def _near(found: Found, k: int) -> list[Fit]:
-    """Return the best with so many suspects and the others that come nearest to it.
+def _nearest(found: Found, k: int) -> list[Fit]:
+    """Return those with so many suspects that come nearest to the best.
 
     However much less these gain: beside an error of the model what fits worse may be likelier.
     """
     rivals = sorted(found.rivals[k], key=lambda f: f.objective)
-    alike = (f for f in rivals if len(f.suspects) == k)
-    return [found.levels[k], *islice(alike, SEARCH.rivals_judged)]
+    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals_judged))
 
 
 def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:

@@ -74,9 +74,14 @@ def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
 
 
 def _beside(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, list[Fit]]:
-    """Return fits with a suspect at the next places and of the next shapes."""
+    """Return fits with a suspect at the next places and of the next shapes.
+
+    None where there is no next place: what lies on a footprint lies where it fits best.
+    """
     s = state.suspects[q]
     near = [Suspect(s.kind, int(r), s.theta) for r in searcher.around(s.kind, s.row) if r != s.row]
+    if not near:
+        return searcher, []
     searcher, options = options_beside(searcher, s)
     options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     before, after = state.suspects[:q], state.suspects[q + 1 :]

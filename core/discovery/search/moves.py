@@ -7,6 +7,7 @@ one is taken out and looked for anew.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,13 +48,7 @@ class Searcher:
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        n = min(self.effort.search_modes, self.problem.basis.size)
-        values, T = solve(self.problem, state.nuisance, state.suspects, self.problem.basis.size)
-        T, own = np.split(T, [self.problem.basis.size])
-        rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
-        bare = replace(self.problem, basis=self.problem.basis.bare(), modes=n)
-        small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
-        return small, evaluate(small, state.nuisance, state.suspects)
+        return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
 
     def tuned(self, s: Suspect) -> bool:
         """Whether a suspect is of a kind with a magnitude that tunes it."""
@@ -261,6 +256,16 @@ class Searcher:
         others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
         left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
         return [older[int(np.argmin(left))]]
+
+
+@lru_cache(maxsize=4)
+def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
+    values, T = solve(problem, state.nuisance, state.suspects, problem.basis.size)
+    T, own = np.split(T, [problem.basis.size])
+    rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
+    bare = replace(problem, basis=problem.basis.bare(), modes=n)
+    small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
+    return small, evaluate(small, state.nuisance, state.suspects)
 
 
 def _some(rows: Ints, count: int) -> Ints:
