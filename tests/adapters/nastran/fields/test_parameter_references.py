@@ -69,7 +69,7 @@ def test_a_field_has_one_name_however_it_is_written(written, canonical):
         ("PSHELL three T", "'three' is not the number"),
         ("PSHELL 0 T", "'0' is not the number"),
         ("PSHEL 3 T", "did you mean PSHELL"),
-        ("GRID 3 X1", "cards with values to move are"),
+        ("EIGRL 3 V1", "cards with values to move are"),
         ("PSOLID 3 E", "name the material"),
         ("PBAR 3 I3", "did you mean I"),
         ("PSHELL 3 MID1", "not a value"),
