@@ -142,7 +142,8 @@ def combinations(factors: Floats, said: Identifiability) -> Iterator[tuple[Float
     across = N[np.ix_(open_, alone)]
     own = N[np.ix_(open_, open_)] - across @ np.linalg.pinv(N[np.ix_(alone, alone)]) @ across.T
     for w, v in zip(*(x[..., ::-1].T for x in np.linalg.eigh(own)), strict=True):
-        exponents = v / v[np.argmax(np.abs(v))]
+        size = np.abs(v)
+        exponents = v / v[np.argmax(size >= (1.0 - UPDATING.alike) * size.max())]
         part = np.abs(exponents) > UPDATING.part
         error = 1.0 / np.sqrt(max(w, np.finfo(float).tiny)) / np.abs(v).max()
         if part.sum() > 1 and error <= UPDATING.unsure:
@@ -152,7 +153,8 @@ def combinations(factors: Floats, said: Identifiability) -> Iterator[tuple[Float
 
 
 def _product(names: Sequence[str], exponents: Floats) -> str:
-    terms = [(names[k], exponents[k]) for k in np.argsort(-np.abs(exponents)) if exponents[k]]
+    size = np.round(np.abs(exponents), 6)
+    terms = [(names[k], exponents[k]) for k in np.argsort(-size, kind="stable") if exponents[k]]
     return " · ".join(name if e == 1.0 else f"{name}^{e:.2g}" for name, e in terms)
 
 

@@ -1,8 +1,7 @@
 """What an update minimises, equation (2) of the source paper, and its linearisation."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -93,16 +92,19 @@ class Objective:
     def linearise(
         self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
     ) -> Linearisation:
-        """Return the weighted residuals of the pairs and their derivatives."""
+        """Return the weighted residuals of the pairs and their derivatives, of all kinds in one."""
+        return stacked(self.linearised(order, state, active, residuals))
+
+    def linearised(
+        self, order: Order, state: State, active: Sequence[int], residuals: Sequence[Residual]
+    ) -> list[Linearisation]:
+        """Return the same of each kind."""
         T = self._turned(state.correlation, [q.analysis for q in state.seen.pairs])
         found = order.sensitivities(
             state.factors, state.solution, T, active, any(r.needs_shapes for r in residuals)
         )
         slopes = Slopes(tuple(active), found.slopes, found.shapes)
-        parts = [r.linearised(state.seen, slopes, self.sigma(r, state.seen)) for r in residuals]
-        return Linearisation(
-            np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
-        )
+        return [r.linearised(state.seen, slopes, self.sigma(r, state.seen)) for r in residuals]
 
     def sigma(self, residual: Residual, seen: Seen) -> Floats | float:
         """Return the standard deviation of a residual, of each pair where the test has its own."""
@@ -112,12 +114,6 @@ class Objective:
         own = residual.error(self.target)
         whole = stated if own is None else np.hypot(stated, own[modes])
         return np.asarray(whole / np.sqrt(self.weights.of(modes)))
-
-    def with_wider(self, residuals: Sequence[Residual], times: float) -> Self:
-        """Return the same with the standard deviations of residuals so many times as large."""
-        wider = {r.weight: times * self.weights.sigma(r) for r in residuals}
-        weights = replace(self.weights, sigmas={**self.weights.sigmas, **wider})
-        return replace(self, weights=weights)
 
     def _cost(self, seen: Seen, missing: float, residuals: Sequence[Residual]) -> float:
         """Equation (2) over pairs, with what is due for `missing` modes that have none."""
@@ -138,3 +134,10 @@ class Objective:
     def _turned(self, c: Correlation, modes: list[int]) -> Floats:
         T = c.transformation if self.criteria.rotate == "analysis" else np.eye(c.mac.shape[1])
         return np.asarray(T[:, modes])
+
+
+def stacked(parts: Sequence[Linearisation]) -> Linearisation:
+    """Return residuals one below the other."""
+    return Linearisation(
+        np.concatenate([r.values for r in parts]), np.vstack([r.gradient for r in parts])
+    )

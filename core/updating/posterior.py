@@ -59,8 +59,9 @@ def profile_intervals(
 ) -> Floats:
     """Return 95 % intervals of the factors by the profile of the objective, (n_parameter, 2).
 
-    A factor is moved, the others follow, until the objective has risen by 3.84 times the scatter of
-    the residuals. Where the posterior is not Gaussian this is no multiple of the standard error.
+    A factor is moved, the others follow, until the objective has risen by the square of Student's t
+    times the scatter of the residuals (`Scatter.rises`), 3.84 of χ² where their standard deviations
+    are believed. Where the posterior is not Gaussian this is no multiple of the standard error.
     Venzon and Moolgavkar (1988), *A method for computing profile-likelihood-based confidence
     intervals*, Applied Statistics 37(1), 87.
 
@@ -86,12 +87,10 @@ def profile_intervals(
     there = problem.at(problem.full, np.array(done.factors), residuals)
     orders = problem.around(there, active)
     top = problem.at(orders, there.factors, residuals)
-    problem, scatter = problem.scattered(orders, top, active, residuals)
-    rise = UPDATING.chi_square * scatter
-    near = _Near(problem, orders, residuals, rise)
-    top = problem.at(orders, there.factors, residuals)
+    rises = problem.scatter(orders, top, active, residuals).rises
     lower, upper = problem.bounds
-    for k in active:
+    for k, rise in zip(active, map(float, rises), strict=True):
+        near = _Near(problem, orders, residuals, rise)
         others = [j for j in active if j != k]
         centre = float(top.factors[k])
         least = max(lower[k], centre / UPDATING.reach)

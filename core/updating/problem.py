@@ -20,8 +20,9 @@ from ..errors import InputError
 from ..noun import Noun
 from ..reduction.full_or_reduced import FullOrder, Order, ReducedOrder, reduce_around
 from .identifiability import Identifiability, identifiability, unsure
-from .objective import Objective, State
+from .objective import Objective, State, stacked
 from .residuals import Linearisation, Residual, Target, Weights
+from .scatter import Kind, Scatter, scatter_of
 from .updating_numbers import UPDATING
 
 Orders = Sequence[Order]
@@ -284,15 +285,21 @@ class Problem:
         self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
     ) -> Linearisation:
         """Return the weighted residuals of all configurations and their derivatives, stacked."""
-        values, gradients = [], []
+        return stacked(self._linearised(orders, point, active, residuals))
+
+    def _linearised(
+        self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
+    ) -> list[Linearisation]:
+        """Return the same of each kind."""
+        kinds: list[list[Linearisation]] = [[] for _ in residuals]
         for part, order, s in zip(self.parts, orders, point.states, strict=True):
             own, columns = part.moving(active)
-            lin = part.objective.linearise(order, s, own, residuals)
-            gradient = np.zeros((len(lin.values), len(active)))
-            gradient[:, columns] = lin.gradient
-            values.append(lin.values)
-            gradients.append(gradient)
-        return Linearisation(np.concatenate(values), np.vstack(gradients))
+            every = part.objective.linearised(order, s, own, residuals)
+            for kind, lin in zip(kinds, every, strict=True):
+                gradient = np.zeros((len(lin.values), len(active)))
+                gradient[:, columns] = lin.gradient
+                kind.append(Linearisation(lin.values, gradient))
+        return [stacked(kind) for kind in kinds]
 
     def identified(
         self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
@@ -300,32 +307,23 @@ class Problem:
         """Return what the tests say of the `active` parameters here; None where nothing pairs."""
         if not any(s.seen.pairs for s in point.states):
             return None
-        believed, scatter = self.scattered(orders, point, active, residuals)
-        lin = believed.linearise(orders, point, active, residuals)
+        scatter = self.scatter(orders, point, active, residuals)
         factors = np.asarray(point.factors)[list(active)]
-        return identifiability(lin.gradient, scatter, unsure(factors))
+        return identifiability(scatter.gradient, scatter.variance, unsure(factors))
 
-    def scattered(
+    def scatter(
         self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
-    ) -> tuple[Self, float]:
-        """Variance of the weighted residuals beside `active` parameters: what is left of them.
+    ) -> Scatter:
+        """Return how far residuals scatter beside `active` parameters: by what is left of them.
 
-        With a prior it is 1: their standard deviations are believed. They are, too, where as many
-        parameters as data leave nothing. Returned is before it the problem whose objective over
-        the scatter counts what is `stated` by its own standard deviation, where less is left.
+        With a prior their standard deviations are believed.
         """
-        data = sum(r.data(s.seen) for r in residuals for s in point.states)
-        if data <= len(active) or any(r.believes_sigmas for r in residuals):
-            return self, 1.0
-        lin = self.linearise(orders, point, active, residuals)
-        left = float(np.sum(lin.values**2)) / (data - len(active))
-        if left >= 1.0 or not (stated := [r for r in residuals if r.stated]):
-            return self, left
-        left = max(left, UPDATING.least_scatter)
-        parts = (
-            replace(p, objective=p.objective.with_wider(stated, left**-0.5)) for p in self.parts
-        )
-        return replace(self, parts=tuple(parts)), left
+        every = self._linearised(orders, point, active, residuals)
+        kinds = [
+            Kind(lin.values, lin.gradient, sum(r.data(s.seen) for s in point.states), r.stated)
+            for r, lin in zip(residuals, every, strict=True)
+        ]
+        return scatter_of(kinds, any(r.believes_sigmas for r in residuals))
 
     @property
     def tests(self) -> tuple[int, ...]:

@@ -58,8 +58,12 @@ def sample_posterior(
     """Sample exp(−J/2s), J being the objective and s the scatter of the residuals.
 
     With the residual ``prior`` standard deviations are believed, s is 1 and this is the posterior
-    by them; without it nothing is known of the factors but their bounds. Samples stay within
-    these and within the reach of the reduced models.
+    by them; without it nothing is known of the factors but their bounds, s is estimated with ν
+    degrees of freedom, and the n factors are Student's (1 + J/νs)^(−(ν+n)/2), J counted from its
+    least (Gelman et al. 2013, *Bayesian data analysis*, section 14.2). Where kinds of residual
+    scatter apart, factors are turned about the optimum such that the curvature is that of their
+    covariance (Ribatet, Cooley, Davison 2012, Statistica Sinica 22, 813). Samples stay within the
+    bounds and the reach of the reduced models.
 
     Parameters
     ----------
@@ -86,26 +90,30 @@ def sample_posterior(
     there = problem.at(problem.full, np.array(done.factors), residuals)
     orders = problem.around(there, active)
     top = problem.at(orders, there.factors, residuals)
-    problem, scatter = problem.scattered(orders, top, active, residuals)
-    if not scatter > 0.0:
+    scatter = problem.scatter(orders, top, active, residuals)
+    if not scatter.variance > 0.0:
         raise InputError("nothing is left of the residuals, so the posterior is a point")
     centre = np.asarray(top.factors)[active]
     lower, upper = (end[active] for end in problem.bounds)
     lower = np.maximum(lower, centre / UPDATING.reach)
     upper = np.minimum(upper, centre * UPDATING.reach)
 
+    A = problem.linearise(orders, top, active, residuals).gradient
+    Q = scatter.gradient.T @ scatter.gradient
     density = _Density(
         problem,
         [_to_send(o) for o in orders],
         stage,
         top.factors,
+        top.objective,
         active,
         lower,
         upper,
-        scatter,
+        scatter.variance,
+        float(scatter.freedom.min()),
+        _turning(A.T @ A, Q),
     )
-    lin = problem.linearise(orders, top, active, residuals)
-    normal = scatter * np.linalg.pinv(lin.gradient.T @ lin.gradient)
+    normal = scatter.variance * np.linalg.pinv(Q)
     width = np.minimum(1.0, (upper - lower) / np.sqrt(np.maximum(12.0 * np.diag(normal), 1e-300)))
     normal = normal * np.outer(width, width)
     chains = adaptive_metropolis(density, centre, normal, count, seed, each)
@@ -114,27 +122,46 @@ def sample_posterior(
 
 @dataclass(frozen=True, eq=False)
 class _Density:
-    """exp(−J/2s) of the active factors, within their limits, those of all being `factors`."""
+    """ln of the density of the active factors, within their limits, the others as in `factors`."""
 
     problem: Problem
     orders: Orders
     stage: Stage
     factors: Floats
+    least: float
     active: list[int]
     lower: Floats
     upper: Floats
-    scatter: float
+    variance: float
+    freedom: float
+    turning: Floats
 
     def __call__(self, x: Floats) -> float:
         if ((x < self.lower) | (x > self.upper)).any():
             return -np.inf
         p = np.array(self.factors)
-        p[self.active] = x
+        p[self.active] += self.turning @ (x - p[self.active])
+        if not (p > 0.0).all():
+            return -np.inf
         try:
             found = self.problem.at(self.orders, p, self.stage.minimised)
         except InputError:
             return -np.inf
-        return -found.objective / (2.0 * self.scatter)
+        above = (found.objective - self.least) / self.variance
+        if not np.isfinite(self.freedom):
+            return -0.5 * above
+        share = max(above / self.freedom, UPDATING.slack - 1.0)
+        return -0.5 * (self.freedom + len(self.active)) * float(np.log1p(share))
+
+
+def _turning(A: Floats, Q: Floats) -> Floats:
+    """Return the symmetric C with CᵀAC = Q; one where they are alike, or A sees not all."""
+    w, V = np.linalg.eigh(A)
+    if np.allclose(A, Q, rtol=UPDATING.alike, atol=0.0) or w[0] <= UPDATING.alike**2 * w[-1]:
+        return np.eye(len(A))
+    root, back = (V * w**0.5) @ V.T, (V * w**-0.5) @ V.T
+    w, V = np.linalg.eigh(root @ Q @ root)
+    return np.asarray(back @ (V * np.sqrt(np.maximum(w, 0.0))) @ V.T @ back)
 
 
 def _to_send(order: Order) -> Order:

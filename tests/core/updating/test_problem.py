@@ -66,16 +66,17 @@ def test_derivatives_stand_below_each_other_in_the_columns_of_their_parameters()
     every = [state("clean", clean, [1.1, 0.9]), state("store", loaded, [0.9])]
     problem, residuals = Problem.of(every), residuals_named("both")
     point = problem.at(problem.full, np.ones(2), residuals)
-    lin = problem.linearise(problem.full, point, [0, 1], residuals)
-    first, second = (
-        part.objective.linearise(part.full, s, range(len(part.own)), residuals)
-        for part, s in zip(problem.parts, point.states, strict=True)
-    )
-    n = len(first.values)
-    np.testing.assert_allclose(lin.values, np.concatenate([first.values, second.values]))
-    np.testing.assert_allclose(lin.gradient[:n], first.gradient, rtol=1e-9)
-    np.testing.assert_array_equal(lin.gradient[n:, 0], 0.0)
-    np.testing.assert_allclose(lin.gradient[n:, 1:], second.gradient, rtol=1e-9)
+    for one in residuals:
+        lin = problem.linearise(problem.full, point, [0, 1], (one,))
+        first, second = (
+            part.objective.linearise(part.full, s, range(len(part.own)), (one,))
+            for part, s in zip(problem.parts, point.states, strict=True)
+        )
+        n = len(first.values)
+        np.testing.assert_allclose(lin.values, np.concatenate([first.values, second.values]))
+        np.testing.assert_allclose(lin.gradient[:n], first.gradient, rtol=1e-9)
+        np.testing.assert_array_equal(lin.gradient[n:, 0], 0.0)
+        np.testing.assert_allclose(lin.gradient[n:, 1:], second.gradient, rtol=1e-9)
     step = 1e-5
     there = problem.at(problem.full, np.array([1.0, 1.0 + step]), residuals[:1])
     ahead = problem.linearise(problem.full, there, [1], residuals[:1])

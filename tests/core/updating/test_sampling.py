@@ -11,6 +11,7 @@ from trueup.core.updating.metropolis import Chains, adaptive_metropolis
 from trueup.core.updating.problem import Problem
 from trueup.core.updating.residuals import Weights
 from trueup.core.updating.sampling import sample_posterior
+from trueup.core.updating.scatter import Scatter
 from trueup.core.updating.update import Configuration, Stage, update_configurations
 
 
@@ -100,6 +101,20 @@ def test_one_spring_and_a_prior_are_two_gaussians():
     assert found.doubts == ()
 
 
+def test_few_data_without_a_prior_are_student_s():
+    """r = (p/1.1 − 1)/2 + noise is linear in p: of four frequencies t with three degrees."""
+    model = chain([range(8)])
+    target = measured(model, [1.1], slice(0, 4), noise=0.004, seed=1)
+    stage, weights = Stage((0,), "frequencies", 30), Weights(regularisation=0.0)
+    one = Configuration(model, target, weights=weights, n_modes=8)
+    done = update_configurations([one], [stage], tolerance=1e-9)
+    found = sample_posterior([one], stage, done, 4000, seed=2)
+    assert found is not None
+    away = (found.chains.samples[:, 0] - done.factors[0]) / done.standard_error[0]
+    ends = np.quantile(away, [0.025, 0.5, 0.975])
+    np.testing.assert_allclose(ends, [-3.182, 0.0, 3.182], atol=0.5)
+
+
 def test_a_mass_leans_as_its_density_does():
     """r = (0.9/p − 1)/2 with σ 0.05 and no prior to speak of: quantiles by quadrature."""
     model = chain([range(1)], ["m"], n=1)
@@ -132,7 +147,9 @@ def test_few_samples_are_doubted():
 
 
 def test_where_nothing_is_left_of_the_residuals_there_is_no_posterior(monkeypatch):
-    monkeypatch.setattr(Problem, "scattered", lambda problem, *_: (problem, 0.0))
+    one = np.ones((1, 1))
+    none = Scatter(one, 0.0, one[0], one[0])
+    monkeypatch.setattr(Problem, "scatter", lambda *_: none)
     weights = Weights({"frequency_sigma": 0.02, "prior_sigma": 0.05}, 0.0)
     with pytest.raises(InputError, match="the posterior is a point"):
         sampled(chain([range(1)], n=1), [1.2], weights)
