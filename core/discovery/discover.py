@@ -122,6 +122,7 @@ class _Trial:
             sensors,
         )  # fmt: skip
         self._judged: dict[object, Judged | None] = {}
+        self._laid: dict[object, tuple[Searcher, Fit]] = {}
 
     def judged(self, problem: Problem, f: Fit, least: float = -np.inf) -> Judged | None:
         """Return a hypothesis as the error of the model judges it, None where it does not solve.
@@ -135,6 +136,20 @@ class _Trial:
             with suppress(TrueupError):
                 self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
+
+    def laid(self, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+        """Lay the masses of a hypothesis on footprints, if that fits better on its own basis."""
+        same = searcher.problem, best
+        if same not in self._laid:
+            self._laid[same] = _laid(self, searcher, best, scale)
+        return self._laid[same]
+
+    def explained(self, searcher: Searcher, best: Fit, scale: float) -> bool:
+        """Whether a hypothesis leaves no more than right models do, its masses laid on footprints.
+
+        A mass on the nearest grid leaves what a spring or an absorber beside it would make up for.
+        """
+        return usual(*self.laid(searcher, best, scale))
 
 
 def _judged(
@@ -156,7 +171,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if trial.request.responses is not None:
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
-    found = searched(searcher, progress)
+    found = searched(searcher, progress, trial.explained)
     verdict = judge(searcher, found)
     best = found.levels[verdict.accepted]
     if verdict.scale > DISCOVERY.estimated and not adequate(searcher, best):
@@ -165,33 +180,32 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher, found = max(ways, key=lambda way: _score(*way))
     progress("weighing the best hypotheses on bases of their own")
     verdict = judge(searcher, found)
-    wide, laid = _laid(trial, searcher, found, verdict)
-    explained = usual(wide, laid.levels[verdict.accepted])
+    best = found.levels[verdict.accepted]
+    explained = trial.explained(searcher, best, verdict.scale)
     if explained:
-        searcher, found = wide, laid
+        searcher, best = trial.laid(searcher, best, verdict.scale)
+        found = found.with_level(best)
     searcher, found = _reshaped(trial.request, searcher, found, stands=not explained)
     found, verdict = _weighed(trial, searcher, found)
     if not explained:
-        searcher, found = _laid(trial, searcher, found, verdict)
+        searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
+        found = found.with_level(best)
     return searcher, found, verdict
 
 
-def _laid(
-    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Searcher, Found]:
-    """Lay the masses of what was accepted on footprints, if that fits better on its own basis."""
-    structure, best = trial.request.structure, found.levels[verdict.accepted]
+def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+    structure = trial.request.structure
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
         with suppress(TrueupError):
             free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
             if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
-                wide, laid = reshaped(wide, laid, verdict.scale)
+                wide, laid = reshaped(wide, laid, scale)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
-                return wide, found.with_level(laid)
-    return searcher, found
+                return wide, laid
+    return searcher, best
 
 
 def _score(searcher: Searcher, found: Found) -> float:
