@@ -54,13 +54,14 @@ def nearest(searcher: Any, effect: dict[str, Any], count: int) -> list[Any]:
     from trueup.core.discovery.effects.candidates import Suspect
 
     spot, _ = spot_of(effect)
-    theta = tuple(math.log(effect.get(m.word, 1.0)) for m in KINDS[effect["kind"]].magnitudes)
+    sizes = [math.log(effect.get(m.word, 1.0)) for m in KINDS[effect["kind"]].magnitudes]
     wanted, out = effect.get("components"), []
     for number, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - np.array(spot), axis=1)
         for row in np.argsort(away, kind="stable") if c.kind.name == effect["kind"] else ():
             own = c.where[row].get("components")
             if not own or not wanted or list(own) == wanted:
+                theta = tuple(sizes if c.tunings > 1 else c.like(sizes).tolist())
                 out.append((float(away[row]), Suspect(number, int(row), theta)))
     return [s for _, s in sorted(out, key=lambda o: o[0])[:count]]
 

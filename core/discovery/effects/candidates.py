@@ -96,6 +96,10 @@ class Candidates:
         """Return −2 ln of the prior density of θ (n, t), up to a constant, (n,)."""
         return np.asarray(np.sum(((theta - self.typical) / self.spread) ** 2, axis=-1))
 
+    def like(self, theta: Sequence[float]) -> Floats:
+        """Return θ of other candidates as these have it: what those do not have as is typical."""
+        return np.append(theta, self.typical[len(theta) :])[: len(self.typical)]
+
     def around(self, theta: Sequence[float], changes: Floats) -> Floats:
         """Return θ (t,) with each magnitude in turn moved by `changes` (n,) steps, (≤ n·t, t)."""
         moves = changes[:, None, None] * np.diag(self.steps)
@@ -181,20 +185,19 @@ def _rows(c: Candidates) -> dict[Ends, int]:
 
 
 def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
-    """Return candidates at points, and beside them the same at every set of equivalent grids.
+    """Return candidates at points, and beside them the same at every set of equivalent ones.
 
     A set has one magnitude, that of each place. `size` is that of the structure.
     """
-    at_grids = np.flatnonzero([len(w["grids"]) == 1 for w in single.where])
-    grids = np.array([single.where[i]["grids"][0] for i in at_grids], dtype=np.int64)
-    _, once = np.unique(grids, return_index=True)
-    once = np.sort(once)
-    xyz = single.xyz[at_grids[once]]
-    if not len(xyz):
+    points = {tuple(sorted(w["grids"])): i for i, w in reversed(list(enumerate(single.where)))}
+    once = np.sort(np.fromiter(points.values(), np.int64))
+    own = [len(single.where[i]["grids"]) == 1 for i in once]
+    xyz = single.xyz[once]
+    if not any(own):
         return (single,)
     sets = [
-        together(single, at_grids[once][rows], np.concatenate([np.eye(3)[None], s.maps]))
-        for s in symmetries(xyz, size)
+        together(single, once[rows], np.concatenate([np.eye(3)[None], s.maps]))
+        for s in symmetries(xyz[own], size)
         for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
         if len(rows)
     ]
@@ -214,6 +217,7 @@ def together(single: Candidates, rows: Ints, maps: Floats | None = None) -> Cand
         root=single.root[loads],
         rows_each=q * rows.shape[1],
         where=tuple(single.where[i] for i in rows[:, 0]),
+        upper=single.upper - np.log(rows.shape[1]) * (np.arange(len(single.upper)) == 0),
         single=single,
         copies=tuple(map(tuple, rows.tolist())),
         maps=maps,

@@ -32,11 +32,14 @@ class Magnitude:
         of the mesh, as measured on generated cases (`benchmarks/discovery`).
     is_mass : bool
         Whether it is told in the deck's unit of mass.
+    known_only : bool
+        Whether it is told only where the test tells it.
     """
 
     word: str
     place_error: float
     is_mass: bool = False
+    known_only: bool = False
 
 
 MASS = Magnitude("mass", EFFECTS.mass_error, is_mass=True)
@@ -61,7 +64,7 @@ class EffectKind:
         What is missing, up to the words ``explains test mode ...``: a template of `magnitudes`,
         ``components`` and ``region``.
     magnitudes : tuple of Magnitude
-        One for each θ of its law.
+        One for each θ of its laws: one with fewer has the first of them.
     places : callable
         Candidates, with their law, on a structure; none of a kind that is not searched for.
     across : float

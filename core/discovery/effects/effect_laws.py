@@ -41,6 +41,11 @@ class Law(ABC):
     shared: ClassVar[bool] = False
     turn: Floats | None = None
 
+    @property
+    def acts_on(self) -> str:
+        """The matrix that it acts like a change of, ``K`` or ``M``."""
+        return "M" if self.on == "A" else self.on
+
     @abstractmethod
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return the factors on the q rows of `rows` at `theta` (n, t): (n, q or 1)."""
@@ -50,7 +55,7 @@ class Law(ABC):
         """Return their derivatives by each θ, (n, t, q or 1)."""
 
     def flexibility(self, theta: Floats, rows: Ints) -> Floats:
-        """Return that between the structure and coordinates of its own, (n, q)."""
+        """Return that between the structure and coordinates of its own, (n, q or 1)."""
         raise NotImplementedError
 
     def flexibility_slope(self, theta: Floats) -> Floats:
@@ -159,6 +164,20 @@ class TunedLaw(AttachedLaw):
     def flexibility_slope(self, theta: Floats) -> Floats:
         """Return those by ln m and ln f."""
         return np.hstack([-self.own(theta), -2.0 * self.own(theta)])
+
+
+@dataclass(frozen=True, eq=False)
+class MountedLaw(TunedLaw):
+    """A mass on a mount: alike in all directions, tuned above the measured band.
+
+    Brackets give, and so does the skin between the grids of a shell, which a load at a point of its
+    mesh does not feel.
+    """
+
+    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
+        """Return the mount in line with what the basis lacks."""
+        none = np.zeros((len(rows), 1))
+        return MountedLaw(none if missing is None else missing, top)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,9 @@ class EffectNumbers:
     factors: tuple[float, ...] = number((0.2, 0.5, 1.6, 3.0), "-", "factors on a local stiffness that are tried")
     factor_spread: float = number(1.2, "of ln factor", "standard deviation of it beforehand")
 
+    mount: tuple[float, float, float] = number((2.0, 1.0, 100.0), "of the band's end, of ln f, of the band's end", "median and standard deviation of the frequency of a mass on its mount beforehand, and the highest: an octave above the band; in the band it is an absorber")
+    mount_soft: float = number(0.25, "of ln f", "above an absorber: a soft mount that is tried at other places")
+    mount_known: float = number(5.0, "-", "ratio of the ends of its interval, beyond which the test does not tell it")
     mass_error: float = number(0.15, "of ln m", ERROR, MEASURED)
     stiffness_error: float = number(0.25, "of ln k", ERROR, MEASURED)
     factor_error: float = number(0.25, "of ln factor", ERROR, MEASURED)

@@ -16,6 +16,7 @@ from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates, places_of, together
 from .effect_kind import Words
+from .effect_laws import MassLaw
 from .structure_points import rotations, translations
 
 
@@ -105,13 +106,13 @@ def equipment(template: Candidates, stands: Sequence[Stand], bodies: Sequence[Bo
     single = Equipment(
         kind=template.kind,
         xyz=np.array([s.xyz for s, _ in each]),
-        law=template.law,
-        trials=template.trials,
+        law=MassLaw(),
+        trials=template.trials[:, :1],
         root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
         rows_each=6,
         where=tuple({"grids": list(s.grids)} for s, _ in each),
-        typical=template.typical,
-        spread=template.spread,
+        typical=template.typical[:1],
+        spread=template.spread[:1],
         bodies=tuple(b for _, b in each),
     )
     if len(stands) == 1:

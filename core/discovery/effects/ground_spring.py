@@ -12,7 +12,7 @@ from .structure_points import along_axes, points_of
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Springs along each basic axis at every grid, shell middle and shell edge that moves."""
-    xyz, root, where = along_axes(structure, *points_of(structure))
+    xyz, root, where = along_axes(points_of(structure))
     made = Candidates(
         kind=KIND,
         xyz=xyz,

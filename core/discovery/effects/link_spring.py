@@ -14,7 +14,7 @@ from .candidates import Candidates
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import SpringLaw
 from .effect_numbers import EFFECTS
-from .structure_points import points_of, translations
+from .structure_points import Points, points_of
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,22 +31,21 @@ class Links(Candidates):
 
     def near(self, row: int, count: int) -> Links:
         """Return the links between so many grids nearest to either end of one of them."""
-        points, xyz, grids = _grids(self.structure)
+        points = _grids(self.structure)
+        xyz = points.xyz
         first, last = (
             cKDTree(xyz).query(end, min(count, len(xyz)))[1]
             for end in np.split(self.ends_xyz[row], 2)
         )
         a, b = (i.ravel() for i in np.meshgrid(first, last, indexing="ij"))
         some = np.any(xyz[a] != xyz[b], axis=1)
-        return _between(self.structure, (points, xyz, grids), a[some], b[some], self)
-
-
-Points = tuple[sp.csr_matrix, Floats, list[list[int]]]
+        return _between(self.structure, points, a[some], b[some], self)
 
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Springs between any two of the grids that are left when these are thinned."""
-    points, xyz, grids = _grids(structure)
+    points = _grids(structure)
+    xyz = points.xyz
     spacing = EFFECTS.link_spacing * scale.size
     while len(kept := thinned(xyz, spacing)) > EFFECTS.link_ends:
         spacing *= EFFECTS.link_thinned
@@ -61,25 +60,24 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         xyz=xyz[:0],
         law=SpringLaw(np.zeros((0, 1))),
         trials=scale.springs(),
-        root=points[:0],
+        root=points.moves[:0],
         rows_each=1,
         where=(),
         typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
         spread=np.array([EFFECTS.spring_spread]),
     )
-    return (_between(structure, (points, xyz, grids), kept[a[some]], kept[b[some]], like),)
+    return (_between(structure, points, kept[a[some]], kept[b[some]], like),)
 
 
 def _grids(structure: Structure) -> Points:
     """Return weights (n, n_grid), positions and numbers of the grids that move, in an order."""
-    points, xyz, grids = points_of(structure)
-    own = np.flatnonzero([len(g) == 1 for g in grids])
-    return points[own], xyz[own], [grids[i] for i in own.tolist()]
+    points = points_of(structure)
+    return points.of(np.flatnonzero([len(g) == 1 for g in points.grids]))
 
 
 def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
     """Return the links between grids a (n,) and b (n,), in all else like some candidates."""
-    points, xyz, grids = at
+    xyz, grids = at.xyz, at.grids
     used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
     line = xyz[b] - xyz[a]
     n = line / np.linalg.norm(line, axis=1)[:, None]
@@ -93,7 +91,7 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         xyz=0.5 * (xyz[a] + xyz[b]),
         law=SpringLaw(np.zeros((len(a), 1))),
         trials=like.trials,
-        root=((pull - push) @ translations(structure, points[used])).tocsr(),
+        root=((pull - push) @ at.of(used).moves).tocsr(),
         rows_each=1,
         where=tuple(
             {"grids": [grids[i][0], grids[j][0]], "components": [1]}

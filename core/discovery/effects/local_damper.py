@@ -11,7 +11,7 @@ from ..reduction.elements_and_supports import Structure
 from .effect_kind import EffectKind, Magnitude
 from .effect_numbers import EFFECTS
 from .sentence_parts import odds
-from .structure_points import Axes, along_axes
+from .structure_points import Axes, Points, along_axes, translations
 
 PEAKS = np.geomspace(EFFECTS.damper_least, EFFECTS.damper_most, EFFECTS.damper_sizes)
 """Sizes tried at every place: the ratio that the mode which feels a dashpot most gets from it."""
@@ -21,7 +21,7 @@ def dashpots(structure: Structure) -> Axes:
     """Return each basic axis along which a grid moves: D of a dashpot there changes by c·uuᵀ."""
     g = structure.model.geometry
     every = sp.identity(len(g.ids), format="csr")
-    return along_axes(structure, every, g.xyz, g.ids[:, None].tolist())
+    return along_axes(Points(translations(structure, every), g.xyz, g.ids[:, None].tolist()))
 
 
 def sentence(

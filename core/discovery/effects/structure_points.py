@@ -1,5 +1,7 @@
 """Points of a structure at which an effect may sit, and how they move."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,10 +12,33 @@ from ..reduction.elements_and_supports import Structure
 from .bar_members import bare_bars
 
 
-def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[int]]]:
-    """Weights (n_point, n_grid), positions and grids of the points of a structure.
+class Points(NamedTuple):
+    """Points of a structure.
 
-    Grids, the middles of shells and of their edges, and those of bars off the shells.
+    Parameters
+    ----------
+    moves : (3 n, n_free) sparse
+        Their translations along the basic axes.
+    xyz : (n, 3) float
+    grids : list of list of int
+        Whose motion each follows.
+    """
+
+    moves: sp.csr_matrix
+    xyz: Floats
+    grids: list[list[int]]
+
+    def of(self, which: Ints) -> Points:
+        """Return some of them."""
+        rows = (3 * which[:, None] + np.arange(3)).ravel()
+        return Points(self.moves[rows], self.xyz[which], [self.grids[i] for i in which.tolist()])
+
+
+def points_of(structure: Structure) -> Points:
+    """Return grids, the middles of shells and of their edges, and those of bars off the shells.
+
+    Between its grids a shell moves as their rotations say (Hermite's cubic): a mode of four
+    elements a wave moves twice as far at the middle of an element as its corners do on average.
     """
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
@@ -28,25 +53,55 @@ def points_of(structure: Structure) -> tuple[sp.csr_matrix, Floats, list[list[in
     weights = [
         sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
     ]
+    bent = [np.zeros((len(own), 3, 3))]
     for m in structure.members:
         if m.element.dimension == 2:
-            weights.append(_means(m.corners, structure))
+            diagonals = g.xyz[m.corners[:, [2, -1]]] - g.xyz[m.corners[:, [0, 1]]]
+            normal = np.cross(diagonals[:, 0], diagonals[:, 1])
+            normal /= np.linalg.norm(normal, axis=1)[:, None]
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
-            edges = np.unique(np.sort(edges, axis=1), axis=0)
-            weights.append(_means(edges, structure))
+            edges, first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)
+            for corners, across in (
+                (m.corners, normal),
+                (edges, normal[first // m.corners.shape[1]]),
+            ):
+                order = structure.in_order(g.xyz[corners].mean(axis=1))
+                weights.append(_means(corners[order], len(g.ids)))
+                bent.append(across[order, :, None] * across[order, None, :])
     for number, rows in bare_bars(structure):
-        weights.append(_means(structure.members[number].corners[rows, :2], structure))
+        corners = structure.members[number].corners[rows, :2]
+        corners = corners[structure.in_order(g.xyz[corners].mean(axis=1))]
+        weights.append(_means(corners, len(g.ids)))
+        bent.append(np.tile(np.eye(3), (len(corners), 1, 1)))
     P = sp.vstack(weights).tocsr()
+    xyz = np.asarray(P @ g.xyz)
+    bows = _bows(P, xyz, g.xyz, np.concatenate(bent))
+    every = sp.identity(len(g.ids), format="csr")
+    moves = (translations(structure, P) + bows @ rotations(structure, every)).tocsr()
     grids = [g.ids[c].tolist() for c in np.split(P.indices, P.indptr[1:-1])]
-    return P, np.asarray(P @ g.xyz), grids
+    return Points(moves, xyz, grids)
 
 
-def _means(corners: Ints, structure: Structure) -> sp.csr_matrix:
-    """Rows that take the mean of some grids, in an order of their own, (n, n_grid)."""
-    xyz, (n, k) = structure.model.geometry.xyz, corners.shape
-    corners = corners[structure.in_order(xyz[corners].mean(axis=1))]
+def _bows(P: sp.csr_matrix, middle: Floats, xyz: Floats, bent: Floats) -> sp.csr_matrix:
+    """Return how far the rotations of grids move points, (3 n, 3 n_grid).
+
+    Half the mean of what each grid alone, turning rigidly, would move the point by, `bent`
+    (n, 3, 3): across shells, not in their plane.
+    """
+    W = P.tocoo()
+    lever = 0.5 * W.data[:, None] * (middle[W.row] - xyz[W.col])
+    turned = np.cross(np.eye(3), lever[:, None, :]).transpose(0, 2, 1)
+    rows, columns = (3 * k[:, None] + np.arange(3) for k in (W.row, W.col))
+    where = np.repeat(rows, 3, axis=1).ravel(), np.tile(columns, 3).ravel()
+    shape = (3 * P.shape[0], 3 * P.shape[1])
+    return sp.csr_matrix((np.matmul(bent[W.row], turned).ravel(), where), shape)
+
+
+def _means(corners: Ints, n_grid: int) -> sp.csr_matrix:
+    """Rows that take the mean of some grids, (n, n_grid)."""
+    n, k = corners.shape
     where = (np.repeat(np.arange(n), k), corners.ravel())
-    return sp.csr_matrix((np.full(n * k, 1.0 / k), where), (n, len(xyz)))
+    return sp.csr_matrix((np.full(n * k, 1.0 / k), where), (n, n_grid))
 
 
 def translations(structure: Structure, points: sp.csr_matrix) -> sp.csr_matrix:
@@ -91,11 +146,9 @@ class Axes(NamedTuple):
     where: tuple[dict[str, Any], ...]
 
 
-def along_axes(
-    structure: Structure, points: sp.csr_matrix, xyz: Floats, grids: list[list[int]]
-) -> Axes:
-    """Return the basic axes along which points move that `points_of` returned."""
-    root = translations(structure, points)
+def along_axes(points: Points) -> Axes:
+    """Return the basic axes along which points move."""
+    root, xyz, grids = points
     live = np.flatnonzero(np.diff(root.indptr) > 0)
     at = live // 3
     where = tuple(

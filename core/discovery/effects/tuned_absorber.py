@@ -14,7 +14,7 @@ from .structure_points import along_axes, points_of
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Give every grid, shell middle and shell edge an absorber along each basic axis."""
-    xyz, root, where = along_axes(structure, *points_of(structure))
+    xyz, root, where = along_axes(points_of(structure))
     low, high = np.log(scale.band_hz) + np.log(EFFECTS.absorber_band)
     masses = np.log(scale.mass * np.array(EFFECTS.absorber_masses))
     hz = np.linspace(low, high, 2 + int((high - low) / EFFECTS.absorber_spacing))

@@ -13,7 +13,7 @@ class Effort:
     branches: int = number(4, "suspects", "that are fitted beside each of them")
     looked_at: int = number(6, "places", "of the first scan around which neighbours are scanned")
     around: int = number(22, "places", "scanned around each of them, at most")
-    neighbours: int = number(60, "places", "that a suspect may move to at once, at most")
+    neighbours: int = number(160, "places", "that a suspect may move to at once, at most")
     of_each_kind: int = number(2, "suspects", "of a kind that are fitted, whatever the others gain")
     most: int = number(4, "suspects", "of a hypothesis, at most")
     search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")

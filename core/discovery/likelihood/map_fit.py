@@ -28,7 +28,7 @@ def _matrices(
         U, theta = rows[0], np.array([s.theta])
         c = law.value(theta, _FIRST)[0]
         if law.on == "A":
-            k = 1.0 / law.flexibility(theta, _FIRST)[0]
+            k = np.broadcast_to(1.0 / law.flexibility(theta, _FIRST)[0], len(U))
             K += (U.T * k) @ U
             own.append((-(U.T * (k / np.sqrt(c))), k / c))
         else:

@@ -177,7 +177,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     s = best.suspects[number]
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
     places = o.whole.places[number]
-    error = [m.place_error for m in c.kind.magnitudes]
+    error = [m.place_error for m in c.kind.magnitudes[: len(s.theta)]]
     spread = np.hypot(np.hypot(deviation, error), between(places))
     if "factor" in (m.word for m in c.kind.magnitudes):
         off = min(np.sqrt(2.0 * max(o.whole.last, 1.0)), NARRATIVE.off_one)

@@ -11,6 +11,7 @@ from ...data.mass_unit import MassUnit
 from ..effects import KINDS
 from ..effects.candidates import Candidates
 from ..effects.effect_kind import EffectKind
+from ..effects.effect_numbers import EFFECTS
 from ..effects.sentence_parts import listed, mode_ranges, odds
 from ..findings import Alternative
 from .narrative_numbers import NARRATIVE
@@ -60,7 +61,9 @@ def magnitude_of(
     magnitudes, in the finding.
     """
     said: dict[str, Any] = {}
-    for k, (m, size, interval) in enumerate(zip(c.kind.magnitudes, sizes, intervals, strict=True)):
+    for k, (m, size, interval) in enumerate(zip(c.kind.magnitudes, sizes, intervals, strict=False)):
+        if m.known_only and interval[1] > EFFECTS.mount_known * interval[0]:
+            continue
         unit = masses.card if m.is_mass else 1.0
         said[m.word] = float(size) * unit
         if m.word == "mass" and masses.kilograms is not None:

@@ -132,7 +132,7 @@ def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
 
 def _changed(searcher: Searcher, f: Fit) -> set[str]:
     """Return which matrices a hypothesis changes."""
-    return {searcher.problem.catalogue[s.kind].law.on for s in f.suspects}
+    return {searcher.problem.catalogue[s.kind].law.acts_on for s in f.suspects}
 
 
 def _objective(f: Fit) -> float:

@@ -59,10 +59,7 @@ def first_places(c: Candidates, factors: Rows, columns: int, size: float) -> Int
 
     Of a kind with one direction at a place, those where something moves that way, by its rows
     `factors` (n, q, r) on the first `columns` vectors of a basis; `size` is that of the structure.
-    Sets of equivalent places are tried once one of them was found.
     """
-    if c.single is not None:
-        return c.first[:0]
     if not c.kind.across:
         return c.first
     parts = [c.first]

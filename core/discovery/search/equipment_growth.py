@@ -51,7 +51,7 @@ def as_blocks(
         if stands:
             made = equipment(c, stands, [block(float(np.exp(s.theta[0])), density)])
             searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
-            new = Suspect(kind, 0, s.theta)
+            new = Suspect(kind, 0, s.theta[:1])
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
             state = searcher.fitted(state, suspects, SEARCH.steps_moved)
     return searcher, state
@@ -113,9 +113,11 @@ def _grown(
 ) -> tuple[Searcher, Fit]:
     """Return a hypothesis with the best body in place of one mass, from a body on.
 
-    Where the first step is no good it is given up.
+    Where the first step is no good it is given up: no better than the same mass on no mount.
     """
     best: tuple[Searcher, Fit] | None = None
+    look = _looked(searcher, state, q, template, stands, [body], state)
+    least = max(state.objective, _fitted(look, state, q, state)[2].objective)
     for step in SEARCH.equipment_steps:
         for _ in range(SEARCH.equipment_rounds):
             tried = _around(body, step * searcher.size)
@@ -125,7 +127,7 @@ def _grown(
             if best is not None and fit.objective > best[1].objective - SEARCH.better:
                 break
             body, best = tried[k], (wide, fit)
-            if fit.objective > state.objective - SEARCH.hopeless * SEARCH.equipment_gain:
+            if fit.objective > least - SEARCH.hopeless * SEARCH.equipment_gain:
                 return best
     assert best is not None
     return best
@@ -154,7 +156,9 @@ def _looked(
     made = equipment(template, stands, bodies)
     wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
     small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
-    trials = made.around(now.suspects[q].theta, np.array(SEARCH.equipment_sizes))
+    trials = made.around(
+        made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.equipment_sizes)
+    )
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     return _Look(wide, trials, score)
 

@@ -116,7 +116,7 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
         alone = c.kind is point_mass.KIND and c.many(s.row) == 1
         around = surroundings(structure, c.xyz[s.row]) if alone else None
         if around is not None:
-            s = Suspect(len(searcher.problem.catalogue), 0, (*s.theta, *SEARCH.foot[0]))
+            s = Suspect(len(searcher.problem.catalogue), 0, (s.theta[0], *SEARCH.foot[0]))
             searcher = with_kind(searcher, s.kind, _free(structure, c, around))
         suspects.append(s)
     return searcher, replace(state, suspects=tuple(suspects))
@@ -217,12 +217,12 @@ def _free(structure: Structure, c: Candidates, around: Surroundings) -> Candidat
         kind=c.kind,
         xyz=around.xyz.mean(axis=0)[None],
         law=FootLaw(around),
-        trials=c.trials,
+        trials=c.trials[:, :1],
         root=translations(structure, points),
         rows_each=3 * n,
         where=({"grids": ids[around.grids].tolist()},),
-        typical=np.append(c.typical, typical),
-        spread=np.append(c.spread, spread),
+        typical=np.append(c.typical[0], typical),
+        spread=np.append(c.spread[0], spread),
         steps=np.append(1.0, steps),
         lower=np.append(-np.inf, typical - reach),
         upper=np.append(np.inf, typical + reach),
@@ -240,7 +240,7 @@ def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floa
         kind=c.kind,
         xyz=(share @ around.xyz[kept])[None],
         law=MassLaw(),
-        trials=c.trials,
+        trials=c.trials[:, :1],
         root=translations(structure, points),
         rows_each=3 * n,
         where=(

@@ -73,7 +73,7 @@ def burden(searcher: Searcher, f: Fit) -> float:
         for t in f.suspects[:i]:
             a, b = catalogue[s.kind], catalogue[t.kind]
             apart = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row]))
-            if a.law.on == b.law.on and apart < SEARCH.beside * searcher.size:
+            if a.law.acts_on == b.law.acts_on and apart < SEARCH.beside * searcher.size:
                 total += SEARCH.same_effect
                 break
     return total

@@ -193,6 +193,8 @@ class Searcher:
         if not len(rows):
             return None
         small, here = self.local(without)
+        alike = scan(softened(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
+        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
         trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
         score = scan(softened(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]

@@ -70,7 +70,7 @@ def promising(
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
         c = searcher.problem.catalogue[kind]
-        trials = c.around(state.suspects[q].theta, np.array(sizes))
+        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))

@@ -11,6 +11,7 @@ SCAN = "cache: their matrices stay near the processor"
 @dataclass(frozen=True)
 class SearchNumbers:
     neighbouring: tuple[float, ...] = number((-0.45, 0.0, 0.45), "θ", "steps tried when a suspect moves to a neighbouring place")
+    sized: int = number(16, "places", "that promise most at the size it has, at which the others are tried")
     nearby: tuple[float, ...] = number((-0.35, 0.0, 0.35), "θ", "steps tried around the best places of the first scan")
     few_places: int = number(300, "places", "up to so many of simple kinds more of them are fitted, the known parameters with them")
     few_branches: int = number(3, "-", "times as many branches are followed then")

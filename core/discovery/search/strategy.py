@@ -98,7 +98,8 @@ def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
     sizes = own.kind.limits(np.exp(s.theta))
     for kind, c in enumerate(catalogue):
         if c.kind in sizes and c.rows_each:
-            plain = Suspect(kind, _same_place(own, s.row, c), (float(np.log(sizes[c.kind])),))
+            size = c.like([float(np.log(sizes[c.kind]))])
+            plain = Suspect(kind, _same_place(own, s.row, c), tuple(size.tolist()))
             suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
             out.append(searcher.fitted(f, suspects, SEARCH.steps_instead))
     return out

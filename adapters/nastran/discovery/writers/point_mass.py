@@ -5,12 +5,13 @@ from typing import Any
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
 from .site import Site, plain
+from .tuned_absorber import sprung
 
 
 def write(text: DeckText, site: Site) -> DeckText:
     """Put the mass on the grids named, each its share: the same, where none is said.
 
-    Equipment sits at a grid that follows them.
+    Equipment sits at a grid that follows them, a mass hangs on the mount that the test tells.
 
     An offset CONM2 on a grid of a shell would hang on its drilling stiffness, which is next to
     nothing.
@@ -18,6 +19,8 @@ def write(text: DeckText, site: Site) -> DeckText:
     number = free_id(text, "element")
     if "inertia" in site.finding.magnitude:
         return site.added(text, _equipment(text, site, number))
+    if "mount_hz" in site.finding.magnitude:
+        return sprung(text, site, (1, 2, 3), site.total("mount_hz"))
     grids = site.grids
     shares = site.finding.where.shares or (1.0 / len(grids),) * len(grids)
     parts = (plain(site.total("mass") * share) for share in shares)

@@ -1,5 +1,6 @@
 """A scalar point with CMASS2 on a CELAS2 for an absorber."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,13 @@ def write(text: DeckText, site: Site) -> DeckText:
     A grid held in the other directions would hold a free structure to ground. It hangs on the
     grid itself where that is one grid in basic axes, else on a grid that follows all those named.
     """
-    grids, (c,), m = site.grids, site.components, plain(site.total("mass"))
-    omega = 2.0 * np.pi * site.total("frequency_hz")
+    return sprung(text, site, site.components, site.total("frequency_hz"))
+
+
+def sprung(text: DeckText, site: Site, components: Sequence[int], hz: float) -> DeckText:
+    """Put a mass on springs, the same in some directions."""
+    grids, m = site.grids, plain(site.total("mass"))
+    omega = 2.0 * np.pi * hz
     stiffness = plain(m * site.deck.param("WTMASS", 1.0) * omega**2)
     new, number = free_id(text, "grid"), free_id(text, "element")
     host, rows = grids[0], list[list[Any]]()
@@ -30,9 +36,10 @@ def write(text: DeckText, site: Site) -> DeckText:
     elif site.system(host):
         host, new = new, new + 1
         rows += basic_companion(site, grids[0], host, number)
-    rows += [
-        ["SPOINT", new],
-        ["CELAS2", number + 1, stiffness, host, c, new],
-        ["CMASS2", number + 2, m, new],
-    ]
+    for k, c in enumerate(components):
+        rows += [
+            ["SPOINT", new + k],
+            ["CELAS2", number + 2 * k + 1, stiffness, host, c, new + k],
+            ["CMASS2", number + 2 * k + 2, m, new + k],
+        ]
     return site.added(text, rows)

@@ -1,5 +1,7 @@
 """An absorber in a deck: read back and solved it splits a frequency as den Hartog says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,15 @@ def test_one_frequency_becomes_den_hartogs_two(tmp_path, cd, held, component, mu
     split = 1.0 + 0.5 * mu + np.sqrt(mu + 0.25 * mu**2) * np.array([-1.0, 1.0])
     np.testing.assert_allclose(hz(solution), F0 * np.sqrt(split), rtol=1e-6)
     assert any(c.startswith("CELAS2") for c in done.cards)
+
+
+def test_a_mass_on_a_mount_is_an_absorber_in_every_direction(tmp_path):
+    mass = {"mass": 0.1 * M, "mount_hz": F0}
+    what = replace(finding([1], 3, 0.1 * M, F0), kind="point_mass", magnitude=mass)
+    text = ONE_MASS.format(cd=0, held="12456", component=3)
+    _, _, solution = completed(tmp_path, text, what)
+    split = 1.05 + np.sqrt(0.1025) * np.array([-1.0, 1.0])
+    np.testing.assert_allclose(hz(solution), F0 * np.sort([*np.sqrt(split), 1.0, 1.0]), rtol=1e-6)
 
 
 @pytest.mark.parametrize("grids", [[1], [1, 2], [1, 2, 3, 4]])

@@ -17,6 +17,8 @@ FRAME = (
     + "".join(f"CBAR,{k},1,{k},{k + 1},0.,0.,1.\n" for k in range(1, 15))
     + "PBAR,1,1,4.-4,1.3-8,1.3-8,2.6-8\nMAT1,1,2.1+11,,.3,7850.\nSPC1,1,123456,1,15\n"
 )
+HALF = (float(np.log(0.5)), float(np.log(1e4)))
+"""Of a kilogram, on a mount of 10 kHz."""
 BODY = "CONM2,90,6,0,.5,.08,0.,0.\n,2.-3,,2.-3,,,2.-3\n"
 
 
@@ -50,7 +52,9 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     s = core._searcher(trial)
     masses = s.problem.catalogue[0]
     row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
-    point = s.fitted(s.null(), (Suspect(0, row, (float(np.log(0.5)),)),))
+    point = s.fitted(
+        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
+    )
     wide, grown = equipped(request.structure, s, point, 1.0)
     (found,) = grown.suspects
     c = wide.problem.catalogue[found.kind]
@@ -69,7 +73,9 @@ def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_
     trial = core._Trial(request, core._ground(request, every[0]), nothing, 0.01, ~every[0], nothing)
     s = core._searcher(trial)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
-    point = s.fitted(s.null(), (Suspect(0, row, (float(np.log(0.5)),)),))
+    point = s.fitted(
+        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
+    )
     mass = float(np.exp(point.suspects[0].theta[0]))
     wide, solid = as_blocks(request.structure, s, point, request.densest)
     (found,) = solid.suspects
