@@ -89,6 +89,7 @@ class EigenNumbers:
     room: tuple[int, int] = number((3, 6), "times modes, times `width`", "vectors of a basis before a restart", CHECK)
     step: int = number(12, "part of the basis", "by which it grows between looks at the Ritz values", "time")
     warm: float = number(1e-6, "of λ − σ", "error of eigenvalues that were known nearly, at most", CHECK)
+    known_gap: float = number(0.1, "of λ", "gap above modes that were known nearly, at most: those beyond were not", CHECK)
     warm_steps: int = number(6, "inverse iterations", "of such vectors, at most", CHECK)
     spanned: float = number(1e-10, "of the largest", "energy of a direction beside others that is rounding", ROUNDING)
     attempts: int = number(5, "searches", "for missed modes, the first included", CHECK)

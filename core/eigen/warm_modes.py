@@ -75,7 +75,7 @@ def warm_modes(
     if above is None:
         return None
     low, high = near.values[above - 1 : above + 1]
-    s = float(low + EIGEN.within[0] * (high - low))
+    s = float(low + EIGEN.within[0] * min(high - low, EIGEN.known_gap * abs(low)))
     try:
         factor = factorise(pencil.shifted(s), False, backend, pencil.groups)
         below = factor.negative - rigid.shape[1]
@@ -121,9 +121,11 @@ def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -
     error = off / (values - sigma)
     if error[first].max() > EIGEN.warm:
         return None
-    X, MX = step.Y[:, some] @ C, step.MY[:, some] @ C
+    X, MX, KX = (A[:, some] @ C for A in (step.Y, step.MY, step.MZ))
+    KX += s * MX
     size = float((np.abs(pencil.k_diagonal) @ X**2).max())
-    backward = pencil.backward_error(values, X, step.MZ[:, some] @ C + s * MX, MX)
+    wanted = (A[:, first] for A in (X, KX, MX))
+    backward = pencil.backward_error(values[first], *wanted)
     if backward > EIGEN.backward or -alpha[-1] <= EIGEN.signs * size:
         return None
     return Spectrum(values[first], X[:, first], error[first], sigma, complete=False, missed=0)

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from ..arrays import Floats
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution, solve
+from ..eigen.pencil import widest_gap
 from ..eigen.warm_modes import Near
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
@@ -88,9 +89,11 @@ class ReducedOrder:
         return replace(self, answers=self.reduced.answers_at(p, full.sensors))
 
     def near(self, p: Floats) -> Near:
-        """Return what it knows of the full model's modes at `p`."""
+        """Return what it knows of the full model's modes at `p`: those up to a gap, some above."""
         every = self.reduced.solve(p, self.reduced.size)
-        some, rigid = every.take(self._some_more), every.rigid_body_modes
+        rigid = every.rigid_body_modes
+        above = rigid + (widest_gap(every.eigenvalues[rigid:], self.n_modes - rigid) or 0)
+        some = every.take(max(above, self.n_modes) + DERIVATIVES.guard)
         return Near(every.eigenvalues[rigid:], self.reduced.vectors(some)[:, rigid:])
 
     @property
