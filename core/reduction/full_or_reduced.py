@@ -16,6 +16,7 @@ from ..eigen.warm_modes import Near
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
 from .reduced_model import ReducedModel, ReducedModes, build_reduced
+from .static_answers import AtSensors
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +62,14 @@ class FullOrder:
 class ReducedOrder:
     """The model on the modes of one parameter point and their static answers to parameters.
 
-    `sensors` (n_sensor, n_basis) read the vectors of `solve`; `answers` (n_free, n_sensor) are the
-    static answers to them at the factors where derivatives are wanted.
+    `sensors` (n_sensor, n_basis) read the vectors of `solve`; `answers` are what they need at the
+    factors where derivatives are wanted.
     """
 
     reduced: ReducedModel
     sensors: Floats
     n_modes: int
-    answers: Floats | None = None
+    answers: AtSensors | None = None
 
     @property
     def model(self) -> Model:
@@ -86,7 +87,7 @@ class ReducedOrder:
 
     def seen(self, full: FullOrder, p: Floats) -> ReducedOrder:
         """Return it with derivatives at `p` that are right where the sensors read them."""
-        return replace(self, answers=self.reduced.answers_at(p, full.sensors))
+        return replace(self, answers=self.reduced.at_sensors(p, full.sensors))
 
     def near(self, p: Floats) -> Near:
         """Return what it knows of the full model's modes at `p`: those up to a gap, some above."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -16,11 +18,12 @@ from ..eigen.normal_modes import Eigensolution, solve
 from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..noun import Noun
-from ..numerics.factorisation import Factorisation, factorise
+from ..numerics.factorisation import factorise
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, clusters, coefficients, differentiate
 from .eigenvector_derivatives import modal_change
 from .reduced_sum import ReducedSum, reduced_sum
+from .static_answers import AtSensors, answers_to, static_answers
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +72,8 @@ class ReducedModel(Noun):
         The full model.
     p0 : (n_parameter,) float
         The parameter values around which it is made.
-    Q : (n_free, n_basis) float
-        Orthonormal with respect to K - sigma M at `p0`.
+    parts : tuple of (n_free, k) float
+        Vectors Q, side by side: orthonormal with respect to K - sigma M at `p0`.
     stiffness, mass : ReducedSum
         Q^T K Q and Q^T M Q at any parameter values.
     solution : Eigensolution
@@ -81,7 +84,7 @@ class ReducedModel(Noun):
 
     model: Model
     p0: Floats
-    Q: Floats
+    parts: tuple[Floats, ...]
     stiffness: ReducedSum
     mass: ReducedSum
     solution: Eigensolution = field(repr=False)
@@ -91,7 +94,13 @@ class ReducedModel(Noun):
     @property
     def size(self) -> int:
         """Number of basis vectors."""
-        return int(self.Q.shape[1])
+        return sum(part.shape[1] for part in self.parts)
+
+    def spread(self, q: Floats) -> Floats:
+        """Return Q q of coordinates (n_basis, k), (n_free, k)."""
+        ends = np.cumsum([part.shape[1] for part in self.parts])[:-1]
+        each = zip(self.parts, np.split(q, ends), strict=True)
+        return np.asarray(reduce(operator.iadd, (part @ some for part, some in each)))
 
     def project(self, vectors: sp.spmatrix | Floats) -> Floats:
         """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).
@@ -99,7 +108,11 @@ class ReducedModel(Noun):
         The transpose of what sensors C, (n_sensor, n_free), see of the basis: C Q is
         ``project(C.T).T``.
         """
-        return np.asarray((vectors.T @ self.Q).T)
+        rows: slice | Ints = slice(None)
+        if sp.issparse(vectors):
+            vectors = sp.csr_matrix(vectors)
+            rows = np.flatnonzero(np.diff(vectors.indptr))
+        return np.vstack([(vectors[rows].T @ part[rows]).T for part in self.parts])
 
     def solve(self, p: Floats, n_modes: int | None = None) -> ReducedModes:
         """Find modes at the parameter values `p`.
@@ -135,53 +148,50 @@ class ReducedModel(Noun):
         """Return the model with the modes of another parameter point in its basis: exact there."""
         free, sigma = slice(found.rigid_body_modes, None), self.solution.sigma
         X = found.vectors[:, free] / np.sqrt(found.eigenvalues[free] - sigma)
-        AX = self.model.K(self.p0) @ X - sigma * (self.model.M(self.p0) @ X)
-        return self._with(X, AX, DERIVATIVES.known_already)
+        AX = self.stiffness.applied(self.p0, X) - sigma * self.mass.applied(self.p0, X)
+        known = self.project(AX)
+        return self._with(
+            X - self.spread(known), X.T @ AX - known.T @ known, DERIVATIVES.known_already
+        )
 
     def corrected(self, p: Floats, found: ReducedModes) -> ReducedModel:
         """Return the model with what its modes at `p` lack, A^-1 (K - lambda M) phi, in its basis.
 
         A is K - sigma M at `p0`: a step of Davidson's method (1975, Journal of Computational
         Physics 17, 87), which leaves of an error the share by which K at `p` differs from that.
+        Being modes of the basis they leave no force along it: what they lack is A-orthogonal to it.
         """
         free = slice(found.rigid_body_modes, None)
         lam = found.eigenvalues[free]
-        X = self.Q @ (found.vectors[:, free] / np.sqrt(lam - self.solution.sigma))
-        R = self.model.K(p) @ X - (self.model.M(p) @ X) * lam
+        X = self.spread(found.vectors[:, free] / np.sqrt(lam - self.solution.sigma))
+        R = self.stiffness.applied(p, X) - self.mass.applied(p, X) * lam
         factor = self.solution.factor
         assert factor is not None
-        return self._with(factor.solve(R), R, DERIVATIVES.too_little)
+        W = factor.solve(R)
+        return self._with(W, W.T @ R, DERIVATIVES.too_little)
 
-    def answers_at(self, p: Floats, sensors: sp.csr_matrix) -> Floats:
-        """Find static answers to sensors C (n_sensor, n_free) at `p`, A^-1 C^T, (n_free, n_sensor).
+    def at_sensors(self, p: Floats, sensors: sp.csr_matrix) -> AtSensors:
+        """Return what makes derivatives at `p` right at `sensors`, (n_sensor, n_free).
 
-        What parameters change of modes is right with them where the sensors read it, whether or
-        not the basis has the static answers to the parameters: C A^-1 f is the work of f along
-        A^-1 C^T (the adjoint method: Haug, Choi and Komkov 1986, Design Sensitivity Analysis of
-        Structural Systems). The factor of the model becomes that at `p`: this ends its use.
+        The factor of the model becomes that of K - sigma M at `p`: this ends its other use.
         """
         factor = self.solution.factor
         assert factor is not None
         factor.refactorise(Pencil.of(self.model, p).shifted(self.solution.sigma))
-        return np.asarray(factor.solve(sensors.T.toarray()))
+        return AtSensors(factor, sensors)
 
-    def _with(self, W: Floats, AW: Floats, least: float) -> ReducedModel:
-        """Return the model with more vectors W, where they have at least so much energy."""
-        W = W - self.Q @ (self.Q.T @ AW)
-        energy = W.T @ AW
+    def _with(self, W: Floats, energy: Floats, least: float) -> ReducedModel:
+        """Return the model with vectors W beside Q, of at least so much of their energy W^T A W."""
         size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
         new = size > least
-        return self._beside(W @ (turn[:, new] / np.sqrt(size[new])))
-
-    def _beside(self, W: Floats) -> ReducedModel:
-        """Return the model with further vectors, orthonormal with those it has."""
+        W = W @ (turn[:, new] / np.sqrt(size[new]))
         sums = (self.stiffness, self.mass, self.damping, self.loss)
-        K, M, D, H = (terms.widened(self.Q, W) for terms in sums)
-        return replace(self, Q=np.hstack([self.Q, W]), stiffness=K, mass=M, damping=D, loss=H)
+        K, M, D, H = (terms.widened(self.parts, W) for terms in sums)
+        return replace(self, parts=(*self.parts, W), stiffness=K, mass=M, damping=D, loss=H)
 
     def vectors(self, modes: ReducedModes) -> Floats:
         """Return the shapes on the free degrees of freedom, (n_free, n_mode), unit modal mass."""
-        return np.asarray(self.Q @ modes.vectors)
+        return self.spread(modes.vectors)
 
     def sensitivities(
         self,
@@ -190,7 +200,7 @@ class ReducedModel(Noun):
         parameters: Sequence[int],
         sensors: Floats | None = None,
         solution: ReducedModes | None = None,
-        answers: Floats | None = None,
+        answers: AtSensors | None = None,
     ) -> Sensitivities:
         """Differentiate modes within the basis, exactly.
 
@@ -204,8 +214,8 @@ class ReducedModel(Noun):
             C Q of the sensors.
         solution : ReducedModes, optional
             At `p`, with its `whole`: repeated modes are those that the coefficients combine.
-        answers : (n_free, n_sensor) float, optional
-            `answers_at` of the sensors at `p`: what of them the basis lacks is added.
+        answers : AtSensors, optional
+            Of the sensors at `p`: what the basis lacks of their static answers is added.
 
         Returns
         -------
@@ -241,7 +251,8 @@ class ReducedModel(Noun):
         if at_modes is not None and answers is not None:
             static = (K - M * lam[near]) / (lam[:, None] - self.solution.sigma)
             seen = np.einsum("sk,ikj->sji", at_modes, static, optimize=True)
-            beside = seen - self._seen_in_full(p, parameters, X[:, near], lam[near], answers)
+            shapes = self.spread(X[:, near])
+            beside = seen - answers.work(self.model, p, parameters, shapes, lam[near])
             at_modes = np.hstack([at_modes, np.eye(len(beside))])
 
         def change_of(cluster: Ints) -> Floats:
@@ -252,24 +263,6 @@ class ReducedModel(Noun):
 
         size = len(parameters)
         return differentiate(T, by_position, everything, size, matrices_of, at_modes, change_of)
-
-    def _seen_in_full(
-        self, p: Floats, parameters: Sequence[int], x: Floats, lam: Floats, answers: Floats
-    ) -> Floats:
-        """Work of (K' - lambda M') Q x along static answers, (n_sensor, n, n_parameter)."""
-        out = np.empty((answers.shape[1], len(lam), len(parameters)))
-        X = self.Q @ x
-        for k, i in enumerate(parameters):
-            rows, load = _loads(self.model, p, i, X, lam)
-            out[:, :, k] = answers[rows].T @ load
-        return out
-
-
-def _loads(model: Model, p: Floats, i: int, X: Floats, lam: Floats) -> tuple[Ints, Floats]:
-    """Find (K' - lambda M') phi of modes by a parameter, on the rows that it has."""
-    dK, dM = model.dK(i, p), model.dM(i, p)
-    rows = np.flatnonzero(np.diff(dK.indptr) + np.diff(dM.indptr))
-    return rows, np.asarray(dK[rows] @ X - (dM[rows] @ X) * lam)
 
 
 def build_reduced(
@@ -340,71 +333,8 @@ def build_reduced(
     )
     Q = np.hstack([modes, answers])
     if forces is not None:
-        Q = np.hstack([Q, _answers_to(forces, factor, Q)])
+        Q = np.hstack([Q, answers_to(forces, factor, Q)])
     K, M, D, H = (
         reduced_sum(terms, Q) for terms in (model.stiffness, model.mass, model.damping, model.loss)
     )
-    return ReducedModel(model, p0, Q, K, M, replace(solution, factor=factor), D, H)
-
-
-def _answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
-    """Find the static answers to forces beside those in a basis, A^-1 f, A-orthonormal."""
-    F = np.ascontiguousarray(forces.T.toarray())
-    known = Q.T @ F
-    S = np.asarray(factor.solve(F)) - Q @ known
-    value, W = np.linalg.eigh(S.T @ F)
-    kept = value > DERIVATIVES.dependent * np.max(np.sum(known**2, axis=0), initial=0.0)
-    return np.asarray(S @ (W[:, kept] / np.sqrt(value[kept])))
-
-
-def static_answers(
-    model: Model,
-    p0: Floats,
-    solution: Eigensolution,
-    factor: Factorisation,
-    targets: Sequence[int] | Ints,
-    parameters: Sequence[int],
-    most: int,
-    least: float,
-    sketch: int | None = None,
-) -> Floats:
-    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi, (n_free, k).
-
-    Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
-    values, compare; of their principal directions at `most` so many are kept, those of largest
-    energy, of at `least` a share of that of a mode for a factor moved by one. A-orthonormal,
-    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes. Of more than `sketch`
-    so many combinations stand for all, with coefficients drawn at random.
-    """
-    chosen = np.asarray(targets, np.int64)
-    span = solution.eigenvalues - solution.sigma
-    X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
-    weight = 1.0 / np.sqrt(span[chosen])
-    n, m = X.shape
-    drawn = min(sketch or m * len(parameters), m * len(parameters))
-    mixed = drawn < m * len(parameters)
-    group = len(parameters) if mixed else max(1, DERIVATIVES.block // max(m, 1))
-    groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
-    ends = np.cumsum([0] + [drawn if mixed else m * len(g) for g in groups])
-    rng = np.random.default_rng(0)
-
-    S = np.empty((n, ends[-1]), order="F")
-    energy = np.zeros((ends[-1],) * 2)
-    modal = np.empty((len(span), ends[-1]))
-    for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
-        F = np.zeros((n, end - start), order="F")
-        for first, i in enumerate(members):
-            at = slice(None) if mixed else slice(first * m, (first + 1) * m)
-            rows, part = _loads(model, p0, i, X, lam)
-            part *= weight
-            F[rows, at] += part @ rng.standard_normal((m, drawn)) if mixed else part
-        S[:, start:end] = factor.solve(F)
-        energy[:end, start:end] = S[:, :end].T @ F
-        energy[start:end, :start] = energy[:start, start:end].T
-        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
-    energy -= modal.T @ (span[:, None] * modal)
-    value, W = np.linalg.eigh((energy + energy.T) / 2.0)
-    best = np.argsort(-value)[:most]
-    best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
-    W = W[:, best] / np.sqrt(value[best])
-    return np.asarray(S @ W - solution.vectors @ (modal @ W))
+    return ReducedModel(model, p0, (Q,), K, M, replace(solution, factor=factor), D, H)

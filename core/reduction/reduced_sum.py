@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Floats
+from ..arrays import Floats, Ints
 from ..data.parametric_model import Factor, Term
 
 
@@ -41,6 +41,14 @@ class ReducedSum:
         """Return the sum at the parameter values `p`, (r, r)."""
         return np.asarray(np.tensordot([t.coefficient(p) for t in self.terms], self.matrices, 1))
 
+    def applied(self, p: Floats, X: Floats) -> Floats:
+        """Return the full sum at `p` times vectors X (n_free, k), whatever the basis."""
+        out, by_rows = np.zeros(X.shape), np.ascontiguousarray(X)  # as sparse products want
+        for term in self.terms:
+            some = own_rows(term.matrix)
+            out[some] += term.coefficient(p) * (term.matrix[some] @ by_rows)
+        return out
+
     def slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:
         """Return its derivatives by some parameters, (len(parameters), r, r)."""
         c = np.zeros((len(parameters), len(self.terms)))
@@ -62,19 +70,20 @@ class ReducedSum:
         """Return the sum on the basis turned by T (r, s)."""
         return replace(self, turn=T if self.turn is None else self.turn @ T)
 
-    def widened(self, V: Floats, W: Floats) -> ReducedSum:
-        """Return the sum on the vectors V, on which it is made, and W (n_free, s).
+    def widened(self, parts: Sequence[Floats], W: Floats) -> ReducedSum:
+        """Return the sum on W (n_free, s), too, side by side with the parts it is made on.
 
         Term by term, each on the rows that it has, of many terms of a part of the structure each.
         """
-        (n, s), t = (V.shape[1], W.shape[1]), len(self.terms)
+        n, s, t = sum(V.shape[1] for V in parts), W.shape[1], len(self.terms)
         whole = np.zeros((t, n + s, n + s))
         whole[:, :n, :n] = self.whole
+        by_rows = np.ascontiguousarray(W)
         for out, term in zip(whole, self.terms, strict=True):
-            rows = np.flatnonzero(np.diff(term.matrix.indptr))
-            some = slice(None) if len(rows) == len(V) else rows
-            X = np.asarray(term.matrix[some] @ W)
-            out[:n, n:] = V[some].T @ X
+            some = own_rows(term.matrix)
+            X = np.asarray(term.matrix[some] @ by_rows)
+            if n:
+                out[:n, n:] = np.vstack([V[some].T @ X for V in parts])
             out[n:, :n] = out[:n, n:].T
             out[n:, n:] = W[some].T @ X
         return ReducedSum(self.terms, whole)
@@ -99,11 +108,19 @@ def projected(terms: Sequence[Term], Q: Floats) -> Floats:
     """Return Q^T A_t Q of each term A_t, (n_term, n_basis, n_basis)."""
     out = np.zeros((len(terms), Q.shape[1], Q.shape[1]))
     for k, term in enumerate(terms):
-        half = sp.triu(term.matrix, 1) + 0.5 * sp.diags(term.matrix.diagonal())
-        half = half.tocoo()
-        rows, at = np.unique(np.concatenate([half.row, half.col]), return_inverse=True)
-        part = sp.csr_matrix((half.data, at.reshape(2, -1)), shape=(len(rows), len(rows)))
-        q = np.ascontiguousarray(Q[rows])
-        product = q.T @ (part @ q)
+        some = own_rows(term.matrix)
+        part = term.matrix[some][:, some]
+        half = sp.triu(part, 1, "csr") + 0.5 * sp.diags(part.diagonal())
+        q = np.ascontiguousarray(Q[some])
+        product = q.T @ (half @ q)
         out[k] = product + product.T
     return out
+
+
+def own_rows(matrix: sp.csr_matrix) -> slice | Ints:
+    """Find the rows of a matrix that have entries: a slice where these fill most of one."""
+    rows = np.flatnonzero(np.diff(matrix.indptr))
+    if not len(rows):
+        return rows
+    low, high = int(rows[0]), int(rows[-1]) + 1
+    return slice(low, high) if 2 * len(rows) > high - low else rows

@@ -239,7 +239,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
         released = any(c.law.shared for c, _ in places)
         least = REDUCTION.released if released else REDUCTION.dependent
         W = beside(X, V, ground.mass, least)
-        stiffness, mass, mesh, bars = (s.widened(V, W) for s in sums)
+        stiffness, mass, mesh, bars = (s.widened([V], W) for s in sums)
         seen = np.hstack([seen, ground.observation @ W])
     none = np.zeros((0, seen.shape[1]))
     return Own(

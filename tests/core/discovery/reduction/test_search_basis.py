@@ -48,7 +48,7 @@ def test_the_reduced_sum_is_the_full_sum_on_the_turned_basis(turn):
 
 def test_a_sum_on_more_vectors_is_that_on_all_of_them():
     W = RNG.normal(size=(30, 2))
-    wide = reduced_sum(TERMS, V).widened(V, W)
+    wide = reduced_sum(TERMS, V).widened([V], W)
     np.testing.assert_allclose(wide.whole, reduced_sum(TERMS, np.hstack([V, W])).whole, atol=1e-12)
 
 

@@ -1,0 +1,116 @@
+"""Static answers A^-1 f, A = K - sigma M: to parameters, to forces, to the sensors of a test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats, Ints
+from ..data.parametric_model import Model
+from ..eigen.normal_modes import Eigensolution
+from ..numerics.factorisation import Factorisation
+from .derivative_numbers import DERIVATIVES
+from .reduced_sum import own_rows
+
+
+@dataclass(frozen=True, eq=False)
+class AtSensors:
+    """Sensors C (n_sensor, n_free) and a factor of A = K - sigma M at a parameter point.
+
+    What parameters change of modes is right with them where the sensors read it, whether or not a
+    basis has the static answers to the parameters: C A^-1 f is the work of f along A^-1 C^T (the
+    adjoint method: Haug, Choi and Komkov 1986, Design Sensitivity Analysis of Structural Systems).
+    """
+
+    factor: Factorisation
+    sensors: sp.csr_matrix
+
+    def work(
+        self, model: Model, p: Floats, parameters: Sequence[int], X: Floats, lam: Floats
+    ) -> Floats:
+        """Return C A^-1 (K' - lambda M') X, (n_sensor, n, n_parameter)."""
+        each = [list(_loads(model, p, i, X, lam)) for i in parameters]
+        out = np.zeros((self.sensors.shape[0], len(lam), len(parameters)))
+        for first in range(0, len(out), DERIVATIVES.block):
+            few = slice(first, first + DERIVATIVES.block)
+            S = self.factor.solve(self.sensors[few].T.toarray())
+            for k, loads in enumerate(each):
+                for rows, load in loads:
+                    out[few, :, k] += S[rows].T @ load
+        return out
+
+
+def answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
+    """Find the static answers to forces beside those in a basis, A^-1 f, A-orthonormal."""
+    F = np.ascontiguousarray(forces.T.toarray())
+    known = Q.T @ F
+    S = np.asarray(factor.solve(F)) - Q @ known
+    value, W = np.linalg.eigh(S.T @ F)
+    kept = value > DERIVATIVES.dependent * np.max(np.sum(known**2, axis=0), initial=0.0)
+    return np.asarray(S @ (W[:, kept] / np.sqrt(value[kept])))
+
+
+def static_answers(
+    model: Model,
+    p0: Floats,
+    solution: Eigensolution,
+    factor: Factorisation,
+    targets: Sequence[int] | Ints,
+    parameters: Sequence[int],
+    most: int,
+    least: float,
+    sketch: int | None = None,
+) -> Floats:
+    """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi, (n_free, k).
+
+    Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
+    values, compare; of their principal directions at `most` so many are kept, those of largest
+    energy, of at `least` a share of that of a mode for a factor moved by one. A-orthonormal,
+    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes. Of more than `sketch`
+    so many combinations stand for all, with coefficients drawn at random.
+    """
+    chosen = np.asarray(targets, np.int64)
+    span = solution.eigenvalues - solution.sigma
+    X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
+    weight = 1.0 / np.sqrt(span[chosen])
+    n, m = X.shape
+    drawn = min(sketch or m * len(parameters), m * len(parameters))
+    mixed = drawn < m * len(parameters)
+    group = len(parameters) if mixed else max(1, DERIVATIVES.block // max(m, 1))
+    groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
+    ends = np.cumsum([0] + [drawn if mixed else m * len(g) for g in groups])
+    rng = np.random.default_rng(0)
+
+    S = np.empty((n, ends[-1]), order="F")
+    energy = np.zeros((ends[-1],) * 2)
+    modal = np.empty((len(span), ends[-1]))
+    for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
+        F = np.zeros((n, end - start))
+        for first, i in enumerate(members):
+            at = slice(None) if mixed else slice(first * m, (first + 1) * m)
+            drawn_from = rng.standard_normal((m, drawn)) if mixed else np.eye(m)
+            for rows, part in _loads(model, p0, i, X, lam):
+                F[rows, at] += part @ (weight[:, None] * drawn_from)
+        S[:, start:end] = factor.solve(F)
+        energy[:end, start:end] = S[:, :end].T @ F
+        energy[start:end, :start] = energy[:start, start:end].T
+        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
+    energy -= modal.T @ (span[:, None] * modal)
+    value, W = np.linalg.eigh((energy + energy.T) / 2.0)
+    best = np.argsort(-value)[:most]
+    best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
+    W = W[:, best] / np.sqrt(value[best])
+    return np.asarray(S @ W - solution.vectors @ (modal @ W))
+
+
+def _loads(
+    model: Model, p: Floats, i: int, X: Floats, lam: Floats
+) -> Iterator[tuple[slice | Ints, Floats]]:
+    """Find (K' - lambda M') phi of modes by a parameter: two parts, on the rows that each has."""
+    for change, times in ((model.dK(i, p), np.ones(len(lam))), (model.dM(i, p), -lam)):
+        if change.nnz:
+            rows = own_rows(change)
+            yield rows, np.asarray(change[rows] @ X) * times
