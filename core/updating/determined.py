@@ -102,6 +102,60 @@ def put_back(configurations: Sequence[Configuration], stage: Stage, done: Update
     )
 
 
+def made_up(
+    configurations: Sequence[Configuration],
+    stages: Sequence[Stage],
+    put: Updated,
+    steps: Callable[[], Steps] = lambda: ((), lambda _: None),
+) -> Updated:
+    """Return a deck that values put back made worse than it came with the others fitted anew.
+
+    They then make up for what stays as in the deck: how far that leads them from their values with
+    all moving counts in their standard errors. A deck that is no worse keeps those values.
+
+    Parameters
+    ----------
+    configurations, stages, steps
+        As for `update_determined`.
+    put : Updated
+        What `put_back` returned.
+
+    Returns
+    -------
+    Updated
+        `put` itself where nothing was fitted anew; a warning where it is worse all the same.
+    """
+    problem, minimised = Problem.of(configurations), stages[-1].minimised
+    given = problem.valued(put.before, minimised)
+
+    def worse(done: Updated) -> bool:
+        return not problem.closer(problem.valued(done.after, minimised), given, minimised)
+
+    moved = [k for k in range(len(put.factors)) if k not in put.undetermined]
+    moving = _without(stages, put.undetermined)
+    if not moving or not any(put.factors[k] != 1.0 for k in moved) or not worse(put):
+        return put
+    gone_on, progress = steps()
+    again = update_configurations(configurations, moving, progress=progress, gone_on=gone_on)
+    names = [problem.parameters[k].name for k in moved]
+    values = zip(names, again.factors[moved], put.factors[moved], strict=True)
+    told = (
+        "with what stays as in the deck the updated deck was farther from the test than it came; "
+        "what moves was fitted anew beside it: "
+        + ", ".join(f"{name} {new:.4g} (with all moving {old:.4g})" for name, new, old in values)
+    )
+    still = ("the updated deck is farther from the test than it came",) * worse(again)
+    return replace(
+        again,
+        standard_error=frozen(np.hypot(again.standard_error, again.factors - put.factors)),
+        before=put.before,
+        history=(*put.history, *again.history[1:]),
+        eigensolutions=put.eigensolutions + again.eigensolutions,
+        undetermined=put.undetermined,
+        warnings=(*put.warnings, told, *still, *again.doubts),
+    )
+
+
 def _stay(problem: Problem, left: Collection[int]) -> str:
     names = " and ".join(problem.parameters[k].name for k in sorted(left))
     return f"{names} stay{'s' if len(left) == 1 else ''} as in the deck"

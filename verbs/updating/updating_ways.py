@@ -17,7 +17,7 @@ from ...core.errors import CheckError, InputError
 from ...core.reduction.eigenpair_derivatives import sensitivities
 from ...core.results.update import SolverRow
 from ...core.updating import update as core
-from ...core.updating.determined import put_back, update_determined
+from ...core.updating.determined import made_up, put_back, update_determined
 from ...core.updating.posterior import Start, from_elsewhere, profile_intervals, remarks
 from ...core.updating.prior_evidence import PriorWeighed, weigh_prior
 from ...core.updating.problem import Problem
@@ -148,6 +148,10 @@ def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Move
     best, starts = from_elsewhere(every, stages, done, asked.starts, asked.seed, each)
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
     last = stages[-1]
+    put = put_back(every, last, best)
+    final = made_up(every, stages, put, kept.steps)
+    if final is not put:
+        best = final
     intervals = profile_intervals(every, last, best) if asked.intervals else None
     sampled = (
         sample_posterior(every, last, best, asked.samples, asked.seed, each)
@@ -156,11 +160,11 @@ def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Move
     )
     evidence = weigh_prior(every, last, best) if asked.evidence else ()
     if sampled:
-        best = replace(best, warnings=(*best.warnings, *sampled.doubts))
+        final = replace(final, warnings=(*final.warnings, *sampled.doubts))
     if intervals is not None:
         intervals[[*best.combined]] = np.nan
     told = sampled and sampled.without(best.combined)
-    return Moved(put_back(every, last, best), starts, intervals, told, evidence)
+    return Moved(final, starts, intervals, told, evidence)
 
 
 def written(

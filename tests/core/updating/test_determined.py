@@ -13,7 +13,7 @@ from tests.core.updating.test_update import HALVES, N, chain, measured
 
 from trueup.core.data.parameter import Parameter
 from trueup.core.updating import determined
-from trueup.core.updating.determined import put_back, update_determined
+from trueup.core.updating.determined import made_up, put_back, update_determined
 from trueup.core.updating.identifiability import identifiability, unsure
 from trueup.core.updating.problem import Configuration
 from trueup.core.updating.residuals import Beside, Relation
@@ -39,13 +39,7 @@ def test_of_stiffness_and_mass_in_common_none_moves_and_the_ratio_is_said():
 
 def test_what_is_known_by_itself_is_not_led_astray_by_what_is_not():
     """Of k0 and q the product is known: one stands for it while k1 is found, then is put back."""
-    model = chain(HALVES)
-    first, *others = model.stiffness
-    both = replace(first, factors=(*first.factors, proportional(2, 0.1, 10)))
-    more = Parameter("q", ("q",), (1.0,))
-    model = replace(model, stiffness=(both, *others), parameters=(*model.parameters, more))
-    one = Configuration(model, measured(model, [1.2, 0.9, 1.1], noise=1e-4), n_modes=8)
-    stage = Stage((0, 1, 2))
+    one, stage, _ = _of_three((1.2, 0.9, 1.1))
     done = update_determined([one], [stage])
     assert len(done.combined) == 1
     assert done.factors[0] * done.factors[2] == pytest.approx(1.32, rel=1e-3)
@@ -57,6 +51,43 @@ def test_what_is_known_by_itself_is_not_led_astray_by_what_is_not():
     assert found.after.objective > done.after.objective
     np.testing.assert_array_equal(found.after.factors, found.factors)
     assert put_back([one], stage, found) is found
+
+
+def _of_three(truth: tuple[float, float, float]):
+    """Of k0 and q the product is known, k1 by itself."""
+    model = chain(HALVES)
+    first, *others = model.stiffness
+    both = replace(first, factors=(*first.factors, proportional(2, 0.1, 10)))
+    more = Parameter("q", ("q",), (1.0,))
+    model = replace(model, stiffness=(both, *others), parameters=(*model.parameters, more))
+    one = Configuration(model, measured(model, truth, noise=1e-4), n_modes=8)
+    stage = Stage((0, 1, 2), "frequencies", 30)
+    return one, stage, put_back([one], stage, update_determined([one], [stage]))
+
+
+def test_a_deck_that_is_worse_with_what_was_put_back_is_fitted_beside_it():
+    """k0·q is 1.15, k1 0.9; with k0·q at 1 a k1 of 0.9 is farther from the test than 1."""
+    one, stage, put = _of_three((1.15, 0.9, 1.0))
+    done = made_up([one], [stage], put)
+    assert put.factors[1] == pytest.approx(0.9, rel=2e-3)
+    assert put.after.objective > put.before.objective
+    held = update_configurations([one], [replace(stage, parameters=(1,))])
+    assert done.factors.tolist() == [1.0, pytest.approx(held.factors[1], rel=1e-3), 1.0]
+    astray = np.hypot(held.standard_error[1], held.factors[1] - put.factors[1])
+    assert done.standard_error[1] == pytest.approx(astray, rel=1e-3)
+    assert done.after.objective == pytest.approx(held.after.objective, rel=1e-4)
+    assert done.after.objective < done.before.objective
+    assert done.undetermined == (0, 2)
+    (said,) = (w for w in done.warnings if "fitted anew" in w)
+    assert re.search(r"k1 1\.0\d+ \(with all moving 0\.(8999|9)", said)
+    assert not any(w.endswith("farther from the test than it came") for w in done.warnings)
+
+
+def test_a_deck_that_is_no_worse_keeps_what_is_known_with_all_moving():
+    one, stage, put = _of_three((1.02, 0.7, 1.0))
+    assert put.after.objective < put.before.objective
+    assert made_up([one], [stage], put) is put
+    assert put.factors[1] == pytest.approx(0.7, rel=2e-3)
 
 
 def test_what_is_determined_moves_as_ever():
