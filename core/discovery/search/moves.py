@@ -128,12 +128,13 @@ class Searcher:
         return np.asarray(near[np.argsort(distance[near], kind="stable")][: self.effort.around])
 
     def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
-        """Places too near to a suspect of the same kind to be a second one, (n,)."""
-        spots = self.problem.catalogue[kind].spots
+        """Places too near to a suspect of the same kind or nature to be a second one, (n,)."""
+        c = self.problem.catalogue[kind]
         taken = np.zeros(len(rows), bool)
         for s in state.suspects:
-            if s.kind == kind:
-                apart = np.linalg.norm(spots[rows] - spots[s.row], axis=1)
+            other = self.problem.catalogue[s.kind]
+            if s.kind == kind or other.kind.joins(c.kind):
+                apart = np.linalg.norm(c.spots[rows] - other.spots[s.row], axis=1)
                 taken |= apart < self.effort.apart * self.size
         return taken
 

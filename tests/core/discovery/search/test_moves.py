@@ -33,6 +33,20 @@ def test_on_its_own_lowest_modes_a_hypothesis_is_what_it_was(held):
     assert here.objective == pytest.approx(state.objective, rel=1e-6)
 
 
+def test_two_masses_side_by_side_are_one_between_them_on_points_and_patches_alike():
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    p = s.problem
+    twice = replace(
+        p, catalogue=(*p.catalogue, p.catalogue[MASS]), factors=(*p.factors, p.factors[MASS])
+    )
+    s = replace(s, problem=twice, coarse=(*s.coarse, s.coarse[MASS]))
+    light = evaluate(twice, np.zeros(2), (Suspect(MASS, 9, (0.0,)),))
+    beside = [b for _, b in s.branches(light, 9) if b.kind in (MASS, 3)]
+    spots = p.catalogue[MASS].spots
+    assert beside
+    assert min(np.linalg.norm(spots[b.row] - spots[9]) for b in beside) >= s.effort.apart * s.size
+
+
 def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
     s = searcher(hidden(tension=1.1, masses=[(9, 2.0)]))
     near = (Suspect(MASS, 9, (np.log(1.98),)),)
