@@ -14,6 +14,7 @@ from rich.text import Text
 from ..adapters.report.pictures.colour import STEPS, ramp
 from ..adapters.report.tables.number_formats import (
     MISSING,
+    few,
     fixed,
     general,
     hz,
@@ -226,7 +227,7 @@ def candidates_table(answer: ParametersTables) -> Table:
     for row in sorted(answer.candidates, key=lambda r: (r.recommended or last, -r.sensitivity)):
         table.add_row(
             row.name,
-            ", ".join(general(v, 5) for v in row.values),
+            few([general(v, 5) for v in row.values]),
             general(row.sensitivity, 2),
             general(row.error_alone, 2),
             general(row.error_together, 2),

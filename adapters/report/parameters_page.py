@@ -13,7 +13,7 @@ from .imprint import Imprint
 from .page import sections, sheet, titled
 from .pictures.named_matrix import named_matrix
 from .pictures.scene import scene
-from .tables.number_formats import counted, fixed, general, hz, listed, percent
+from .tables.number_formats import counted, few, fixed, general, hz, listed, percent
 from .tables.table import Table, left
 
 _MATRIX = 30
@@ -73,7 +73,7 @@ def candidates_table(rows: Sequence[CandidateRow]) -> Table:
     cells = [
         (
             c.name,
-            ", ".join(general(v, 5) for v in c.values[:3]),
+            few([general(v, 5) for v in c.values]),
             fixed(c.sensitivity, 4),
             general(c.error_alone, 2),
             general(c.error_together, 2),

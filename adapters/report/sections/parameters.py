@@ -13,7 +13,7 @@ from ....core.updating.stages import Iteration
 from ..html.html_table import html_table
 from ..html.markup import tag
 from ..pictures import charts
-from ..tables.number_formats import MISSING, fixed, general, hz
+from ..tables.number_formats import MISSING, few, fixed, general, hz
 from ..tables.table import Cell, Column, Heading, Table, left
 from .section import ReportedRun, Section
 
@@ -65,14 +65,14 @@ def parameters_table(moved: Sequence[ParameterRow], note: str = "") -> Table:
 
 
 def _row(p: ParameterRow) -> tuple[Cell, ...]:
-    cards, error = ", ".join(p.cards), p.standard_error
+    cards, error = few(p.cards), p.standard_error
     left_alone = "left as it was" if p.significant is not None and p.updated == p.initial else ""
     loose = error is not None and error > _LOOSE * abs(p.factor)
     return (
         Cell(p.name),
         Cell("" if cards == p.name else cards, "muted"),
-        Cell(", ".join(general(v, 6) for v in p.initial)),
-        Cell(", ".join(general(v, 6) for v in p.updated)),
+        Cell(few([general(v, 6) for v in p.initial])),
+        Cell(few([general(v, 6) for v in p.updated])),
         Cell(fixed(p.factor, 4)),
         Cell(MISSING if error is None else f"± {fixed(error, 4)}", "poor" if loose else ""),
         Cell("" if p.interval is None else " … ".join(map(_end, p.interval))),

@@ -72,6 +72,13 @@ def counted(count: int, noun: str, plural: str | None = None) -> str:
     return f"{count} {noun if count == 1 else plural or noun + 's'}"
 
 
+def few(words: Sequence[str], most: int = 4) -> str:
+    """Return ``a, b, c``; of many the first two, the last and how many they are."""
+    if len(words) > most:
+        return f"{words[0]}, {words[1]}, … {words[-1]} ({len(words)})"
+    return ", ".join(words)
+
+
 def listed(items: Sequence[object], most: int = 6) -> str:
     """Return ``a, b and c``; a long list is cut and says by how much."""
     words = [str(i) for i in items]

@@ -17,7 +17,7 @@ from trueup.adapters.report.sections.pairs import PAIRS
 from trueup.adapters.report.sections.parameters import PARAMETERS
 from trueup.adapters.report.sections.unpaired_modes import UNPAIRED_MODES
 from trueup.adapters.report.sections.would_decide import WOULD_DECIDE
-from trueup.adapters.report.tables.number_formats import fixed, general, hz, listed, signed
+from trueup.adapters.report.tables.number_formats import few, fixed, general, hz, listed, signed
 from trueup.verbs.runs.report import answer_of
 
 
@@ -186,6 +186,8 @@ def test_numbers_are_written_as_engineers_do() -> None:
     ]  # fmt: skip
     assert [hz(v) for v in (0.1234, 33.9, 1234.56)] == ["0.1234", "33.90", "1234.6"]
     assert listed([1, 2]) == "1 and 2"
+    assert few(["a", "b", "c", "d"]) == "a, b, c, d"
+    assert few([*"abcdef"]) == "a, b, … f (6)"
     assert listed(list(range(9))) == "0, 1, 2, 3, 4 and 4 more"
 
 
