@@ -184,20 +184,20 @@ def _rows(c: Candidates) -> dict[Ends, int]:
     return {e: row for row, e in enumerate(c.ends)}
 
 
-def with_twins(single: Candidates, size: float) -> tuple[Candidates, ...]:
+def with_twins(single: Candidates, grids: Floats, size: float) -> tuple[Candidates, ...]:
     """Return candidates at points, and beside them the same at every set of equivalent ones.
 
-    A set has one magnitude, that of each place. `size` is that of the structure.
+    A set has one magnitude, that of each place. The symmetry is that of the structure's `grids`
+    (n, 3), held ones among them; `size` is its size.
     """
     points = {tuple(sorted(w["grids"])): i for i, w in reversed(list(enumerate(single.where)))}
     once = np.sort(np.fromiter(points.values(), np.int64))
-    own = [len(single.where[i]["grids"]) == 1 for i in once]
     xyz = single.xyz[once]
-    if not any(own):
+    if not len(xyz):
         return (single,)
     sets = [
         together(single, once[rows], np.concatenate([np.eye(3)[None], s.maps]))
-        for s in symmetries(xyz[own], size)
+        for s in symmetries(grids, size)
         for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
         if len(rows)
     ]

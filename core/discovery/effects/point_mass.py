@@ -54,7 +54,11 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     )
     feet, prior = patches_of(structure, scale.size, EFFECTS.feet), (typical, spread)
     on_feet = on_patches(KIND, structure, feet, MassLaw(), masses, prior, _grids)
-    return (*with_twins(at_points, scale.size), *on_feet)
+    used = np.zeros(len(structure.model.geometry.ids), bool)
+    for m in structure.members:
+        used[m.corners.ravel()] = True
+    grids = structure.model.geometry.xyz[used]
+    return (*with_twins(at_points, grids, scale.size), *on_feet)
 
 
 def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, Any], ...]:

@@ -58,7 +58,8 @@ def points_of(structure: Structure) -> Points:
         if m.element.dimension == 2:
             diagonals = g.xyz[m.corners[:, [2, -1]]] - g.xyz[m.corners[:, [0, 1]]]
             normal = np.cross(diagonals[:, 0], diagonals[:, 1])
-            normal /= np.linalg.norm(normal, axis=1)[:, None]
+            length = np.linalg.norm(normal, axis=1)
+            normal /= np.where(length > 0.0, length, 1.0)[:, None]
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges, first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)
             for corners, across in (

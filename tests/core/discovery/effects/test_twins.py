@@ -1,5 +1,7 @@
 """The same effect at places that are each other's images."""
 
+from dataclasses import replace
+
 import numpy as np
 from tests.core.discovery.strings import N, hidden, searcher
 
@@ -8,7 +10,7 @@ from trueup.core.discovery.effects.candidates import factors_of, places_of, with
 
 def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():
     problem = searcher(hidden()).problem
-    single, pairs = with_twins(problem.catalogue[0], 1.0)
+    single, pairs = with_twins(problem.catalogue[0], problem.catalogue[0].xyz, 1.0)
     assert {tuple(sorted(c)) for c in pairs.copies} == {
         (i, N - 1 - i) for i in range(N // 2) if N - 1 - 2 * i > 0.05 * (N + 1)
     }
@@ -23,3 +25,16 @@ def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():
     expected[i, i] = expected[j, j] = 1.0
     assert np.allclose(pairs.full(3).toarray(), expected)
     assert own[rows].shape == (2, 1, N)
+
+
+def test_images_are_those_of_the_whole_structure_one_end_held():
+    """Points that move, without the held bead, have another middle."""
+    single = searcher(hidden()).problem.catalogue[0]
+    moving = replace(
+        single,
+        xyz=single.xyz[1:],
+        root=single.root[1:],
+        where=single.where[1:],
+    )
+    _, pairs = with_twins(moving, single.xyz, 1.0)
+    assert all(i + j + 2 == N - 1 for i, j in pairs.copies)

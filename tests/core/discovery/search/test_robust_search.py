@@ -24,7 +24,7 @@ def off_everywhere(truth, size, seed):
 
 def two_alike(s):
     singles = s.problem.catalogue[0]
-    catalogue = (*s.problem.catalogue, *with_twins(singles, s.size)[1:])
+    catalogue = (*s.problem.catalogue, *with_twins(singles, singles.xyz, s.size)[1:])
     problem = replace(
         s.problem, catalogue=catalogue, factors=factors_of(catalogue, s.problem.basis)
     )
