@@ -210,6 +210,11 @@ class PatchCandidates(Candidates):
         return self.law.on == "M"
 
 
+def gives(c: Candidates) -> bool:
+    """Whether candidates are patches of more or less stiffness."""
+    return isinstance(c, PatchCandidates) and c.law.on == "K"
+
+
 def masses(M: Floats) -> Floats:
     """Masses of elements with the mass matrices M (n, m, m), six coordinates a node, (n,)."""
     along = M[:, ::6, ::6]

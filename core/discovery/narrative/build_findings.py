@@ -178,10 +178,11 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
     places = o.whole.places[number]
     error = [m.place_error for m in c.kind.magnitudes[: len(s.theta)]]
-    spread = np.hypot(np.hypot(deviation, error), between(places))
+    spread = np.hypot(deviation, error)
     if "factor" in (m.word for m in c.kind.magnitudes):
         off = min(np.sqrt(2.0 * max(o.whole.last, 1.0)), NARRATIVE.off_one)
         spread = np.minimum(spread, np.abs(s.theta) / off)
+    spread = np.hypot(spread, between(places))
     half = NARRATIVE.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
     magnitude = magnitude_of(c, row, sizes, intervals, masses)

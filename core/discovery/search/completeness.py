@@ -7,6 +7,7 @@ more than it could have been anywhere.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -14,13 +15,14 @@ import numpy as np
 
 from ...arrays import Floats
 from ...errors import CheckError
+from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..model_error.diffuse_fit import Judged
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
-from .credible_places import Place, credible_places, middle
+from .credible_places import Place, alike, credible_places, middle
 from .last_look import looked_again
 from .model_selection import (
     Judgement,
@@ -194,7 +196,7 @@ def completeness(
     for k, level in enumerate(levels[1:], start=1):
         if _earned(level, levels[kept]):
             kept = k
-    best, places = _centred(searcher, levels[kept], verdict.scale)
+    best, places = _centred(searcher, levels[kept], fields[kept], verdict.scale)
     found = _led(found, best.fit)
     others = contenders(searcher, found, kept)
     rivals = [s for s in fields[kept] if any(s.fit is f for f in others)]
@@ -234,15 +236,21 @@ def _unsettled(best: Scored) -> bool:
     return adequate or not several
 
 
-def _centred(searcher: Searcher, best: Scored, scale: float) -> tuple[Scored, list[list[Place]]]:
+def _centred(
+    searcher: Searcher, best: Scored, tried: Sequence[Scored], scale: float
+) -> tuple[Scored, list[list[Place]]]:
     """Return a hypothesis with what is at points in the middle of where it may be, and the places.
 
-    What is found does not hang on which of places that are as likely happens to be the best.
+    What is found does not hang on which of places that are as likely happens to be the best. Of
+    patches that give the places are those that were `tried`: the larger one is the less it gives.
     """
     every = []
     for q in range(len(best.fit.suspects)):
-        places = credible_places(searcher, best.fit, q, scale)
         c = searcher.problem.catalogue[best.fit.suspects[q].kind]
+        if gives(c):
+            every.append(alike(tried, best, q))
+            continue
+        places = credible_places(searcher, best.fit, q, scale)
         for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
             s, suspects = middle(c, places), best.fit.suspects
             if s.row == suspects[q].row:

@@ -10,6 +10,7 @@ from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
+from .model_selection import Scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -55,6 +56,24 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     share = (weight / weight.sum()).tolist()
     places = [Place(f.suspects[number], w) for f, w in zip(kept, share, strict=True)]
     return sorted(places, key=lambda p: -p.weight)
+
+
+def alike(tried: Sequence[Scored], best: Scored, number: int) -> list[Place]:
+    """Return where one suspect was `tried` that is about as likely by the error of the model.
+
+    On bases of their own: no other tells the size of a patch that gives.
+    """
+
+    def same(s: Scored) -> bool:
+        pairs = list(zip(s.fit.suspects, best.fit.suspects, strict=False))
+        others = all(t.row == o.row for k, (t, o) in enumerate(pairs) if k != number)
+        kinds = [t.kind for t in s.fit.suspects] == [o.kind for o in best.fit.suspects]
+        return kinds and others and 2.0 * (best.score - s.score) < SEARCH.credible
+
+    near = [(s.score, s.judged.fit.suspects[number]) for s in tried if s.judged and same(s)]
+    weight = np.exp([score - best.score for score, _ in near])
+    share = (weight / weight.sum()).tolist()
+    return [Place(s, w) for (_, s), w in zip(near, share, strict=True)]
 
 
 def between(places: Sequence[Place]) -> Floats:

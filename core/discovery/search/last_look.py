@@ -9,8 +9,12 @@ the next places and shapes for as long as this makes the test likelier.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from ..effects.candidates import Suspect
+from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from .model_selection import Scored, needed, ranked, says_else
@@ -59,32 +63,43 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
 
 
 def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
-    """Return the hypotheses that come of one whose suspects move to the next places and shapes."""
+    """Return the hypotheses that come of one whose suspects move to the next places and shapes.
+
+    A patch that gives pays for every other shape that it takes by the choice there was.
+    """
     tried: list[Scored] = []
     for _ in range(SEARCH.look_moves):
         before = best.score
         for q in range(len(best.fit.suspects)):
-            searcher, fits = _beside(searcher, best.fit, q)
-            new = ranked(searcher, fits, [best])
-            tried += (s for s in new if s is not best)
-            best = new[0]
+            c = searcher.problem.catalogue[best.fit.suspects[q].kind]
+            searcher, fits = _beside(searcher, best, q)
+            paid = float(np.log1p(len(fits))) if gives(c) else 0.0
+            new = [s for s in ranked(searcher, fits, [best]) if s is not best]
+            new = [replace(s, score=s.score - paid) for s in new]
+            tried += new
+            best = max((best, *new), key=_score)
         if best.score < before + SEARCH.look_gain:
             break
     return searcher, tried
 
 
-def _beside(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, list[Fit]]:
+def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fit]]:
     """Return fits with a suspect at the next places and of the next shapes.
 
-    None where there is no next place: what lies on a footprint lies where it fits best.
+    The basis of the search is too stiff for a patch that gives, the more so the larger it is: what
+    shape it has is told by bases of their own alone.
     """
-    s = state.suspects[q]
+    state, s = best.fit, best.fit.suspects[q]
+    c = searcher.problem.catalogue[s.kind]
     near = [Suspect(s.kind, int(r), s.theta) for r in searcher.around(s.kind, s.row) if r != s.row]
-    if not near:
-        return searcher, []
     searcher, options = options_beside(searcher, s)
-    options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     before, after = state.suspects[:q], state.suspects[q + 1 :]
+    if gives(c) and best.judged:
+        now = best.judged.fit
+        moved = (replace(o, theta=now.suspects[q].theta) for o in options)
+        tried = [evaluate(searcher.problem, now.nuisance, (*before, o, *after)) for o in moved]
+        return searcher, tried
+    options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     tried = [
         searcher.fitted(state, (*before, option, *after), SEARCH.steps_new)
         for option in options[: SEARCH.look_beside]

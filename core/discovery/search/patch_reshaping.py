@@ -140,7 +140,8 @@ def _kind_of(searcher: Searcher, suspect: Suspect, patch: Patch) -> int:
 def variants(structure: Structure, patch: Patch) -> list[Patch]:
     """Return the patches that are one row of elements larger or smaller, or end with a property.
 
-    Rows are taken along the sides of the middle element, forwards and backwards, and all round.
+    Rows are taken along the sides of the middle element, forwards, backwards and both, and all
+    round.
     """
     m = structure.members[patch.member]
     if m.element.dimension != 2:
@@ -170,7 +171,7 @@ def variants(structure: Structure, patch: Patch) -> list[Patch]:
 def _rows_of_elements(
     structure: Structure, m: Members, inside: Bools, ring: Bools, xyz: Floats
 ) -> list[tuple[Bools, Bools]]:
-    """Return the next row outside and the last row inside, towards each of the four sides."""
+    """Return the next row outside and the last row inside, towards four sides and opposite ones."""
     middle = xyz[inside].mean(axis=0)
     rows = np.flatnonzero(inside)
     nearest = rows[np.argmin(np.linalg.norm(xyz[rows] - middle, axis=1))]
@@ -191,11 +192,12 @@ def _rows_of_elements(
     out = []
     for k in (0, 1):
         level = (place[:, 1 - k] > low[1 - k]) & (place[:, 1 - k] < high[1 - k])
-        for ahead, last in (
+        ways = [
             (place[:, k] > high[k], place[:, k] > high[k] - 2.0 * half),
             (place[:, k] < low[k], place[:, k] < low[k] + 2.0 * half),
-        ):
-            out.append((ring & level & ahead, inside & last))
+        ]
+        ways.append((ways[0][0] | ways[1][0], ways[0][1] | ways[1][1]))
+        out += [(ring & level & ahead, inside & last) for ahead, last in ways]
     return out
 
 

@@ -1,5 +1,6 @@
 """A patch takes the shape of what is there: a membrane that is soft over a part of it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +19,9 @@ from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 from trueup.core.discovery.reduction.elements_and_supports import Structure
 from trueup.core.discovery.reduction.search_basis import Basis
+from trueup.core.discovery.search.credible_places import alike
+from trueup.core.discovery.search.last_look import looked_again
+from trueup.core.discovery.search.model_selection import scored
 from trueup.core.discovery.search.moves import Searcher
 from trueup.core.discovery.search.patch_reshaping import reshaped, variants
 from trueup.core.elements.surfaces.quad4 import QUAD4
@@ -140,6 +144,34 @@ def test_rows_are_taken_on_each_side():
         ((5, 6), (3, 5)), ((4, 6), (3, 4)), ((3, 7), (2, 6)),
     ):  # fmt: skip
         assert tuple(box(x, y)) in found
+
+
+def test_a_patch_grows_along_both_sides_at_once():
+    structure = membrane()
+    start = box((4, 6), (2, 5))
+    found = {p.rows.tobytes() for p in variants(structure, Patch(0, start, np.zeros(3), False))}
+    assert {box((3, 7), (2, 5)).tobytes(), box((4, 6), (1, 6)).tobytes()} <= found
+    assert box((4, 6), (3, 4)).tobytes() in found
+
+
+def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_misfit():
+    start, told = box((4, 6), (3, 5)), box((3, 7), (2, 5))
+    s, state = suspecting(membrane(), start, start)
+
+    def judged(problem, f, _=0.0):
+        patches = problem.catalogue[0].patches
+        wrong = sum(len(np.setxor1d(patches[t.row].rows, told)) for t in f.suspects)
+        left = SimpleNamespace(error=0.001, noise=0.02, each=np.zeros(12))
+        return SimpleNamespace(evidence=-10.0 * wrong, diffuse=left, fit=f)
+
+    s = replace(s, judged=judged)
+    wide, tried = looked_again(s, scored(s, state))
+    best = tried[0].fit
+    assert wide.problem.catalogue[0].where[best.suspects[0].row]["elements"] == (told + 1).tolist()
+    assert best.objective > state.objective
+    places = alike(tried, tried[0], 0)
+    assert [p.suspect.row for p in places] == [best.suspects[0].row]
+    assert sum(p.weight for p in places) == pytest.approx(1.0)
 
 
 def test_a_patch_may_end_with_its_property():
