@@ -29,7 +29,6 @@ from .model_selection import (
     Scored,
     by_such_a_test,
     contenders,
-    elsewhere,
     needed,
     ranked,
     scored,
@@ -50,9 +49,8 @@ class Completeness:
         ln of how much likelier the test is by the best, its choices paid for.
     last : float
         The same beside one or more suspects fewer.
-    ahead, beside : float
-        ln of how much likelier it is than its nearest rival elsewhere, and in the region beside it
-        or in another direction.
+    ahead : float
+        ln of how much likelier it is than its nearest rival: another place, direction or nature.
     agree : float
         By how many standard deviations modes that they were not fitted to agree that the best
         foretells them better than the known parameters alone do.
@@ -68,7 +66,6 @@ class Completeness:
     gain: float
     last: float
     ahead: float
-    beside: float
     agree: float
     places: list[list[Place]]
     reach: float | None = None
@@ -82,7 +79,7 @@ class Completeness:
     def posterior(self) -> float:
         """Probability of the best among what was found and the known parameters alone."""
         alone = np.exp(-self.gain) if self.best is not self.alone else 0.0
-        return float(1.0 / (1.0 + np.exp(-self.ahead) + np.exp(-self.beside) + alone))
+        return float(1.0 / (1.0 + np.exp(-self.ahead) + alone))
 
     @property
     def deviations(self) -> Floats:
@@ -95,16 +92,10 @@ class Completeness:
     def clear(self) -> bool:
         """Whether what was found explains more than an error of the model would seem to.
 
-        It has to gain enough, to be ahead of what else was found, and to foretell (what is not
-        there gains on modes that it is fitted to, not on others) or to leave a small part of the
-        error that the known parameters alone leave: what is not there hardly lessens it. Of the
-        same effect not far off it has to be as far ahead as of anything that is spoken of.
+        It has to gain enough, on every mode, and to be ahead of what else was found.
         """
-        return bool(
-            min(self.gain, self.ahead) > needed(self.best)
-            and self.beside > SEARCH.suspect
-            and (self.agree > SEARCH.agree or self.left < SEARCH.small_part)
-        )
+        least = SEARCH.each_mode * len(self.best.diffuse.each)
+        return bool(self.gain > max(needed(self.best), least) and self.ahead > SEARCH.suspect)
 
     @property
     def left(self) -> float:
@@ -122,7 +113,7 @@ class Completeness:
         whole = np.count_nonzero(self.alone.diffuse.stray > 0.5) <= len(self.unexplained)
         least = SEARCH.usual_left * self.left if whole else 0.0
         few = len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
-        return bool(few and self.adequacy > max(MODEL_ERROR.explained, least))
+        return bool(few and self.adequacy > max(MODEL_ERROR.claimed, least))
 
     @property
     def adequacy(self) -> float:
@@ -200,20 +191,14 @@ def completeness(
     found = _led(found, best.fit)
     others = contenders(searcher, found, kept)
     rivals = [s for s in fields[kept] if any(s.fit is f for f in others)]
-    far = [elsewhere(searcher, best.fit, s.fit) for s in rivals]
-    ahead, beside = (
-        best.score
-        - max((s.score for s, x in zip(rivals, far, strict=True) if x is there), default=-np.inf)
-        for there in (True, False)
-    )
+    ahead = float(best.score - max((s.score for s in rivals), default=-np.inf))
     assert best.judged is not None
     fewer = max((level.score for level in levels[:kept]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
-    apart = float(ahead), float(beside)
-    whole = Completeness(deck, alone, best.judged, gain, last, *apart, agree, places)
+    whole = Completeness(deck, alone, best.judged, gain, last, ahead, agree, places)
     if not whole.clear and whole.lacks_nothing:
-        none = Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
+        none = Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
         return searcher, found, 0, none
     return searcher, found, kept, whole
 

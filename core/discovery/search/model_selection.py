@@ -120,11 +120,6 @@ def says_else(searcher: Searcher, best: Fit, f: Fit) -> bool:
     return bool(_unmatched(searcher, best, f)[0])
 
 
-def elsewhere(searcher: Searcher, best: Fit, f: Fit) -> bool:
-    """Whether it lacks one altogether, in its region and in any direction."""
-    return bool(_unmatched(searcher, best, f, apart=SEARCH.region, anyhow=True)[0])
-
-
 @dataclass(frozen=True, eq=False)
 class Scored:
     """A hypothesis, what the diffuse error makes of it, its evidence less its choices."""
@@ -221,22 +216,19 @@ def _unmatched(
     best: Fit,
     f: Fit,
     by_nature: bool = True,
-    apart: float = SEARCH.same_effect_apart,
-    anyhow: bool = False,
 ) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead.
 
-    A mass that is spread out and one that is not, at one place, say the same `by_nature`; what has
-    another direction says the same where it may be `anyhow`.
+    A mass that is spread out and one that is not, at one place, say the same `by_nature`.
     """
     catalogue = searcher.problem.catalogue
-    near = apart * searcher.effort.apart * searcher.size
+    near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
         alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
         alike = alike and a.many(s.row) == b.many(t.row)
-        along = anyhow or (a.where[s.row].get("components") == b.where[t.row].get("components"))
+        along = a.where[s.row].get("components") == b.where[t.row].get("components")
         return alike and along and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)

@@ -67,8 +67,7 @@ class SearchNumbers:
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")
-    agree: float = number(1.28, "standard deviations", "by which modes held out agree that it is there", "one in ten by chance")
-    small_part: float = number(0.25, "of the error before", "what true effects left, and false ones never", "twelve cases by another program")
+    each_mode: float = number(1.5, "ln L a test mode", "that an effect that is claimed gains over the known parameters and smooth fields, at least", "of 230 cases made by another program none of eight that gained less was right")
     usual_left: float = number(0.6, "of the part of the error that is left", "adequacy above which an effect is claimed", "true and false claims among 115 cases made for development")
     rivals_judged: int = number(12, "rivals", "of as many suspects that are judged by the diffuse error, at most", "time")
     rival_gain: float = number(0.35, GAIN, "rivals that gain less than all but this are not")
@@ -99,7 +98,6 @@ class SearchNumbers:
     explains: float = number(4.0, LN, "a suspect explains a mode whose misfit it lowers by this", "two standard deviations")
     explains_share: float = number(0.1, "of what it lowers most", "and by this")
     same_effect_apart: float = number(1.5, "of Effort.apart", "a suspect of a rival that is nearer says the same")
-    region: float = number(3.0, "of Effort.apart", "one that is nearer is the same effect in the region where it may be")
 
     reshape_steps: int = number(8, "steps", "by which a patch grows or shrinks, at most")
     reshape_tried: int = number(2, "shapes", "next to a patch that are fitted")

@@ -38,7 +38,7 @@ def beside_reach(
         return 0, replace(whole, reach=reach.far)
     ahead = scored(searcher, found.levels[kept]).score - reach.score
     if ahead < 0.0:
-        nothing = 0.0, 0.0, np.inf, np.inf, 0.0
+        nothing = 0.0, 0.0, np.inf, 0.0
         return 0, Completeness(whole.deck, whole.alone, whole.alone, *nothing, [], reach.far)
     far = reach.far if ahead < needed(whole.best) else None
     return kept, replace(whole, ahead=min(whole.ahead, ahead), reach=far)

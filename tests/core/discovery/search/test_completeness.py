@@ -19,10 +19,10 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0):
     return Some(diffuse=shared, evidence=evidence, plain=evidence)
 
 
-def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), beside=np.inf, **more):
+def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
     none = judged(np.zeros(10), error=before, stray=lost)
     best = judged(np.zeros(10), **more)
-    return Completeness(none, none, best, gain, gain, ahead, beside, agree, [])
+    return Completeness(none, none, best, gain, gain, ahead, agree, [])
 
 
 def test_what_many_modes_gain_by_and_foretell_is_clear():
@@ -31,15 +31,6 @@ def test_what_many_modes_gain_by_and_foretell_is_clear():
 
 def test_a_small_gain_is_not_clear():
     assert not found(gain=4.0).clear
-
-
-def test_what_foretells_modes_held_out_no_better_is_not_clear():
-    assert not found(gain=1000.0, agree=1.0, before=0.003).clear
-
-
-def test_what_takes_the_error_away_is_clear_though_few_modes_tell():
-    assert found(agree=0.8, before=0.005).clear
-    assert not found(agree=0.8, before=0.003).clear
 
 
 def test_the_larger_the_error_that_is_left_the_more_has_to_be_gained():
@@ -72,7 +63,7 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
 def beside(gain, error=0.001, mesh=0.0):
     deck = judged(np.zeros(10), error=error, mesh=mesh)
     alone = judged(np.zeros(10), error=0.0005, evidence=gain)
-    return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, np.inf, 0.0, [])
+    return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
 
 
 def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
@@ -86,16 +77,13 @@ def test_what_a_mesh_of_shells_leaves_is_no_gap():
 
 
 def test_less_error_than_right_models_leave_is_no_proof():
-    assert not found(error=1e-4, gain=9.0).clear
-    assert found(error=1e-4, gain=11.0).clear
+    assert not found(error=1e-4, gain=14.0).clear
+    assert found(error=1e-4, gain=16.0).clear
 
 
 def test_two_places_that_are_as_good_are_not_clear():
     assert not found(ahead=1.0).clear
-    assert not found(error=0.02, gain=50.0, ahead=20.0).clear
-    assert found(error=0.02, gain=50.0, ahead=40.0).clear
-    assert not found(beside=1.0).clear
-    assert found(error=0.02, gain=50.0, beside=20.0).clear
+    assert found(ahead=6.0).clear
     assert found(ahead=1.0).posterior == pytest.approx(1.0 / (1.0 + np.exp(-1.0)), abs=1e-6)
 
 
