@@ -261,7 +261,7 @@ class Searcher:
         return [older[int(np.argmin(left))]]
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=SEARCH.locals_kept)
 def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     values, T = solve(problem, state.nuisance, state.suspects, problem.basis.size)
     T, own = np.split(T, [problem.basis.size])

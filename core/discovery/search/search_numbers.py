@@ -26,6 +26,7 @@ class SearchNumbers:
     steps_instead: int = number(8, "steps", "for a simple effect in place of an absorber")
     steps_polished: int = number(20, "steps", "on a basis made for one hypothesis")
     rounds: int = number(6, "moves", "of each suspect to a neighbour, at most")
+    locals_kept: int = number(4, "states", "whose modes are kept, among which suspects move", "memory")
     promising: int = number(10, "places", "next to a suspect of which it is asked what a step of all unknowns would leave")
     moves_tried: int = number(3, "places", "next to a suspect that are fitted")
     stretches_tried: int = number(2, "stretches", "of an edge beside a suspect's that are fitted to the whole basis")
