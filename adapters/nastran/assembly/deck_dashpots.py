@@ -4,11 +4,13 @@ import scipy.sparse as sp
 
 from ....core.assembly.affine_terms import parametric_terms
 from ....core.data.parametric_model import Term
-from ..cards import FAMILIES, Context, Settings
+from ..cards import FAMILIES, Context, Group, Settings
+from ..deck.bulk import Bulk
 from ..deck.read_deck import Deck
 from ..properties.dmig_input import direct_damping
-from ..properties.grids import read_points
+from ..properties.grids import Points, read_points
 from .deck_elements import element_block
+from .moving_grids import following_grids
 from .variation import Variation, read_variation
 
 
@@ -30,9 +32,13 @@ def damping_matrix(deck: Deck) -> sp.csr_matrix | None:
 def dashpot_terms(deck: Deck, variation: Variation) -> tuple[Term, ...]:
     """Return D over the g-set as terms in the parameters: dashpots and B2GG; none without any."""
     points = read_points(deck.bulk)
-    context = Context(variation.bulk, points, Settings())
-    groups = [g for family in FAMILIES if family.dampers for g in family.dampers(context)]
+    groups = following_grids(deck, variation, points, _made(variation.bulk, points), _made)
     blocks = [element_block(g, points, variation) for g in groups]
     terms = parametric_terms(blocks, points.n_dof, *variation.bounds)[0] if blocks else ()
     direct = direct_damping(deck, points)[0]
     return (*terms, Term(direct)) if direct.nnz else terms
+
+
+def _made(bulk: Bulk, points: Points) -> tuple[Group, ...]:
+    context = Context(bulk, points, Settings())
+    return tuple(g for family in FAMILIES if family.dampers for g in family.dampers(context))

@@ -81,7 +81,7 @@ class _Part:
         there = moved_points(self.points, values, self.grids)
         tag = there.xyz[np.searchsorted(there.ids, self.grids)].tobytes()
         if tag not in self._known:
-            if len(self._known) >= max(2, _KNOWN // sum(map(len, self.cards.values()))):
+            if len(self._known) >= max(2, _KNOWN // max(1, sum(map(len, self.cards.values())))):
                 self._known.clear()
             self._known[tag] = self.made(self._alone, there)
         return self._known[tag]

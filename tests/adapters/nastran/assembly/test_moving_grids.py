@@ -77,6 +77,26 @@ def test_a_model_is_that_of_the_deck_with_moved_grids(
     assert np.abs(own / eigenvalues(model.K(np.ones(2)), model.M(np.ones(2))) - 1.0).max() > 1e-4
 
 
+def test_dashpots_and_loss_factors_follow(tmp_path: Path):
+    path = shell(tmp_path, "PVISC,77,5.,1.\nCVISC,950,77,17,18")
+    path.write_text(path.read_text().replace(f".3,{RHO}", f".3,{RHO},,,0.02"))
+    deck = read_deck(path)
+    _, specs = parameters_of(deck, ["GRID 17 X3 [0.95, 1.05]"])
+    model = build_model(deck, specs, damped=True)
+    p = np.array([1.04])
+    text = set_values(deck.text, moved(specs, model.parameters, p))
+    again = build_model(read_deck(text), damped=True)
+
+    def total(terms, p: np.ndarray) -> np.ndarray:
+        return sum(t.coefficient(p) * t.matrix for t in terms).toarray()
+
+    for name in ("loss", "damping"):
+        own, other = total(getattr(model, name), p), total(getattr(again, name), np.ones(0))
+        assert np.abs(own - other).max() < 1e-7 * np.abs(other).max()
+        before = total(getattr(model, name), np.ones(1))
+        assert np.abs(before - other).max() > 0.05 * np.abs(other).max()
+
+
 def test_only_elements_that_change_follow(tmp_path: Path):
     """Those at the grid, those that share a normal there, and the bar that it orients."""
     deck = read_deck(shell(tmp_path))
