@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Bools
-from ..effects.candidates import Suspect
+from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
 from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
@@ -219,7 +219,8 @@ def _unmatched(
 ) -> tuple[list[int], list[Suspect]]:
     """Numbers of the suspects of the best that a rival does not have, and what it has instead.
 
-    A mass that is spread out and one that is not, at one place, say the same `by_nature`.
+    A mass that is spread out and one that is not, at one place, say the same `by_nature`, and so
+    does what acts in one direction and more: an edge that turns and one that moves besides.
     """
     catalogue = searcher.problem.catalogue
     near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
@@ -228,10 +229,17 @@ def _unmatched(
         a, b = catalogue[s.kind], catalogue[t.kind]
         alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
         alike = alike and a.many(s.row) == b.many(t.row)
-        along = a.where[s.row].get("components") == b.where[t.row].get("components")
-        return alike and along and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
+        along, other = _directions(a, s.row), _directions(b, t.row)
+        alike = alike and (along == other or bool(along & other))
+        return alike and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
 
     return unmatched(best, f, same)
+
+
+def _directions(c: Candidates, row: int) -> set[int]:
+    """Return along which components one of some candidates acts."""
+    where = c.where[row]
+    return {*where.get("components", ()), *where.get("free_components", ())}
 
 
 def instead(

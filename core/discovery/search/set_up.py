@@ -10,7 +10,7 @@ from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import fit
 from .beam_search import Found
 from .completeness import Completeness
-from .model_selection import needed, scored
+from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -40,7 +40,7 @@ def beside_reach(
     if ahead < 0.0:
         nothing = 0.0, 0.0, np.inf, 0.0
         return 0, Completeness(whole.deck, whole.alone, whole.alone, *nothing, [], reach.far)
-    far = reach.far if ahead < needed(whole.best) else None
+    far = reach.far if ahead < SEARCH.suspect else None
     return kept, replace(whole, ahead=min(whole.ahead, ahead), reach=far)
 
 

@@ -177,9 +177,14 @@ def test_a_mass_at_one_place_is_no_rival_of_itself_spread_out(other, away):
     assert (rival in told) == (away > 0.0 or other is ground_spring)
 
 
-@pytest.mark.parametrize(("components", "others"), [([5], 1), ([3], 0)])
-def test_a_support_that_turns_is_another_explanation_than_one_that_moves(components, others):
-    where = [{"components": [3]}, {"components": components}]
+@pytest.mark.parametrize(
+    ("more", "components", "others"),
+    [({}, [5], 1), ({}, [3], 0), ({"free_components": [5]}, [5], 0)],
+)
+def test_a_support_that_turns_is_another_explanation_than_one_that_only_moves(
+    more, components, others
+):
+    where = [{"components": [3], **more}, {"components": components}]
     support = Some(kind="support", xyz=np.zeros((2, 3)), where=where, many=lambda row: 1)
     searcher = Some(problem=Some(catalogue=[support]), effort=Some(apart=0.1), size=1.0)
     best, rival = (Some(suspects=(Some(kind=0, row=row),)) for row in (0, 1))
