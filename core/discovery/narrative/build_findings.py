@@ -60,7 +60,7 @@ def build_discovery(
     ]
     nodes = request.placed.observation.sensors.node
     adequate = whole.adequacy > MODEL_ERROR.explained
-    tested = tested if adequate else tested.beyond_doubt
+    tested = tested if adequate and (whole.clear or not findings) else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
     word = "no_gap"
