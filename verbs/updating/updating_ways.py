@@ -149,9 +149,8 @@ def moved(every: Sequence[core.Configuration], asked: Study, kept: Kept) -> Move
     best = replace(best, warnings=(*best.warnings, *remarks(done, best, starts)))
     last = stages[-1]
     put = put_back(every, last, best)
-    final = made_up(every, stages, put, kept.steps)
-    if final is not put:
-        best = final
+    final = put if put is best else made_up(every, stages, put, kept.steps)
+    best = best if final is put else final
     intervals = profile_intervals(every, last, best) if asked.intervals else None
     sampled = (
         sample_posterior(every, last, best, asked.samples, asked.seed, each)
