@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -179,18 +180,28 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         ways = [(searcher, found), robust(searcher, progress)]
         searcher, found = max(ways, key=lambda way: _score(*way))
     progress("weighing the best hypotheses on bases of their own")
-    verdict = judge(searcher, found)
-    best = found.levels[verdict.accepted]
-    explained = trial.explained(searcher, best, verdict.scale)
-    if explained:
-        searcher, best = trial.laid(searcher, best, verdict.scale)
-        found = found.with_level(best)
-    searcher, found = _reshaped(trial.request, searcher, found, stands=not explained)
+    searcher, found, explained = _footed(trial, searcher, found)
+    searcher, found = _bettered(searcher, found, reshaped)
+    if not explained:
+        searcher, found, explained = _footed(trial, searcher, found)
+    if not explained:
+        on_stands = partial(equipped, trial.request.structure)
+        searcher, found = _bettered(searcher, found, on_stands)
     found, verdict = _weighed(trial, searcher, found)
     if not explained:
         searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
         found = found.with_level(best)
     return searcher, found, verdict
+
+
+def _footed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, Found, bool]:
+    """Lay masses on footprints if no more is left then than right models leave; say whether."""
+    verdict = judge(searcher, found)
+    best = found.levels[verdict.accepted]
+    if not trial.explained(searcher, best, verdict.scale):
+        return searcher, found, False
+    searcher, best = trial.laid(searcher, best, verdict.scale)
+    return searcher, found.with_level(best), True
 
 
 def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
@@ -296,16 +307,16 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
-def _reshaped(
-    request: Request, searcher: Searcher, found: Found, stands: bool
+def _bettered(
+    searcher: Searcher,
+    found: Found,
+    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
 ) -> tuple[Searcher, Found]:
-    """Give patches of the hypotheses that earned their place better shapes, masses `stands`."""
+    """Give patches of the hypotheses that earned their place better shapes, or masses stands."""
     verdict = judge(searcher, found)
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
-        searcher, levels[k] = reshaped(searcher, levels[k], verdict.scale)
-        if stands:
-            searcher, levels[k] = equipped(request.structure, searcher, levels[k], verdict.scale)
+        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
 
 

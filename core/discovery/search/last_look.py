@@ -86,12 +86,15 @@ def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
 def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fit]]:
     """Return fits with a suspect at the next places and of the next shapes.
 
-    The basis of the search is too stiff for a patch that gives, the more so the larger it is: what
-    shape it has is told by bases of their own alone.
+    None where there is no next place: what lies on a footprint lies where it fits best. The basis
+    of the search is too stiff for a patch that gives, the more so the larger it is: what shape it
+    has is told by bases of their own alone.
     """
     state, s = best.fit, best.fit.suspects[q]
     c = searcher.problem.catalogue[s.kind]
     near = [Suspect(s.kind, int(r), s.theta) for r in searcher.around(s.kind, s.row) if r != s.row]
+    if not near:
+        return searcher, []
     searcher, options = options_beside(searcher, s)
     before, after = state.suspects[:q], state.suspects[q + 1 :]
     if gives(c) and best.judged:
