@@ -98,7 +98,7 @@ def scatter_of(kinds: Sequence[Kind], believed: bool = False) -> Scatter:
 def _range(G: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the singular values that are not rounding, with their vectors."""
     U, S, Vt = np.linalg.svd(G, full_matrices=False)
-    seen = np.finfo(float).eps * max(G.shape) * S.max(initial=0.0) < S
+    seen = UPDATING.unseen * S.max(initial=0.0) < S
     return U[:, seen], S[seen], Vt[seen]
 
 

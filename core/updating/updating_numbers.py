@@ -30,6 +30,7 @@ class UpdatingNumbers:
     unidentifiable: float = number(1e-4, "of the largest singular value, at least of 1", "of a direction that the test does not determine", CHECK)
     unsure: float = number(0.2, "of a factor", "standard error above which it is not determined: the deck knows it as well", "as prior")
     least_scatter: float = number(1e-4, "of the variances of residuals", "that a kind is believed to, beside others", CHECK)
+    unseen: float = number(1e-9, "of the largest singular value", "of a direction along which residuals change by rounding alone", ROUNDING)
     enough: float = number(3.0, "more data than parameters it sees", "from which on a kind of residual has a scatter of its own", CHECK)
     weighings: int = number(20, "turns", "of variances and the weights they make, at most", "time")
     same_scatter: float = number(1e-3, "of a variance", "change that ends these turns", CHECK)

@@ -50,22 +50,37 @@ def test_samples_are_not_less_than_none(files: tuple[Path, Path]) -> None:
         trueup.update(*files, "MAT1 1 E", samples=-1)
 
 
-def test_what_is_put_back_has_neither_interval_nor_samples(tmp_path: Path) -> None:
-    """Of E and I bending knows the product, here 1; the mass at the tip is known by itself."""
+@pytest.mark.parametrize("product", [1.0, 1.2])
+def test_what_is_put_back_has_neither_interval_nor_samples(tmp_path: Path, product: float) -> None:
+    """Of E and I bending knows the product; the mass at the tip is known by itself.
+
+    As in the deck a product of 1.2 would leave that mass farther from the test than it came, so
+    that it makes up for it, and its error says so.
+    """
     deck, truth, test = (tmp_path / n for n in ("bar.bdf", "truth.bdf", "test.unv"))
-    for path, e, tip in ((deck, E, 1e-4), (truth, E, 1.3e-4)):
+    for path, e, tip in ((deck, E, 1e-4), (truth, product * E, 1.3e-4)):
         held = "SPC1,1,123456,1"
         path.write_text(cantilever(e).replace(held, f"{held}\nCONM2,91,13,,{tip}"))
     trueup.solve(truth, 5).save(tmp_path / "solved")
     trueup.convert([tmp_path / "solved" / "result.h5"], test)
     done = trueup.update(
         deck, test, ["MAT1 1 E", "I = PBAR 1 I1, PBAR 1 I2", "CONM2 91 M"], samples=400,
-        intervals=True, residuals="frequencies", deck_length_unit="mm", regularisation=0.0,
+        intervals=True, residuals="frequencies", deck_length_unit="mm",
     )  # fmt: skip
     e, i, tip = done.parameters
     assert (e.factor, e.standard_error, e.interval) == (1.0, None, None)
     assert (i.factor, i.standard_error, i.interval) == (1.0, None, None)
-    assert tip.factor == pytest.approx(1.3, rel=0.01)
-    assert tip.interval == pytest.approx((1.3, 1.3), rel=0.01)
     assert [row.name for row in done.samples] == ["CONM2 91 M"]
     assert any("known together" in w for w in done.warnings)
+    (row,) = done.samples
+    assert tip.interval[0] - 1e-4 <= tip.factor <= tip.interval[1] + 1e-4
+    assert row.low - 1e-4 <= tip.factor <= row.high + 1e-4
+    off = (done.before, done.after)
+    before, after = (c.summary.mean_abs_deviation_percent for c in off)
+    assert after < before
+    if product == 1.0:
+        assert tip.factor == pytest.approx(1.3, rel=0.01)
+        assert tip.interval == pytest.approx((1.3, 1.3), rel=0.01)
+    else:
+        assert any("fitted anew beside it" in w for w in done.warnings)
+        assert abs(tip.factor - 1.3) < 1.1 * tip.standard_error
