@@ -92,9 +92,11 @@ class Completeness:
     def clear(self) -> bool:
         """Whether what was found explains more than an error of the model would seem to.
 
-        It has to gain enough, on every mode, and to be ahead of what else was found.
+        It has to gain enough, the more where it leaves more than a small part of the error (what is
+        not there hardly lessens it), and to be ahead of what else was found.
         """
-        least = SEARCH.each_mode * len(self.best.diffuse.each)
+        small = self.left < SEARCH.small_part
+        least = 0.0 if small else SEARCH.each_mode * len(self.best.diffuse.each)
         return bool(self.gain > max(needed(self.best), least) and self.ahead > SEARCH.suspect)
 
     @property
