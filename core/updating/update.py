@@ -194,7 +194,8 @@ def _work_off(
         if near is not None and _apart(point, centre) < UPDATING.rebuild:
             near = problem.widened(near, arrived)
         else:
-            near, centre = problem.around(point, stage.parameters, UPDATING.sketch), point
+            near, centre = None, point  # two bases at a time are memory
+            near = problem.around(point, stage.parameters, UPDATING.sketch)
         most = 1 if missed else left
         trail, near, stop = _walk(problem, near, point, stage, most, tolerance)
         if not trail:
