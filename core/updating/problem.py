@@ -271,6 +271,7 @@ class Problem:
         lower, upper = self.bounds
         weight = np.array([self.parameters[k].weight for k in free])
         prior = np.sqrt(self.parts[0].objective.weights.regularisation * weight)
+        prior = np.hypot(prior, UPDATING.unseen * np.linalg.norm(lin.gradient))
         p = np.asarray(point.factors)[free]
         down, up = UPDATING.step
         least = np.maximum(lower[free] - p, -down * p) - UPDATING.slack
