@@ -45,6 +45,8 @@ class EffectNumbers:
     patch_sides: tuple[float, float] = number((1.25, 0.63), "radii", "half sides of an elongated patch", "the area of the round one")
     patch_reach: float = number(1.6, "radii", "within which its elements are", "more than half its diagonal")
     patch_largest: float = number(0.5, "of all elements", "that a patch may hold")
+    sheet_bend: float = number(0.7, "cosine", "between the ways across a side that shells on either side of it lie, of one sheet", "half a right angle")
+    sheets_at_side: int = number(5, "shells", "that may meet at a side")
     patch_left: float = number(1e-5, "of the trace", "that a row of a patch's root is worth, at least")
     patch_rounding: float = number(1e-12, "of the largest eigenvalue", "below which one of an element is zero", ROUNDING)
 

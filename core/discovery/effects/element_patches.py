@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
@@ -32,38 +33,78 @@ class Patch:
 
 
 def patches_of(structure: Structure, size: float, radii: tuple[float, ...]) -> list[Patch]:
-    """Patches of shell elements of several sizes all over the structure."""
+    """Patches of shell elements of several sizes all over each sheet of the structure."""
     out: dict[tuple[int, bytes], Patch] = {}
     for number, m in enumerate(structure.members):
         if m.element.dimension != 2 or not len(m.ids):
             continue
-        xyz = structure.centroids(m)
-        tree = cKDTree(xyz)
+        every = structure.centroids(m)
         frames = _frames(structure.model.geometry.xyz[m.corners])
-        sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in (0, 1)]
-        middles = xyz[structure.in_order(xyz)]
-        grids = structure.model.geometry.xyz[np.unique(m.corners)]
-        centres = np.concatenate([middles, grids[structure.in_order(grids)]])
-        nearest = tree.query(centres)[1]
-        for k, r in enumerate(radii):
-            apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
-            wider = EFFECTS.patch_first * apart * r * size
-            coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
-            some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
-            around = tree.query_ball_point(centres[some], within, return_sorted=True)
-            for c, reach in zip(some.tolist(), around, strict=True):
-                own = np.array(reach, np.int64)
-                away = np.abs((xyz[own] - centres[c]) @ frames[nearest[c]].T) / (r * size)
-                inside = [np.linalg.norm(away, axis=1) <= 1.0]
-                inside += [np.all(away <= s, axis=1) for s in sides]
-                for shape, which in enumerate(inside):
-                    rows = own[which]
-                    key, first = (number, rows.tobytes()), shape == 0 and c in coarse
-                    if key in out and out[key].first >= first:
-                        continue
-                    if 0 < len(rows) < EFFECTS.patch_largest * len(xyz):
-                        out[key] = Patch(number, rows, xyz[rows].mean(axis=0), first)
+        for sheet in _sheets(structure.model.geometry.xyz, m.corners):
+            for patch in _on_sheet(structure, size, radii, number, sheet, every, frames):
+                key = number, patch.rows.tobytes()
+                if len(patch.rows) < EFFECTS.patch_largest * len(every) and not (
+                    key in out and out[key].first >= patch.first
+                ):
+                    out[key] = patch
     return sorted(out.values(), key=lambda p: not p.first)
+
+
+def _on_sheet(
+    structure: Structure,
+    size: float,
+    radii: tuple[float, ...],
+    number: int,
+    sheet: Ints,
+    every: Floats,
+    frames: Floats,
+) -> Iterator[Patch]:
+    """Patches of the elements `sheet` (n,) of one card, all of whose are `every` and `frames`."""
+    xyz, member = every[sheet], structure.members[number]
+    tree = cKDTree(xyz)
+    sides = [np.where(np.arange(3) == k, *EFFECTS.patch_sides) for k in (0, 1)]
+    middles = xyz[structure.in_order(xyz)]
+    grids = structure.model.geometry.xyz[np.unique(member.corners[sheet])]
+    centres = np.concatenate([middles, grids[structure.in_order(grids)]])
+    nearest = sheet[tree.query(centres)[1]]
+    for k, r in enumerate(radii):
+        apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
+        wider = EFFECTS.patch_first * apart * r * size
+        coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
+        some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
+        around = tree.query_ball_point(centres[some], within, return_sorted=True)
+        for c, reach in zip(some.tolist(), around, strict=True):
+            own = sheet[np.array(reach, np.int64)]
+            away = np.abs((every[own] - centres[c]) @ frames[nearest[c]].T) / (r * size)
+            inside = [np.linalg.norm(away, axis=1) <= 1.0]
+            inside += [np.all(away <= s, axis=1) for s in sides]
+            for shape, which in enumerate(inside):
+                rows = own[which]
+                if len(rows):
+                    first = shape == 0 and c in coarse
+                    yield Patch(number, rows, every[rows].mean(axis=0), first)
+
+
+def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:
+    """Return the elements of each sheet: those that go on without a bend across a shared side.
+
+    What a crack, a repair or a doubler changes is one skin, not also the web behind it.
+    """
+    n, k = corners.shape
+    sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
+    across = np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1)
+    across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
+    order = np.lexsort(sides.T)
+    pairs = []
+    for step in range(1, EFFECTS.sheets_at_side):
+        a, b = order[:-step], order[step:]
+        on = np.all(sides[a] == sides[b], axis=1)
+        on &= np.sum(across[a] * across[b], axis=1) < -EFFECTS.sheet_bend
+        pairs.append(np.stack([a[on], b[on]]) // k)
+    first, last = np.concatenate(pairs, axis=1)
+    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
+    _, label = connected_components(graph, directed=False)
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
 
 
 def _frames(corners: Floats) -> Floats:

@@ -93,7 +93,7 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
     state, s = best.fit, best.fit.suspects[q]
     c = searcher.problem.catalogue[s.kind]
     near = [Suspect(s.kind, int(r), s.theta) for r in searcher.around(s.kind, s.row) if r != s.row]
-    if not near:
+    if not near and not gives(c):
         return searcher, []
     searcher, options = options_beside(searcher, s)
     before, after = state.suspects[:q], state.suspects[q + 1 :]
