@@ -5,7 +5,7 @@ count the modes below s (Sylvester's law of inertia). Ritz values never see more
 there are: when they see as many as the count, none was missed.
 
 That count bounds the errors from both sides. Of OP = (K - s M)^-1 M the modes below s are all that
-is negative. On as many vectors X it has Ritz values rho; where all are negative, none lies below
+is negative. On vectors X it has Ritz values rho; where as many are negative, none lies below
 that which it stands for, so that 1 / rho <= lambda - s. Rayleigh's quotients alpha of K - s M on
 OP X are too large, and what is returned: lambda - s <= alpha (Lehmann 1963, Numerische Mathematik
 5, 246). Their difference goes by the square of the error of X.
@@ -104,25 +104,23 @@ def warm_modes(
 
 
 def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -> Spectrum | None:
-    """Ritz pairs of the first vectors of Y, as many as there are modes below s.
+    """Ritz pairs in the span of Y, as many as there are modes below s.
 
     None where those of Z are not accurate, or a mode is so near to s that its sign is rounding.
     """
-    some = slice(below)
-    mass, stiff, moved = (gram[some, some] for gram in step.grams)
-    rho = sl.eigh(stiff, mass, eigvals_only=True)[
-        ::-1
-    ]  # 1 / (lambda - s): the lowest mode is next to zero
+    mass, stiff, moved = step.grams
+    rho = sl.eigh(stiff, mass, eigvals_only=True)[:below]  # 1 / (lambda - s)
+    rho = rho[::-1]  # the lowest mode is next to zero
     if rho[0] >= 0.0:
         return None
-    alpha, C = sl.eigh(stiff, moved)
+    alpha, C = (found[..., :below] for found in sl.eigh(stiff, moved))
     off = np.abs(alpha - 1.0 / rho)
     values, first = s + alpha, slice(elastic)
     sigma = -max(pencil.least_shift, EIGEN.nearer[0] * float(values[0]))
     error = off / (values - sigma)
     if error[first].max() > EIGEN.warm:
         return None
-    X, MX, KX = (A[:, some] @ C for A in (step.Y, step.MY, step.MZ))
+    X, MX, KX = (A @ C for A in (step.Y, step.MY, step.MZ))
     KX += s * MX
     size = float((np.abs(pencil.k_diagonal) @ X**2).max())
     wanted = (A[:, first] for A in (X, KX, MX))
