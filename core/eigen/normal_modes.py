@@ -92,6 +92,8 @@ class Eigensolution(Noun):
         For instance fewer modes than asked for.
     factor : Factorisation or None
         Of K - sigma M, kept on request: sensitivities use it again.
+    count_factor : Factorisation or None
+        Of K - s M, s next to the modes where these were known nearly.
     """
 
     eigenvalues: Floats
@@ -103,6 +105,7 @@ class Eigensolution(Noun):
     sigma: float
     warnings: tuple[str, ...] = ()
     factor: Factorisation | None = field(default=None, repr=False)
+    count_factor: Factorisation | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("eigenvalues", "vectors"):
@@ -242,6 +245,7 @@ def solve(
         spectrum.sigma,
         tuple(notes),
         factor,
+        spectrum.count_factor,
     )
 
 

@@ -279,6 +279,8 @@ class Spectrum(Noun):
         Eigenvalues that the inertia count shows but that are not here; None without a count.
     factor : Factorisation or None
         Of K - sigma M.
+    count_factor : Factorisation or None
+        Of K - s M, s next to modes that were known nearly, by which they were counted.
     ahead : (n,) float
         Rough values of the next eigenvalues, to find a gap.
     left_out : int
@@ -294,6 +296,7 @@ class Spectrum(Noun):
     factor: Factorisation | None = None
     ahead: Floats = field(default_factory=lambda: np.zeros(0))
     left_out: int = 0
+    count_factor: Factorisation | None = None
 
 
 def widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:

@@ -11,7 +11,7 @@ OP X are too large, and what is returned: lambda - s <= alpha (Lehmann 1963, Num
 5, 246). Their difference goes by the square of the error of X.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -96,7 +96,7 @@ def warm_modes(
         step = _Step(X, Y, MX, pencil.M @ Y)
         found = _polished(pencil, s, step, below, elastic) if counted else None
         if found is not None:
-            return found
+            return replace(found, count_factor=factor)
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
         X, MX = (np.asarray(a @ C[:k] + b @ C[k:]) for a, b in ((X, Y), (MX, step.MY)))

@@ -16,7 +16,6 @@ from ..eigen.warm_modes import Near
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, Spectral, sensitivities
 from .reduced_model import ReducedModel, ReducedModes, build_reduced
-from .static_answers import AtSensors
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +61,12 @@ class FullOrder:
 class ReducedOrder:
     """The model on the modes of one parameter point and their static answers to parameters.
 
-    `sensors` (n_sensor, n_basis) read the vectors of `solve`; `answers` are what they need at the
-    factors where derivatives are wanted.
+    `sensors` (n_sensor, n_basis) read the vectors of `solve`.
     """
 
     reduced: ReducedModel
     sensors: Floats
     n_modes: int
-    answers: AtSensors | None = None
 
     @property
     def model(self) -> Model:
@@ -85,9 +82,11 @@ class ReducedOrder:
         modes = self.reduced.solve(p, self.reduced.size).take(self._some_more)
         return self._on(full, self.reduced.corrected(p, modes))
 
-    def seen(self, full: FullOrder, p: Floats) -> ReducedOrder:
-        """Return it with derivatives at `p` that are right where the sensors read them."""
-        return replace(self, answers=self.reduced.at_sensors(p, full.sensors))
+    def differentiable(
+        self, full: FullOrder, p: Floats, found: Eigensolution, active: Sequence[int], count: int
+    ) -> ReducedOrder:
+        """Return it with so many vectors that derivatives at `p`, solved in full, lack."""
+        return self._on(full, self.reduced.differentiable(p, found, active, count))
 
     def near(self, p: Floats) -> Near:
         """Return what it knows of the full model's modes at `p`: those up to a gap, some above."""
@@ -114,7 +113,7 @@ class ReducedOrder:
         """Differentiate within the basis."""
         assert isinstance(solution, ReducedModes)
         at = self.sensors if with_shapes else None
-        return self.reduced.sensitivities(p, T, tuple(active), at, solution, self.answers)
+        return self.reduced.sensitivities(p, T, tuple(active), at, solution)
 
     def damping_on_modes(self, p: Floats, solution: Spectral) -> tuple[Floats, Floats]:
         """Return D and H on the modes, each (n_mode, n_mode)."""

@@ -23,7 +23,7 @@ from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, clusters, coefficients, differentiate
 from .eigenvector_derivatives import modal_change
 from .reduced_sum import ReducedSum, reduced_sum
-from .static_answers import AtSensors, answers_to, static_answers
+from .static_answers import answers_to, drawn_loads, static_answers
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,13 +146,7 @@ class ReducedModel(Noun):
 
     def with_modes(self, found: Eigensolution) -> ReducedModel:
         """Return the model with the modes of another parameter point in its basis: exact there."""
-        free, sigma = slice(found.rigid_body_modes, None), self.solution.sigma
-        X = found.vectors[:, free] / np.sqrt(found.eigenvalues[free] - sigma)
-        AX = self.stiffness.applied(self.p0, X) - sigma * self.mass.applied(self.p0, X)
-        known = self.project(AX)
-        return self._with(
-            X - self.spread(known), X.T @ AX - known.T @ known, DERIVATIVES.known_already
-        )
+        return self._beside(found.vectors[:, found.rigid_body_modes :])
 
     def corrected(self, p: Floats, found: ReducedModes) -> ReducedModel:
         """Return the model with what its modes at `p` lack, A^-1 (K - lambda M) phi, in its basis.
@@ -170,23 +164,47 @@ class ReducedModel(Noun):
         W = factor.solve(R)
         return self._with(W, W.T @ R, DERIVATIVES.too_little)
 
-    def at_sensors(self, p: Floats, sensors: sp.csr_matrix) -> AtSensors:
-        """Return what makes derivatives at `p` right at `sensors`, (n_sensor, n_free).
+    def differentiable(
+        self, p: Floats, found: Eigensolution, parameters: Sequence[int], count: int
+    ) -> ReducedModel:
+        """Return the model with what derivatives of the modes `found` at `p` lack in its basis.
 
-        The factor of the model becomes that of K - sigma M at `p`: this ends its other use.
+        They lack (K - lambda M)^-1 f of the loads f = (K' - lambda M') phi of modes by parameters.
+        So many combinations of these, drawn at random, are solved for with the factor by which the
+        modes were counted, of K - s M with s next to them.
         """
-        factor = self.solution.factor
-        assert factor is not None
-        factor.refactorise(Pencil.of(self.model, p).shifted(self.solution.sigma))
-        return AtSensors(factor, sensors)
+        factor = found.count_factor or found.factor
+        if factor is None:
+            factor = factorise(Pencil.of(self.model, p).shifted(found.sigma), True)
+        free = slice(found.rigid_body_modes, None)
+        X, lam = found.vectors[:, free], found.eigenvalues[free]
+        weight, rng = 1.0 / np.sqrt(lam - found.sigma), np.random.default_rng(1)
+        F = drawn_loads(self.model, p, parameters, X, lam, weight, count, rng)
+        return self._beside(factor.solve(F))
+
+    def _beside(self, W: Floats) -> ReducedModel:
+        """Return the model with what its basis lacks of vectors W, of any size."""
+        sums = [terms.widened(self.parts, W) for terms in self._sums]
+        A = sums[0].at(self.p0) - self.solution.sigma * sums[1].at(self.p0)
+        n = self.size
+        known, scale = A[:n, n:], 1.0 / np.sqrt(A[n:, n:].diagonal())
+        lacking = (A[n:, n:] - known.T @ known) * np.outer(scale, scale)
+        T = scale[:, None] * _independent(lacking, DERIVATIVES.known_already)
+        along = -known @ T
+        last = np.vstack([along, T])
+        return self._widened(W @ T + self.spread(along), [s.ending(n, last) for s in sums])
 
     def _with(self, W: Floats, energy: Floats, least: float) -> ReducedModel:
         """Return the model with vectors W beside Q, of at least so much of their energy W^T A W."""
-        size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
-        new = size > least
-        W = W @ (turn[:, new] / np.sqrt(size[new]))
-        sums = (self.stiffness, self.mass, self.damping, self.loss)
-        K, M, D, H = (terms.widened(self.parts, W) for terms in sums)
+        W = W @ _independent(energy, least)
+        return self._widened(W, [terms.widened(self.parts, W) for terms in self._sums])
+
+    @property
+    def _sums(self) -> tuple[ReducedSum, ...]:
+        return self.stiffness, self.mass, self.damping, self.loss
+
+    def _widened(self, W: Floats, sums: Sequence[ReducedSum]) -> ReducedModel:
+        K, M, D, H = sums
         return replace(self, parts=(*self.parts, W), stiffness=K, mass=M, damping=D, loss=H)
 
     def vectors(self, modes: ReducedModes) -> Floats:
@@ -200,7 +218,6 @@ class ReducedModel(Noun):
         parameters: Sequence[int],
         sensors: Floats | None = None,
         solution: ReducedModes | None = None,
-        answers: AtSensors | None = None,
     ) -> Sensitivities:
         """Differentiate modes within the basis, exactly.
 
@@ -214,8 +231,6 @@ class ReducedModel(Noun):
             C Q of the sensors.
         solution : ReducedModes, optional
             At `p`, with its `whole`: repeated modes are those that the coefficients combine.
-        answers : AtSensors, optional
-            Of the sensors at `p`: what the basis lacks of their static answers is added.
 
         Returns
         -------
@@ -247,22 +262,19 @@ class ReducedModel(Noun):
             return (G + G.swapaxes(1, 2)) / 2.0
 
         at_modes = None if sensors is None else sensors @ X
-        beside = None
-        if at_modes is not None and answers is not None:
-            static = (K - M * lam[near]) / (lam[:, None] - self.solution.sigma)
-            seen = np.einsum("sk,ikj->sji", at_modes, static, optimize=True)
-            shapes = self.spread(X[:, near])
-            beside = seen - answers.work(self.model, p, parameters, shapes, lam[near])
-            at_modes = np.hstack([at_modes, np.eye(len(beside))])
 
         def change_of(cluster: Ints) -> Floats:
-            change = modal_change(lam, cluster, *part(cluster))
-            if beside is None:
-                return change
-            return np.concatenate([change, beside[:, np.searchsorted(near, cluster)]])
+            return modal_change(lam, cluster, *part(cluster))
 
         size = len(parameters)
         return differentiate(T, by_position, everything, size, matrices_of, at_modes, change_of)
+
+
+def _independent(energy: Floats, least: float) -> Floats:
+    """Return combinations of unit energy of vectors with W^T A W, of at least so much of theirs."""
+    size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
+    new = size > least
+    return np.asarray(turn[:, new] / np.sqrt(size[new]))
 
 
 def build_reduced(

@@ -88,6 +88,16 @@ class ReducedSum:
             out[n:, n:] = W[some].T @ X
         return ReducedSum(self.terms, whole)
 
+    def ending(self, n: int, last: Floats) -> ReducedSum:
+        """Return the sum on the first n vectors and combinations of all, `last` (r, s)."""
+        size = n + last.shape[1]
+        whole = np.empty((len(self.terms), size, size))
+        half = np.matmul(self.whole, last)
+        whole[:, :n, :n], whole[:, :n, n:] = self.whole[:, :n, :n], half[:, :n]
+        whole[:, n:, :n] = half[:, :n].swapaxes(1, 2)
+        whole[:, n:, n:] = np.matmul(last.T, half)
+        return ReducedSum(self.terms, whole)
+
     def and_also(self, other: ReducedSum) -> ReducedSum:
         """Return the sum with the terms of another, both on the basis as it was made."""
         return ReducedSum(self.terms + other.terms, np.concatenate([self.whole, other.whole]))

@@ -1,9 +1,8 @@
-"""Static answers A^-1 f, A = K - sigma M: to parameters, to forces, to the sensors of a test."""
+"""Static answers A^-1 f, A = K - sigma M: to parameters, to forces."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,33 +13,6 @@ from ..eigen.normal_modes import Eigensolution
 from ..numerics.factorisation import Factorisation
 from .derivative_numbers import DERIVATIVES
 from .reduced_sum import own_rows
-
-
-@dataclass(frozen=True, eq=False)
-class AtSensors:
-    """Sensors C (n_sensor, n_free) and a factor of A = K - sigma M at a parameter point.
-
-    What parameters change of modes is right with them where the sensors read it, whether or not a
-    basis has the static answers to the parameters: C A^-1 f is the work of f along A^-1 C^T (the
-    adjoint method: Haug, Choi and Komkov 1986, Design Sensitivity Analysis of Structural Systems).
-    """
-
-    factor: Factorisation
-    sensors: sp.csr_matrix
-
-    def work(
-        self, model: Model, p: Floats, parameters: Sequence[int], X: Floats, lam: Floats
-    ) -> Floats:
-        """Return C A^-1 (K' - lambda M') X, (n_sensor, n, n_parameter)."""
-        each = [list(_loads(model, p, i, X, lam)) for i in parameters]
-        out = np.zeros((self.sensors.shape[0], len(lam), len(parameters)))
-        for first in range(0, len(out), DERIVATIVES.block):
-            few = slice(first, first + DERIVATIVES.block)
-            S = self.factor.solve(self.sensors[few].T.toarray())
-            for k, loads in enumerate(each):
-                for rows, load in loads:
-                    out[few, :, k] += S[rows].T @ load
-        return out
 
 
 def answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
@@ -88,12 +60,14 @@ def static_answers(
     energy = np.zeros((ends[-1],) * 2)
     modal = np.empty((len(span), ends[-1]))
     for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
-        F = np.zeros((n, end - start))
-        for first, i in enumerate(members):
-            at = slice(None) if mixed else slice(first * m, (first + 1) * m)
-            drawn_from = rng.standard_normal((m, drawn)) if mixed else np.eye(m)
-            for rows, part in _loads(model, p0, i, X, lam):
-                F[rows, at] += part @ (weight[:, None] * drawn_from)
+        if mixed:
+            F = drawn_loads(model, p0, members, X, lam, weight, drawn, rng)
+        else:
+            F = np.zeros((n, end - start))
+            for first, i in enumerate(members):
+                at = slice(first * m, (first + 1) * m)
+                for rows, part in _loads(model, p0, i, X, lam):
+                    F[rows, at] += part * weight
         S[:, start:end] = factor.solve(F)
         energy[:end, start:end] = S[:, :end].T @ F
         energy[start:end, :start] = energy[:start, start:end].T
@@ -104,6 +78,25 @@ def static_answers(
     best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
     return np.asarray(S @ W - solution.vectors @ (modal @ W))
+
+
+def drawn_loads(
+    model: Model,
+    p: Floats,
+    parameters: Sequence[int],
+    X: Floats,
+    lam: Floats,
+    weight: Floats,
+    count: int,
+    rng: np.random.Generator,
+) -> Floats:
+    """Draw so many combinations of (K' - lambda M') phi, weighted by mode, (n_free, count)."""
+    F = np.zeros((len(X), count))
+    for i in parameters:
+        drawn = weight[:, None] * rng.standard_normal((len(lam), count))
+        for rows, part in _loads(model, p, i, X, lam):
+            F[rows] += part @ drawn
+    return F
 
 
 def _loads(

@@ -183,22 +183,17 @@ class Problem:
         ]
 
     def differentiable(
-        self, orders: Sequence[ReducedOrder], point: Point, active: Sequence[int], sketch: int
+        self, orders: Sequence[ReducedOrder], point: Point, active: Sequence[int]
     ) -> list[ReducedOrder]:
-        """Return bases of `sketch` combinations with what derivatives at a point want.
-
-        That is the static answers to the sensors, or those to the parameters where these are fewer.
-        """
+        """Take what derivatives at a point that was solved in full lack into bases of sketches."""
         out = []
         for part, order, s in zip(self.parts, orders, point.states, strict=True):
             moving, found = part.moving(active)[0], _in_full(s)
             answers = (len(found.eigenvalues) - found.rigid_body_modes) * len(moving)
-            if answers <= sketch:
-                out.append(order)
-            elif part.full.sensors.shape[0] < answers:
-                out.append(order.seen(part.full, point.factors[part.own]))
-            else:
-                out.append(reduce_around(part.full, s.factors, found, moving))
+            if answers > UPDATING.sketch:
+                p = point.factors[part.own]
+                order = order.differentiable(part.full, p, found, moving, UPDATING.differentiated)
+            out.append(order)
         return out
 
     def nearly(self, orders: Sequence[ReducedOrder], p: Floats) -> Orders:
@@ -369,7 +364,8 @@ class Problem:
 
 
 def _without_factor(state: State) -> State:
-    bare, damped = replace(_in_full(state), factor=None), state.seen.damped
+    found, damped = _in_full(state), state.seen.damped
+    bare = replace(found, factor=None, count_factor=None)
     if damped is not None:
         damped = replace(damped, model=replace(damped.model, solution=bare))
     return replace(state, solution=bare, seen=replace(state.seen, damped=damped))

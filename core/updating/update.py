@@ -149,7 +149,7 @@ def update_configurations(
     if near is None or active != sorted(stages[-1].parameters):
         near = problem.around(point, active)
     else:
-        near = problem.differentiable(near, point, active, UPDATING.sketch)
+        near = problem.differentiable(near, point, active)
     counted = _moved_by(stages)
     there = problem.at(near, point.factors, counted)
     said = problem.identified(near, there, active, counted)
@@ -196,6 +196,7 @@ def _work_off(
         else:
             near, centre = None, point  # two bases at a time are memory
             near = problem.around(point, stage.parameters, UPDATING.sketch)
+        point, arrived = point.without_factors(), arrived.without_factors()
         most = 1 if missed else left
         trail, near, stop = _walk(problem, near, point, stage, most, tolerance)
         if not trail:

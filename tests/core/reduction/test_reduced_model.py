@@ -1,10 +1,13 @@
 """The reduced model against the full one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 from trueup.core.eigen.normal_modes import solve
+from trueup.core.eigen.warm_modes import Near
 from trueup.core.errors import InputError
 from trueup.core.reduction.eigenpair_derivatives import sensitivities
 from trueup.core.reduction.reduced_model import build_reduced
@@ -220,18 +223,30 @@ def test_a_sketch_of_static_answers_is_better_than_modes_and_within_all_of_them(
     assert off(sketch=len(TARGETS) * len(PARAMETERS)) == (whole, best)
 
 
-def test_derivatives_at_sensors_want_the_static_answers_to_the_sensors_alone(grid):
-    model = grid()
-    p = model.deck_point
+def test_derivatives_come_right_with_answers_by_the_factor_that_counted_the_modes(grid):
+    model = grid(n=11)
+    p = np.array([1.3, 0.7, 1.0, 1.2])
+    known = solve(model, 34, p=p)
+    near = Near(known.eigenvalues[6:], known.vectors[:, 6:])
+    found = solve(model, 30, p=p, near=near)
     start = solve(model, 30, keep_factor=True)
+    sketched = build_reduced(
+        model, model.deck_point, TARGETS, PARAMETERS, solution=start, sketch=12
+    )
+    sketched = sketched.with_modes(found)
     C = sp.identity(model.n_free, format="csr")[::11]
-    full = sensitivities(model, p, start, TARGETS, PARAMETERS, C).shapes
+    full = sensitivities(model, p, found, TARGETS, PARAMETERS, C).shapes
 
-    def off(answers):
-        at = sketched.project(C.T).T
-        found = sketched.sensitivities(p, TARGETS, PARAMETERS, at, answers=answers).shapes
-        return np.abs(abs(found) - abs(full)).max() / abs(full).max()
+    def off(reduced):
+        at = reduced.project(C.T).T
+        slopes = reduced.sensitivities(p, TARGETS, PARAMETERS, at).shapes
+        return np.linalg.norm(abs(slopes) - abs(full)) / np.linalg.norm(full)
 
-    sketched = build_reduced(model, p, TARGETS, PARAMETERS, solution=start, sketch=12)
-    worst = off(None)
-    assert off(sketched.at_sensors(p, C)) < 2e-3 < worst
+    widened = sketched.differentiable(p, found, PARAMETERS, 64)
+    assert widened.size == sketched.size + 64
+    assert off(widened) < 0.2 * off(sketched)
+    anew = sketched.differentiable(p, replace(found, count_factor=None), PARAMETERS, 64)
+    assert off(anew) < 0.2 * off(sketched)
+    A = model.K() - start.sigma * model.M()
+    Q = np.hstack(widened.parts)
+    np.testing.assert_allclose(Q.T @ (A @ Q), np.eye(widened.size), atol=1e-6)
