@@ -285,7 +285,7 @@ def _checked(
         mass = 1.0 + gram[few].diagonal()
         quotient = energy[firm] / mass[firm] / lambda_[firm]
         rayleigh = max(rayleigh, float(np.abs(quotient - 1.0).max(initial=0.0)))
-        backward = max(backward, given.backward_error(lambda_, x, KX, MX))
+        backward = max(backward, given.backward_error(lambda_, x, KX - MX * lambda_))
     return Checks(residual, off, missed, backward, rayleigh)
 
 

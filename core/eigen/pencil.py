@@ -124,15 +124,15 @@ class Pencil:
         same = typical >= EIGEN.single_digits and np.array_equal(single, sample)
         return EIGEN.single if same else 0.0
 
-    def backward_error(self, values: Floats, X: Floats, KX: Floats, MX: Floats) -> float:
-        """Return the largest ||K x - lambda M x|| beside ||D x|| of modes X (n, k).
+    def backward_error(self, values: Floats, X: Floats, left: Floats) -> float:
+        """Return the largest ||K x - lambda M x||, `left`, beside ||D x|| of modes X (n, k).
 
         Forces are scaled by D^-1/2 and motions by D^1/2, D the diagonal of K + lambda M.
         """
         size = np.maximum(np.abs(values), self.least_shift)
         D = np.abs(self.k_diagonal)[:, None] + self.m_diagonal[:, None] * size
         D[D == 0.0] = 1.0
-        off = ((KX - MX * values) ** 2 / D).sum(axis=0) / np.einsum("ij,ij,ij->j", X, X, D)
+        off = (left**2 / D).sum(axis=0) / np.einsum("ij,ij,ij->j", X, X, D)
         return float(np.sqrt(off.max(initial=0.0)))
 
     @property

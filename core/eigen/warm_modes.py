@@ -99,7 +99,9 @@ def warm_modes(
             return replace(found, count_factor=factor)
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
-        X, MX = (np.asarray(a @ C[:k] + b @ C[k:]) for a, b in ((X, Y), (MX, step.MY)))
+        X = X @ C[:k]
+        X += Y @ C[k:]
+        MX = pencil.M @ X
     return None
 
 
@@ -113,21 +115,22 @@ def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -
     rho = rho[::-1]  # the lowest mode is next to zero
     if rho[0] >= 0.0:
         return None
-    alpha, C = (found[..., :below] for found in sl.eigh(stiff, moved))
+    alpha, C = sl.eigh(stiff, moved, subset_by_index=(0, below - 1))
     off = np.abs(alpha - 1.0 / rho)
     values, first = s + alpha, slice(elastic)
     sigma = -max(pencil.least_shift, EIGEN.nearer[0] * float(values[0]))
     error = off / (values - sigma)
     if error[first].max() > EIGEN.warm:
         return None
-    X, MX, KX = (A @ C for A in (step.Y, step.MY, step.MZ))
-    KX += s * MX
+    X = step.Y @ C
     size = float((np.abs(pencil.k_diagonal) @ X**2).max())
-    wanted = (A[:, first] for A in (X, KX, MX))
-    backward = pencil.backward_error(values[first], *wanted)
+    X, few = X[:, first], C[:, first]
+    left = step.MZ @ few  # (K - lambda M) X
+    left -= step.MY @ (few * alpha[first])
+    backward = pencil.backward_error(values[first], X, left)
     if backward > EIGEN.backward or -alpha[-1] <= EIGEN.signs * size:
         return None
-    return Spectrum(values[first], X[:, first], error[first], sigma, complete=False, missed=0)
+    return Spectrum(values[first], X, error[first], sigma, complete=False, missed=0)
 
 
 def _ritz(

@@ -158,7 +158,9 @@ class ReducedModel(Noun):
         free = slice(found.rigid_body_modes, None)
         lam = found.eigenvalues[free]
         X = self.spread(found.vectors[:, free] / np.sqrt(lam - self.solution.sigma))
-        R = self.stiffness.applied(p, X) - self.mass.applied(p, X) * lam
+        R, MX = self.stiffness.applied(p, X), self.mass.applied(p, X)
+        MX *= lam
+        R -= MX
         factor = self.solution.factor
         assert factor is not None
         W = factor.solve(R)
@@ -184,15 +186,16 @@ class ReducedModel(Noun):
 
     def _beside(self, W: Floats) -> ReducedModel:
         """Return the model with what its basis lacks of vectors W, of any size."""
+        W = np.ascontiguousarray(W)  # as sparse products want
         sums = [terms.widened(self.parts, W) for terms in self._sums]
         A = sums[0].at(self.p0) - self.solution.sigma * sums[1].at(self.p0)
         n = self.size
         known, scale = A[:n, n:], 1.0 / np.sqrt(A[n:, n:].diagonal())
         lacking = (A[n:, n:] - known.T @ known) * np.outer(scale, scale)
         T = scale[:, None] * _independent(lacking, DERIVATIVES.known_already)
-        along = -known @ T
-        last = np.vstack([along, T])
-        return self._widened(W @ T + self.spread(along), [s.ending(n, last) for s in sums])
+        last = np.vstack([-known @ T, T])
+        V = replace(self, parts=(*self.parts, W)).spread(last)
+        return self._widened(V, [s.ending(n, last) for s in sums])
 
     def _with(self, W: Floats, energy: Floats, least: float) -> ReducedModel:
         """Return the model with vectors W beside Q, of at least so much of their energy W^T A W."""

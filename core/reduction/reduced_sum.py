@@ -46,7 +46,9 @@ class ReducedSum:
         out, by_rows = np.zeros(X.shape), np.ascontiguousarray(X)  # as sparse products want
         for term in self.terms:
             some = own_rows(term.matrix)
-            out[some] += term.coefficient(p) * (term.matrix[some] @ by_rows)
+            part = term.matrix[some] @ by_rows
+            part *= term.coefficient(p)
+            out[some] += part
         return out
 
     def slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:

@@ -77,7 +77,9 @@ def static_answers(
     best = np.argsort(-value)[:most]
     best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
-    return np.asarray(S @ W - solution.vectors @ (modal @ W))
+    answers = S @ W
+    answers -= solution.vectors @ (modal @ W)
+    return np.asarray(answers)
 
 
 def drawn_loads(
