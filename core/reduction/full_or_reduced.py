@@ -23,7 +23,7 @@ class FullOrder:
     """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`.
 
     The static answers to `forces` (n_force, n_free) are in what is reduced of it. Where it is to
-    be solved the modes may be known nearly: no factor is kept then.
+    be solved the modes may be known nearly: the factor that counts them is kept then.
     """
 
     model: Model
