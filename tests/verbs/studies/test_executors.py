@@ -136,7 +136,16 @@ def started(folder: Path, of: float) -> int:
         return _run(words, folder, log, 60.0)
 
 
+@pytest.fixture
+def ctrl_c() -> Iterator[None]:
+    """Heard, though a shell that starts this in the background has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("ctrl_c")
 def test_what_pieces_have_started_ends_with_them(tmp_path: Path):
     """Ctrl-C while two solvers run elsewhere."""
     marks = [tmp_path / "1", tmp_path / "2"]
