@@ -19,7 +19,6 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates, factors_of, lacking
 from .effects.effect_kind import Scale
-from .effects.support_reach import reaches_of
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
@@ -27,6 +26,7 @@ from .likelihood.map_fit import evaluate, fit
 from .likelihood.mode_likelihood import Evidence, noise_of
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
+from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.discretisation_error import consistent_bars, lumping

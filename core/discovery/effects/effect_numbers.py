@@ -72,9 +72,6 @@ class EffectNumbers:
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
-    reach: tuple[float, float] = number((1.0, 1.0), "of ln f", "mean and standard deviation beforehand of what the row in which a clamp ends is stiffer by", "1/f is the part of it that is left: anything between 0 and 1")
-    reach_rows: int = number(4, "rows of elements", "that a clamp may reach further in, at most")
-    reach_rigid: float = number(100.0, "times that", "what rows within the reach are stiffer by")
 
     links_across: float = number(9.0, "places", "likewise, of both ends of springs between two places")
     link_spacing: float = number(0.02, SIZE, "between the ends of links, at least")

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..effects.candidates import Suspect
-from ..effects.support_reach import Reaches
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import fit
+from ..model_error.support_reach import Reaches
 from .beam_search import Found
 from .completeness import Completeness
 from .model_selection import scored

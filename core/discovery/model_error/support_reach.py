@@ -12,13 +12,14 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats
+from ..effects.candidates import Candidates
+from ..effects.effect_kind import FACTOR, EffectKind
+from ..effects.effect_laws import FactorLaw
+from ..effects.effect_numbers import EFFECTS
+from ..effects.element_patches import root_of
 from ..reduction.elements_and_supports import Structure
 from ..reduction.search_basis import Basis
-from .candidates import Candidates
-from .effect_kind import FACTOR, EffectKind
-from .effect_laws import FactorLaw
-from .effect_numbers import EFFECTS
-from .element_patches import root_of
+from .model_error_numbers import MODEL_ERROR
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -59,7 +60,7 @@ def reaches_of(structure: Structure) -> Reaches | None:
     within, inner = held, sp.csr_matrix((structure.model.n_free,) * 2)
     made: list[sp.csr_matrix] = []
     far = [0.0]
-    for _ in range(EFFECTS.reach_rows):
+    for _ in range(MODEL_ERROR.clamp_rows):
         rows = [within[m.corners].any(axis=1) for m in structure.members]
         wider = within.copy()
         for m, own in zip(structure.members, rows, strict=True):
@@ -67,7 +68,7 @@ def reaches_of(structure: Structure) -> Reaches | None:
         if np.array_equal(wider, within) or np.mean(wider) > EFFECTS.patch_largest:
             break
         outer = _stiffness(structure, rows)
-        made.append(outer + (EFFECTS.reach_rigid - 1.0) * inner)
+        made.append(outer + (MODEL_ERROR.clamp_rigid - 1.0) * inner)
         far.append(float(cKDTree(g.xyz[held]).query(g.xyz[wider])[0].max()))
         within, inner = wider, outer
     if not made:
@@ -77,12 +78,12 @@ def reaches_of(structure: Structure) -> Reaches | None:
         kind=KIND,
         xyz=np.tile(g.xyz[held].mean(axis=0), (n, 1)),
         law=FactorLaw(),
-        trials=np.array([[EFFECTS.reach[0]]]),
+        trials=np.array([[MODEL_ERROR.clamp[0]]]),
         root=sp.csr_matrix((0, structure.model.n_free)),
         rows_each=0,
         where=tuple({"grids": g.ids[held].tolist()} for _ in range(n)),
-        typical=np.array([EFFECTS.reach[0]]),
-        spread=np.array([EFFECTS.reach[1]]),
+        typical=np.array([MODEL_ERROR.clamp[0]]),
+        spread=np.array([MODEL_ERROR.clamp[1]]),
         lower=np.zeros(1),
         matrices=tuple(made),
         far=np.array(far),

@@ -6,7 +6,7 @@ import scipy.linalg as la
 
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.discovery.build_structure import build_structure
-from trueup.core.discovery.effects.support_reach import reaches_of
+from trueup.core.discovery.model_error.support_reach import reaches_of
 
 DECK = """CEND
 BEGIN BULK
