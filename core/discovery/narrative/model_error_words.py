@@ -21,9 +21,7 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
     if whole.reach is not None:
-        said.append(
-            f"it looks like supports that reach {whole.reach:.2g} further in than the deck's"
-        )
+        said.append(f"it looks like supports that reach {whole.reach:.2g} deck units further in")
     elif best.drifts and best.evidence - best.plain > MODEL_ERROR.seen:
         said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
