@@ -46,8 +46,28 @@ def test_compliances_are_those_of_whole_solutions(membrane, backend, definite):
     b = np.random.default_rng(1).standard_normal((400, 4))
     f = factorise(K, definite, backend)
     expected = np.einsum("ij,ij->j", b, np.linalg.solve(K.toarray(), b))
-    np.testing.assert_allclose(f.compliances(b), expected, rtol=1e-10)
-    assert f.compliances(b[:, :0]).shape == (0,)
+    loads = sp.csr_matrix(b.T)
+    np.testing.assert_allclose(f.compliances(loads), expected, rtol=1e-10)
+    assert f.compliances(loads[:0]).shape == (0,)
+
+
+@pytest.mark.parametrize("shift", [False, True])
+def test_compliances_of_many_loads_here_and_there_are_those_of_whole_solutions(
+    membrane, backend, shift
+):
+    """Loads at one place, at neighbours, at places far apart; where signs of pivots differ, too."""
+    K, M, exact = membrane(20)
+    A = (K - shift * _in_a_gap(exact, 60) * M).tocsr()
+    each = np.arange(400)
+    apart = np.stack([np.roll(each, -k) for k in (0, 1, 57)])
+    rows = np.tile(each, 3)
+    loads = sp.csr_matrix((np.repeat([1.0, -2.0, 0.5], 400), (rows, apart.ravel())), (400, 400))
+    loads = sp.vstack([sp.identity(400), loads, loads[:, ::-1], A]).tocsr()
+    f = factorise(A, not shift, backend)
+    expected = np.sum(loads.toarray() * np.linalg.solve(A.toarray(), loads.toarray().T).T, axis=1)
+    np.testing.assert_allclose(f.compliances(loads), expected, rtol=1e-8, atol=1e-12)
+    f.refactorise(2.0 * A)
+    np.testing.assert_allclose(f.compliances(loads), expected / 2.0, rtol=1e-8, atol=1e-12)
 
 
 def test_indefinite_solve(membrane, backend):
