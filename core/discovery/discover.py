@@ -118,9 +118,10 @@ class _Trial:
         placed, structure = self.request.placed, request.structure
         motion = placed.observation.matrix @ structure.model.expansion
         observation = sp.csr_matrix(placed.weighted(motion))
+        nodes = len(np.unique(placed.observation.sensors.node))
         self.own = Ground(
             structure, ground.plain, ground.mesh, ground.bars, ground.compliance, observation,
-            sensors,
+            sensors, sp.csr_matrix(np.sqrt(request.mass / nodes) * motion),
         )  # fmt: skip
         self._judged: dict[object, Judged | None] = {}
         self._laid: dict[object, tuple[Searcher, Fit]] = {}

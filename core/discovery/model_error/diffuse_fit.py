@@ -7,7 +7,7 @@ best values gain less what it costs to have had a choice of values.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -27,11 +27,10 @@ from .smooth_fields import Fields
 
 @dataclass(frozen=True)
 class Drift:
-    """A smooth field: its name, its amplitude (rms over the structure), a standard deviation."""
+    """A field: its name and its amplitude (of a smooth one the rms over the structure)."""
 
     name: str
     amplitude: float
-    deviation: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +45,10 @@ class Judged:
         ln of the probability of the test by the hypothesis, unknowns integrated out.
     information : (n, n) float
         Second derivative of −ln posterior by parameters, fields, mesh and magnitudes.
-    plain : float
-        The evidence without any smooth field.
+    plain, bare : float
+        The evidence without any smooth field; without what set-up and mesh do, too.
     drifts : tuple of Drift
-        Smooth fields that are likelier than none, the largest first.
+        Fields that are likelier than none, the largest first.
     problem, state : Problem, Fit
         What was fitted: with the smooth fields, where there are any, as further parameters.
     whole : bool
@@ -61,6 +60,7 @@ class Judged:
     evidence: float
     information: Floats
     plain: float
+    bare: float
     problem: Problem
     state: Fit
     drifts: tuple[Drift, ...] = ()
@@ -76,57 +76,77 @@ def everything(problem: Problem) -> tuple[int, ...]:
     return tuple(range(len(problem.prior.spread)))
 
 
-def with_drift(
-    problem: Problem, state: Fit, fields: Callable[[], Fields], least: float = -np.inf
-) -> Judged:
-    """Return a hypothesis as it is likeliest: without smooth fields, or with fields of some size.
+def with_known(problem: Problem, state: Fit, active: Sequence[int], known: Fields) -> Judged:
+    """Return a hypothesis as it is likeliest: without fields of known spreads, or with.
 
-    `fields` on the basis are made when they are asked for. All of them have one size, which is
-    tried from small to large, from that on which could make a part of the error that is left; none
-    where they could not make up for what the hypothesis lacks of the evidence `least`.
+    The `active` entries of its nuisance parameters move along, see `judged`.
     """
-    plain = best = judged(problem, state, everything(problem))
+    plain = judged(problem, state, active)
+    best = _beside(problem, plain, known, active)
+    return _told(plain, best, known, best.evidence) if best.evidence > plain.evidence else plain
+
+
+def with_drift(
+    problem: Problem,
+    state: Fit,
+    known: Fields,
+    smooth: Fields,
+    least: float = -np.inf,
+) -> Judged:
+    """Return a hypothesis as it is likeliest: alone, with known fields, with smooth ones besides.
+
+    Smooth ones have one size, tried from large to small as long as that is likelier, down to what
+    could make a part of the error that is left: small ones are less likely than none where large
+    ones are far likelier. No fields where they could not make up for what the hypothesis lacks of
+    the evidence `least`.
+    """
+    active = everything(problem)
+    plain = judged(problem, state, active)
     if not plain.may_reach(least):
         return replace(plain, whole=False)
-    known = fields()
-    n, k = len(problem.prior.spread) - 1, len(known.names)
-    start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
-    smallest = min(MODEL_ERROR.drift_part * plain.diffuse.error, MODEL_ERROR.drifts[-1])
+    first = _beside(problem, plain, known, active)
+    likelier = first.evidence > plain.evidence
+    best, told = (first, known) if likelier else (plain, None)
+    without, larger = best.evidence, -np.inf
+    smallest = min(MODEL_ERROR.drift_part * plain.diffuse.error, max(MODEL_ERROR.drifts))
     for size in (s for s in MODEL_ERROR.drifts if s >= smallest):
-        moved = with_fields(problem, known, size)
-        tried = _climbed(moved, start, everything(moved), best.diffuse)
-        if tried.evidence < best.evidence:
+        both = smooth.of(size).and_also(known) if likelier else smooth.of(size)
+        tried = _beside(problem, plain, both, active)
+        if tried.evidence < larger:
             break
-        best, start = tried, tried.fit
-    if best is plain:
-        return plain
-    own = slice(n, n + k)
-    spread = np.sqrt(np.diag(np.linalg.inv(best.information)))[own]
-    every = (
-        Drift(*d)
-        for d in zip(
-            known.names, map(float, best.fit.nuisance[own]), map(float, spread), strict=True
-        )
-    )
-    drifts = tuple(sorted(every, key=lambda d: -abs(d.amplitude)))
+        larger = tried.evidence
+        if larger > best.evidence:
+            best, told = tried, both
+    return plain if told is None else _told(plain, best, told, without)
+
+
+def _beside(problem: Problem, plain: Judged, fields: Fields, active: Sequence[int]) -> Judged:
+    """Return a hypothesis moved with fields from where it is likeliest without them."""
+    n, k = len(problem.prior.spread) - 1, len(fields.names)
+    start = replace(plain.fit, nuisance=np.insert(plain.fit.nuisance, n, np.zeros(k)))
+    moving = (*(a for a in active if a < n), *range(n, n + k), *(a + k for a in active if a >= n))
+    return _climbed(with_fields(problem, fields), start, moving, plain.diffuse)
+
+
+def _told(plain: Judged, best: Judged, fields: Fields, without: float) -> Judged:
+    """Return a hypothesis with fields, its fit without them; `without` smooth ones it is as likely.
+
+    Fields that moved furthest, for what they might have been beforehand, are told first.
+    """
+    k, n = len(fields.names), len(plain.fit.nuisance) - 1
+    amplitudes = best.fit.nuisance[n : n + k]
+    order = np.argsort(-np.abs(amplitudes / fields.spread), kind="stable")
+    drifts = tuple(Drift(fields.names[i], float(amplitudes[i])) for i in order)
     fit = replace(best.fit, nuisance=np.delete(best.fit.nuisance, np.arange(n, n + k)))
-    return replace(best, fit=fit, plain=plain.evidence, drifts=drifts)
+    return replace(best, fit=fit, plain=without, bare=plain.evidence, drifts=drifts)
 
 
-def with_fields(problem: Problem, fields: Fields, size: float) -> Problem:
+def with_fields(problem: Problem, fields: Fields) -> Problem:
     """Return a problem whose known parameters are followed by the amplitudes of fields."""
     n = len(problem.prior.spread) - 1
-    k = len(fields.names)
-    prior = Prior(
-        *(
-            np.insert(old, n, np.full(k, new))
-            for old, new in (
-                (problem.prior.spread, size),
-                (problem.prior.lower, fields.least),
-                (problem.prior.upper, MODEL_ERROR.most),
-            )
-        )
-    )
+    most = np.maximum(MODEL_ERROR.most, -fields.least)
+    added = (problem.prior.spread, fields.spread), (problem.prior.lower, fields.least)
+    prior = Prior(*(np.insert(a, n, b) for a, b in (*added, (problem.prior.upper, most))))
     b = problem.basis
     stiffness, mass = (
         _moved(s, A, n) for s, A in ((b.stiffness, fields.stiffness), (b.mass, fields.mass))
@@ -201,7 +221,7 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
     spread = _spread(problem, now, active)
     occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
     evidence = height - occam
-    return Judged(now, best, evidence, H, evidence, problem, now)
+    return Judged(now, best, evidence, H, evidence, evidence, problem, now)
 
 
 def _step(H: Floats, g: Floats, damping: float) -> Floats:

@@ -3,13 +3,12 @@
 Thickness, modulus and density of a real structure are not the same everywhere, and no list of
 effects has that. A field multiplies the matrices of all elements by 1 + a q(x), q a polynomial of
 the position: one amplitude a each for stiffness and mass, of the rms 1 over the structure's mass,
-orthogonal to a change everywhere alike, which is a parameter's. A structure that was tested free
-hung on something: soft springs all over it, which lift every eigenvalue alike, stand for that.
+orthogonal to a change everywhere alike, which is a parameter's.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -21,7 +20,7 @@ from .model_error_numbers import MODEL_ERROR
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """Smooth fields on a basis.
+    """Fields on a basis.
 
     Parameters
     ----------
@@ -29,21 +28,34 @@ class Fields:
         As ``stiffness along x``.
     stiffness, mass : (n, r, r) float
         What an amplitude of 1 adds to each.
+    spread : (n,) float
+        Standard deviation of each amplitude beforehand.
+    least : (n,) float
+        Least amplitudes.
     """
 
     names: tuple[str, ...]
     stiffness: Floats
     mass: Floats
-
-    @property
-    def least(self) -> Floats:
-        """Least amplitudes, (n,): a suspension holds, it does not push away."""
-        return np.array([0.0 if n == SUSPENSION else -MODEL_ERROR.most for n in self.names])
+    spread: Floats
+    least: Floats
 
     def turned(self, T: Floats) -> Fields:
         """Return the fields on the basis turned by T (≥ r, s); its further vectors are local."""
         own = T[: self.mass.shape[1]]
-        return Fields(self.names, own.T @ self.stiffness @ own, own.T @ self.mass @ own)
+        return replace(self, stiffness=own.T @ self.stiffness @ own, mass=own.T @ self.mass @ own)
+
+    def of(self, size: float) -> Fields:
+        """Return the fields with amplitudes of another size beforehand."""
+        return replace(self, spread=size * self.spread)
+
+    def and_also(self, other: Fields) -> Fields:
+        """Return these fields and more."""
+        both = ((getattr(f, k) for f in (self, other)) for k in _EACH)
+        return Fields(self.names + other.names, *(np.concatenate(list(b)) for b in both))
+
+
+_EACH = ("stiffness", "mass", "spread", "least")
 
 
 def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
@@ -52,26 +64,10 @@ def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
     q, words = _polynomials(at, masses)
     none = np.zeros((q.shape[1], *K.shape[1:]))
     k, m = (np.tensordot(q.T, A, 1) for A in (K, M))
-    return Fields(
-        tuple(f"{what} {w}" for what in ("stiffness", "mass") for w in words),
-        np.concatenate([k, none]),
-        np.concatenate([none, m]),
-    )
-
-
-SUSPENSION = "a suspension"
-
-
-def suspended(fields: Fields, M: Floats, lowest: float) -> Fields:
-    """Return fields and, last of them, springs to ground in proportion to the mass M (r, r).
-
-    With an amplitude of 1 the structure would swing on them at its `lowest` eigenvalue.
-    """
-    return Fields(
-        (*fields.names, SUSPENSION),
-        np.concatenate([fields.stiffness, lowest * M[None]]),
-        np.concatenate([fields.mass, np.zeros_like(M)[None]]),
-    )
+    names = tuple(f"{what} {w}" for what in ("stiffness", "mass") for w in words)
+    both = np.ones(len(names))
+    fields = np.concatenate([k, none]), np.concatenate([none, m])
+    return Fields(names, *fields, both, -MODEL_ERROR.most * both)
 
 
 def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -6,7 +6,7 @@ from ...arrays import Ints
 from ..effects.sentence_parts import mode_ranges
 from ..model_error.diffuse_fit import Drift
 from ..model_error.model_error_numbers import MODEL_ERROR
-from ..model_error.smooth_fields import SUSPENSION
+from ..model_error.set_up_fields import MESH, SENSORS, SUSPENSION
 from ..search.completeness import Completeness
 
 
@@ -22,7 +22,7 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         said.append(f"nothing explains {modes}")
     if whole.reach is not None:
         said.append(f"it looks like supports that reach {whole.reach:.2g} deck units further in")
-    elif best.drifts and best.evidence - best.plain > MODEL_ERROR.seen:
+    elif best.drifts and best.evidence - best.bare > MODEL_ERROR.seen:
         said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)
@@ -32,4 +32,8 @@ def _drift(d: Drift) -> str:
     if d.name == SUSPENSION:
         share = 100.0 * np.sqrt(abs(d.amplitude))
         return f"{d.name} on which it swings at {share:.2g} % of its lowest frequency"
+    if d.name == SENSORS:
+        return f"{d.name}, {100.0 * d.amplitude:.2g} % of the structure's in all"
+    if d.name.startswith(MESH):
+        return f"{d.name}, by {abs(d.amplitude):.2g} of what lumped masses do"
     return f"{d.name} that drifts by {100.0 * abs(d.amplitude):.2g} %"

@@ -18,21 +18,52 @@ from ...arrays import Bools, Floats, Ints
 from ...data.parametric_model import Term
 from ...elements.lines.bar import bar_mass
 from .elements_and_supports import Members, Structure
+from .own_axes import own_axes
 from .reduction_numbers import REDUCTION
 
 
 def lumping(structure: Structure) -> Term:
     """Return lumped minus consistent mass of all shells, (n_free, n_free)."""
+    return Term(_lumping(structure, None))
+
+
+def lumping_along(structure: Structure) -> list[tuple[Floats, sp.csr_matrix]]:
+    """Return the structure's own axes and what lumping does along each; together it is `lumping`.
+
+    What is between two corners counts by the square of the cosine of their line with the axis.
+    """
+    axes = own_axes(structure.model.geometry.xyz)
+    return [(axis, _lumping(structure, axis)) for axis in axes]
+
+
+def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
     total = _none(structure)
     for m in structure.members:
         share = m.element.linear_mass
         if share is None:
             continue
-        mass = _lumped(structure, m)
-        apart = np.kron(np.eye(len(share)) / len(share) - share, np.eye(3))
+        between = np.tile(share, (len(m.ids), 1, 1))
+        if axis is not None:
+            xyz = structure.model.geometry.xyz
+            between = share * _squared_cosines(xyz[m.corners[:, : len(share)]], axis)
+        apart = _laplacians(between)
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
-        total += _placed(total.shape[0], at.reshape(len(m.ids), -1), mass[:, None, None] * apart)
-    return _on_free(structure, total)
+        each = np.kron(_lumped(structure, m)[:, None, None] * apart, np.eye(3))
+        total += _placed(total.shape[0], at.reshape(len(m.ids), -1), each)
+    return _on_free(structure, total).matrix
+
+
+def _laplacians(W: Floats) -> Floats:
+    """Return diag(W 1) − W of symmetric weights (n, k, k)."""
+    off = W * (1.0 - np.eye(W.shape[1]))
+    return np.asarray(off.sum(axis=2)[:, :, None] * np.eye(W.shape[1]) - off)
+
+
+def _squared_cosines(corners: Floats, axis: Floats) -> Floats:
+    """Return those of the lines between corners (n, k, 3) with an axis, (n, k, k)."""
+    lines = corners[:, :, None] - corners[:, None]
+    length = np.maximum(np.sum(lines**2, axis=3), np.finfo(float).tiny)
+    return np.asarray((lines @ axis) ** 2 / length)
 
 
 def consistent_bars(structure: Structure) -> tuple[Term, ...]:

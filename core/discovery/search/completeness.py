@@ -185,6 +185,9 @@ def completeness(
         found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
+    levels[0] = _fitted_as(searcher, levels[0], max(levels, key=lambda s: s.score))
+    alone = levels[0].judged
+    assert alone is not None
     kept = 0
     for k, level in enumerate(levels[1:], start=1):
         if _earned(level, levels[kept]):
@@ -250,6 +253,14 @@ def _centred(
             places = credible_places(searcher, best.fit, q, scale)
         every.append(places)
     return best, every
+
+
+def _fitted_as(searcher: Searcher, alone: Scored, best: Scored) -> Scored:
+    """Return the known parameters alone, fitted from where the best hypothesis has them, too."""
+    if best.judged is None or best is alone:
+        return alone
+    there = evaluate(searcher.problem, best.judged.fit.nuisance, ())
+    return max(alone, scored(searcher, there), key=lambda s: s.score)
 
 
 def _nearest(found: Found, k: int) -> list[Fit]:

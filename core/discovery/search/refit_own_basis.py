@@ -24,8 +24,9 @@ from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
 from ..likelihood.mode_likelihood import targets
-from ..model_error.diffuse_fit import Judged, everything, judged, with_drift
-from ..model_error.smooth_fields import Fields, smooth_fields, suspended
+from ..model_error.diffuse_fit import Judged, everything, with_drift, with_known
+from ..model_error.set_up_fields import mesh_errors, sensor_mass, suspension
+from ..model_error.smooth_fields import Fields, smooth_fields
 from ..reduction.elements_and_supports import Structure
 from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.residual_flexibility import Compliance
@@ -69,6 +70,8 @@ class Ground:
         Of all sensors, weighted.
     seen : (n_sensor,) bool
         Those of the evidence.
+    loaded : (n_sensor, n_free) sparse
+        A root of the mass of all sensors, together as heavy as the structure.
     known : dict
         Bases that were made.
     """
@@ -80,12 +83,23 @@ class Ground:
     compliance: Compliance
     observation: sp.csr_matrix
     seen: Bools
+    loaded: sp.csr_matrix
     known: dict[Places, Own] = field(default_factory=dict)
 
     @cached_property
     def fields(self) -> Fields:
         """Smooth fields on the basis."""
         return smooth_fields(self.structure, self.basis.vectors)
+
+    @cached_property
+    def coarse(self) -> Fields:
+        """The error of the mesh along each axis, on the basis."""
+        return mesh_errors(self.structure, self.basis.vectors)
+
+    @cached_property
+    def sensors(self) -> Fields:
+        """What the sensors weigh, on the basis."""
+        return sensor_mass(self.loaded @ self.basis.vectors)
 
     @cached_property
     def readings(self) -> Floats:
@@ -143,29 +157,24 @@ def by_model_error(
 ) -> Judged:
     """Return a fit as the whole test and the diffuse error judge it, on modes of its own.
 
-    Parameters and smooth fields of stiffness and mass move along, of a free structure its
-    suspension too; no fields where they could not bring it to the evidence `least`; where nothing
-    is `moving`, the error of the mesh alone.
+    Parameters, what set-up and mesh do and smooth fields of stiffness and mass move along; no
+    fields where they could not bring it to the evidence `least`; where nothing is `moving`, the
+    error of the mesh alone.
     """
     own, start, _ = _own_problem(ground, problem, state)
     _, modes = _modes(own, state, start)
     T = structural(*np.split(modes, [len(own.mesh)]))
     small = own.turned(T).entire()
     here = evaluate(small, state.nuisance, start)
-
-    def fields() -> Fields:
-        known = ground.fields.turned(T)
-        rigid = np.count_nonzero(here.eigenvalues < SEARCH.rigid * here.eigenvalues.max())
-        if rigid < 6:
-            return known
-        return suspended(
-            known, small.basis.M(np.exp(state.log_p)), float(targets(small.whole).min())
-        )
-
+    coarse, sensors, smooth = (f.turned(T) for f in (ground.coarse, ground.sensors, ground.fields))
+    known = coarse.and_also(sensors)
+    if np.count_nonzero(here.eigenvalues < SEARCH.rigid * here.eigenvalues.max()) >= 6:
+        M, lowest = small.basis.M(np.exp(state.log_p)), float(targets(small.whole).min())
+        known = known.and_also(suspension(M, smooth, lowest))
     if moving:
-        found = with_drift(small, here, fields, least)
+        found = with_drift(small, here, known, smooth, least)
     else:
-        found = judged(small, here, everything(small)[-1:])
+        found = with_known(small, here, everything(small)[-1:], coarse)
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
 
 

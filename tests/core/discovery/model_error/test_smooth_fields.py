@@ -1,15 +1,8 @@
 """Polynomials that stiffness and mass drift by."""
 
 import numpy as np
-import pytest
 
-from trueup.core.discovery.model_error.smooth_fields import (
-    SUSPENSION,
-    Fields,
-    _cells,
-    _polynomials,
-    suspended,
-)
+from trueup.core.discovery.model_error.smooth_fields import _cells, _polynomials
 
 
 def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
@@ -34,16 +27,3 @@ def test_one_place_is_one_cell_and_has_no_field():
     with np.errstate(all="raise"):
         assert _cells(np.ones((1, 3)))[1] == 1
         assert _polynomials(np.ones((1, 3)), np.ones(1))[0].size == 0
-
-
-def test_a_suspension_lifts_every_eigenvalue_by_that_of_its_swinging():
-    values = np.array([0.0, 0.0, 100.0, 900.0, 2500.0])
-    none = np.zeros((0, 5, 5))
-    fields = suspended(Fields((), none, none), np.eye(5), 100.0)
-    assert fields.names == (SUSPENSION,)
-    share = 0.2
-    lifted = np.linalg.eigvalsh(np.diag(values) + share**2 * fields.stiffness[0])
-    assert np.sqrt(lifted[0]) == pytest.approx(share * np.sqrt(100.0))
-    assert lifted - values == pytest.approx(lifted[0])
-    assert not fields.mass.any()
-    assert fields.least == pytest.approx(0.0)

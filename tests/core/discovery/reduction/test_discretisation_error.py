@@ -7,7 +7,11 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from trueup.core.discovery.reduction.discretisation_error import consistent_bars, lumping
+from trueup.core.discovery.reduction.discretisation_error import (
+    consistent_bars,
+    lumping,
+    lumping_along,
+)
 from trueup.core.elements.lines.bar import BAR, bar_mass, bar_stiffness
 from trueup.core.elements.surfaces.curved_shell import QUAD8
 from trueup.core.elements.surfaces.quad4 import QUAD4
@@ -36,9 +40,10 @@ def membrane(n, lumped=True):
     across = sp.csr_matrix(
         (np.ones(points), (6 * np.arange(points) + 2, np.arange(points))), (6 * points, points)
     )
-    return SimpleNamespace(
-        members=(member,), model=SimpleNamespace(parameters=(), expansion=across)
-    )
+    x, y = np.tile(np.arange(n + 1.0), 2), np.repeat([0.0, 1.0], n + 1)
+    geometry = SimpleNamespace(xyz=np.column_stack([x, y, 0.0 * x]))
+    model = SimpleNamespace(parameters=(), expansion=across, geometry=geometry)
+    return SimpleNamespace(members=(member,), model=model)
 
 
 def on(terms, *vectors):
@@ -57,6 +62,17 @@ def test_it_falls_with_the_square_of_the_elements_in_a_wave():
 
     assert share(10) / share(20) == pytest.approx(4.0, rel=0.05)
     assert share(20) == pytest.approx((np.pi / 20) ** 2 / 6.0, rel=0.05)
+
+
+def test_along_a_wave_it_is_all_there_is_and_across_it_none():
+    wave = np.tile(np.cos(np.pi * np.arange(7) / 6), 2)
+    whole = on((lumping(membrane(6)),), wave)
+    along = {
+        tuple(np.abs(axis)): float(wave @ (A @ wave)) for axis, A in lumping_along(membrane(6))
+    }
+    assert sum(along.values()) == pytest.approx(whole.item())
+    assert along[0.0, 0.0, 1.0] == pytest.approx(0.0)
+    assert along[1.0, 0.0, 0.0] > 2.0 * along[0.0, 1.0, 0.0]
 
 
 def test_a_mass_that_is_not_lumped_has_none():

@@ -1,5 +1,6 @@
 """What is clear, and what an error of the model imitates."""
 
+from functools import partial
 from types import SimpleNamespace as Some
 
 import numpy as np
@@ -10,13 +11,15 @@ from trueup.core.discovery.search import completeness as room
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness, completeness
 from trueup.core.discovery.search.credible_places import Place
+from trueup.core.discovery.search.model_selection import Scored
 
 
 def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
     each = np.asarray(each, float)
     shared = Some(each=each, error=error, noise=noise, stray=chance, mesh=mesh)
-    return Some(diffuse=shared, evidence=evidence, plain=evidence)
+    here = Some(nuisance=np.zeros(2))
+    return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here)
 
 
 def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
@@ -155,6 +158,19 @@ def test_in_a_deck_that_lacks_nothing_only_what_is_clear_is_told(monkeypatch, ga
     evidence = {(): 0.0, (3,): gains}
     assert weighed(monkeypatch, Found(levels, ((), ())), evidence)[1] == 1
     assert weighed(monkeypatch, Found(levels, ((), ())), evidence, nothing=True)[1] == kept
+
+
+def test_the_known_parameters_are_fitted_from_where_the_best_has_them_too(monkeypatch):
+    there = np.array([0.3, 0.0])
+    alone = Scored(hypothesis(100.0), judged(np.zeros(10)), 0.0)
+    best = Scored(hypothesis(40.0, 3), Some(fit=Some(nuisance=there)), 20.0)
+    monkeypatch.setattr(room, "evaluate", lambda problem, nuisance, suspects: nuisance)
+    for score, expected in ((15.0, 15.0), (-3.0, 0.0)):
+        anew = partial(Scored, judged=None, score=score)
+        monkeypatch.setattr(room, "scored", lambda searcher, fit, anew=anew: anew(fit))
+        refitted = room._fitted_as(Some(problem=None), alone, best)
+        assert refitted.score == pytest.approx(expected)
+        assert (refitted.fit is there) == (score > 0.0)
 
 
 @pytest.mark.parametrize("objective", [50.0, 90.0])
