@@ -178,9 +178,9 @@ class PatchRows:
         return self._members[number]
 
 
-def root_of(A: Floats) -> Floats:
+def root_of(A: Floats, least: float = EFFECTS.patch_left) -> Floats:
     """Return rows U (q, r) with UᵀU = A (r, r), positive semidefinite, up to a tiny trace."""
-    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=EFFECTS.patch_left * float(np.trace(A)), lower=1)
+    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=least * float(np.trace(A)), lower=1)
     root = np.zeros((rank, len(A)))
     root[:, pivots - 1] = np.tril(L)[:, :rank].T
     return root

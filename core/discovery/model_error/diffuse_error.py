@@ -207,14 +207,15 @@ def _shapes(seen: Seen, error: float, noises: Floats, columns: Ints) -> Floats:
 
 def covariances(seen: Seen, found: Diffuse) -> Callable[[int, Floats], Floats]:
     """Return what makes vectors (n_sensor, q) white that scatter as the shape of one test mode."""
-    root = _roots(seen, found.error, found.match)
+    root = _roots(seen, found.error, found.match)[:, :, None]
     s = found.noise / np.sqrt(len(seen.shapes))
+    mu, U = np.linalg.eigh(root * (seen.modes.T @ seen.modes) * root.transpose(0, 2, 1))
+    wide = np.hypot(s, np.sqrt(np.maximum(mu, 0.0)))
+    less = -1.0 / (wide * (wide + s))
+    along = np.matmul(seen.modes, root * U)
 
     def white(j: int, X: Floats) -> Floats:
-        L = seen.modes * root[j]
-        U, sigma, _ = np.linalg.svd(L, full_matrices=False)
-        along = U.T @ X
-        kept = s / np.hypot(s, sigma) - 1.0
-        return np.asarray((X + U @ (kept[:, None] * along)) * (np.sqrt(_weight(seen)) / s))
+        L = along[j]
+        return np.asarray((X + L @ (less[j][:, None] * (L.T @ X))) * (np.sqrt(_weight(seen)) / s))
 
     return white

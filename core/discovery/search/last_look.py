@@ -74,7 +74,7 @@ def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
             c = searcher.problem.catalogue[best.fit.suspects[q].kind]
             searcher, fits = _beside(searcher, best, q)
             paid = float(np.log1p(len(fits))) if gives(c) else 0.0
-            new = [s for s in ranked(searcher, fits, [best]) if s is not best]
+            new = [s for s in ranked(searcher, fits, [best], gives(c)) if s is not best]
             new = [replace(s, score=s.score - paid) for s in new]
             tried += new
             best = max((best, *new), key=_score)

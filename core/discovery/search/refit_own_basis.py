@@ -20,6 +20,7 @@ from ...reduction.reduced_sum import ReducedSum
 from ..effects import support_flexibility
 from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
+from ..effects.element_patches import root_of
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import evaluate, fit, on_whole_test, solve
@@ -272,9 +273,7 @@ def _factor(c: Candidates, row: int, V: Floats, W: Floats) -> Floats:
     A = c.full(row)
     own = np.unique(A.indices)
     X = np.hstack([V[own], W[own]])
-    values, vectors = np.linalg.eigh(X.T @ (A[own][:, own] @ X))
-    there = values > EFFECTS.patch_rounding * values[-1]
-    return np.asarray((vectors[:, there] * np.sqrt(values[there])).T)
+    return root_of(X.T @ (A[own][:, own] @ X), EFFECTS.patch_rounding)
 
 
 def _alone(c: Candidates, row: int, state: Fit) -> Candidates:

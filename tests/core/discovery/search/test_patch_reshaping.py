@@ -17,11 +17,12 @@ from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.model_error.model_error_numbers import MODEL_ERROR
 from trueup.core.discovery.reduction.elements_and_supports import Structure
 from trueup.core.discovery.reduction.search_basis import Basis
 from trueup.core.discovery.search.credible_places import alike
 from trueup.core.discovery.search.last_look import looked_again
-from trueup.core.discovery.search.model_selection import scored
+from trueup.core.discovery.search.model_selection import ranked, scored
 from trueup.core.discovery.search.moves import Searcher
 from trueup.core.discovery.search.patch_reshaping import reshaped, variants
 from trueup.core.elements.surfaces.quad4 import QUAD4
@@ -162,7 +163,8 @@ def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_mi
         patches = problem.catalogue[0].patches
         wrong = sum(len(np.setxor1d(patches[t.row].rows, told)) for t in f.suspects)
         left = SimpleNamespace(error=0.001, noise=0.02, each=np.zeros(12))
-        return SimpleNamespace(evidence=-10.0 * wrong, diffuse=left, fit=f)
+        likely = -10.0 * wrong
+        return SimpleNamespace(evidence=likely, plain=likely, diffuse=left, fit=f)
 
     s = replace(s, judged=judged)
     wide, tried = looked_again(s, scored(s, state))
@@ -172,6 +174,23 @@ def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_mi
     places = alike(tried, tried[0], 0)
     assert [p.suspect.row for p in places] == [best.suspects[0].row]
     assert sum(p.weight for p in places) == pytest.approx(1.0)
+
+
+def test_fields_are_tried_beside_another_shape_only_where_that_does_nearly_as_well_without():
+    """Smooth fields gain beside a shape what they gain beside the next."""
+    box_of = box((4, 6), (3, 5))
+    s, state = suspecting(membrane(), box_of, box_of)
+    left = SimpleNamespace(error=0.001, noise=0.02, each=np.zeros(12))
+    asked = []
+
+    def judged(problem, f, least=-np.inf):
+        asked.append(least)
+        return SimpleNamespace(evidence=30.0, plain=20.0, diffuse=left, fit=f)
+
+    s = replace(s, judged=judged)
+    ranked(s, [state], [scored(s, state)], alike=True)
+    reach = {p: p + MODEL_ERROR.drift_gain >= asked[-1] for p in (14.9, 15.1)}
+    assert reach == {14.9: False, 15.1: True}
 
 
 def test_a_patch_may_end_with_its_property():
