@@ -14,6 +14,7 @@ from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.factorisation import Backend, Factorisation, best_backend, factorise
+from ..numerics.products import product, sparse_product
 from .dense_solver import dense_modes
 from .eigen_numbers import EIGEN
 from .mechanisms import Massless, hold, mechanism, refuse_linkage
@@ -277,8 +278,8 @@ def _checked(
     for first in range(0, len(values), EIGEN.width):
         few = slice(first, first + EIGEN.width)
         lambda_, x = values[few], X[:, few]
-        KX, MX = given.K @ x, given.given_mass @ x
-        gram = X.T @ MX - np.eye(len(values))[:, few]
+        KX, MX = sparse_product(given.K, x), sparse_product(given.given_mass, x)
+        gram = product(X.T, MX) - np.eye(len(values))[:, few]
         off = max(off, float(np.abs(gram).max()))
         energy = np.einsum("ij,ij->j", x, KX)
         firm = lambda_ > EIGEN.soft * np.einsum("ij,ij,i->j", x, x, k)

@@ -10,6 +10,7 @@ from ..data.parametric_model import Model
 from ..errors import CheckError, InputError
 from ..numerics.block_lanczos import NEGATIVE_MASS, BlockLanczos
 from ..numerics.factorisation import Backend, Factorisation, NotDefinite, factorise
+from ..numerics.products import product
 from .eigen_numbers import EIGEN
 from .mechanisms import diagnose, refuse_unresisted
 from .pencil import Pencil, Spectrum, refuse_indefinite_mass, widest_gap
@@ -237,10 +238,10 @@ def _polished(
         size = np.einsum("ij,ij->j", error, pencil.M @ error)
         residual[few] = np.sqrt(np.maximum(size, 0.0))
     for few in blocks:
-        stiff[:, few] = Y.T @ (pencil.M @ X[:, few]) / theta[few]
-        mass[:, few] = Y.T @ (pencil.M @ Y[:, few])
+        stiff[:, few] = product(Y.T, pencil.M @ X[:, few]) / theta[few]
+        mass[:, few] = product(Y.T, pencil.M @ Y[:, few])
     alpha, C = sl.eigh((stiff + stiff.T) / 2.0, (mass + mass.T) / 2.0)
-    return Spectrum(sigma + alpha, np.matmul(Y, C, out=X), residual, sigma, False, None, factor)
+    return Spectrum(sigma + alpha, product(Y, C, out=X), residual, sigma, False, None, factor)
 
 
 def _estimates(found: Spectrum) -> Floats:

@@ -20,6 +20,7 @@ import scipy.linalg as sl
 from ..arrays import Floats
 from ..errors import CheckError
 from ..numerics.factorisation import Backend, factorise
+from ..numerics.products import product, sparse_product
 from .eigen_numbers import EIGEN
 from .pencil import Pencil, Spectrum, widest_gap
 
@@ -55,8 +56,9 @@ class _Step:
     @cached_property
     def grams(self) -> tuple[Floats, Floats, Floats]:
         """Z^T M Z, Z^T M Y and Y^T M Y."""
-        crossed = self.MZ.T @ self.Y
-        return self.Z.T @ self.MZ, (crossed + crossed.T) / 2.0, self.Y.T @ self.MY
+        crossed = product(self.MZ.T, self.Y)
+        massive, moved = product(self.Z.T, self.MZ), product(self.Y.T, self.MY)
+        return massive, (crossed + crossed.T) / 2.0, moved
 
 
 def warm_modes(
@@ -83,7 +85,7 @@ def warm_modes(
     except CheckError:
         return None
     X, values = near.vectors, near.values[: near.vectors.shape[1]]
-    MX, rigid_mass = pencil.M @ X, pencil.M @ rigid
+    MX, rigid_mass = sparse_product(pencil.M, X), pencil.M @ rigid
     rng = np.random.default_rng(seed)
     for _ in range(EIGEN.warm_steps):
         counted = np.count_nonzero(values < s) == below
@@ -93,15 +95,15 @@ def warm_modes(
             X, MX = np.hstack([X, fresh]), np.hstack([MX, pencil.M @ fresh])
         Y = factor.solve(MX)
         Y -= rigid @ (rigid_mass.T @ Y)
-        step = _Step(X, Y, MX, pencil.M @ Y)
+        step = _Step(X, Y, MX, sparse_product(pencil.M, Y))
         found = _polished(pencil, s, step, below, elastic) if counted else None
         if found is not None:
             return replace(found, count_factor=factor)
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
-        X = X @ C[:k]
-        X += Y @ C[k:]
-        MX = pencil.M @ X
+        X = product(X, C[:k])
+        X += product(Y, C[k:])
+        MX = sparse_product(pencil.M, X)
     return None
 
 
@@ -122,11 +124,11 @@ def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -
     error = off / (values - sigma)
     if error[first].max() > EIGEN.warm:
         return None
-    X = step.Y @ C
+    X = product(step.Y, C)
     size = float((np.abs(pencil.k_diagonal) @ X**2).max())
     X, few = X[:, first], C[:, first]
-    left = step.MZ @ few  # (K - lambda M) X
-    left -= step.MY @ (few * alpha[first])
+    left = product(step.MZ, few)  # (K - lambda M) X
+    left -= product(step.MY, few * alpha[first])
     backward = pencil.backward_error(values[first], X, left)
     if backward > EIGEN.backward or -alpha[-1] <= EIGEN.signs * size:
         return None

@@ -7,6 +7,7 @@ import scipy.sparse as sp
 
 from ..arrays import Floats
 from ..errors import InputError
+from .products import product, sparse_product
 
 _EXHAUSTED = 1e-13
 """Directions this much smaller than the largest eigenvalue of the operator are rounding."""
@@ -98,7 +99,7 @@ class BlockLanczos:
         The basis is given up for them: the iteration is over.
         """
         Y, theta = self._Y[:, :count], self._theta[:count]
-        X: Floats = self._V[:, : self.size] @ Y
+        X = product(self._V[:, : self.size], Y)
         self._V = self._M_block = self._V[:, :0].copy()
         if self._width:
             X += self._next @ ((self._R @ Y[self._last]) / theta)
@@ -113,7 +114,7 @@ class BlockLanczos:
         if 2 * keep > self._max_basis:
             self._grow()
             return
-        self._V[:, :keep] = self._V[:, : self.size] @ self._Y[:, :keep]
+        self._V[:, :keep] = product(self._V[:, : self.size], self._Y[:, :keep])
         self._T[:] = 0.0
         self._T[np.arange(keep), np.arange(keep)] = self._theta[:keep]
         self.size = keep
@@ -140,18 +141,18 @@ class BlockLanczos:
     def _orthonormal(self, W: Floats, coupling: Floats | None) -> tuple[Floats, Floats, Floats]:
         """Orthonormal block W' with W = locked.. + V coupling + W' R, M W' and R."""
         V = self._V[:, : self.size]
-        MW = self._M @ W
+        MW = sparse_product(self._M, W)
         self._scale = max(self._scale, float(np.sqrt(np.abs(np.sum(W * MW, axis=0)).max())))
         R = np.eye(W.shape[1])
         for sweep in range(2):
             if self._locked.shape[1]:
                 W = W - self._locked @ (self._locked.T @ MW)
             if self.size:
-                h = V.T @ MW
-                W = W - V @ h
+                h = product(V.T, MW)
+                W = W - product(V, h, np.empty_like(W))
                 if coupling is not None:
                     coupling += h @ R
-            MW = self._M @ W
+            MW = sparse_product(self._M, W)
             size, Q = np.linalg.eigh(W.T @ MW)
             if size.min(initial=0.0) < -1e-8 * self._scale**2:
                 raise InputError(NEGATIVE_MASS)

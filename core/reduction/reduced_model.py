@@ -19,6 +19,7 @@ from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..noun import Noun
 from ..numerics.factorisation import factorise
+from ..numerics.products import product
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, clusters, coefficients, differentiate
 from .eigenvector_derivatives import modal_change
@@ -100,7 +101,7 @@ class ReducedModel(Noun):
         """Return Q q of coordinates (n_basis, k), (n_free, k)."""
         ends = np.cumsum([part.shape[1] for part in self.parts])[:-1]
         each = zip(self.parts, np.split(q, ends), strict=True)
-        return np.asarray(reduce(operator.iadd, (part @ some for part, some in each)))
+        return np.asarray(reduce(operator.iadd, (product(part, some) for part, some in each)))
 
     def project(self, vectors: sp.spmatrix | Floats) -> Floats:
         """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).
@@ -164,7 +165,7 @@ class ReducedModel(Noun):
         factor = self.solution.factor
         assert factor is not None
         W = factor.solve(R)
-        return self._with(W, W.T @ R, DERIVATIVES.too_little)
+        return self._with(W, product(W.T, R), DERIVATIVES.too_little)
 
     def differentiable(
         self, p: Floats, found: Eigensolution, parameters: Sequence[int], count: int
@@ -199,7 +200,7 @@ class ReducedModel(Noun):
 
     def _with(self, W: Floats, energy: Floats, least: float) -> ReducedModel:
         """Return the model with vectors W beside Q, of at least so much of their energy W^T A W."""
-        W = W @ _independent(energy, least)
+        W = product(W, _independent(energy, least))
         return self._widened(W, [terms.widened(self.parts, W) for terms in self._sums])
 
     @property

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from ..arrays import Floats, Ints
 from ..data.parametric_model import Factor, Term
+from ..numerics.products import product, sparse_product
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +47,7 @@ class ReducedSum:
         out, by_rows = np.zeros(X.shape), np.ascontiguousarray(X)  # as sparse products want
         for term in self.terms:
             some = own_rows(term.matrix)
-            part = term.matrix[some] @ by_rows
+            part = sparse_product(term.matrix[some], by_rows)
             part *= term.coefficient(p)
             out[some] += part
         return out
@@ -83,11 +84,11 @@ class ReducedSum:
         by_rows = np.ascontiguousarray(W)
         for out, term in zip(whole, self.terms, strict=True):
             some = own_rows(term.matrix)
-            X = np.asarray(term.matrix[some] @ by_rows)
+            X = sparse_product(term.matrix[some], by_rows)
             if n:
-                out[:n, n:] = np.vstack([V[some].T @ X for V in parts])
+                out[:n, n:] = np.vstack([product(V[some].T, X) for V in parts])
             out[n:, :n] = out[:n, n:].T
-            out[n:, n:] = W[some].T @ X
+            out[n:, n:] = product(W[some].T, X)
         return ReducedSum(self.terms, whole)
 
     def ending(self, n: int, last: Floats) -> ReducedSum:
@@ -124,8 +125,8 @@ def projected(terms: Sequence[Term], Q: Floats) -> Floats:
         part = term.matrix[some][:, some]
         half = sp.triu(part, 1, "csr") + 0.5 * sp.diags(part.diagonal())
         q = np.ascontiguousarray(Q[some])
-        product = q.T @ (half @ q)
-        out[k] = product + product.T
+        upper = product(q.T, sparse_product(half, q))
+        out[k] = upper + upper.T
     return out
 
 

@@ -11,6 +11,7 @@ from ..arrays import Floats, Ints
 from ..data.parametric_model import Model
 from ..eigen.normal_modes import Eigensolution
 from ..numerics.factorisation import Factorisation
+from ..numerics.products import product, sparse_product
 from .derivative_numbers import DERIVATIVES
 from .reduced_sum import own_rows
 
@@ -18,11 +19,11 @@ from .reduced_sum import own_rows
 def answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
     """Find the static answers to forces beside those in a basis, A^-1 f, A-orthonormal."""
     F = np.ascontiguousarray(forces.T.toarray())
-    known = Q.T @ F
-    S = np.asarray(factor.solve(F)) - Q @ known
-    value, W = np.linalg.eigh(S.T @ F)
+    known = product(Q.T, F)
+    S = np.asarray(factor.solve(F)) - product(Q, known)
+    value, W = np.linalg.eigh(product(S.T, F))
     kept = value > DERIVATIVES.dependent * np.max(np.sum(known**2, axis=0), initial=0.0)
-    return np.asarray(S @ (W[:, kept] / np.sqrt(value[kept])))
+    return product(S, W[:, kept] / np.sqrt(value[kept]))
 
 
 def static_answers(
@@ -69,17 +70,17 @@ def static_answers(
                 for rows, part in _loads(model, p0, i, X, lam):
                     F[rows, at] += part * weight
         S[:, start:end] = factor.solve(F)
-        energy[:end, start:end] = S[:, :end].T @ F
+        energy[:end, start:end] = product(S[:, :end].T, F)
         energy[start:end, :start] = energy[:start, start:end].T
-        modal[:, start:end] = (solution.vectors.T @ F) / span[:, None]
+        modal[:, start:end] = product(solution.vectors.T, F) / span[:, None]
     energy -= modal.T @ (span[:, None] * modal)
     value, W = np.linalg.eigh((energy + energy.T) / 2.0)
     best = np.argsort(-value)[:most]
     best = best[value[best] > max(least, DERIVATIVES.dependent * value.max(initial=0.0))]
     W = W[:, best] / np.sqrt(value[best])
-    answers = S @ W
-    answers -= solution.vectors @ (modal @ W)
-    return np.asarray(answers)
+    answers = product(S, W)
+    answers -= product(solution.vectors, modal @ W)
+    return answers
 
 
 def drawn_loads(
@@ -97,7 +98,7 @@ def drawn_loads(
     for i in parameters:
         drawn = weight[:, None] * rng.standard_normal((len(lam), count))
         for rows, part in _loads(model, p, i, X, lam):
-            F[rows] += part @ drawn
+            F[rows] += product(part, drawn)
     return F
 
 
@@ -108,4 +109,4 @@ def _loads(
     for change, times in ((model.dK(i, p), np.ones(len(lam))), (model.dM(i, p), -lam)):
         if change.nnz:
             rows = own_rows(change)
-            yield rows, np.asarray(change[rows] @ X) * times
+            yield rows, sparse_product(change[rows], X) * times

@@ -1,0 +1,108 @@
+"""Products of large matrices: by MKL where the optional wheel is installed, else by numpy's BLAS.
+
+The BLAS that a wheel of numpy brings may know the processor by an older name only and then takes
+the slowest of its kernels; one that comes with the solver is as new as that. Sparse products of
+scipy are loops over rows; MKL's are in vectors. Small products stay with numpy.
+"""
+
+import ctypes
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import Floats
+from .pardiso import library
+
+_LARGE = 1_000_000
+"""Multiplications from which on the way to MKL is worth its call."""
+
+_ROW_MAJOR, _AS_IT_IS, _TRANSPOSED = 101, 111, 112
+_SPARSE_AS_IT_IS, _GENERAL = 10, 20
+
+
+class _Description(ctypes.Structure):
+    """``struct matrix_descr``."""
+
+    _fields_ = (("type", ctypes.c_int), ("mode", ctypes.c_int), ("diag", ctypes.c_int))
+
+
+def product(a: Floats, b: Floats, out: Floats | None = None) -> Floats:
+    """Return a @ b of dense matrices (n, k) and (k, m), (n, m), in `out` where that is given."""
+    found = library()
+    (n, k), m = a.shape, b.shape[1]
+    small = found is None or n * k * m < _LARGE or not _doubles(a, b)
+    if out is None:
+        if small:
+            return np.asarray(a @ b)
+        out = np.empty((n, m))
+    by_rows, led = _led(out)
+    if found is None or small or not led:
+        np.matmul(a, b, out=out)
+        return out
+    if not by_rows:
+        product(b.T, a.T, out.T)
+        return out
+    (a, op_a, lda), (b, op_b, ldb) = _taken(a), _taken(b)
+    one, zero = ctypes.c_double(1.0), ctypes.c_double(0.0)
+    found.cblas_dgemm(
+        _ROW_MAJOR, op_a, op_b, n, m, k, one, _at(a), lda, _at(b), ldb, zero,
+        _at(out), led,
+    )  # fmt: skip
+    return out
+
+
+def sparse_product(a: sp.csr_matrix, x: Floats) -> Floats:
+    """Return a @ x of a sparse matrix (n, k) and a dense one (k, m), (n, m)."""
+    found = library()
+    large = x.ndim == 2 and a.nnz * x.shape[1] >= _LARGE
+    if found is None or not large or a.indices.dtype != np.int32 or not _doubles(a.data, x):
+        return np.asarray(a @ x)
+    x, out = np.ascontiguousarray(x), np.empty((a.shape[0], x.shape[1]))
+    handle, m = ctypes.c_void_p(), x.shape[1]
+    ends = ctypes.c_void_p(a.indptr.ctypes.data + a.indptr.itemsize)
+    _done(
+        found.mkl_sparse_d_create_csr,
+        ctypes.byref(handle), 0, *a.shape, _at(a.indptr), ends, _at(a.indices), _at(a.data),
+    )  # fmt: skip
+    one, zero = ctypes.c_double(1.0), ctypes.c_double(0.0)
+    try:
+        _done(
+            found.mkl_sparse_d_mm,
+            _SPARSE_AS_IT_IS, one, handle, _Description(_GENERAL, 0, 0), _ROW_MAJOR,
+            _at(x), m, m, zero, _at(out), m,
+        )  # fmt: skip
+    finally:
+        found.mkl_sparse_destroy(handle)
+    return out
+
+
+def _done(routine: Callable[..., int], *arguments: object) -> None:
+    if routine(*arguments):
+        raise MemoryError
+
+
+def _doubles(*arrays: Floats) -> bool:
+    return all(x.dtype == np.float64 for x in arrays)
+
+
+def _taken(x: Floats) -> tuple[Floats, int, int]:
+    """Return a matrix as BLAS takes it, a copy where need be: whether transposed, and `_led`."""
+    by_rows, led = _led(x)
+    if not led:
+        return np.ascontiguousarray(x), _AS_IT_IS, x.shape[1]
+    return x, _AS_IT_IS if by_rows else _TRANSPOSED, led
+
+
+def _led(x: Floats) -> tuple[bool, int]:
+    """Whether a matrix lies by rows, and how far from one row (or column) to the next; else 0."""
+    size, (rows, columns) = x.itemsize, x.strides
+    if columns == size and rows >= x.shape[1] * size and rows % size == 0:
+        return True, rows // size
+    if rows == size and columns >= x.shape[0] * size and columns % size == 0:
+        return False, columns // size
+    return True, 0
+
+
+def _at(x: Floats) -> ctypes.c_void_p:
+    return ctypes.c_void_p(x.ctypes.data)
