@@ -16,12 +16,14 @@ class Where(Noun):
     """Where something is: what is there, `xyz` in deck units, `region` in words.
 
     A place that explains the data about as well has the `kind` that would explain them there, and
-    `weight`, its share of the probability.
+    `weight`, its share of the probability. Of what joins two places `ends` are the grids that each
+    of them follows, several where it is between grids.
     """
 
     grids: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     elements: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     sensors: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
+    ends: tuple[tuple[int, ...], ...] | None = field(default=None, metadata=OPTIONAL)
     shares: tuple[float, ...] | None = field(default=None, metadata=OPTIONAL)
     radius: float | None = field(default=None, metadata=OPTIONAL)
     components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)

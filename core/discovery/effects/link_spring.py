@@ -30,8 +30,11 @@ class Links(Candidates):
         return np.asarray(self.ends_xyz * np.sqrt(0.5))
 
     def near(self, row: int, count: int) -> Links:
-        """Return the links between so many grids nearest to either end of one of them."""
-        points = _grids(self.structure)
+        """Return the links between so many points nearest to either end of one of them.
+
+        What joins two places ends where it ends, at a grid of the mesh or between them.
+        """
+        points = points_of(self.structure)
         xyz = points.xyz
         first, last = (
             cKDTree(xyz).query(end, min(count, len(xyz)))[1]
@@ -76,7 +79,7 @@ def _grids(structure: Structure) -> Points:
 
 
 def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
-    """Return the links between grids a (n,) and b (n,), in all else like some candidates."""
+    """Return the links between points a (n,) and b (n,), in all else like some candidates."""
     xyz, grids = at.xyz, at.grids
     used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
     line = xyz[b] - xyz[a]
@@ -94,7 +97,7 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         root=((pull - push) @ at.of(used).moves).tocsr(),
         rows_each=1,
         where=tuple(
-            {"grids": [grids[i][0], grids[j][0]], "components": [1]}
+            {"grids": [*grids[i], *grids[j]], "ends": [grids[i], grids[j]], "components": [1]}
             for i, j in zip(a.tolist(), b.tolist(), strict=True)
         ),
         typical=like.typical,

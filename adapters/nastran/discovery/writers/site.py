@@ -88,3 +88,11 @@ Writer = Callable[[DeckText, Site], DeckText]
 def basic_companion(site: Site, grid: int, new: int, number: int) -> list[list[Any]]:
     """Return the cards of a grid `new` in basic axes that follows another rigidly."""
     return [["GRID", new, 0, *site.middle([grid]), 0], ["RBE2", number, grid, "123456", new]]
+
+
+def follower(site: Site, grids: Sequence[int], new: int, number: int) -> list[list[Any]]:
+    """Return the cards of a grid `new` in the middle of others that moves as these on average."""
+    return [
+        ["GRID", new, 0, *map(plain, site.middle(grids)), 0],
+        ["RBE3", number, None, new, "123456", 1.0, "123456", *grids],
+    ]

@@ -41,6 +41,18 @@ CONM2,7,2,,0.01
 ENDDATA
 """
 
+THREE_POINTS = """CEND
+BEGIN BULK
+GRID,1,,0.,-10.,0.,,23456
+GRID,2,,0.,10.,0.,,23456
+GRID,3,,100.,0.,0.,,123456
+CELAS2,1,4.0E4,1,1
+CELAS2,2,6.0E4,2,1
+CONM2,4,1,,0.01
+CONM2,7,2,,0.01
+ENDDATA
+"""
+
 STIFF_ARMS = """CEND
 BEGIN BULK
 GRID,1,,0.,0.,0.,,123456
@@ -130,6 +142,14 @@ def test_a_spring_between_two_masses_acts_along_the_line_through_them(tmp_path):
     n = np.array([-0.6, -0.8, 0.0, 0.6, 0.8])
     K = np.diag([4e4, 6e4, 9e4, 1e4, 2e4]) + 3e4 * np.outer(n, n)
     np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K)[:3], 0.01), rtol=1e-6)
+
+
+def test_a_spring_that_ends_between_two_grids_pulls_at_both(tmp_path):
+    ends = ((1, 2), (3,))
+    what = finding("link_spring", {"stiffness": 3e4, "components": [1]}, grids=[1, 2, 3], ends=ends)
+    _, found = completed(tmp_path, THREE_POINTS, what)
+    K = np.diag([4e4, 6e4]) + 3e4 / 4.0
+    np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K), 0.01), rtol=1e-6)
 
 
 def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):

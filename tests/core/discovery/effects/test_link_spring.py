@@ -68,20 +68,23 @@ def test_links_are_near_each_other_where_both_their_ends_are(structure):
     assert np.linalg.norm(cross - found.spots[rows[(2, 11)]]) == pytest.approx(0.1 / np.sqrt(2.0))
 
 
-def test_links_near_one_end_at_the_grids_about_its_ends(structure):
+def test_links_near_one_end_at_grids_and_between_them(structure):
     found = links(structure)
     row = next(i for i, w in enumerate(found.where) if sorted(w["grids"]) == [1, 11])
-    near = found.near(row, 3)
-    assert {tuple(w["grids"]) for w in near.where} == {
-        (a, b) for a in (1, 2, 5) for b in (11, *_beside_11(near))
-    }
-    same = next(i for i, w in enumerate(near.where) if w["grids"] == [1, 11])
+    near = found.near(row, 4)
+    first = {tuple(sorted(w["ends"][0])) for w in near.where}
+    assert first == {(1,), (1, 2), (1, 5), (1, 2, 5, 6)}
+    assert all(11 in w["ends"][1] for w in near.where)
+    same = next(i for i, w in enumerate(near.where) if w["ends"] == [[1], [11]])
     assert near.root[[same]].toarray() == pytest.approx(found.root[[row]].toarray())
 
 
-def _beside_11(near):
-    """Two of the four neighbours of grid 11: they are equally far."""
-    others = {w["grids"][1] for w in near.where} - {11}
-    assert len(others) == 2
-    assert others <= {7, 10, 12, 15}
-    return others
+def test_a_link_between_grids_feels_the_mean_of_their_motion(structure):
+    found, model = links(structure), structure.model
+    row = next(i for i, w in enumerate(found.where) if sorted(w["grids"]) == [1, 11])
+    near = found.near(row, 4)
+    link = next(i for i, w in enumerate(near.where) if w["ends"] == [[1, 2], [11]])
+    assert near.ends_xyz[link] == pytest.approx([0.05, 0.0, 0.0, 0.2, 0.2, 0.0])
+    moved = np.where((model.dofs.node == 2) & (model.dofs.component == 1), 1.0, 0.0)
+    pulled = near.root[[link]] @ motion(structure, moved)
+    assert pulled == pytest.approx(-0.5 * 0.15 / np.hypot(0.15, 0.2))
