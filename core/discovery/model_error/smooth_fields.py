@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure
@@ -95,14 +96,16 @@ def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Fl
 
 def _reduced(structure: Structure, m: Members, rows: Ints, motion: Floats) -> tuple[Floats, Floats]:
     p = np.ones(len(structure.model.parameters))
-    u = motion[m.coordinates(rows)]
+    at = m.coordinates(rows)
+    own, places = np.unique(at, return_inverse=True)
+    u, places = motion[own], places.reshape(at.shape)
+    where = np.repeat(places, at.shape[1], axis=1).ravel(), np.tile(places, at.shape[1]).ravel()
     out = []
     for A in m.matrices(rows, p):
         if A is None:
-            out.append(np.zeros((u.shape[2],) * 2))
+            out.append(np.zeros((u.shape[1],) * 2))
             continue
-        flat = u.reshape(-1, u.shape[2])
-        out.append(flat.T @ np.matmul(A, u).reshape(-1, u.shape[2]))
+        out.append(u.T @ (sp.csr_matrix((A.ravel(), where), (len(own),) * 2) @ u))
     return out[0], out[1]
 
 

@@ -3,9 +3,10 @@
 The search goes by a robust misfit at known parameters that have already taken up a part of what is
 missing, and moves a suspect to its neighbours alone. A wrong place with other parameters may be the
 best there is nearby, while elsewhere, with another size, the test is far likelier by the error of
-the model. So what is to be claimed is looked for anew with that measure: every suspect in turn is
-taken out, every place of every kind and size is tried beside the others, and the best is moved to
-the next places and shapes for as long as this makes the test likelier.
+the model. So what is to be claimed is looked for anew with that measure: every suspect in turn, of
+many the one that is missed least, is taken out, every place of every kind and size is tried beside
+the others, and the best is moved to the next places and shapes for as long as this makes the test
+likelier.
 """
 
 from collections.abc import Sequence
@@ -30,7 +31,7 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
     comes with it knows the shapes that were tried.
     """
     tried = [first]
-    for q in range(len(first.fit.suspects)):
+    for q in searcher.doubtful(first.fit):
         tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
     searcher, moved = _moved(searcher, tried[0])
     tried += moved

@@ -140,7 +140,7 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool =
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
         if alike:
-            least = best.judged.plain + MODEL_ERROR.drift_gain - SEARCH.suspect
+            least = best.judged.bare + MODEL_ERROR.drift_gain - SEARCH.suspect
     judged = searcher.judged(searcher.problem, f, least)
     return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
 

@@ -237,7 +237,7 @@ class Searcher:
         """
         for number in range(SEARCH.anew_rounds):
             moved = False
-            for q in self._doubtful(state, first=number == 0):
+            for q in self.doubtful(state, first=number == 0):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
                 without = self.fitted(state, others, SEARCH.steps_moved)
                 for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
@@ -251,7 +251,7 @@ class Searcher:
                 break
         return state
 
-    def _doubtful(self, state: Fit, first: bool) -> list[int]:
+    def doubtful(self, state: Fit, first: bool = False) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
         older = list(range(len(state.suspects) - first))
         if len(state.suspects) < SEARCH.anew_all:

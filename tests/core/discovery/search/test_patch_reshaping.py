@@ -164,7 +164,7 @@ def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_mi
         wrong = sum(len(np.setxor1d(patches[t.row].rows, told)) for t in f.suspects)
         left = SimpleNamespace(error=0.001, noise=0.02, each=np.zeros(12))
         likely = -10.0 * wrong
-        return SimpleNamespace(evidence=likely, plain=likely, diffuse=left, fit=f)
+        return SimpleNamespace(evidence=likely, bare=likely, diffuse=left, fit=f)
 
     s = replace(s, judged=judged)
     wide, tried = looked_again(s, scored(s, state))
@@ -185,7 +185,7 @@ def test_fields_are_tried_beside_another_shape_only_where_that_does_nearly_as_we
 
     def judged(problem, f, least=-np.inf):
         asked.append(least)
-        return SimpleNamespace(evidence=30.0, plain=20.0, diffuse=left, fit=f)
+        return SimpleNamespace(evidence=30.0, bare=20.0, diffuse=left, fit=f)
 
     s = replace(s, judged=judged)
     ranked(s, [state], [scored(s, state)], alike=True)
