@@ -44,14 +44,15 @@ class Own:
     """A basis for effects at some places: with the deck's masses, with better ones.
 
     `added` (n_free, s) stands beside the modes of the ground, `seen` (n_sensor, r + s) is what
-    sensors read, `mesh` see `Problem`, `factors` rows of the effects.
+    sensors read, `mesh` and `bars` see `Ground`, `factors` rows of the effects.
     """
 
     plain: Basis
     better: Basis
     added: Floats
     seen: Floats
-    mesh: Floats
+    mesh: ReducedSum
+    bars: ReducedSum
     factors: tuple[Floats, ...]
 
 
@@ -199,12 +200,8 @@ def _own_problem(
     """
     deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
-    if places != deck:
-        own = _own(ground, places, problem.columns)
-    else:
-        if places not in ground.known:
-            ground.known[places] = _own(ground, places, problem.columns)
-        own = ground.known[places]
+    make = _known if places == deck else _own
+    own = make(ground, places, problem.columns)
     top = SEARCH.own_above * float(targets(problem.whole).max())
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     new = replace(
@@ -212,11 +209,11 @@ def _own_problem(
         basis=own.plain if as_deck else own.better,
         sensors=own.seen[ground.seen],
         everywhere=own.seen,
-        mesh=own.mesh,
+        mesh=own.mesh.whole[0],
         catalogue=tuple(_alone(c, row, state) for c, row in places),
         factors=own.factors,
         missing=(),
-        modes=min(len(own.mesh), max(modes, problem.columns)),
+        modes=min(own.seen.shape[1], max(modes, problem.columns)),
         turn=None,
         rest=None,
     )
@@ -234,31 +231,42 @@ def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tupl
     return support_flexibility.at_parameters(structure, c, row, state.log_p), 0
 
 
+def _known(ground: Ground, places: Places, columns: int) -> Own:
+    if places not in ground.known:
+        ground.known[places] = _own(ground, places, columns)
+    return ground.known[places]
+
+
 def _own(ground: Ground, places: Places, columns: int) -> Own:
-    """Return the basis with the static responses to effects."""
+    """Return the basis with the static responses to effects, the last beside the others."""
     V = ground.basis.vectors
-    sums = ground.basis.stiffness, ground.basis.mass, ground.mesh, ground.bars
-    loads = [
-        _root(c, row).T.toarray() if c.rows_each else independent(c.full(row) @ V[:, :columns])
-        for c, row in places
-    ]
-    stiffness, mass, mesh, bars = sums
-    seen, W = ground.readings, V[:, :0]
-    if loads:
-        X = ground.compliance.responses(np.hstack(loads))
+    b = ground.basis
+    sums: tuple[ReducedSum, ...] = b.stiffness, b.mass, ground.mesh, ground.bars
+    added, seen = V[:, :0], ground.readings
+    if places:
+        before, (c, row) = _known(ground, places[:-1], columns), places[-1]
+        sums = before.plain.stiffness, before.plain.mass, before.mesh, before.bars
+        if c.rows_each:
+            loads = _root(c, row).T.toarray()
+        else:
+            loads = independent(c.full(row) @ V[:, :columns])
         released = any(c.law.shared for c, _ in places)
         least = REDUCTION.released if released else REDUCTION.dependent
-        W = beside(X, V, ground.mass, least)
-        stiffness, mass, mesh, bars = (s.widened([V], W) for s in sums)
-        seen = np.hstack([seen, ground.observation @ W])
+        known = np.hstack([V, before.added])
+        W = beside(ground.compliance.responses(loads), known, ground.mass, least)
+        sums = tuple(s.widened([known], W) for s in sums)
+        added = np.hstack([before.added, W])
+        seen = np.hstack([before.seen, ground.observation @ W])
+    stiffness, mass, mesh, bars = sums
     none = np.zeros((0, seen.shape[1]))
     return Own(
         Basis(none, none, stiffness, mass),
         Basis(none, none, stiffness, mass.and_also(bars)),
-        W,
+        added,
         seen,
-        mesh.matrices[0],
-        tuple(_factor(c, row, V, W)[None] for c, row in places),
+        mesh,
+        bars,
+        tuple(_factor(c, row, V, added)[None] for c, row in places),
     )
 
 
