@@ -4,7 +4,8 @@ A structure that was tested free hung on something: soft springs all over it, mo
 there, stand for that. Sensors have a mass, be it that they rove and load one part after another:
 what the frequencies of all runs agree on has it everywhere. And lumping makes the modes of a mesh
 too low by the square of element over wave, what an element's stiffness gets wrong is another part
-of that along and across: the error of a mesh along each of the structure's own axes.
+of that along and across: the error of a mesh along each of the structure's own axes. Bars
+have none, but a test that was made by a model of lumped bars has theirs.
 """
 
 from __future__ import annotations
@@ -41,13 +42,16 @@ def sensor_mass(root: Floats) -> Fields:
     return Fields((SENSORS,), np.zeros_like(M), M, np.array([MODEL_ERROR.sensor_mass]), np.zeros(1))
 
 
-def mesh_errors(structure: Structure, V: Floats) -> Fields:
-    """Return what lumping does along each of the structure's own axes, on a basis (n_free, r)."""
+def mesh_errors(structure: Structure, V: Floats, bars: Floats) -> Fields:
+    """Return what lumping does along each of the structure's own axes, on a basis (n_free, r).
+
+    Also what it does to bars, where `bars` (n, r, r) hold their consistent mass less the deck's: by
+    an amplitude of 1 a test has their mass lumped, as the deck has it.
+    """
     found = [(axis, A) for axis, A in lumping_along(structure) if A.nnz]
     r = V.shape[1]
-    M = np.array([-(V.T @ (A @ V)) for _, A in found]).reshape(-1, r, r)
-    names = tuple(
-        f"{MESH} ({', '.join(f'{x:.1f}' for x in np.round(axis, 1) + 0.0)})" for axis, _ in found
-    )
+    M = -np.array([*(V.T @ (A @ V) for _, A in found), *bars]).reshape(-1, r, r)
+    axes = [", ".join(f"{x:.1f}" for x in np.round(axis, 1) + 0.0) for axis, _ in found]
+    names = (*(f"{MESH} ({axis})" for axis in axes), *(f"{MESH} bars",) * len(bars))
     n = np.ones(len(names))
     return Fields(names, np.zeros_like(M), M, MODEL_ERROR.mesh * n, -MODEL_ERROR.mesh_most * n)

@@ -95,8 +95,8 @@ class Ground:
 
     @cached_property
     def coarse(self) -> Fields:
-        """The error of the mesh along each axis, on the basis."""
-        return mesh_errors(self.structure, self.basis.vectors)
+        """The error of the mesh along each axis and of bars, on the basis."""
+        return mesh_errors(self.structure, self.basis.vectors, self.bars.matrices)
 
     @cached_property
     def sensors(self) -> Fields:

@@ -1,9 +1,17 @@
-"""What a suspension and the mass of sensors do to a structure."""
+"""What a suspension, the mass of sensors and a mesh do to a structure."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
-from trueup.core.discovery.model_error.set_up_fields import SUSPENSION, sensor_mass, suspension
+from trueup.core.discovery.model_error.set_up_fields import (
+    SUSPENSION,
+    mesh_errors,
+    sensor_mass,
+    suspension,
+)
 from trueup.core.discovery.model_error.smooth_fields import Fields
 
 
@@ -37,3 +45,14 @@ def test_sensors_are_as_heavy_as_is_said_whatever_way_they_move():
     root = np.sqrt(8.0 / nodes) * np.tile(np.eye(3, r), (nodes, 1))
     (M,) = sensor_mass(root).mass
     assert np.diag(M)[:3] == pytest.approx(8.0)
+
+
+def test_a_test_by_lumped_bars_is_what_the_deck_has():
+    consistent, lumped = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0, np.eye(2) / 2.0
+    geometry = SimpleNamespace(xyz=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    model = SimpleNamespace(geometry=geometry, expansion=sp.identity(2, format="csr"))
+    bars = (consistent - lumped)[None]
+    fields = mesh_errors(SimpleNamespace(members=(), model=model), np.eye(2), bars)
+    assert len(fields.names) == 1
+    assert consistent + fields.mass[0] == pytest.approx(lumped)
+    assert not fields.stiffness.any()
