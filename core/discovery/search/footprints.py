@@ -4,9 +4,10 @@ A mass that sits between grids, or is spread over a hand's breadth, moves as the
 does. Put on the nearest grid it hangs on the skin's own softness there, which moves the higher
 modes too far, so that it is fitted too small and the known parameters make up for the rest. So the
 masses of a hypothesis that earned its place are laid on discs, each grid with its share of the
-area, whose middles and radii are fitted together with all else.
+area, whose middles and radii are fitted together with all else. Places alike get discs alike.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,7 @@ from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from ...arrays import Bools, Floats, Ints
 from ..effects import distributed_mass, point_mass
-from ..effects.candidates import Candidates, Suspect
+from ..effects.candidates import Candidates, Suspect, places_of, together
 from ..effects.effect_laws import Law, MassLaw, Rows
 from ..effects.element_patches import Patch, PatchCandidates
 from ..effects.structure_points import translations
@@ -86,9 +87,12 @@ class Surroundings:
 
 @dataclass(frozen=True, eq=False)
 class FootLaw(Law):
-    """A mass m = e^θ₀ on a disc, whose middle and radius θ₁ to θ₃ are; see `Surroundings`."""
+    """A mass m = e^θ₀ on a disc, whose middle and radius θ₁ to θ₃ are; see `Surroundings`.
 
-    around: Surroundings
+    Of twins the same `around` each of their places.
+    """
+
+    around: tuple[Surroundings, ...]
     on = "M"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
@@ -97,7 +101,10 @@ class FootLaw(Law):
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return the mass at each grid, in each of three directions."""
-        return np.array([np.repeat(np.exp(t[0]) * self.around.shares(t[1:]), 3) for t in theta])
+        each = (np.stack(_padded([a.shares(t[1:]) for a in self.around])) for t in theta)
+        return np.array(
+            [np.repeat(np.exp(t[0]) * e.ravel(), 3) for t, e in zip(theta, each, strict=True)]
+        )
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return its derivatives, those of the shares by central differences."""
@@ -113,9 +120,8 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
     suspects = []
     for s in state.suspects:
         c = searcher.problem.catalogue[s.kind]
-        alone = c.kind is point_mass.KIND and c.many(s.row) == 1
-        around = surroundings(structure, c.xyz[s.row]) if alone else None
-        if around is not None:
+        around = surroundings_of_each(structure, c, s.row) if c.kind is point_mass.KIND else ()
+        if around:
             s = Suspect(len(searcher.problem.catalogue), 0, (s.theta[0], *SEARCH.foot[0]))
             searcher = with_kind(searcher, s.kind, _free(structure, c, around))
         suspects.append(s)
@@ -131,12 +137,12 @@ def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searc
     for s in state.suspects:
         c = searcher.problem.catalogue[s.kind]
         if isinstance(c.law, FootLaw):
-            around, theta = c.law.around, np.array(s.theta[1:])
+            (around, *more), theta = c.law.around, np.array(s.theta[1:])
             s = replace(s, theta=s.theta[:1])
-            wide = around.radius(theta) > SEARCH.spread_mass * searcher.size
+            wide = not more and around.radius(theta) > SEARCH.spread_mass * searcher.size
             patched = _spread(searcher, structure, around, theta) if wide else None
             if patched is None:
-                searcher = with_kind(searcher, s.kind, _disc(structure, c, around, theta))
+                searcher = with_kind(searcher, s.kind, _disc(structure, c, c.law.around, theta))
             else:
                 searcher, kind = patched
                 s = replace(s, kind=kind, row=len(searcher.problem.catalogue[kind]) - 1)
@@ -167,6 +173,19 @@ def _spread(
     more = c.with_patches([max(near, key=lambda p: len(p.rows))])
     factors = more.extended(searcher.problem.factors[kind])
     return _put(searcher, kind, more, factors), kind
+
+
+def surroundings_of_each(structure: Structure, c: Candidates, row: int) -> tuple[Surroundings, ...]:
+    """Return the surroundings of each place of one of some candidates, none where one has none.
+
+    They lie the same way on each place as on the first.
+    """
+    found = [surroundings(structure, own.xyz[i]) for own, i in places_of(c, row)]
+    kept = [a for a in found if a is not None]
+    turns = np.eye(3)[None] if c.maps is None else c.maps
+    both = zip(kept, turns, strict=False)
+    alike = tuple(replace(a, axes=kept[0].axes @ turn.T) for a, turn in both)
+    return alike if len(alike) == len(found) else ()
 
 
 def surroundings(structure: Structure, xyz: Floats) -> Surroundings | None:
@@ -208,47 +227,68 @@ def shares(cells: Delaunay, middle: Floats, radius: float) -> Floats:
     return np.asarray(each / max(each.sum(), np.finfo(float).tiny))
 
 
-def _free(structure: Structure, c: Candidates, around: Surroundings) -> Candidates:
-    """Return a mass on a disc about a place, its middle and radius to be fitted."""
-    ids, n = structure.model.geometry.ids, len(around.grids)
-    points = sp.csr_matrix((np.ones(n), (np.arange(n), around.grids)), (n, len(ids)))
+def _free(structure: Structure, c: Candidates, around: Sequence[Surroundings]) -> Candidates:
+    """Return a mass on a disc about a place or several, its middle and radius to be fitted."""
+    grids = [a.grids for a in around]
     (typical, spread, steps, reach) = map(np.array, SEARCH.foot)
-    return Candidates(
+    free = Candidates(
         kind=c.kind,
-        xyz=around.xyz.mean(axis=0)[None],
-        law=FootLaw(around),
+        xyz=np.array([a.xyz.mean(axis=0) for a in around]),
+        law=FootLaw(tuple(around)),
         trials=c.trials[:, :1],
-        root=translations(structure, points),
-        rows_each=3 * n,
-        where=({"grids": ids[around.grids].tolist()},),
+        **_rows(structure, grids, [np.ones(len(g)) for g in grids]),
+        where=tuple({"grids": structure.model.geometry.ids[g].tolist()} for g in grids),
         typical=np.append(c.typical[0], typical),
         spread=np.append(c.spread[0], spread),
         steps=np.append(1.0, steps),
         lower=np.append(-np.inf, typical - reach),
         upper=np.append(np.inf, typical + reach),
     )
+    return _alike(free, c)
 
 
-def _disc(structure: Structure, c: Candidates, around: Surroundings, theta: Floats) -> Candidates:
-    """Return a mass on a disc that stays."""
-    share = around.shares(theta)
-    kept = np.flatnonzero(share > SEARCH.foot_share)
-    own, share = around.grids[kept], share[kept] / share[kept].sum()
-    ids, n = structure.model.geometry.ids, len(kept)
-    points = sp.csr_matrix((np.sqrt(share), (np.arange(n), own)), (n, len(ids)))
-    return Candidates(
+def _disc(
+    structure: Structure, c: Candidates, around: Sequence[Surroundings], theta: Floats
+) -> Candidates:
+    """Return a mass on a disc, or on several alike, that stays."""
+    share = [a.shares(theta) for a in around]
+    kept = [np.flatnonzero(s > SEARCH.foot_share) for s in share]
+    share = [s[k] / s[k].sum() for s, k in zip(share, kept, strict=True)]
+    own = [a.grids[k] for a, k in zip(around, kept, strict=True)]
+    ids, each = structure.model.geometry.ids, list(zip(around, own, share, strict=True))
+    disc = Candidates(
         kind=c.kind,
-        xyz=(share @ around.xyz[kept])[None],
+        xyz=np.array([s @ a.xyz[k] for a, s, k in zip(around, share, kept, strict=True)]),
         law=MassLaw(),
         trials=c.trials[:, :1],
-        root=translations(structure, points),
-        rows_each=3 * n,
-        where=(
-            {"grids": ids[own].tolist(), "shares": share.tolist(), "radius": around.radius(theta)},
+        **_rows(structure, own, [np.sqrt(s) for s in share]),
+        where=tuple(
+            {"grids": ids[g].tolist(), "shares": s.tolist(), "radius": a.radius(theta)}
+            for a, g, s in each
         ),
         typical=c.typical[:1],
         spread=c.spread[:1],
     )
+    return _alike(disc, c)
+
+
+def _rows(structure: Structure, grids: Sequence[Ints], sizes: Sequence[Floats]) -> dict[str, Any]:
+    """Return root and number of rows of places on some grids each, those of few padded."""
+    n = max(map(len, grids))
+    row = np.concatenate([k * n + np.arange(len(g)) for k, g in enumerate(grids)])
+    shape = n * len(grids), len(structure.model.geometry.ids)
+    points = sp.csr_matrix((np.concatenate(sizes), (row, np.concatenate(grids))), shape)
+    return {"root": translations(structure, points), "rows_each": 3 * n}
+
+
+def _padded(each: Sequence[Floats]) -> list[Floats]:
+    n = max(map(len, each))
+    return [np.pad(a, (0, n - len(a))) for a in each]
+
+
+def _alike(each: Candidates, c: Candidates) -> Candidates:
+    """Return discs as one where they are those of twins."""
+    return each if len(each) == 1 else together(each, np.arange(len(each))[None], c.maps)
 
 
 def with_kind(searcher: Searcher, kind: int, new: Candidates) -> Searcher:

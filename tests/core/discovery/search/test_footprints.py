@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from trueup.core.discovery.search.footprints import FootLaw, shares, surroundings
+from trueup.core.discovery.search.footprints import (
+    FootLaw,
+    shares,
+    surroundings,
+    surroundings_of_each,
+)
 
 GRID = np.array([(i, j) for i in range(9) for j in range(9)], dtype=float)
 
@@ -50,7 +55,7 @@ def test_places_on_shells_have_surroundings_and_others_none():
 def test_a_mass_keeps_its_size_as_its_disc_moves_and_grows(theta):
     around = surroundings(structure(2), np.array([4.2, 4.0, 0.0]))
     theta, rows = np.array([theta]), np.zeros(1, int)
-    law = FootLaw(around)
+    law = FootLaw((around,))
     value, slope = law.value(theta, rows)[0], law.slope(theta, rows)[0]
     assert value.reshape(-1, 3).sum(axis=0) == pytest.approx(np.exp(theta[0, 0]))
     assert slope[0] == pytest.approx(value)
@@ -67,3 +72,16 @@ def test_a_disc_holds_the_points_within_its_radius_about_its_middle():
     away = np.linalg.norm(around.xyz - middle, axis=1)
     assert 0 < np.count_nonzero(away < 1.3) < len(away)
     assert np.array_equal(around.within(theta, around.xyz), away < 1.3)
+
+
+def test_discs_of_twins_are_each_others_images():
+    places, mirror = np.array([[2.2, 4.0, 0.0], [5.8, 4.0, 0.0]]), np.diag([-1.0, 1.0, 1.0])
+    twins = SimpleNamespace(single=SimpleNamespace(xyz=places), copies=((0, 1),),
+                            maps=np.stack([np.eye(3), mirror]))  # fmt: skip
+    around = surroundings_of_each(structure(2), twins, 0)
+    value = FootLaw(around).value(np.array([[-1.0, 0.4, 0.7, 0.2]]), np.zeros(1, int))[0]
+    one, other = (v[::3][: len(a.grids)] for v, a in zip(np.split(value, 2), around, strict=True))
+    assert one.sum() == pytest.approx(np.exp(-1.0)) == pytest.approx(other.sum())
+    middle, image = (m @ a.xyz / m.sum() for m, a in zip((one, other), around, strict=True))
+    assert np.linalg.norm(middle - places[0]) == pytest.approx(np.hypot(0.4, 0.7), abs=0.1)
+    assert image == pytest.approx(middle @ mirror + [8.0, 0.0, 0.0], abs=0.05)
