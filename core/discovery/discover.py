@@ -131,7 +131,8 @@ class _Trial:
 
         Without smooth fields where these could not bring it to the evidence `least`.
         """
-        same = problem, f.suspects, f.nuisance.tobytes()
+        places = tuple((problem.catalogue[s.kind], s) for s in f.suspects)
+        same = places, f.nuisance.tobytes()
         known = self._judged.get(same)
         if same not in self._judged or (known and not known.whole and known.may_reach(least)):
             self._judged[same] = None
@@ -332,9 +333,9 @@ def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Ju
     verdict = judge(searcher, found)
     while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
         levels, most = list(found.levels), max(verdict.accepted, 1)
-        for k in sorted(wanted):
+        for k in sorted(wanted, reverse=True):
             solved = _first_solved(trial, searcher, (levels[k], *found.rivals[k]))
-            if solved is None and k:
+            if solved is None and k == verdict.accepted:
                 most = k - 1
                 break
             levels[k] = solved or levels[k]

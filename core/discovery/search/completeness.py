@@ -29,9 +29,12 @@ from .model_selection import (
     Scored,
     by_such_a_test,
     contenders,
+    earned,
+    kept,
     needed,
     ranked,
     scored,
+    stands,
 )
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -106,16 +109,8 @@ class Completeness:
 
     @property
     def true(self) -> bool:
-        """Whether hardly a mode is left and an error usual enough for what was found to be claimed.
-
-        The larger a part of the error before it is, the more usual it has to be: two causes that
-        look alike take away much of the error, the right one nearly all of it. Of modes that
-        the known parameters do not explain at all their error says nothing.
-        """
-        whole = np.count_nonzero(self.alone.diffuse.stray > 0.5) <= len(self.unexplained)
-        least = SEARCH.usual_left * self.left if whole else 0.0
-        few = len(self.unexplained) <= SEARCH.strays * len(self.best.diffuse.each)
-        return bool(few and self.adequacy > max(MODEL_ERROR.claimed, least))
+        """See `stands`."""
+        return stands(self.alone, self.best)
 
     @property
     def adequacy(self) -> float:
@@ -173,7 +168,7 @@ def completeness(
         richer = fields[k + 1][:1] if k < most else []
         tried = ranked(searcher, (found.levels[k], *poorer), richer)
         tried = [s for s in tried if s not in richer]
-        if not richer or not _earned(richer[0], tried[0]):
+        if not richer or not earned(richer[0], tried[0]):
             tried = ranked(searcher, _nearest(found, k), tried)
             first = tried[0]
             if _unsettled(first):
@@ -188,32 +183,21 @@ def completeness(
     levels[0] = _fitted_as(searcher, levels[0], max(levels, key=lambda s: s.score))
     alone = levels[0].judged
     assert alone is not None
-    kept = 0
-    for k, level in enumerate(levels[1:], start=1):
-        if _earned(level, levels[kept]):
-            kept = k
-    best, places = _centred(searcher, levels[kept], fields[kept], verdict.scale)
+    number = kept(levels)
+    best, places = _centred(searcher, levels[number], fields[number], verdict.scale)
     found = _led(found, best.fit)
-    others = contenders(searcher, found, kept)
-    rivals = [s for s in fields[kept] if any(s.fit is f for f in others)]
+    others = contenders(searcher, found, number)
+    rivals = [s for s in fields[number] if any(s.fit is f for f in others)]
     ahead = float(best.score - max((s.score for s in rivals), default=-np.inf))
     assert best.judged is not None
-    fewer = max((level.score for level in levels[:kept]), default=best.score)
+    fewer = max((level.score for level in levels[:number]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
-    agree = agreement(foretold(best.judged), foretold(alone)) if kept else 0.0
+    agree = agreement(foretold(best.judged), foretold(alone)) if number else 0.0
     whole = Completeness(deck, alone, best.judged, gain, last, ahead, agree, places)
     if not whole.clear and whole.lacks_nothing:
         none = Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
         return searcher, found, 0, none
-    return searcher, found, kept, whole
-
-
-def _earned(richer: Scored, poorer: Scored) -> bool:
-    """Whether a richer hypothesis is likelier than a poorer one by what an effect more needs."""
-    gain = richer.score - poorer.score
-    if richer.judged is None or not poorer.fit.suspects:
-        return gain > SEARCH.suspect
-    return gain > needed(richer.judged)
+    return searcher, found, number, whole
 
 
 def _unsettled(best: Scored) -> bool:

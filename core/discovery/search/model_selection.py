@@ -85,12 +85,37 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     Modes and sensors that were held out from the search count as well as those that it fitted:
     an effect that does not foretell them loses what it gained. The penalty of a suspect is twice
     the log of the number of places it could have been at (its prior) and a margin; the noise is
-    scaled by what the best hypothesis leaves.
+    scaled by what the best hypothesis leaves. Where what is chosen so could not be claimed, what it
+    leaves is no noise, and richer ones count by the error of the model.
     """
     best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
     scale = noise_scale(searcher.problem, best)
-    costs = [cost(searcher, f, scale) for f in found.levels]
-    return Judgement(scale, int(np.argmin(costs)))
+    accepted = int(np.argmin([cost(searcher, f, scale) for f in found.levels]))
+    if accepted + 1 < len(found.levels) and not _settles(searcher, found, accepted):
+        accepted = max(accepted, kept([scored(searcher, f) for f in found.levels]))
+    return Judgement(scale, accepted)
+
+
+def _settles(searcher: Searcher, found: Found, number: int) -> bool:
+    """Whether a hypothesis explains so much that a richer one has to be worth its price."""
+    if not number:
+        return adequate(searcher, found.levels[0])
+    alone, best = (searcher.judged(searcher.problem, found.levels[k]) for k in (0, number))
+    return alone is not None and best is not None and stands(alone, best)
+
+
+def stands(alone: Judged, best: Judged) -> bool:
+    """Whether hardly a mode is left and an error usual enough for what was found to be claimed.
+
+    The larger a part of the error of the known parameters `alone` it is, the more usual it has to
+    be: two causes that look alike take away much of the error, the right one nearly all of it. Of
+    modes that the known parameters do not explain at all their error says nothing.
+    """
+    before, after = (np.count_nonzero(j.diffuse.stray > 0.5) for j in (alone, best))
+    left = best.diffuse.error / alone.diffuse.error
+    least = SEARCH.usual_left * left if before <= after else 0.0
+    few = after <= SEARCH.strays * len(best.diffuse.each)
+    return bool(few and by_such_a_test(best) > max(MODEL_ERROR.claimed, least))
 
 
 def cost(searcher: Searcher, f: Fit, scale: float) -> float:
@@ -167,6 +192,23 @@ def needed(judged: Judged) -> float:
     return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
 
 
+def kept(levels: Sequence[Scored]) -> int:
+    """Return the number of the richest hypothesis that earns its place over the poorer ones."""
+    best = 0
+    for k, level in enumerate(levels[1:], start=1):
+        if earned(level, levels[best]):
+            best = k
+    return best
+
+
+def earned(richer: Scored, poorer: Scored) -> bool:
+    """Whether a richer hypothesis is likelier than a poorer one by what an effect more needs."""
+    gain = richer.score - poorer.score
+    if richer.judged is None or not poorer.fit.suspects:
+        return gain > SEARCH.suspect
+    return gain > needed(richer.judged)
+
+
 def by_such_a_test(judged: Judged) -> float:
     """Return the probability that a right model leaves an error as large, by a test like this."""
     return adequacy(judged.diffuse.error, judged.diffuse.noise)
@@ -202,8 +244,8 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
     """Return the rule that ends the search: one more suspect is not worth its price.
 
     What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
-    the assumed one here, unless the poorer one is adequate; `judge` weighs again with what the best
-    hypothesis leaves.
+    the assumed one here, unless the poorer one is adequate and the richer one no likelier by the
+    error of the model; `judge` weighs again with what the best hypothesis leaves.
     """
 
     def rule(previous: Fit, best: Fit, share: float) -> bool:
@@ -213,7 +255,10 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
         gain = (previous.objective - best.objective) / (share * added)
         if gain >= scale or gain < min(scale, SEARCH.most_noise):
             return gain < scale
-        return bool(previous.suspects) and adequate(searcher, previous)
+        if not previous.suspects or not adequate(searcher, previous):
+            return False
+        before = scored(searcher, previous)
+        return not earned(scored(searcher, best, before), before)
 
     return rule
 

@@ -128,9 +128,15 @@ def test_a_rival_of_another_kind_that_fits_as_well_is_told():
     assert weight == pytest.approx(np.exp(-1.0), rel=1e-6)
 
 
-def leaving(error, stray=0.0):
-    left = Some(error=error, stray=np.full(10, stray), complete=error < 1e-3)
-    return lambda *_: Some(diffuse=left)
+def leaving(error, stray=0.0, evidence=lambda f: 0.0):
+    left = Some(
+        error=error,
+        noise=0.02,
+        each=np.zeros(10),
+        stray=np.full(10, stray),
+        complete=error < 1e-3,
+    )
+    return lambda _, f, *least: Some(diffuse=left, evidence=evidence(f))
 
 
 def test_a_search_ends_where_nothing_is_left_to_explain():
@@ -160,6 +166,31 @@ def test_what_an_adequate_hypothesis_leaves_is_noise():
     worse = replace(one, objective=one.objective + 150.0)
     assert not enough(replace(s, judged=leaving(0.1)))(worse, one, 1.0)
     assert enough(replace(s, judged=leaving(0.002)))(worse, one, 1.0)
+    likelier = leaving(0.002, evidence=lambda f: 100.0 * (f.objective == one.objective))
+    assert not enough(replace(s, judged=likelier))(worse, one, 1.0)
+
+
+@pytest.mark.parametrize(("error", "gain", "accepted"), [
+    (0.05, 100.0, 2), (0.05, 5.0, 1), (0.0005, 100.0, 1),
+])  # fmt: skip
+def test_beside_what_cannot_be_claimed_a_richer_one_counts_by_the_error_of_the_model(
+    error, gain, accepted
+):
+    """What a wrong hypothesis leaves is taken for noise, by which no second effect pays."""
+    s = searcher(hidden(masses=[(7, 2.0)]))
+    null = s.null()
+    one, two = (
+        fit(s.problem, null.nuisance, suspects, (0,), 20)
+        for suspects in ((Suspect(0, 7, (0.7,)),), (Suspect(0, 7, (0.7,)), Suspect(0, 20, (-3.0,))))
+    )
+    before = leaving(0.3)(None, null)
+
+    def judged(problem, f, *least):
+        evidence = 100.0 * bool(f.suspects) + gain * (len(f.suspects) > 1)
+        return leaving(error, evidence=lambda _: evidence)(problem, f) if f.suspects else before
+
+    s = replace(s, judged=judged)
+    assert judge(s, Found((null, one, two), ((), (), ()))).accepted == accepted
 
 
 @pytest.mark.parametrize("other", [point_mass, distributed_mass, ground_spring])
