@@ -165,7 +165,7 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool =
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
         if alike:
-            least = best.judged.bare + MODEL_ERROR.drift_gain - SEARCH.suspect
+            least = best.judged.bare + MODEL_ERROR.drift_gain - 0.5 * SEARCH.credible
     judged = searcher.judged(searcher.problem, f, least)
     return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
 
@@ -173,8 +173,14 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool =
 def ranked(
     searcher: Searcher, fits: Iterable[Fit], known: Sequence[Scored] = (), alike: bool = False
 ) -> list[Scored]:
-    """Return what is `known` and more hypotheses, the likeliest first; `alike`: see `scored`."""
+    """Return what is `known` and more hypotheses, the likeliest first; `alike`: see `scored`.
+
+    Those come in the order of how likely they are without fields, so that few are tried with them.
+    """
     out = list(known)
+    if alike:
+        bare = [(searcher.judged(searcher.problem, f, np.inf), f) for f in fits]
+        fits = [f for j, f in sorted(bare, key=lambda b: -b[0].bare if b[0] else np.inf)]
     for f in fits:
         out.append(scored(searcher, f, max(out, key=lambda s: s.score, default=None), alike))
     return sorted(out, key=lambda s: -s.score)

@@ -189,8 +189,8 @@ def test_fields_are_tried_beside_another_shape_only_where_that_does_nearly_as_we
 
     s = replace(s, judged=judged)
     ranked(s, [state], [scored(s, state)], alike=True)
-    reach = {p: p + MODEL_ERROR.drift_gain >= asked[-1] for p in (14.9, 15.1)}
-    assert reach == {14.9: False, 15.1: True}
+    reach = {p: p + MODEL_ERROR.drift_gain >= asked[-1] for p in (16.9, 17.1)}
+    assert reach == {16.9: False, 17.1: True}
 
 
 def test_a_patch_may_end_with_its_property():
