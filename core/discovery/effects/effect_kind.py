@@ -62,7 +62,8 @@ class EffectKind:
         What the report calls it.
     sentence : str
         What is missing, up to the words ``explains test mode ...``: a template of `magnitudes`,
-        ``components`` and ``region``.
+        ``components``, ``region`` and, of a stiffness, ``size``: about how large, where it is
+        known.
     magnitudes : tuple of Magnitude
         One for each θ of its laws: one with fewer has the first of them.
     places : callable

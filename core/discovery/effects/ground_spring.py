@@ -31,8 +31,7 @@ KIND = EffectKind(
     name="ground_spring",
     label="spring to ground",
     plural="springs to ground",
-    sentence="A spring to ground of about {stiffness:.3g} {per_length} in direction {components} "
-    "is missing {region}: it",
+    sentence="A spring to ground of {size} in direction {components} is missing {region}: it",
     magnitudes=(STIFFNESS,),
     places=_places,
     across=EFFECTS.springs_across,

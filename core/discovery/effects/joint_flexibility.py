@@ -111,8 +111,7 @@ def _rows(Q: Floats, at: Ints, structure: Structure) -> sp.csr_matrix:
 KIND = EffectKind(
     name="joint_flexibility",
     label="flexible joint",
-    sentence="The joint gives {region} with a rotational stiffness of about {stiffness:.3g} (deck "
-    "units): it",
+    sentence="The joint gives {region} with a rotational stiffness of {size}: it",
     magnitudes=(STIFFNESS,),
     places=_places,
 )

@@ -111,8 +111,8 @@ KIND = EffectKind(
     name="link_spring",
     label="spring between two places",
     plural="springs between two places",
-    sentence="A spring of about {stiffness:.3g} {per_length} between two places, along the line "
-    "through them, is missing {region}: it",
+    sentence="A spring of {size} between two places, along the line through them, is missing "
+    "{region}: it",
     magnitudes=(STIFFNESS,),
     places=_places,
     across=EFFECTS.links_across,

@@ -240,8 +240,7 @@ def _block(W: Floats, at: Ints, rows: Ints, shape: tuple[int, int]) -> sp.csr_ma
 KIND = EffectKind(
     name="support_flexibility",
     label="flexible support",
-    sentence="The support gives {region}, direction {components}, with a stiffness of about "
-    "{stiffness:.3g} {per_length}: it",
+    sentence="The support gives {region}, direction {components}, with a stiffness of {size}: it",
     magnitudes=(STIFFNESS,),
     places=_places,
 )

@@ -84,10 +84,17 @@ def sentence_of(
     masses: MassUnit,
     many: int = 1,
 ) -> str:
-    """Say what is missing, where, which test modes it explains, how sure."""
-    along = masses.per_length(magnitude.get("components") or [1])
-    values = {**magnitude, "region": region, "per_length": along}
+    """Say what is missing, where, which test modes it explains, how sure.
+
+    A stiffness that may be anything within a wide interval is not told as one figure.
+    """
+    values = {**magnitude, "region": region}
     low, high = (f"{v:.3g}" for v in interval)
+    known = interval[1] <= NARRATIVE.hardly * interval[0]
+    if "stiffness" in magnitude:
+        along = masses.per_length(magnitude.get("components") or [1])
+        about = f"about {magnitude['stiffness']:.3g} {along}"
+        values["size"] = about if known else "a size that the test hardly tells"
     if "components" in values:
         values["components"] = "".join(str(k) for k in values["components"])
     for m in kind.magnitudes:
@@ -103,7 +110,7 @@ def sentence_of(
         text += f" (one of {many} alike, by the symmetry of the structure)"
     what = mode_ranges(modes) if modes else "the test a little better"
     text += f" explains {what} (95 %: {low} to {high}"
-    text += ", the test hardly tells)" if interval[1] > NARRATIVE.hardly * interval[0] else ")"
+    text += ")" if known or "size" in values else ", the test hardly tells)"
     if "inertia_assumed" in values:
         text += ". The test does not tell its inertia: taken as that of a solid block"
     return text + "."

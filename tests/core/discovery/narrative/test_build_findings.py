@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from trueup.core.data.geometry import Geometry
+from trueup.core.data.mass_unit import MassUnit
+from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.narrative.build_findings import frame_needed
-from trueup.core.discovery.narrative.sentences import spot_of
+from trueup.core.discovery.narrative.sentences import sentence_of, spot_of
 from trueup.core.registration.alignment import Alignment
 
 
@@ -37,3 +39,19 @@ def test_supports_that_give_together_are_told_by_their_grids(grids, shared, said
     xyz = np.array([[1e-18, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 2.0, 0.0]])
     place = SimpleNamespace(where=({"grids": grids},), xyz=xyz, law=SimpleNamespace(shared=shared))
     assert spot_of(Geometry(np.arange(1, 4), xyz), place, 0) == said
+
+
+@pytest.mark.parametrize(
+    ("interval", "size", "within"),
+    [
+        ((40.0, 70.0), "about 54.7 (deck units)", "40 to 70"),
+        ((0.4, 7530.0), "a size that the test hardly tells", "0.4 to 7.53e+03"),
+    ],
+)
+def test_a_stiffness_that_may_be_anything_is_not_told_as_one_figure(interval, size, within):
+    magnitude = {"stiffness": 54.7, "components": [2], "free_components": [4]}
+    kind = KINDS["support_flexibility"]
+    text = sentence_of(kind, magnitude, "near grid 1", interval, [1], MassUnit())
+    where = "The support gives near grid 1, direction 2 and freely in direction 4"
+    expected = f"{where}, with a stiffness of {size}: it explains test mode 1 (95 %: {within})."
+    assert text == expected
