@@ -18,11 +18,11 @@ from ..numerics.products import product, sparse_product
 from .dense_solver import dense_modes
 from .eigen_numbers import EIGEN
 from .mechanisms import Massless, hold, mechanism, refuse_linkage
-from .pencil import Pencil, Spectrum
+from .pencil import Pencil, Spectrum, widest_pattern
 from .rigid_body_modes import RigidBody, rigid_body
 from .shift_invert_solver import Request, sparse_modes
 from .soft_modes import refined
-from .warm_modes import Near
+from .warm_modes import Kept, Near
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,9 @@ class Eigensolution(Noun):
         Of K - sigma M, kept on request: sensitivities use it again.
     count_factor : Factorisation or None
         Of K - s M, s next to the modes where these were known nearly.
+    kept : Kept or None
+        On request, for solutions of the same model that are begun near another; the first of
+        these makes `count_factor` its own.
     """
 
     eigenvalues: Floats
@@ -107,6 +110,7 @@ class Eigensolution(Noun):
     warnings: tuple[str, ...] = ()
     factor: Factorisation | None = field(default=None, repr=False)
     count_factor: Factorisation | None = field(default=None, repr=False)
+    kept: Kept | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("eigenvalues", "vectors"):
@@ -153,7 +157,7 @@ def solve(
         Of the residual of each Ritz pair beside its eigenvalue, both of (K - sigma M)^-1 M;
         the relative error of the eigenvalues is of the order of its square.
     keep_factor : bool
-        Keep the factorisation of K - sigma M in the solution.
+        Keep the factorisation of K - sigma M in the solution, and what serves further ones.
     count : bool
         Prove by an inertia count that no mode was missed (about a quarter of the time).
     near : Near, optional
@@ -187,10 +191,9 @@ def solve(
         raise InputError(f"{n_modes} modes were asked for; ask for at least one")
     if fmax is not None and not fmax > 0.0:
         raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
-    pencil = Pencil.of(model, p)
     owner = model if isinstance(model, Model) else None
-    given = pencil
-    body = rigid_body(owner, pencil) if owner else None
+    given, body = _posed(model, p, near.kept if near else None, keep_factor)
+    pencil = given
     rigid = body.modes if body else np.zeros((pencil.n, 0))
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
     wanted = n_modes if n_modes is not None or fmax is not None else EIGEN.modes
@@ -202,9 +205,9 @@ def solve(
     held: list[str] = []
     while True:
         try:
-            known = (owner, pencil, rigid)
+            of = (owner, pencil, rigid)
             with _to_working_accuracy():
-                spectrum = dense_modes(*known) if small else sparse_modes(*known, request)
+                spectrum = dense_modes(*of) if small else sparse_modes(*of, request)
             break
         except Massless as found:
             if len(held) == EIGEN.held:
@@ -247,7 +250,28 @@ def solve(
         tuple(notes),
         factor,
         spectrum.count_factor,
+        Kept(body.place, spectrum.counter) if body and spectrum.counter else None,
     )
+
+
+def _posed(
+    model: Model | tuple[sp.spmatrix, sp.spmatrix],
+    p: Floats | None,
+    kept: Kept | None,
+    for_others: bool,
+) -> tuple[Pencil, RigidBody | None]:
+    """Return the pencil, on a pattern that others have where it is for them, and its free motions.
+
+    The latter are of a `Model` alone.
+    """
+    pencil = Pencil.of(model, p)
+    if not isinstance(model, Model):
+        return pencil, None
+    if kept is not None:
+        pencil = pencil.on(kept.place.pattern)
+    elif for_others:
+        pencil = pencil.on(widest_pattern(model))
+    return pencil, rigid_body(model, pencil, kept.place if kept else None)
 
 
 def modes_of(model: Model, solution: Eigensolution) -> Modes:

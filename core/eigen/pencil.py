@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +16,7 @@ from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from ..numerics.factorisation import Factorisation
+from ..numerics.shared_pattern_sum import shared, weighted_sum
 from .eigen_numbers import EIGEN
 
 
@@ -58,6 +61,25 @@ class Pencil:
         if isinstance(model, Model):
             return cls(model.K(p), model.M(p), model.free_labels)
         return cls(*model)
+
+    def on(self, pattern: sp.csr_matrix) -> Self:
+        """Return the pencil on a wider pattern, upper triangle of ones (n, n), where it fits.
+
+        Entries that happen to cancel at some values of parameters are zeros on it, so that what
+        was analysed for one point serves the others.
+        """
+        if same_entries(pattern, self.pattern):
+            return self
+        k, m = (pattern + 1j * sp.triu(A, format="csr") for A in (self.K, self.M))
+        if max(k.nnz, m.nnz) > pattern.nnz:
+            return self
+        out = copy(self)
+        k.sort_indices()
+        m.sort_indices()
+        out._indptr, out._indices, out._k = k.indptr, k.indices, k.data.imag.copy()
+        out._massive = np.flatnonzero(m.data.imag)
+        out._m = m.data.imag[out._massive]
+        return out
 
     def sprung(self, rows: Ints) -> Pencil:
         """Return the pencil with springs to ground, as stiff as the diagonal, at some rows."""
@@ -181,6 +203,20 @@ class Pencil:
             )
 
 
+def same_entries(a: sp.csr_matrix, b: sp.csr_matrix) -> bool:
+    """Whether two matrices have entries at the same places, sorted."""
+    return np.array_equal(a.indptr, b.indptr) and np.array_equal(a.indices, b.indices)
+
+
+def widest_pattern(model: Model) -> sp.csr_matrix:
+    """Upper triangle of ones where a term of K or M has an entry, whatever the parameters."""
+    every = [t.matrix for t in (*model.stiffness, *model.mass)]
+    ones = weighted_sum(((1.0, *shared([np.ones(A.nnz)], A)) for A in every), model.n_free)
+    upper = sp.triu(ones, format="csr")
+    upper.data[:] = 1.0
+    return upper
+
+
 @lru_cache(maxsize=2)
 def _nodes(labels: tuple[str, ...]) -> Ints:
     """Return the number of the node of each label, (n,), found once for all points of a model."""
@@ -281,6 +317,8 @@ class Spectrum(Noun):
         Of K - sigma M.
     count_factor : Factorisation or None
         Of K - s M, s next to modes that were known nearly, by which they were counted.
+    counter : Factorisation or None
+        What counted the modes, to be factorised again: for other values on the pattern.
     ahead : (n,) float
         Rough values of the next eigenvalues, to find a gap.
     left_out : int
@@ -297,6 +335,7 @@ class Spectrum(Noun):
     ahead: Floats = field(default_factory=lambda: np.zeros(0))
     left_out: int = 0
     count_factor: Factorisation | None = None
+    counter: Factorisation | None = None
 
 
 def widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:

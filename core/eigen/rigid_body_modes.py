@@ -1,5 +1,7 @@
 """Rigid-body motions, recognised by the rank of the stiffness and not by a frequency."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -8,12 +10,42 @@ import scipy.sparse as sp
 from scipy.linalg import qr, solve_triangular
 from scipy.sparse.csgraph import connected_components
 
-from ..arrays import Floats, Ints, Numbers
+from ..arrays import Bools, Floats, Ints, Numbers
 from ..data.parametric_model import Model
 from ..errors import CheckError
 from ..numerics.factorisation import factorise
 from .eigen_numbers import EIGEN
-from .pencil import Pencil, magnitudes
+from .pencil import Pencil, magnitudes, same_entries
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """What the rigid motions of a model have of its geometry, at any values of its parameters.
+
+    Parameters
+    ----------
+    unit : (n_free, 7) float
+        Six motions of a rigid body and one common to the scalar points.
+    scalar : (n_free,) bool
+        Which degrees of freedom move scalar points only.
+    label : (n_free,) int
+        Which piece each is of, connected by `pattern`.
+    pattern : (n_free, n_free) sparse
+    """
+
+    unit: Floats
+    scalar: Bools
+    label: Ints
+    pattern: sp.csr_matrix
+
+    @classmethod
+    def of(cls, model: Model, pencil: Pencil) -> Place:
+        """Find it by the geometry of a model and what K and M connect."""
+        return cls(*_geometric(model), _pieces(model, pencil), pencil.pattern)
+
+    def connects(self, pencil: Pencil) -> bool:
+        """Whether a pencil connects the same."""
+        return same_entries(self.pattern, pencil.pattern)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +68,7 @@ class RigidBody:
         against them: exactly nothing where that is rounding.
     label : (n_free,) int
         Which piece a degree of freedom belongs to.
+    place : Place
     """
 
     modes: Floats
@@ -45,6 +78,7 @@ class RigidBody:
     unit: Floats
     force: Floats
     label: Ints
+    place: Place
 
     def part(self, stiffness: Floats, Z: Floats) -> tuple[Floats, Floats]:
         """Return the part of Z (n_free, k) that pieces make as rigid bodies, and its forces.
@@ -76,16 +110,18 @@ class RigidBody:
         return Z @ u[:, :count], Z @ u[:, count:], G @ vt[:count].T
 
 
-def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
+def rigid_body(model: Model, pencil: Pencil, place: Place | None = None) -> RigidBody:
     """Find the rigid-body motions of a model that cost no strain energy by its `pencil`.
 
     Each piece of the model (connected through K or M) is given the six motions of a rigid body
     as far as its free degrees of freedom can follow; those combinations u count for which every
     row of K u is rounding beside |K| |u|. So a suspension of any softness is stiffness, and a
-    body on a hinge line keeps one motion.
+    body on a hinge line keeps one motion. A `place` that was found for other values of the model's
+    parameters serves again where these connect the same.
     """
-    U, scalar = _geometric(model)
-    label = _pieces(model, pencil)
+    if place is None or not place.connects(pencil):
+        place = Place.of(model, pencil)
+    U, scalar, label = place.unit.copy(), place.scalar, place.label
     _follow(pencil, U, scalar & np.isin(label, label[~scalar]))
     force, size = pencil.K @ U, magnitudes(pencil.K) @ np.abs(U).sum(axis=1)
     noise = max(EIGEN.row_rounding, EIGEN.digits * pencil.precision) * size
@@ -108,7 +144,7 @@ def rigid_body(model: Model, pencil: Pencil) -> RigidBody:
     found, moved = (_assembled(parts, pencil.n) for parts in (modes, motions))
     force[np.abs(force) <= noise[:, None]] = 0.0
     found = _again(found, pencil.M)
-    return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held, U, force, label)
+    return RigidBody(found, moved, tuple(sorted(pieces, key=len)), held, U, force, label, place)
 
 
 def _rows_of(label: Ints) -> list[Ints]:
@@ -139,7 +175,7 @@ def _pieces(model: Model, pencil: Pencil) -> Ints:
     return np.asarray(connected_components(graph, directed=False)[1][: pencil.n], np.int64)
 
 
-def _geometric(model: Model) -> tuple[Floats, Numbers]:
+def _geometric(model: Model) -> tuple[Floats, Bools]:
     """Six rigid-body motions and one common to the scalar points, (n_free, 7).
 
     By least squares over `expansion`. The second result, (n_free,), says which free degrees of

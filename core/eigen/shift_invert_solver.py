@@ -51,9 +51,8 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     below = None
     left_out = 0
     if request.limit is not None:
-        below = _inertia(
-            pencil, (request.limit, request.limit * EIGEN.beside_limit), request.backend
-        )
+        bounds = request.limit, request.limit * EIGEN.beside_limit
+        below, _ = _inertia(pencil, bounds, request.backend)
         if below <= n_rigid:
             none = np.zeros(0)
             return Spectrum(none, rigid[:, :0], none, -request.limit, complete=False, missed=0)
@@ -85,9 +84,14 @@ def _counted(
         gap = _gap(pencil, found, elastic)
         if gap is not None:
             have = int(np.count_nonzero(_estimates(found) < gap[0]))
-            missed = _inertia(pencil, gap, request.backend) - n_rigid - have
+            count, factor = _inertia(pencil, gap, request.backend)
+            missed = count - n_rigid - have
             if missed == 0:
-                return replace(found, missed=0)
+                if not request.keep_factor:
+                    return replace(found, missed=0)
+                factor.forget()
+                return replace(found, missed=0, counter=factor)
+            del factor
             if missed < 0:
                 break
         if attempt < EIGEN.attempts:
@@ -263,14 +267,21 @@ def _gap(pencil: Pencil, found: Spectrum, elastic: int) -> tuple[float, float] |
     return low, high
 
 
-def _inertia(pencil: Pencil, between: tuple[float, float], backend: Backend) -> int:
-    """Return the number of eigenvalues below a point of an interval without modes."""
+def _inertia(
+    pencil: Pencil, between: tuple[float, float], backend: Backend
+) -> tuple[int, Factorisation]:
+    """Return the number of eigenvalues below a point of an interval without modes, and its factor.
+
+    The factor is of K - s M, s being that point.
+    """
     low, high = between
     try:
-        return factorise(pencil.shifted(low), False, backend, pencil.groups).negative
+        factor = factorise(pencil.shifted(low), False, backend, pencil.groups)
+        return factor.negative, factor
     except CheckError:
         at = pencil.shifted((1.0 - EIGEN.again) * low + EIGEN.again * high)
-        return factorise(at, False, backend, pencil.groups).negative
+        factor = factorise(at, False, backend, pencil.groups)
+        return factor.negative, factor
 
 
 def _with_missed(

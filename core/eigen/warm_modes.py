@@ -19,10 +19,26 @@ import scipy.linalg as sl
 
 from ..arrays import Floats
 from ..errors import CheckError
-from ..numerics.factorisation import Backend, factorise
+from ..numerics.factorisation import Backend, Factorisation, factorise
 from ..numerics.products import product, sparse_product
 from .eigen_numbers import EIGEN
 from .pencil import Pencil, Spectrum, widest_gap
+from .rigid_body_modes import Place
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What one solution of a model leaves for the next, at other values of its parameters.
+
+    Parameters
+    ----------
+    place : Place
+    counter : Factorisation
+        Of K - s M, or what is left of it after `forget`.
+    """
+
+    place: Place
+    counter: Factorisation
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +51,13 @@ class Near:
         Rough eigenvalues, ascending, some more than are wanted: a gap is looked for there.
     vectors : (n_free, m) float
         Those of the first m <= k, mass-orthonormal and orthogonal by the stiffness.
+    kept : Kept, optional
+        Of a solution of the same model: its counter is factorised anew.
     """
 
     values: Floats
     vectors: Floats
+    kept: Kept | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +99,7 @@ def warm_modes(
     low, high = near.values[above - 1 : above + 1]
     s = float(low + EIGEN.within[0] * min(high - low, EIGEN.known_gap * abs(low)))
     try:
-        factor = factorise(pencil.shifted(s), False, backend, pencil.groups)
+        factor = _factor(pencil, s, backend, near.kept)
         below = factor.negative - rigid.shape[1]
     except CheckError:
         return None
@@ -98,13 +117,21 @@ def warm_modes(
         step = _Step(X, Y, MX, sparse_product(pencil.M, Y))
         found = _polished(pencil, s, step, below, elastic) if counted else None
         if found is not None:
-            return replace(found, count_factor=factor)
+            return replace(found, count_factor=factor, counter=factor)
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
         X = product(X, C[:k])
         X += product(Y, C[k:])
         MX = sparse_product(pencil.M, X)
     return None
+
+
+def _factor(pencil: Pencil, s: float, backend: Backend, kept: Kept | None) -> Factorisation:
+    """Return the factor of K - s M, by what is kept of one on that pattern."""
+    if kept is None or kept.counter.backend != backend:
+        return factorise(pencil.shifted(s), False, backend, pencil.groups)
+    kept.counter.refactorise(pencil.shifted(s))
+    return kept.counter
 
 
 def _polished(pencil: Pencil, s: float, step: _Step, below: int, elastic: int) -> Spectrum | None:

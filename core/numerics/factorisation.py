@@ -6,7 +6,7 @@ on a fill-reducing order of the nodes. Which one is used is an argument, never a
 
 import warnings
 from collections.abc import Callable
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -67,6 +67,10 @@ class Factorisation(Protocol):
 
         Where the stored pattern is the same the ordering and symbolic analysis are reused.
         """
+        ...
+
+    def forget(self) -> None:
+        """Give the factor up, but not the order of its pattern: for `refactorise` alone."""
         ...
 
 
@@ -155,6 +159,9 @@ class _PardisoFactorisation:
         else:
             self._factorise(upper)
 
+    def forget(self) -> None:
+        self._pardiso.forget()
+
     def solve(self, b: Numbers) -> Floats:
         d = self._scale[:, None]
         columns = np.asarray(b, np.float64).reshape(self.n, -1)
@@ -185,6 +192,8 @@ class _SuperluFactorisation:
         self.n = int(a.shape[0])
         self._definite = definite
         self._groups = groups
+        self._lu: Any = None
+        self._full: Any = None
         self._pattern: tuple[Ints, Ints] | None = None
         self._inverse: sp.csr_matrix | None = None
         self.refactorise(a)
@@ -217,6 +226,9 @@ class _SuperluFactorisation:
                 f"not enough memory to factorise {self.n} degrees of freedom: "
                 "use a machine with more memory, a smaller model, or install mkl"
             ) from error
+
+    def forget(self) -> None:
+        self._lu = self._full = None
 
     def solve(self, b: Numbers) -> Floats:
         d = self._scale[:, None]

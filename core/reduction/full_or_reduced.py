@@ -94,7 +94,8 @@ class ReducedOrder:
         rigid = every.rigid_body_modes
         above = rigid + (widest_gap(every.eigenvalues[rigid:], self.n_modes - rigid) or 0)
         some = every.take(max(above, self.n_modes) + DERIVATIVES.guard)
-        return Near(every.eigenvalues[rigid:], self.reduced.vectors(some)[:, rigid:])
+        vectors = self.reduced.vectors(some)[:, rigid:]
+        return Near(every.eigenvalues[rigid:], vectors, self.reduced.solution.kept)
 
     @property
     def _some_more(self) -> int:

@@ -11,6 +11,8 @@ from trueup.core.eigen import shift_invert_solver, warm_modes
 from trueup.core.eigen.eigen_numbers import EIGEN
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.eigen.warm_modes import Near
+from trueup.core.numerics import pardiso
+from trueup.core.numerics.pardiso import library
 
 N_MODES = 12
 
@@ -89,3 +91,40 @@ def test_what_is_not_near_is_no_harm(plate, cold):
     found = solve(plate, N_MODES, near=Near(values, noise @ C))
     assert len(cold) > begun
     np.testing.assert_allclose(found.eigenvalues, truth.eigenvalues[:N_MODES], rtol=1e-9)
+
+
+def test_what_one_solution_keeps_serves_the_next_at_other_values(line, backend):
+    halves = [("E", range(60)), ("E", range(60, 120))]
+    model = line(120, parameters=halves)  # equal moduli make zeros of stiffnesses in the middle
+    first = solve(model, N_MODES, keep_factor=True, backend=backend)
+    p = np.array([1.1, 1.3])
+    truth = solve(model, N_MODES + 12, p=p, backend=backend)
+    near = Near(truth.eigenvalues[6:], truth.vectors[:, 6 : N_MODES + 4])
+    alone, after = (
+        solve(model, N_MODES, p=p, near=replace(near, kept=kept), backend=backend)
+        for kept in (None, first.kept)
+    )
+    assert after.count_factor is first.kept.counter
+    assert after.rigid_body_modes == 6
+    np.testing.assert_allclose(after.eigenvalues[6:], truth.eigenvalues[6:N_MODES], rtol=1e-6)
+    np.testing.assert_allclose(after.eigenvalues[6:], alone.eigenvalues[6:], rtol=1e-8)
+
+
+def test_what_is_kept_is_analysed_once(line, monkeypatch):
+    if library() is None:
+        pytest.skip("PARDISO is not installed")
+    model = line(120, parameters=[("E", range(60)), ("E", range(60, 120))])
+    first = solve(model, N_MODES, keep_factor=True, backend="pardiso")
+    p = np.array([1.1, 1.3])
+    truth = solve(model, N_MODES + 12, p=p)
+    near = Near(truth.eigenvalues[6:], truth.vectors[:, 6 : N_MODES + 4], first.kept)
+    made = []
+    honest = pardiso.Pardiso._run
+    monkeypatch.setattr(
+        pardiso.Pardiso,
+        "_run",
+        lambda self, phase, *b: made.append(phase) or honest(self, phase, *b),
+    )
+    solve(model, N_MODES, p=p, near=near, backend="pardiso")
+    assert pardiso._ANALYSE not in made
+    assert made.count(pardiso._FACTORISE) == 1

@@ -204,3 +204,19 @@ def test_memory_is_given_back(membrane):
     gc.collect()
     assert held > before + 100_000
     assert in_use() - before < 0.1 * (held - before)  # MKL keeps small buffers of its threads
+
+
+@pytest.mark.parametrize("backend", ["pardiso", "superlu"])
+def test_a_factor_that_was_given_up_serves_other_values_on_its_pattern(membrane, backend):
+    if backend == "pardiso" and library() is None:
+        pytest.skip("PARDISO is not installed")
+    K, M, values = membrane(12)
+    below = [_in_a_gap(values, k) for k in (5, 20)]
+    factor = factorise(K - below[0] * M, definite=False, backend=backend)
+    factor.forget()
+    factor.forget()
+    A = (K - below[1] * M).tocsr()
+    factor.refactorise(A)
+    assert factor.negative == np.count_nonzero(values < below[1])
+    b = np.random.default_rng(3).standard_normal((A.shape[0], 2))
+    np.testing.assert_allclose(A @ factor.solve(b), b, atol=1e-8)
