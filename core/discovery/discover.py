@@ -292,8 +292,8 @@ def _prepared(
         e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
     )
     n = len(prior.spread)
-    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
-    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
+    zero = fit(problem, np.zeros(n), (), (n - 1,))
+    null = fit(problem, np.zeros(n), (), tuple(range(n)))
     columns = _below(null.eigenvalues, float(hz.max())) + DISCOVERY.band_more
     return replace(problem, columns=columns), null, zero
 

@@ -40,7 +40,8 @@ class LikelihoodNumbers:
     ridge: float = number(1e-6, "-", "on the diagonal of a Gram matrix of shapes that are alike", ROUNDING)
     least_eigenvalue: float = number(1e-6, "of a test mode's λ", "λ of a rigid-body mode that is matched to it")
 
-    steps: int = number(8, "steps", "of Gauss and Newton, unless said otherwise")
+    steps: int = number(20, "steps", "of Gauss and Newton, at most")
+    steps_near: int = number(5, "steps", "where a fit begins near to one that is known")
     tolerance: float = number(0.05, "2 ln L", "fall of the objective that counts")
     dampings: int = number(5, "trials", "of Levenberg's damping a step")
     damping_first: float = number(0.05, "of the curvature", "least damping after a step that failed")

@@ -72,7 +72,7 @@ def grown(
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
             for branch in _varied(searcher, searcher.branches(state, count), soft):
                 wider = (*state.suspects, branch)
-                found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
+                found.append(searcher.fitted(state, wider, small, True))
             best = min(found, key=_objective)
             if depth > 1 and enough(levels[-1], best, SEARCH.hopeless):
                 break
@@ -181,7 +181,7 @@ def _fair(searcher: Searcher, poorer: Fit, best: Fit) -> Fit:
     """
     for q in range(len(best.suspects)):
         others = best.suspects[:q] + best.suspects[q + 1 :]
-        trial = fit(searcher.problem, best.nuisance, others, searcher.active, SEARCH.steps_fair)
+        trial = fit(searcher.problem, best.nuisance, others, searcher.active)
         if trial.objective < poorer.objective:
             poorer = trial
     return poorer

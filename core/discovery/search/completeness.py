@@ -230,7 +230,7 @@ def _centred(
             if s.row == suspects[q].row:
                 break
             moved = (*suspects[:q], s, *suspects[q + 1 :])
-            new = scored(searcher, searcher.fitted(best.fit, moved, SEARCH.steps_new))
+            new = scored(searcher, searcher.fitted(best.fit, moved))
             if 2.0 * (best.score - new.score) > SEARCH.credible:
                 break
             best = new

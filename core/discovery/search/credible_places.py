@@ -8,6 +8,7 @@ import numpy as np
 from ...arrays import Floats
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
 from .model_selection import Scored
@@ -46,7 +47,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     for i in [*own, *order[order != own[0]]]:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
         suspects = (*before, moved, *after)
-        tried.append(fit(small, best.nuisance, suspects, searcher.active, SEARCH.credible_steps))
+        tried.append(fit(small, best.nuisance, suspects, searcher.active, LIKELIHOOD.steps_near))
         least = min(f.objective for f in tried)
         vain = 0 if tried[-1].objective - least < SEARCH.credible * scale else vain + 1
         if vain == SEARCH.credible_vain:

@@ -53,7 +53,7 @@ def as_blocks(
             searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
             new = Suspect(kind, 0, s.theta[:1])
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            state = searcher.fitted(state, suspects, SEARCH.steps_moved)
+            state = searcher.fitted(state, suspects)
     return searcher, state
 
 
@@ -175,7 +175,7 @@ def _fitted(look: _Look, state: Fit, q: int, now: Fit) -> tuple[int, Searcher, F
         for theta in (trials[score[row].argmin()], trials[0]):
             new = Suspect(kind, row, tuple(theta.tolist()))
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            fits.append((row, wide.fitted(now, suspects, SEARCH.steps_instead, near)))
+            fits.append((row, wide.fitted(now, suspects, near)))
     row, fit = min(fits, key=lambda f: f[1].objective)
     return row, wide, fit
 

@@ -56,7 +56,7 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     small, _ = searcher.local(without)
     branches = searcher.branches(without, SEARCH.look_each, lambda problem: problem)
     tried = [
-        searcher.fitted(without, (*others, s), SEARCH.steps_new, small, True)
+        searcher.fitted(without, (*others, s), small, True)
         for _, s in branches[: SEARCH.look_fitted]
     ]
     far = SEARCH.rival_gain * (without.objective - state.objective)
@@ -105,7 +105,7 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
         return searcher, tried
     options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     tried = [
-        searcher.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        searcher.fitted(state, (*before, option, *after))
         for option in options[: SEARCH.look_beside]
     ]
     return searcher, _best(tried, SEARCH.look_beside_judged)

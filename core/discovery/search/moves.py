@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Suspect, beside as stretches_beside, parted
 from ..likelihood.hypothesis import Fit, Problem, softened
-from ..likelihood.likelihood_numbers import Effort
+from ..likelihood.likelihood_numbers import LIKELIHOOD, Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
 from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
@@ -44,7 +44,7 @@ class Searcher:
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""
-        return fit(self.problem, self.start, (), self.active, iterations=SEARCH.steps_null)
+        return fit(self.problem, self.start, (), self.active)
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
@@ -142,21 +142,21 @@ class Searcher:
         self,
         state: Fit,
         suspects: Sequence[Suspect],
-        iterations: int = SEARCH.steps,
         small: Problem | None = None,
         soften: bool = False,
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small = small or self.local(state)[0]
+        steps = LIKELIHOOD.steps_near
         if soften:
-            near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
+            near = fit(softened(small), state.nuisance, suspects, self.active, steps)
             suspects, state = near.suspects, near
-        quick = fit(small, state.nuisance, suspects, self.active, iterations)
-        whole, steps = self.problem, SEARCH.steps_whole
+        quick = fit(small, state.nuisance, suspects, self.active, steps)
+        whole, last = self.problem, SEARCH.steps_whole
         try:
-            return fit(whole, quick.nuisance, quick.suspects, self.active, steps)
+            return fit(whole, quick.nuisance, quick.suspects, self.active, last)
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
-            return fit(whole, state.nuisance, suspects, self.active, steps)
+            return fit(whole, state.nuisance, suspects, self.active, last)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""
@@ -175,9 +175,9 @@ class Searcher:
 
         Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
         """
-        fresh = np.zeros_like(state.nuisance)
-        near = fit(softened(self.problem), fresh, state.suspects, self.active, SEARCH.steps)
-        again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
+        fresh, steps = np.zeros_like(state.nuisance), LIKELIHOOD.steps_near
+        near = fit(softened(self.problem), fresh, state.suspects, self.active, steps)
+        again = fit(self.problem, near.nuisance, near.suspects, self.active, steps)
         return again if again.objective < state.objective else state
 
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
@@ -211,21 +211,20 @@ class Searcher:
         for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
             if hope > stays:
                 break
-            trial = self.fitted(state, beside, SEARCH.steps_moved, small)
+            trial = self.fitted(state, beside, small)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
-        before, after = state.suspects[:q], state.suspects[q + 1 :]
+        before, after, steps = state.suspects[:q], state.suspects[q + 1 :], LIKELIHOOD.steps_near
         small = self.local(evaluate(self.problem, state.nuisance, (*before, *after)))[0]
         tried = [
-            fit(small, state.nuisance, (*before, s, *after), self.active, SEARCH.steps_moved)
-            for s in options
+            fit(small, state.nuisance, (*before, s, *after), self.active, steps) for s in options
         ]
         for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
-            trial = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps_moved)
+            trial = fit(self.problem, near.nuisance, near.suspects, self.active, steps)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
@@ -239,9 +238,9 @@ class Searcher:
             moved = False
             for q in self.doubtful(state, first=number == 0):
                 others = state.suspects[:q] + state.suspects[q + 1 :]
-                without = self.fitted(state, others, SEARCH.steps_moved)
+                without = self.fitted(state, others)
                 for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
-                    trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
+                    trial = self.fitted(without, (*others, branch), soften=True)
                     if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
                         trial = self.settled(self.refined(trial))
                     if trial.objective < state.objective - SEARCH.better_anew:

@@ -53,7 +53,7 @@ def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searche
 
 def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
     beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
-    return searcher.fitted(state, beside, SEARCH.steps_new)
+    return searcher.fitted(state, beside)
 
 
 def promising(

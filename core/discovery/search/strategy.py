@@ -77,7 +77,7 @@ def simplified(searcher: Searcher, found: Found) -> Found:
     for k, f in enumerate(found.levels):
         for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
             others = f.suspects[:q] + f.suspects[q + 1 :]
-            left = searcher.fitted(f, others, SEARCH.steps_instead)
+            left = searcher.fitted(f, others)
             limits = _limits(searcher, levels[k], q)
             if not limits:
                 continue
@@ -101,7 +101,7 @@ def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
             size = c.like([float(np.log(sizes[c.kind]))])
             plain = Suspect(kind, _same_place(own, s.row, c), tuple(size.tolist()))
             suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
-            out.append(searcher.fitted(f, suspects, SEARCH.steps_instead))
+            out.append(searcher.fitted(f, suspects))
     return out
 
 
@@ -137,7 +137,7 @@ def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind."""
     best: dict[int, Fit] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
-        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        new = searcher.fitted(state, (*state.suspects, branch), None, True)
         kind = branch.kind
         if kind not in best or new.objective < best[kind].objective:
             best[kind] = new

@@ -135,7 +135,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
         coarse=[np.arange(100)],
         size=1.0,
         effort=Some(apart=0.1),
-        fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
+        fitted=lambda f, suspects: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1
