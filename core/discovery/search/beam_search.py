@@ -81,7 +81,7 @@ def grown(
             break
         if depth > 1 and enough(levels[-1], chosen[0], SEARCH.hopeless):
             levels.append(chosen[0])
-            rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
+            rivals.append(tuple(chosen[1 : SEARCH.rivals]))
             break
         base = beam[0].objective
         followed = _leading(searcher, chosen, base)
@@ -91,7 +91,7 @@ def grown(
         beam = _distinct(searcher, sorted(beam, key=_objective))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
-        rivals.append(rest[: SEARCH.rivals_kept])
+        rivals.append(rest[: SEARCH.rivals])
         levels[-1] = _fair(searcher, levels[-1], best)
         previous = levels[-1]
         levels.append(best)
@@ -122,7 +122,7 @@ def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     One that changes the other matrix, where none of these does, comes along: while several
     effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
     """
-    near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
+    near = fits[0].objective + SEARCH.worth * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
     kept = close[: searcher.effort.beam - 1]
     changed = {m for f in kept for m in _changed(searcher, f)}
@@ -152,7 +152,7 @@ def _varied(
     for score, s in branches:
         c = searcher.problem.catalogue[s.kind]
         kind = (c.kind.name, s.kind if c.ends else -1)
-        if base - score < SEARCH.worth_fitting * (base - best) and kept and not searcher.small:
+        if base - score < SEARCH.worth * (base - best) and kept and not searcher.small:
             continue
         number[kind] += 1
         each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)

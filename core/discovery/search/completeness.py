@@ -225,7 +225,7 @@ def _centred(
             every.append(alike(tried, best, q))
             continue
         places = credible_places(searcher, best.fit, q, scale)
-        for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
+        for _ in range(SEARCH.rounds if c.kind.at_points else 0):
             s, suspects = middle(c, places), best.fit.suspects
             if s.row == suspects[q].row:
                 break
@@ -253,7 +253,7 @@ def _nearest(found: Found, k: int) -> list[Fit]:
     However much less these gain: beside an error of the model what fits worse may be likelier.
     """
     rivals = sorted(found.rivals[k], key=lambda f: f.objective)
-    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals_judged))
+    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals))
 
 
 def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:

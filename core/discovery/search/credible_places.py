@@ -38,7 +38,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     near = np.flatnonzero(away < SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
-    trials = c.around(suspect.theta, np.array(SEARCH.credible_sizes))
+    trials = c.around(suspect.theta, np.array(SEARCH.sizes))
     score = scan(small, here, suspect.kind, rows, trials)
     order = np.argsort(score.min(axis=1), kind="stable")[: SEARCH.credible_fitted]
     own = np.flatnonzero(rows == suspect.row)

@@ -74,7 +74,7 @@ def _one(structure: Structure, searcher: Searcher, state: Fit, q: int, scale: fl
     ]
     looked.sort(key=lambda place: place[0])
     best: Better = None
-    for _, c, stands in looked[: SEARCH.equipment_tried]:
+    for _, c, stands in looked[: SEARCH.tried]:
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
         if fit.objective < now.objective - scale * SEARCH.equipment_gain:
@@ -156,9 +156,7 @@ def _looked(
     made = equipment(template, stands, bodies)
     wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
     small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
-    trials = made.around(
-        made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.equipment_sizes)
-    )
+    trials = made.around(made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.sizes))
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     return _Look(wide, trials, score)
 
@@ -171,7 +169,7 @@ def _fitted(look: _Look, state: Fit, q: int, now: Fit) -> tuple[int, Searcher, F
     """
     wide, trials, score = look.searcher, look.trials, look.score
     kind, near, fits = len(wide.problem.catalogue) - 1, wide.local(state)[0], []
-    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
+    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.tried].tolist():
         for theta in (trials[score[row].argmin()], trials[0]):
             new = Suspect(kind, row, tuple(theta.tolist()))
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])

@@ -22,7 +22,7 @@ from .coarse_scan import Look, look
 from .exact_scan import best_apart, scan
 from .search_numbers import SEARCH
 
-_NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
+_NONE, _SIZES = np.zeros(0, np.int64), np.array(SEARCH.sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +111,7 @@ class Searcher:
         number = np.arange(len(rows)) - np.searchsorted(which[order], which[order])
         kept = order[number < SEARCH.promising // 2]
         rows = rows[kept]
-        trials = np.array([c.around(coarse.theta[i], _NEARBY) for i in which[kept]])
+        trials = np.array([c.around(coarse.theta[i], _SIZES) for i in which[kept]])
         fine = scan(small, here, kind, rows, trials) + c.surprise(trials)
         each, best = np.arange(len(rows)), fine.argmin(axis=1)
         return Look(
@@ -195,20 +195,20 @@ class Searcher:
             return None
         small, here = self.local(without)
         alike = scan(softened(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
-        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
-        trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
+        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.promising]]
+        trials = c.around(suspect.theta, _SIZES)
         score = scan(softened(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]
         soft = softened(small)
         options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]:
+        for i in np.argsort(score.min(axis=1), kind="stable"):
             if rows[i] == suspect.row:
                 continue
             moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
             beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
             options.append((promised(soft, state.nuisance, beside, self.active), beside))
         stays = promised(soft, state.nuisance, state.suspects, self.active)
-        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
+        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.tried]:
             if hope > stays:
                 break
             trial = self.fitted(state, beside, small)
@@ -223,7 +223,7 @@ class Searcher:
         tried = [
             fit(small, state.nuisance, (*before, s, *after), self.active, steps) for s in options
         ]
-        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
+        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.tried]:
             trial = fit(self.problem, near.nuisance, near.suspects, self.active, steps)
             if trial.objective < state.objective - SEARCH.better:
                 return trial

@@ -32,7 +32,7 @@ def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fi
     The noise has `scale` times the assumed variance: a step has to gain that much more.
     """
     for q in range(len(state.suspects)):
-        for _ in range(SEARCH.reshape_steps):
+        for _ in range(SEARCH.rounds):
             better = _step(searcher, state, q, scale)
             if better is None:
                 break
@@ -44,7 +44,7 @@ def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searche
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
     worth = 2.0 * scale * np.log(1.0 + len(options))
-    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
+    for option in promising(wide, state, q, options)[: SEARCH.tried]:
         trial = _with(wide, state, q, option)
         if trial.objective < state.objective - worth:
             return wide, trial
@@ -61,7 +61,7 @@ def promising(
     state: Fit,
     q: int,
     options: Sequence[Suspect],
-    sizes: Sequence[float] = SEARCH.reshape_sizes,
+    sizes: Sequence[float] = SEARCH.sizes,
 ) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
     others = state.suspects[:q] + state.suspects[q + 1 :]

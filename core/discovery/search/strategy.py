@@ -136,7 +136,7 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind."""
     best: dict[int, Fit] = {}
-    for _, branch in searcher.branches(state, SEARCH.late_tried):
+    for _, branch in searcher.branches(state, SEARCH.tried):
         new = searcher.fitted(state, (*state.suspects, branch), None, True)
         kind = branch.kind
         if kind not in best or new.objective < best[kind].objective:
