@@ -119,7 +119,7 @@ def _frames(corners: Floats) -> Floats:
 def _centres(xyz: Floats, spacing: float) -> Ints:
     chosen = thinned(xyz, spacing)
     while len(chosen) > EFFECTS.patch_centres:
-        spacing *= EFFECTS.patch_thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
+        spacing *= EFFECTS.thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
         chosen = thinned(xyz, spacing)
     return chosen
 

@@ -187,7 +187,7 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
         grids = np.unique(s.grid[rows])
         (d,), (W,) = directions(C[None], len(p.free))
-        d = np.maximum(d, EFFECTS.support_least * d[-1])
+        d = np.maximum(d, EFFECTS.free * d[-1])
         own[i, at] = d * len(grids)
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))

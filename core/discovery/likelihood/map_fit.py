@@ -123,7 +123,7 @@ def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
 
     One near either end counts in part: a slightly other model would have it outside.
     """
-    alone = np.maximum(np.delete(values, match), LIKELIHOOD.nil * aim.min())
+    alone = np.maximum(np.delete(values, match), LIKELIHOOD.least_eigenvalue * aim.min())
     inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / LIKELIHOOD.edge
     return float(np.sum(np.clip(inside, 0.0, 1.0)))
 
@@ -222,7 +222,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     strained = np.where(lam[:m] > LIKELIHOOD.least_eigenvalue * aim.min(), lam[:m], 0.0)
     joint = joint_macs(strained, t.T @ near, near.T @ near, noise.mixing)[here, k]
     own = np.sum(t * a, axis=0) ** 2
-    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, LIKELIHOOD.apart_least))
+    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, np.finfo(float).eps))
     scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)
     rest = (a - t * np.sum(t * a, axis=0)) * scale
     d = dshape / length

@@ -197,7 +197,7 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
     for _ in range(MODEL_ERROR.steps):
         H, g = _normal_equations(problem, now, best, active)
         better = None
-        for _ in range(MODEL_ERROR.dampings):
+        for _ in range(LIKELIHOOD.dampings):
             with suppress(np.linalg.LinAlgError):
                 step = _step(H, g, damping)
                 if -float(g @ step) < MODEL_ERROR.tolerance:

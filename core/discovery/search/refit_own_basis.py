@@ -202,8 +202,6 @@ def _own_problem(
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
     make = _known if places == deck else _own
     own = make(ground, places, problem.columns)
-    top = SEARCH.own_above * float(targets(problem.whole).max())
-    modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     new = replace(
         problem,
         basis=own.plain if as_deck else own.better,
@@ -213,7 +211,7 @@ def _own_problem(
         catalogue=tuple(_alone(c, row, state) for c, row in places),
         factors=own.factors,
         missing=(),
-        modes=min(own.seen.shape[1], max(modes, problem.columns)),
+        modes=min(own.seen.shape[1], problem.columns),
         turn=None,
         rest=None,
     )

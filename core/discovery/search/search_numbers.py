@@ -74,7 +74,6 @@ class SearchNumbers:
     credible_fitted: int = number(30, "places", "at which all else follows, the most promising")
     credible_vain: int = number(8, "places", "one after the other that are not credible, after which no more are fitted", "time")
     explains: float = number(4.0, LN, "a suspect explains a mode whose misfit it lowers by this", "two standard deviations")
-    explains_share: float = number(0.1, "of what it lowers most", "and by this")
     same_effect_apart: float = number(1.5, "of Effort.apart", "a suspect of a rival that is nearer says the same")
 
     link_near: int = number(9, "grids", "about either end of a link where it may end instead")
@@ -95,9 +94,7 @@ class SearchNumbers:
     foot_share: float = number(0.01, "of a mass", "at a grid, below which it is left out")
     foot_near: int = number(5, "grids", "the last of which is a side of an element away")
     foot_reach: float = number(2.6, "sides of an element", "around a place that footprints may lie")
-    own_above: float = number(1.4, "of the test's highest eigenvalue", "up to which a hypothesis gets modes of its own")
-    own_more: int = number(4, "modes", "more than these")
-    own_times: int = number(2, "times", "as many make the basis on which a hypothesis is weighed", "time")
+    own_times: int = number(2, "times", "as many modes as may match a test mode make the basis on which a hypothesis is weighed", "time")
     made_anew: int = number(4, "times", "supports that give are made for where the known parameters came to stand, at most", "time")
     followed: float = number(1e-3, "of ln p", "that they may move for slopes to tell how a release follows", "a release leaves a thousandth")
     rigid: float = number(1e-6, "of the largest eigenvalue", "by which the lowest of a completed model may lie below zero", ROUNDING)
