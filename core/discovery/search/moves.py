@@ -230,24 +230,20 @@ class Searcher:
         return None
 
     def reconsidered(self, state: Fit) -> Fit:
-        """Take each suspect out in turn and look for a better one anywhere.
+        """Take each suspect out in turn, and look for a better one anywhere, until one is found.
 
-        The last of a new state was looked for just so, and is left out in the first round.
+        But for the last one, which was looked for just so.
         """
-        for number in range(SEARCH.anew_rounds):
-            moved = False
-            for q in self.doubtful(state, first=number == 0):
-                others = state.suspects[:q] + state.suspects[q + 1 :]
-                without = self.fitted(state, others)
-                for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
-                    trial = self.fitted(without, (*others, branch), soften=True)
-                    if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
-                        trial = self.settled(self.refined(trial))
-                    if trial.objective < state.objective - SEARCH.better_anew:
-                        state, moved = trial, True
-                        break
-            if not moved:
-                break
+        least = state.objective - SEARCH.better
+        for q in self.doubtful(state, first=True):
+            others = state.suspects[:q] + state.suspects[q + 1 :]
+            without = self.fitted(state, others)
+            for _, branch in self.branches(without, SEARCH.tried)[: SEARCH.tried]:
+                trial = self.fitted(without, (*others, branch), soften=True)
+                if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
+                    trial = self.settled(self.refined(trial))
+                if trial.objective < least:
+                    return trial
         return state
 
     def unlike(self, state: Fit) -> Fit:
