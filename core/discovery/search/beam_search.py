@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 import numpy as np
 
@@ -116,22 +115,9 @@ def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Return the best and the next few that gained nearly as much over `base`.
-
-    One that changes the other matrix, where none of these does, comes along: while several
-    effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
-    """
+    """Return the best and the next few that gained nearly as much over `base`."""
     near = fits[0].objective + SEARCH.worth * (base - fits[0].objective)
-    close = [f for f in fits if f is fits[0] or f.objective < near]
-    kept = close[: searcher.effort.beam - 1]
-    changed = {m for f in kept for m in _changed(searcher, f)}
-    others = (f for f in close[len(kept) :] if not _changed(searcher, f) <= changed)
-    return [*kept, *islice(others, 1)]
-
-
-def _changed(searcher: Searcher, f: Fit) -> set[str]:
-    """Return which matrices a hypothesis changes."""
-    return {searcher.problem.catalogue[s.kind].law.acts_on for s in f.suspects}
+    return [f for f in fits if f is fits[0] or f.objective < near][: searcher.effort.beam]
 
 
 def _objective(f: Fit) -> float:
