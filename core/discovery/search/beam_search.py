@@ -83,7 +83,7 @@ def grown(
             rivals.append(tuple(chosen[1 : SEARCH.rivals]))
             break
         base = beam[0].objective
-        followed = _leading(searcher, chosen, base)
+        followed = chosen[: searcher.effort.beam - (depth > 1)]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
         if depth > 1:
             beam[0] = searcher.unlike(searcher.reconsidered(beam[0]))
@@ -143,17 +143,4 @@ def _varied(
         each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)
         if number.total() <= searcher.effort.branches or number[kind] <= each:
             kept.append(s)
-    return kept
-
-
-def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
-    most = searcher.effort.beam - (len(fits[0].suspects) > 1)
-    kept, kinds = list(fits[:most]), set()
-    for f in fits:
-        kind = searcher.problem.catalogue[f.suspects[-1].kind].kind
-        near = base - f.objective > SEARCH.other_kind * (base - fits[0].objective)
-        if kind not in kinds and near and not any(f is g for g in kept):
-            kept.append(f)
-        kinds.add(kind)
     return kept

@@ -27,7 +27,6 @@ class SearchNumbers:
     anew_near: float = number(0.05, "of the objective", "another suspect in place of one that is no worse by more than this is moved to better neighbours")
     anew_all: int = number(3, "suspects", "from so many on only the one that is missed least is looked for anew")
     hopeless: float = number(0.3, "of its price", "a further suspect that gains less before it is moved to better neighbours is given up")
-    other_kind: float = number(0.5, GAIN, "a kind whose best place gains this is followed too")
     worth_refining: float = number(0.175, GAIN, "a place that gains less in a first scan is not looked at more closely", "half of what is worth it")
     same_place: float = number(0.5, "of Effort.apart", "hypotheses whose suspects are nearer are one")
 
