@@ -54,12 +54,6 @@ class Searcher:
         """Whether a suspect is of a kind with a magnitude that tunes it."""
         return self.problem.catalogue[s.kind].tunings > 1
 
-    @property
-    def small(self) -> bool:
-        """Whether there are so few places that many of them can be fitted."""
-        kinds = zip(self.problem.catalogue, self.coarse, strict=True)
-        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < SEARCH.few_places
-
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
     ) -> list[tuple[float, Suspect]]:
@@ -78,7 +72,7 @@ class Searcher:
                 continue
             seen[kind] = look(small, here, kind, rows, worth)
             gain = here.objective - min(float(s.cost.min()) for s in seen.values())
-            worth = np.inf if self.small else here.objective - SEARCH.worth_refining * gain
+            worth = here.objective - SEARCH.worth_refining * gain
         apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
         for kind, coarse in seen.items():
             tried = self._finer(small, here, kind, coarse, worth)
