@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -46,7 +45,6 @@ from .search.model_selection import (
     usual,
 )
 from .search.moves import Searcher
-from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
 from .search.robust_search import robust
 from .search.set_up import beside_reach
@@ -140,19 +138,19 @@ class _Trial:
                 self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
 
-    def laid(self, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+    def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
         """Lay the masses of a hypothesis on footprints, if that fits better on its own basis."""
         same = searcher.problem, best
         if same not in self._laid:
-            self._laid[same] = _laid(self, searcher, best, scale)
+            self._laid[same] = _laid(self, searcher, best)
         return self._laid[same]
 
-    def explained(self, searcher: Searcher, best: Fit, scale: float) -> bool:
+    def explained(self, searcher: Searcher, best: Fit) -> bool:
         """Whether a hypothesis leaves no more than right models do, its masses laid on footprints.
 
         A mass on the nearest grid leaves what a spring or an absorber beside it would make up for.
         """
-        return usual(*self.laid(searcher, best, scale))
+        return usual(*self.laid(searcher, best))
 
 
 def _judged(
@@ -183,15 +181,11 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher, found = max(ways, key=lambda way: _score(*way))
     progress("weighing the best hypotheses on bases of their own")
     searcher, found, explained = _footed(trial, searcher, found)
-    searcher, found = _bettered(searcher, found, reshaped)
     if not explained:
-        searcher, found, explained = _footed(trial, searcher, found)
-    if not explained:
-        on_stands = partial(equipped, trial.request.structure)
-        searcher, found = _bettered(searcher, found, on_stands)
+        searcher, found = _equipped(trial, searcher, found)
     found, verdict = _weighed(trial, searcher, found)
     if not explained:
-        searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
+        searcher, best = trial.laid(searcher, found.levels[verdict.accepted])
         found = found.with_level(best)
     return searcher, found, verdict
 
@@ -200,21 +194,19 @@ def _footed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, 
     """Lay masses on footprints if no more is left then than right models leave; say whether."""
     verdict = judge(searcher, found)
     best = found.levels[verdict.accepted]
-    if not trial.explained(searcher, best, verdict.scale):
+    if not trial.explained(searcher, best):
         return searcher, found, False
-    searcher, best = trial.laid(searcher, best, verdict.scale)
+    searcher, best = trial.laid(searcher, best)
     return searcher, found.with_level(best), True
 
 
-def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
     structure = trial.request.structure
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
         with suppress(TrueupError):
             free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
-            if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
-                wide, laid = reshaped(wide, laid, scale)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
                 return wide, laid
@@ -309,16 +301,13 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
-def _bettered(
-    searcher: Searcher,
-    found: Found,
-    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
-) -> tuple[Searcher, Found]:
-    """Give patches of the hypotheses that earned their place better shapes, or masses stands."""
+def _equipped(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
+    """Give masses of the hypotheses that earned their place stands."""
     verdict = judge(searcher, found)
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
-        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
+        structure = trial.request.structure
+        searcher, levels[k] = equipped(structure, searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
 
 

@@ -68,9 +68,8 @@ def grown(
         for state in beam:
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
-            for branch in _varied(
-                searcher, searcher.branches(state, searcher.effort.branches), soft
-            ):
+            branches = searcher.branches(state, searcher.effort.branches)
+            for branch in _varied(searcher, branches, soft):
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, small, True))
             best = min(found, key=_objective)
@@ -92,9 +91,8 @@ def grown(
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
         rivals.append(rest[: SEARCH.rivals])
-        previous = levels[-1]
         levels.append(best)
-        if enough(previous, best, 1.0):
+        if enough(levels[-2], best, 1.0):
             break
         beam = sorted(_near(searcher, beam, base), key=_objective)
     return Found(tuple(levels), tuple(rivals))

@@ -1,11 +1,10 @@
-"""Patches grow and shrink, a row of elements at a time, and links end elsewhere, where that pays.
+"""The shapes next to that of a patch, a row of elements more or less, and where else links end.
 
 The catalogue has round and elongated patches of a few sizes. What is really there ends where a
 bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
-second effect beside the first. So the patches of a hypothesis that earned its place take in the
-next row of elements on one side or all round, or give one up, or stop at the property they are on,
-as long as each step gains more than trying so many shapes is worth. So do links: the catalogue has
-those between some grids.
+second effect beside the first. So the last look tries patches that take in the next row of elements
+on one side or all round, or give one up, or stop at the property they are on. So with links: the
+catalogue has those between some grids.
 """
 
 from collections.abc import Sequence
@@ -24,36 +23,6 @@ from .exact_scan import scan
 from .footprints import with_kind
 from .moves import Searcher
 from .search_numbers import SEARCH
-
-
-def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
-    """Return a hypothesis with patches of better shapes, and a searcher that knows them.
-
-    The noise has `scale` times the assumed variance: a step has to gain that much more.
-    """
-    for q in range(len(state.suspects)):
-        for _ in range(SEARCH.rounds):
-            better = _step(searcher, state, q, scale)
-            if better is None:
-                break
-            searcher, state = better
-    return searcher, state
-
-
-def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
-    """Give one suspect the best of the shapes next to its own, None where none is worth it."""
-    wide, options = options_beside(searcher, state.suspects[q])
-    worth = 2.0 * scale * np.log(1.0 + len(options))
-    for option in promising(wide, state, q, options)[: SEARCH.tried]:
-        trial = _with(wide, state, q, option)
-        if trial.objective < state.objective - worth:
-            return wide, trial
-    return None
-
-
-def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
-    beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
-    return searcher.fitted(state, beside)
 
 
 def promising(

@@ -23,11 +23,11 @@ from .search_numbers import SEARCH
 def searched(
     searcher: Searcher,
     progress: Callable[[str], None] = lambda _: None,
-    explained: Callable[[Searcher, Fit, float], bool] = lambda s, f, _: usual(s, f),
+    explained: Callable[[Searcher, Fit], bool] = lambda s, f: usual(s, f),
 ) -> Found:
     """Search with all kinds but the late ones, and with these where much is left.
 
-    ``explained(searcher, best, scale)`` says where not, `scale` being that of the noise.
+    ``explained(searcher, best)`` says where not.
     A tuned one is not looked for where an adequate explanation was found: it would imitate what
     that leaves.
     """
@@ -36,7 +36,7 @@ def searched(
     found = grown(simple, enough(simple), progress, explains=partial(complete, simple))
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
     best = int(np.argmin(costs))
-    if not any(kinds) or explained(searcher, found.levels[best], scale):
+    if not any(kinds) or explained(searcher, found.levels[best]):
         return found
     stands = bool(best) and adequate(searcher, found.levels[best])
     if stands or complete(searcher, found.levels[-1]):
