@@ -157,9 +157,7 @@ def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alte
     weights = three if k == 3 else pair
     out = [told(about(axes, u, of), w) for u, w in zip(own, weights, strict=True)]
     if k == 3:
-        found = anyhow(axes, _kabsch(node, axes), of)
-        if found is not None:
-            out.append(told(found, SENSORS.about_any * share))
+        out.append(told(anyhow(axes, _kabsch(node, axes), of), SENSORS.about_any * share))
     return out
 
 

@@ -65,11 +65,6 @@ class SensorNumbers:
     angle_unsure: float = number(0.3, "rad", "spread above which the likeliest angle is told, not the mean")
     tilts: int = number(60, "angles", "by which a lone sensor is tilted")
     ways: int = number(36, "directions", "in which it is")
-    turn_step: float = number(0.02, "rad", "of the differences of a log likelihood by a rotation")
-    turn_most: float = number(0.2, "rad", "largest step of a rotation")
-    turn_done: float = number(0.2, "of turn_step", "step at which a rotation is found")
-    turn_rounds: int = number(4, "steps", "of a rotation, at most")
-    turn_curved: float = number(1.0, "ln L / rad²", "least curvature of a rotation that the readings hold")
 
     back_lone: float = number(0.5, "of swapped lone sensors", "with the sign turned", "which way a lone sensor looks is not kept")
     back: float = number(0.15, "of swapped directions", "with the sign turned")
