@@ -151,7 +151,7 @@ def fit(
         H, g = _normal_equations(problem, now, active)
         better = None
         for _ in range(LIKELIHOOD.dampings):
-            step = _step(H, g, damping)
+            step = newton(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             with suppress(np.linalg.LinAlgError):
@@ -178,7 +178,7 @@ def promised(
     return now.objective - float(g @ np.linalg.solve(H, g)) if len(g) else now.objective
 
 
-def _step(H: Floats, g: Floats, damping: float) -> Floats:
+def newton(H: Floats, g: Floats, damping: float) -> Floats:
     """Return Levenberg's step, each unknown in units of its own curvature."""
     unit = 1.0 / np.sqrt(np.diag(H))
     scaled = H * unit * unit[:, None] + (damping + LIKELIHOOD.damping_least) * np.eye(len(H))
@@ -232,12 +232,16 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     J = np.concatenate([doff * w, (d * w).reshape(len(d), -1)], axis=1)
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
+    spread, off = unexpected(problem, now, active)
+    return H + np.diag(1.0 / spread**2), g + off / spread**2
+
+
+def unexpected(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
+    """Return the spread of each unknown beforehand, and how far off its mean it is, (n,) each."""
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
     spread = np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
     mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
-    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
-    H = H + np.diag(1.0 / spread**2)
-    return H, g + (x - mean) / spread**2
+    return spread, np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)]) - mean
 
 
 def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:

@@ -15,10 +15,9 @@ import numpy as np
 
 from ...arrays import Floats
 from ...reduction.reduced_sum import ReducedSum
-from ..effects.candidates import magnitudes
 from ..likelihood.hypothesis import Fit, Prior, Problem
 from ..likelihood.likelihood_numbers import LIKELIHOOD
-from ..likelihood.map_fit import products, stepped, surprise
+from ..likelihood.map_fit import newton, products, stepped, surprise, unexpected
 from ..likelihood.mode_likelihood import targets
 from .diffuse_error import Diffuse, Seen, covariances, diffuse
 from .model_error_numbers import MODEL_ERROR
@@ -199,7 +198,7 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
         better = None
         for _ in range(LIKELIHOOD.dampings):
             with suppress(np.linalg.LinAlgError):
-                step = _step(H, g, damping)
+                step = np.clip(newton(H, g, damping), -0.5, 0.5)
                 if -float(g @ step) < MODEL_ERROR.tolerance:
                     break
                 trial = stepped(problem, now, active, step)
@@ -218,21 +217,10 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
         if gained < MODEL_ERROR.tolerance:
             break
     H, _ = _normal_equations(problem, now, best, active)
-    spread = _spread(problem, now, active)
+    spread, _ = unexpected(problem, now, active)
     occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
     evidence = height - occam
     return Judged(now, best, evidence, H, evidence, evidence, problem, now)
-
-
-def _step(H: Floats, g: Floats, damping: float) -> Floats:
-    unit = 1.0 / np.sqrt(np.diag(H))
-    scaled = H * unit * unit[:, None] + damping * np.eye(len(H))
-    return np.asarray(np.clip(-unit * np.linalg.solve(scaled, unit * g), -0.5, 0.5))
-
-
-def _spread(problem: Problem, now: Fit, active: Sequence[int]) -> Floats:
-    kinds = [problem.catalogue[s.kind] for s in now.suspects]
-    return np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
 
 
 def _normal_equations(
@@ -266,8 +254,5 @@ def _normal_equations(
         X = white(j, np.column_stack([J[:, :, j].T, -rest[:, j]]))
         H += sure[j] * X[:, :-1].T @ X[:, :-1]
         g += sure[j] * X[:, :-1].T @ X[:, -1]
-    kinds = [problem.catalogue[s.kind] for s in now.suspects]
-    spread = _spread(problem, now, active)
-    mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
-    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
-    return H + np.diag(1.0 / spread**2), g + (x - mean) / spread**2
+    spread, off = unexpected(problem, now, active)
+    return H + np.diag(1.0 / spread**2), g + off / spread**2

@@ -20,6 +20,7 @@ from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure
 from .exact_scan import scan
+from .footprints import with_kind
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -50,7 +51,8 @@ def as_blocks(
         stands = _stands(structure, c, s.row) if _at_point(own) else []
         if stands:
             made = equipment(c, stands, [block(float(np.exp(s.theta[0])), density)])
-            searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
+            kind = len(searcher.problem.catalogue)
+            searcher = with_kind(searcher, kind, made)
             new = Suspect(kind, 0, s.theta[:1])
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
             state = searcher.fitted(state, suspects)
@@ -154,7 +156,8 @@ def _looked(
     """Look at bodies in place of one mass with all else as it stands in the best fit so far."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
     made = equipment(template, stands, bodies)
-    wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
+    kind = len(searcher.problem.catalogue)
+    wide = with_kind(searcher, kind, made)
     small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
     trials = made.around(made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.sizes))
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
@@ -186,15 +189,3 @@ def _around(body: Body, step: float) -> list[Body]:
     out = [body, *(replace(body, offset=(x, y, z)) for x, y, z in centres)]
     radii = (body.radius + step, body.radius - step)
     return out + [replace(body, radius=r) for r in radii if r > 0.0]
-
-
-def _with(searcher: Searcher, made: Candidates) -> Searcher:
-    """Return the search with further candidates."""
-    p = searcher.problem
-    problem = replace(
-        p,
-        catalogue=(*p.catalogue, made),
-        factors=(*p.factors, made.factors(p.basis)),
-        missing=(*p.missing, None) if p.missing else (),
-    )
-    return replace(searcher, problem=problem, coarse=(*searcher.coarse, np.zeros(0, np.int64)))
