@@ -21,6 +21,7 @@ from .effects.effect_kind import Scale
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
+from .likelihood.likelihood_numbers import EFFORT
 from .likelihood.map_fit import evaluate, fit
 from .likelihood.mode_likelihood import Evidence, noise_of
 from .likelihood.request import Request as Request
@@ -386,4 +387,4 @@ def _searcher(trial: _Trial) -> Searcher:
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, request.effort, trial.judged)
+    return Searcher(small, coarse, active, null.nuisance, size, EFFORT, trial.judged)

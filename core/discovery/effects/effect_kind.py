@@ -82,8 +82,6 @@ class EffectKind:
         What it becomes where its tuning says nothing, with which size: sizes (t,) to sizes by kind.
     further : callable
         Further words of the magnitude of one place.
-    in_modes : bool
-        Whether undamped modes show it.
     plural : str
         The label of several; "" where it ends with another s.
     late : bool
@@ -101,7 +99,6 @@ class EffectKind:
     spread_out: bool = False
     limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
-    in_modes: bool = True
     plural: str = ""
     late: bool = False
 

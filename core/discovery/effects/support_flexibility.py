@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Structure, Supports, thinned
+from ..reduction.elements_and_supports import Structure, Supports, placed, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -99,10 +99,7 @@ def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
         (K, _), (deck, _) = (m.matrices(rows, x) for x in (p, structure.model.deck_point))
         if K is None or deck is None:
             continue
-        at = m.coordinates(rows)
-        i = np.broadcast_to(at[:, :, None], K.shape).ravel()
-        j = np.broadcast_to(at[:, None, :], K.shape).ravel()
-        change = sp.csr_matrix(((K - deck).ravel(), (i, j)), (n, n))[held]
+        change = placed(n, m.coordinates(rows), K - deck)[held]
         root, coupling = root + change @ structure.displacement, coupling + change[:, held]
     return replace(s, root=root.tocsr(), coupling=coupling.tocsr())
 
