@@ -102,7 +102,7 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
         moved = (replace(o, theta=now.suspects[q].theta) for o in options)
         tried = [evaluate(searcher.problem, now.nuisance, (*before, o, *after)) for o in moved]
         return searcher, tried
-    options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
+    options = promising(searcher, state, q, [*options, *near])
     tried = [
         searcher.fitted(state, (*before, option, *after)) for option in options[: SEARCH.looked]
     ]

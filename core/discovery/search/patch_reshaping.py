@@ -30,7 +30,6 @@ def promising(
     state: Fit,
     q: int,
     options: Sequence[Suspect],
-    sizes: Sequence[float] = SEARCH.sizes,
 ) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
@@ -39,7 +38,7 @@ def promising(
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
         c = searcher.problem.catalogue[kind]
-        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(sizes))
+        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(SEARCH.look_sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))
