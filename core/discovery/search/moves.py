@@ -50,10 +50,6 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
 
-    def tuned(self, s: Suspect) -> bool:
-        """Whether a suspect is of a kind with a magnitude that tunes it."""
-        return self.problem.catalogue[s.kind].tunings > 1
-
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
     ) -> list[tuple[float, Suspect]]:
@@ -248,9 +244,9 @@ class Searcher:
         for q in self.doubtful(state):
             others = state.suspects[:q] + state.suspects[q + 1 :]
             for apart in parted(self.problem.catalogue, others):
-                near = self.fitted(state, apart, SEARCH.steps_new, soften=True)
+                near = self.fitted(state, apart, soften=True)
                 trial = self.settled(self.refined(near))
-                if trial.objective < state.objective - SEARCH.better_anew:
+                if trial.objective < state.objective - SEARCH.better:
                     return trial
         return state
 

@@ -43,7 +43,6 @@ class SearchNumbers:
     every_across: float = number(40.0, "places", "across the structure, each way, that a search by estimated errors looks at, where there are many")
     every_most: int = number(3000, "grids", "that it looks at one by one, at most", "time")
 
-    clearly: float = number(1.3, "of a simple effect's gain", "what a tuned one must gain")
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")
