@@ -86,13 +86,16 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     an effect that does not foretell them loses what it gained. The penalty of a suspect is twice
     the log of the number of places it could have been at (its prior) and a margin; the noise is
     scaled by what the best hypothesis leaves. Where what is chosen so could not be claimed, what it
-    leaves is no noise, and richer ones count by the error of the model.
+    leaves is no noise, and richer ones that gain enough for a claim count by the error of the model.
     """
     best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
     scale = noise_scale(searcher.problem, best)
     accepted = int(np.argmin([cost(searcher, f, scale) for f in found.levels]))
     if accepted + 1 < len(found.levels) and not _settles(searcher, found, accepted):
-        accepted = max(accepted, kept([scored(searcher, f) for f in found.levels]))
+        levels = [scored(searcher, f) for f in found.levels]
+        richer = levels[kept(levels)]
+        if richer.judged and richer.score - levels[0].score > needed(richer.judged):
+            accepted = max(accepted, len(richer.fit.suspects))
     return Judgement(scale, accepted)
 
 

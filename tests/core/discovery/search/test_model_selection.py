@@ -170,11 +170,12 @@ def test_what_an_adequate_hypothesis_leaves_is_noise():
     assert not enough(replace(s, judged=likelier))(worse, one, 1.0)
 
 
-@pytest.mark.parametrize(("error", "gain", "accepted"), [
-    (0.05, 100.0, 2), (0.05, 5.0, 1), (0.0005, 100.0, 1),
+@pytest.mark.parametrize(("error", "first", "gain", "accepted"), [
+    (0.05, 100.0, 100.0, 2), (0.05, 100.0, 5.0, 1), (0.05, -50.0, 58.0, 1),
+    (0.0005, 100.0, 100.0, 1),
 ])  # fmt: skip
 def test_beside_what_cannot_be_claimed_a_richer_one_counts_by_the_error_of_the_model(
-    error, gain, accepted
+    error, first, gain, accepted
 ):
     """What a wrong hypothesis leaves is taken for noise, by which no second effect pays."""
     s = searcher(hidden(masses=[(7, 2.0)]))
@@ -186,7 +187,7 @@ def test_beside_what_cannot_be_claimed_a_richer_one_counts_by_the_error_of_the_m
     before = leaving(0.3)(None, null)
 
     def judged(problem, f, *least):
-        evidence = 100.0 * bool(f.suspects) + gain * (len(f.suspects) > 1)
+        evidence = first * bool(f.suspects) + gain * (len(f.suspects) > 1)
         return leaving(error, evidence=lambda _: evidence)(problem, f) if f.suspects else before
 
     s = replace(s, judged=judged)
