@@ -86,7 +86,7 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     an effect that does not foretell them loses what it gained. The penalty of a suspect is twice
     the log of the number of places it could have been at (its prior) and a margin; the noise is
     scaled by what the best hypothesis leaves. Where what is chosen so could not be claimed, what it
-    leaves is no noise, and richer ones that gain enough for a claim count by the error of the model.
+    leaves is no noise; richer ones that gain enough for a claim count by the error of the model.
     """
     best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
     scale = noise_scale(searcher.problem, best)
