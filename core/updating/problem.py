@@ -260,7 +260,13 @@ class Problem:
     def step(
         self, orders: Orders, point: Point, active: Sequence[int], residuals: Sequence[Residual]
     ) -> Floats:
-        """Return the bounded step of equations (3) and (4), (n_parameter,)."""
+        """Return the bounded step of equations (3) and (4), (n_parameter,).
+
+        Beside W_p a step is damped by what residuals scatter (Levenberg 1944, Quarterly of Applied
+        Mathematics 2, 164), as if each factor were known roughly to stay where it is: what the
+        tests determine moves as it would, what they do not hardly moves, and where residuals
+        vanish nothing holds it. With a prior that is what holds it.
+        """
         lin = self.linearise(orders, point, active, residuals)
         free = list(active)
         lower, upper = self.bounds
@@ -268,6 +274,9 @@ class Problem:
         prior = np.sqrt(self.parts[0].objective.weights.regularisation * weight)
         prior = np.hypot(prior, UPDATING.unseen * np.linalg.norm(lin.gradient))
         p = np.asarray(point.factors)[free]
+        if not any(r.believes_sigmas for r in residuals):
+            data = sum(r.data(s.seen) for r in residuals for s in point.states)
+            prior = np.hypot(prior, np.sqrt(_left_over(lin, data)) / (UPDATING.damped * p))
         down, up = UPDATING.step
         least = np.maximum(lower[free] - p, -down * p) - UPDATING.slack
         most = np.minimum(upper[free] - p, up * p) + UPDATING.slack
@@ -376,6 +385,14 @@ def _without_factor(state: State) -> State:
 def _in_full(state: State) -> Eigensolution:
     assert isinstance(state.solution, Eigensolution)
     return state.solution
+
+
+def _left_over(lin: Linearisation, data: int) -> float:
+    """Return the variance of so many data beside their derivatives; 0 where these explain all."""
+    spare = data - lin.gradient.shape[1]
+    Q = np.linalg.qr(lin.gradient)[0]
+    left = lin.values - Q @ (Q.T @ lin.values)
+    return float(left @ left) / spare if spare > 0 else 0.0
 
 
 def _require_same(known: Parameter, other: Parameter, first: str, c: Configuration) -> None:

@@ -42,6 +42,7 @@ class UpdatingNumbers:
     least_gain: float = number(1e-3, "of the objective", "by which the pairs that are kept must be closer", CHECK)
     kept: float = number(0.75, "of the pairs", "that a step must keep to be judged by those alone", CHECK)
     step: tuple[float, float] = number((0.5, 1.0), "of a factor", "largest step down and up", CHECK)
+    damped: float = number(0.5, "of a factor", "standard deviation of a step that residuals of this scatter do not determine", CHECK)
     slack: float = number(1e-12, "-", "between the bounds of a step that would fall together", ROUNDING)
 
     reach: float = number(2.0, "times", "or part of, the factors of a reduced model, beyond which a profile is not followed", CHECK)

@@ -155,6 +155,28 @@ def test_regularisation_damps_the_steps_not_the_answer():
     np.testing.assert_allclose(done.factors, truth, rtol=1e-4)
 
 
+def test_what_the_test_hardly_determines_hardly_moves_in_a_step():
+    """The last spring strains little; scatter of 3 % would drive a step far, and nowhere."""
+    model, weights = chain([range(7), [7]]), Weights(regularisation=0.0)
+    target = measured(model, [1.2, 1.0], slice(0, 3), noise=0.03, seed=3)
+    once, done = (
+        update(model, target, [Stage((0, 1), "frequencies", k)], weights=weights, n_modes=8)
+        for k in (1, 30)
+    )
+    moved, error = once.factors - 1.0, done.standard_error
+    assert error[0] < 0.25 and error[1] > 0.75
+    assert moved[0] == pytest.approx(done.factors[0] - 1.0, abs=error[0] / 4)
+    assert abs(moved[1]) < error[1] / 20
+
+
+def test_nothing_holds_a_step_where_residuals_vanish():
+    model = chain([range(7), [7]])
+    target = measured(model, [1.2, 1.7], slice(0, 4))
+    done = update(model, target, [Stage((0, 1), "frequencies")], n_modes=8, tolerance=1e-6)
+    assert len(done.history) - 1 <= 6
+    np.testing.assert_allclose(done.factors, [1.2, 1.7], rtol=1e-5)
+
+
 def test_a_factor_stays_within_its_bounds_and_says_so():
     model = chain(HALVES)
     tight, free = model.parameters
