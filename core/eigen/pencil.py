@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..errors import CheckError, InputError
 from ..noun import Noun
 from ..numerics.block_lanczos import NEGATIVE_MASS
 from ..numerics.factorisation import Factorisation
-from ..numerics.shared_pattern_sum import shared, weighted_sum
+from ..numerics.shared_pattern_sum import same_pattern, shared, weighted_sum
 from .eigen_numbers import EIGEN
 
 
@@ -189,10 +190,8 @@ class Pencil:
                 f"the mass at {self.name(row)} is negative ({mass[row]:g}): "
                 "look for a negative density, NSM or point mass"
             )
-        used = np.zeros(self.n, bool)
-        for matrix in (self.K, self.M):
-            rows = np.repeat(np.arange(self.n), np.diff(matrix.indptr))
-            used[rows[matrix.data != 0.0]] = True
+        ones = np.ones(self.n)
+        used = (magnitudes(self.K) @ ones > 0.0) | (magnitudes(self.M) @ ones > 0.0)
         if not used.all():
             rows = np.flatnonzero(~used)
             names = ", ".join(self.name(int(r)) for r in rows[: EIGEN.unused_named])
@@ -211,10 +210,11 @@ def same_entries(a: sp.csr_matrix, b: sp.csr_matrix) -> bool:
 def widest_pattern(model: Model) -> sp.csr_matrix:
     """Upper triangle of ones where a term of K or M has an entry, whatever the parameters."""
     every = [t.matrix for t in (*model.stiffness, *model.mass)]
-    ones = weighted_sum(((1.0, *shared([np.ones(A.nnz)], A)) for A in every), model.n_free)
-    upper = sp.triu(ones, format="csr")
-    upper.data[:] = 1.0
-    return upper
+    distinct = every[:1] + [b for a, b in pairwise(every) if not same_pattern(a, b)]
+    parts = [sp.triu(A, format="csr") for A in distinct]
+    ones = weighted_sum(((1.0, *shared([np.ones(A.nnz)], A)) for A in parts), model.n_free)
+    ones.data[:] = 1.0
+    return ones
 
 
 @lru_cache(maxsize=2)

@@ -164,7 +164,7 @@ def test_what_the_test_hardly_determines_hardly_moves_in_a_step():
         for k in (1, 30)
     )
     moved, error = once.factors - 1.0, done.standard_error
-    assert error[0] < 0.25 and error[1] > 0.75
+    assert error[0] < 0.25 < 0.75 < error[1]
     assert moved[0] == pytest.approx(done.factors[0] - 1.0, abs=error[0] / 4)
     assert abs(moved[1]) < error[1] / 20
 
