@@ -187,14 +187,15 @@ def _work_off(
     Returned are where it ends, in full, the reduced models that were last used, how many full
     solves of each configuration it took, and why it stopped.
     """
-    solves, missed = 0, False
+    solves, widened, missed = 0, 0, False
     near: list[ReducedOrder] | None = None
     centre = arrived = point
     while left > 0:
-        if near is not None and _apart(point, centre) < UPDATING.rebuild:
-            near = problem.widened(near, arrived)
+        close = _apart(point, centre) < UPDATING.rebuild
+        if near is not None and close and widened < UPDATING.widened:
+            near, widened = problem.widened(near, arrived), widened + 1
         else:
-            near, centre = None, point  # two bases at a time are memory
+            near, centre, widened = None, point, 0  # two bases at a time are memory
             near = problem.around(point, stage.parameters, UPDATING.sketch)
         point, arrived = point.without_factors(), arrived.without_factors()
         most = 1 if missed else left

@@ -52,6 +52,7 @@ class UpdatingNumbers:
     uncorrected: int = number(3, "steps", "on a basis before it is corrected, at most", CHECK)
     fallen: float = number(0.5, "of the objective where a basis was last corrected", "below which it is, so far away", CHECK)
     rebuild: float = number(4.0, "times", "or part of, the factors that a reduced model was made at, beyond which it is made anew", CHECK)
+    widened: int = number(3, "times", "that modes of other points are taken into a basis before it is made anew: rounding adds up", CHECK)
     agree: float = number(0.1, "of the tolerance", "difference of eigenvalues, full and reduced, that ends an update", CHECK)
     agree_least: float = number(1e-6, "of λ", "the same, at least", "what the check at full order is sure of: `eigen.warm`")
     balance: float = number(1e-6, "of the load", "unbalanced force at which a static solution holds", ROUNDING)
