@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,7 +22,6 @@ from .effects.effect_kind import Scale
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Prior, Problem
-from .likelihood.likelihood_numbers import EFFORT
 from .likelihood.map_fit import evaluate, fit
 from .likelihood.mode_likelihood import Evidence, noise_of
 from .likelihood.request import Request as Request
@@ -46,6 +46,7 @@ from .search.model_selection import (
     usual,
 )
 from .search.moves import Searcher
+from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
 from .search.robust_search import robust
 from .search.set_up import beside_reach
@@ -139,19 +140,19 @@ class _Trial:
                 self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
 
-    def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
+    def laid(self, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
         """Lay the masses of a hypothesis on footprints, if that fits better on its own basis."""
         same = searcher.problem, best
         if same not in self._laid:
-            self._laid[same] = _laid(self, searcher, best)
+            self._laid[same] = _laid(self, searcher, best, scale)
         return self._laid[same]
 
-    def explained(self, searcher: Searcher, best: Fit) -> bool:
+    def explained(self, searcher: Searcher, best: Fit, scale: float) -> bool:
         """Whether a hypothesis leaves no more than right models do, its masses laid on footprints.
 
         A mass on the nearest grid leaves what a spring or an absorber beside it would make up for.
         """
-        return usual(*self.laid(searcher, best))
+        return usual(*self.laid(searcher, best, scale))
 
 
 def _judged(
@@ -182,11 +183,15 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher, found = max(ways, key=lambda way: _score(*way))
     progress("weighing the best hypotheses on bases of their own")
     searcher, found, explained = _footed(trial, searcher, found)
+    searcher, found = _bettered(searcher, found, reshaped)
     if not explained:
-        searcher, found = _equipped(trial, searcher, found)
+        searcher, found, explained = _footed(trial, searcher, found)
+    if not explained:
+        on_stands = partial(equipped, trial.request.structure)
+        searcher, found = _bettered(searcher, found, on_stands)
     found, verdict = _weighed(trial, searcher, found)
     if not explained:
-        searcher, best = trial.laid(searcher, found.levels[verdict.accepted])
+        searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
         found = found.with_level(best)
     return searcher, found, verdict
 
@@ -195,19 +200,21 @@ def _footed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, 
     """Lay masses on footprints if no more is left then than right models leave; say whether."""
     verdict = judge(searcher, found)
     best = found.levels[verdict.accepted]
-    if not trial.explained(searcher, best):
+    if not trial.explained(searcher, best, verdict.scale):
         return searcher, found, False
-    searcher, best = trial.laid(searcher, best)
+    searcher, best = trial.laid(searcher, best, verdict.scale)
     return searcher, found.with_level(best), True
 
 
-def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
+def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
     structure = trial.request.structure
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
         with suppress(TrueupError):
             free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
+            if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
+                wide, laid = reshaped(wide, laid, scale)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
                 return wide, laid
@@ -285,8 +292,8 @@ def _prepared(
         e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
     )
     n = len(prior.spread)
-    zero = fit(problem, np.zeros(n), (), (n - 1,))
-    null = fit(problem, np.zeros(n), (), tuple(range(n)))
+    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
+    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
     columns = _below(null.eigenvalues, float(hz.max())) + DISCOVERY.band_more
     return replace(problem, columns=columns), null, zero
 
@@ -302,13 +309,16 @@ def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
     return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
-def _equipped(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
-    """Give masses of the hypotheses that earned their place stands."""
+def _bettered(
+    searcher: Searcher,
+    found: Found,
+    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
+) -> tuple[Searcher, Found]:
+    """Give patches of the hypotheses that earned their place better shapes, or masses stands."""
     verdict = judge(searcher, found)
     levels = list(found.levels)
     for k in range(1, verdict.accepted + 1):
-        structure = trial.request.structure
-        searcher, levels[k] = equipped(structure, searcher, levels[k], verdict.scale)
+        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
 
 
@@ -387,4 +397,4 @@ def _searcher(trial: _Trial) -> Searcher:
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, EFFORT, trial.judged)
+    return Searcher(small, coarse, active, null.nuisance, size, request.effort, trial.judged)

@@ -13,6 +13,8 @@ class DiscoveryNumbers:
     small_modes: int = number(80, "modes", "on which suspects are fitted, at most", "time")
     band: float = number(1.15, "of the highest test frequency", "up to which a mode may match")
     band_more: int = number(4, "modes", "above these that may")
+    steps_deck: int = number(10, "steps", "for the error of the mesh alone")
+    steps_null: int = number(30, "steps", "for the known parameters")
     estimated: float = number(6.0, "of the assumed variance", "what a best hypothesis leaves that asks for errors estimated by the test")
     modes_held: tuple[int, int] = number((4, 6), "modes", "first that is held out, and every how many after it")
     modes_enough: int = number(10, "modes", "from so many on")

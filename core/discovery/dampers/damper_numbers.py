@@ -32,6 +32,7 @@ class DamperNumbers:
     own_share: float = number(0.2, "of a predicted imaginary part", "that is wrong")
     freedom: float = number(3.0, "degrees of freedom", "how firmly both are known")
     complex_least: float = number(1e-3, "of the largest reading", "imaginary part below which shapes are real", ROUNDING)
+    odds_most: float = number(60.0, "ln", "odds are said up to it", "kept finite")
     shifted: float = number(0.004, "of f", "change of a frequency that a search for other effects would see")
     turned: float = number(0.1, "of a shape's length", "the same of a shape")
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import expit, logsumexp
+from scipy.special import logsumexp
 
 from ...arrays import Bools, Floats, Ints
 from ..likelihood.complex_modes import Oriented, added, imaginary, predicted
@@ -111,7 +111,7 @@ def find_damper(
     step = float(np.ptp(trials)) / max(len(trials) - 1, 1)
     deviation = np.sqrt(np.sum(within * (log_c - mean[:, None]) ** 2, axis=1) + step**2 / 12.0)
     return DamperFound(
-        float(expit(odds)),
+        1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most))),
         2.0 * odds,
         rows,
         np.exp(place - logsumexp(place)),

@@ -44,7 +44,7 @@ class Magnitude:
 
 MASS = Magnitude("mass", EFFECTS.mass_error, is_mass=True)
 STIFFNESS = Magnitude("stiffness", EFFECTS.stiffness_error)
-FACTOR = Magnitude("factor", EFFECTS.stiffness_error)
+FACTOR = Magnitude("factor", EFFECTS.factor_error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +78,12 @@ class EffectKind:
         same as its own kind alone.
     spread_out : bool
         Whether it is what small patches of its nature become when they grow.
+    limits : callable
+        What it becomes where its tuning says nothing, with which size: sizes (t,) to sizes by kind.
     further : callable
         Further words of the magnitude of one place.
+    in_modes : bool
+        Whether undamped modes show it.
     plural : str
         The label of several; "" where it ends with another s.
     late : bool
@@ -95,7 +99,9 @@ class EffectKind:
     directed: bool = False
     nature: str = ""
     spread_out: bool = False
+    limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
+    in_modes: bool = True
     plural: str = ""
     late: bool = False
 

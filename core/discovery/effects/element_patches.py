@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, placed, thinned
+from ..reduction.elements_and_supports import Members, Structure, thinned
 from ..reduction.search_basis import Basis
 from .candidates import Candidates
 from .effect_kind import EffectKind
@@ -119,7 +119,7 @@ def _frames(corners: Floats) -> Floats:
 def _centres(xyz: Floats, spacing: float) -> Ints:
     chosen = thinned(xyz, spacing)
     while len(chosen) > EFFECTS.patch_centres:
-        spacing *= EFFECTS.thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
+        spacing *= EFFECTS.patch_thinned * np.sqrt(len(chosen) / EFFECTS.patch_centres)
         chosen = thinned(xyz, spacing)
     return chosen
 
@@ -227,10 +227,15 @@ class PatchCandidates(Candidates):
         """Return A of one place, (n_free, n_free)."""
         patch = self.patches[row]
         member = self.structure.members[patch.member]
+        at = member.coordinates(patch.rows)
         X = self.matrices(member, patch.rows)
         X = X / masses(X).sum() if self.of_unit_mass else X
+        m = at.shape[1]
         D = self.structure.displacement
-        A = placed(D.shape[0], member.coordinates(patch.rows), X)
+        n = D.shape[0]
+        A = sp.csr_matrix(
+            (X.ravel(), (np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel())), (n, n)
+        )
         return (D.T @ A @ D).tocsr()
 
     def matrices(self, member: Members, rows: Ints) -> Floats:

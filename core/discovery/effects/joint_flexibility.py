@@ -27,7 +27,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         Q = np.take_along_axis(K, turning[:, None, :], axis=2)
         D = np.take_along_axis(Q, turning[:, :, None], axis=1)
         d, R = np.linalg.eigh(D)
-        stiff = d[:, 0] > EFFECTS.free * d[:, -1]
+        stiff = d[:, 0] > EFFECTS.joint_stiff * d[:, -1]
         if not stiff.any():
             continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
@@ -91,7 +91,7 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
         for (a, b), direction in zip(m.corners, t, strict=True):
             along[a].append(direction)
             along[b].append(-direction)
-    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.straight for d in along])
+    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.joint_straight for d in along])
     kinked &= count == 2
     joint = ((count >= 3) | kinked) & ~shelled(structure)
     return [np.argwhere(joint[m.corners]) for m in beams]

@@ -51,7 +51,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     xyz = points.xyz
     spacing = EFFECTS.link_spacing * scale.size
     while len(kept := thinned(xyz, spacing)) > EFFECTS.link_ends:
-        spacing *= EFFECTS.thinned
+        spacing *= EFFECTS.link_thinned
     a, b = np.triu_indices(len(kept), 1)
     length = np.linalg.norm(xyz[kept[b]] - xyz[kept[a]], axis=1)
     low, high = EFFECTS.link_lengths

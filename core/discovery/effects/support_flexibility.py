@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Structure, Supports, placed, thinned
+from ..reduction.elements_and_supports import Structure, Supports, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -99,7 +99,10 @@ def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
         (K, _), (deck, _) = (m.matrices(rows, x) for x in (p, structure.model.deck_point))
         if K is None or deck is None:
             continue
-        change = placed(n, m.coordinates(rows), K - deck)[held]
+        at = m.coordinates(rows)
+        i = np.broadcast_to(at[:, :, None], K.shape).ravel()
+        j = np.broadcast_to(at[:, None, :], K.shape).ravel()
+        change = sp.csr_matrix(((K - deck).ravel(), (i, j)), (n, n))[held]
         root, coupling = root + change @ structure.displacement, coupling + change[:, held]
     return replace(s, root=root.tocsr(), coupling=coupling.tocsr())
 
@@ -184,7 +187,7 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
         grids = np.unique(s.grid[rows])
         (d,), (W,) = directions(C[None], len(p.free))
-        d = np.maximum(d, EFFECTS.free * d[-1])
+        d = np.maximum(d, EFFECTS.support_least * d[-1])
         own[i, at] = d * len(grids)
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))

@@ -40,8 +40,7 @@ class LikelihoodNumbers:
     ridge: float = number(1e-6, "-", "on the diagonal of a Gram matrix of shapes that are alike", ROUNDING)
     least_eigenvalue: float = number(1e-6, "of a test mode's λ", "λ of a rigid-body mode that is matched to it")
 
-    steps: int = number(20, "steps", "of Gauss and Newton, at most")
-    steps_near: int = number(5, "steps", "where a fit begins near to one that is known")
+    steps: int = number(8, "steps", "of Gauss and Newton, unless said otherwise")
     tolerance: float = number(0.05, "2 ln L", "fall of the objective that counts")
     dampings: int = number(5, "trials", "of Levenberg's damping a step")
     damping_first: float = number(0.05, "of the curvature", "least damping after a step that failed")
@@ -51,11 +50,14 @@ class LikelihoodNumbers:
     reach: float = number(0.8, "ln p, or steps of a kind", "largest move of an unknown at once")
     few_modes: float = number(0.25, "of the eigenpairs", "below which finding these alone takes less time than all", "time")
     degenerate: float = number(2e-3, "of λ", "gap below which modes do not turn into each other in a derivative")
+    apart_least: float = number(1e-12, "1 - MAC", "least that is divided by", ROUNDING)
     significant: float = number(3.0, "standard deviations", "by which a known parameter moved, for the test to say that it is off")
     edge: float = number(0.04, "of ln λ", "how far within the measured band a mode counts in full as one too many")
+    nil: float = number(1e-9, "of the test's lowest λ", "λ of a mode without strain whose log is taken", ROUNDING)
     law_top: float = number(2.0, "of the test's highest λ", "below which springs that stand for a rigid link do not matter")
 
     above: float = number(1.5, "of the highest test frequency", "up to which modes count when shapes are turned onto the test's")
+    turning: float = number(0.02, "of λ", "gaps below which modes turn freely, see `mixing`")
     elastic: float = number(1e-3, "of the highest frequency", "above which a mode has a damping ratio", ROUNDING)
 
     lines: int = number(240, "lines", "of the responses that hypotheses are compared on", "time")

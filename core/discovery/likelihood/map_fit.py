@@ -123,7 +123,7 @@ def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
 
     One near either end counts in part: a slightly other model would have it outside.
     """
-    alone = np.maximum(np.delete(values, match), LIKELIHOOD.least_eigenvalue * aim.min())
+    alone = np.maximum(np.delete(values, match), LIKELIHOOD.nil * aim.min())
     inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / LIKELIHOOD.edge
     return float(np.sum(np.clip(inside, 0.0, 1.0)))
 
@@ -151,7 +151,7 @@ def fit(
         H, g = _normal_equations(problem, now, active)
         better = None
         for _ in range(LIKELIHOOD.dampings):
-            step = newton(H, g, damping)
+            step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             with suppress(np.linalg.LinAlgError):
@@ -178,7 +178,7 @@ def promised(
     return now.objective - float(g @ np.linalg.solve(H, g)) if len(g) else now.objective
 
 
-def newton(H: Floats, g: Floats, damping: float) -> Floats:
+def _step(H: Floats, g: Floats, damping: float) -> Floats:
     """Return Levenberg's step, each unknown in units of its own curvature."""
     unit = 1.0 / np.sqrt(np.diag(H))
     scaled = H * unit * unit[:, None] + (damping + LIKELIHOOD.damping_least) * np.eye(len(H))
@@ -222,7 +222,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     strained = np.where(lam[:m] > LIKELIHOOD.least_eigenvalue * aim.min(), lam[:m], 0.0)
     joint = joint_macs(strained, t.T @ near, near.T @ near, noise.mixing)[here, k]
     own = np.sum(t * a, axis=0) ** 2
-    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, np.finfo(float).eps))
+    counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, LIKELIHOOD.apart_least))
     scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)
     rest = (a - t * np.sum(t * a, axis=0)) * scale
     d = dshape / length
@@ -232,16 +232,12 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     J = np.concatenate([doff * w, (d * w).reshape(len(d), -1)], axis=1)
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
-    spread, off = unexpected(problem, now, active)
-    return H + np.diag(1.0 / spread**2), g + off / spread**2
-
-
-def unexpected(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
-    """Return the spread of each unknown beforehand, and how far off its mean it is, (n,) each."""
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
     spread = np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
     mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
-    return spread, np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)]) - mean
+    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
+    H = H + np.diag(1.0 / spread**2)
+    return H, g + (x - mean) / spread**2
 
 
 def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:

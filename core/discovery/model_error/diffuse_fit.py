@@ -15,9 +15,10 @@ import numpy as np
 
 from ...arrays import Floats
 from ...reduction.reduced_sum import ReducedSum
+from ..effects.candidates import magnitudes
 from ..likelihood.hypothesis import Fit, Prior, Problem
 from ..likelihood.likelihood_numbers import LIKELIHOOD
-from ..likelihood.map_fit import newton, products, stepped, surprise, unexpected
+from ..likelihood.map_fit import products, stepped, surprise
 from ..likelihood.mode_likelihood import targets
 from .diffuse_error import Diffuse, Seen, covariances, diffuse
 from .model_error_numbers import MODEL_ERROR
@@ -94,6 +95,7 @@ def with_drift(
 ) -> Judged:
     """Return a hypothesis as it is likeliest: alone, with known fields, with smooth ones besides.
 
+    Known ones stand where that is clearly likelier: what they could be imitates other unknowns.
     Smooth ones have one size, tried from large to small as long as that is likelier, down to what
     could make a part of the error that is left: small ones are less likely than none where large
     ones are far likelier. No fields where they could not make up for what the hypothesis lacks of
@@ -104,7 +106,7 @@ def with_drift(
     if not plain.may_reach(least):
         return replace(plain, whole=False)
     first = _beside(problem, plain, known, active)
-    likelier = first.evidence > plain.evidence
+    likelier = first.evidence > plain.evidence + MODEL_ERROR.seen
     best, told = (first, known) if likelier else (plain, None)
     without, larger = best.evidence, -np.inf
     smallest = min(MODEL_ERROR.drift_part * plain.diffuse.error, max(MODEL_ERROR.drifts))
@@ -196,9 +198,9 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
     for _ in range(MODEL_ERROR.steps):
         H, g = _normal_equations(problem, now, best, active)
         better = None
-        for _ in range(LIKELIHOOD.dampings):
+        for _ in range(MODEL_ERROR.dampings):
             with suppress(np.linalg.LinAlgError):
-                step = np.clip(newton(H, g, damping), -0.5, 0.5)
+                step = _step(H, g, damping)
                 if -float(g @ step) < MODEL_ERROR.tolerance:
                     break
                 trial = stepped(problem, now, active, step)
@@ -217,10 +219,21 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
         if gained < MODEL_ERROR.tolerance:
             break
     H, _ = _normal_equations(problem, now, best, active)
-    spread, _ = unexpected(problem, now, active)
+    spread = _spread(problem, now, active)
     occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
     evidence = height - occam
     return Judged(now, best, evidence, H, evidence, evidence, problem, now)
+
+
+def _step(H: Floats, g: Floats, damping: float) -> Floats:
+    unit = 1.0 / np.sqrt(np.diag(H))
+    scaled = H * unit * unit[:, None] + damping * np.eye(len(H))
+    return np.asarray(np.clip(-unit * np.linalg.solve(scaled, unit * g), -0.5, 0.5))
+
+
+def _spread(problem: Problem, now: Fit, active: Sequence[int]) -> Floats:
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    return np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
 
 
 def _normal_equations(
@@ -254,5 +267,8 @@ def _normal_equations(
         X = white(j, np.column_stack([J[:, :, j].T, -rest[:, j]]))
         H += sure[j] * X[:, :-1].T @ X[:, :-1]
         g += sure[j] * X[:, :-1].T @ X[:, -1]
-    spread, off = unexpected(problem, now, active)
-    return H + np.diag(1.0 / spread**2), g + off / spread**2
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    spread = _spread(problem, now, active)
+    mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
+    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
+    return H + np.diag(1.0 / spread**2), g + (x - mean) / spread**2

@@ -42,6 +42,7 @@ class ModelErrorNumbers:
     steps: int = number(6, "steps", "of Gauss and Newton by the diffuse error, at most")
     tolerance: float = number(0.1, "ln L", "gain of such a step that counts, and that is looked for")
     hopeless: float = number(1.0, "ln L", "by which such a step may be behind at the error before it for others to be tried", "time")
+    dampings: int = number(4, "trials", "of Levenberg's damping a step")
 
 
 MODEL_ERROR = ModelErrorNumbers()

@@ -17,7 +17,7 @@ from ..effects.effect_kind import FACTOR, EffectKind
 from ..effects.effect_laws import FactorLaw
 from ..effects.effect_numbers import EFFECTS
 from ..effects.element_patches import root_of
-from ..reduction.elements_and_supports import Structure, placed
+from ..reduction.elements_and_supports import Structure
 from ..reduction.search_basis import Basis
 from .model_error_numbers import MODEL_ERROR
 
@@ -98,7 +98,9 @@ def _stiffness(structure: Structure, rows: list[Bools]) -> sp.csr_matrix:
         which = np.flatnonzero(own)
         K = m.matrices(which, p)[0] if len(which) else None
         if K is not None:
-            A = A + placed(A.shape[0], m.coordinates(which), K)
+            at = m.coordinates(which)
+            i, j = np.broadcast_arrays(at[:, :, None], at[:, None, :])
+            A = A + sp.csr_matrix((K.ravel(), (i.ravel(), j.ravel())), A.shape)
     return (D.T @ A @ D).tocsr()
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from ...arrays import Floats, Ints
 from ...data.parametric_model import Model
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import misfit, solve
 from .posterior_numbers import POSTERIOR
 
@@ -67,16 +66,16 @@ def further_modes(problem: Problem, model: Model, best: Fit, rivals: Rivals) -> 
         return ()
     rows = np.flatnonzero(model.dofs.component <= 3)
     own = _forecast(problem, best, rows)
-    top = LIKELIHOOD.above * float(problem.whole.frequencies_hz.max())
-    within = np.flatnonzero((own.hz < top) & (own.hz > LIKELIHOOD.elastic * top))
+    top = POSTERIOR.band_above * float(problem.whole.frequencies_hz.max())
+    within = np.flatnonzero((own.hz < top) & (own.hz > POSTERIOR.elastic * top))
     new = np.setdiff1d(within, own.match)
     name, f = rivals[0]
     other = _forecast(problem, f, rows)
     if not len(new) or not len(other.hz):
         return ()
     mac = (own.motion[:, new].T @ other.motion) ** 2 / float(len(rows)) ** 2
-    twin, tiny = np.argmax(mac, axis=1), np.finfo(float).tiny
-    shift = np.abs(np.log(np.maximum(other.hz[twin], tiny) / own.hz[new]))
+    twin = np.argmax(mac, axis=1)
+    shift = np.abs(np.log(np.maximum(other.hz[twin], POSTERIOR.nil) / own.hz[new]))
     shift = np.where(mac.max(axis=1) > POSTERIOR.twin, shift, 0.0)
     k = int(np.argmax(shift))
     if shift[k] < POSTERIOR.shift:
@@ -105,10 +104,7 @@ def _differences(a: Floats, other: _Forecast) -> Floats:
     """
     out = np.empty_like(a)
     for j, k in enumerate(other.match):
-        close = (
-            np.abs(np.log(np.maximum(other.hz, np.finfo(float).tiny) / other.hz[k]))
-            < POSTERIOR.close
-        )
+        close = np.abs(np.log(np.maximum(other.hz, POSTERIOR.nil) / other.hz[k])) < POSTERIOR.close
         B = other.motion[:, close]
         turned = B @ np.linalg.lstsq(B, a[:, j], rcond=None)[0]
         length = np.sqrt(np.mean(turned**2))

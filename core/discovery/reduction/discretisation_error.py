@@ -14,10 +14,10 @@ the free end of a cantilever of four lumped bars it is 2.8 % of the first freque
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Bools, Floats
+from ...arrays import Bools, Floats, Ints
 from ...data.parametric_model import Term
 from ...elements.lines.bar import bar_mass
-from .elements_and_supports import Members, Structure, placed
+from .elements_and_supports import Members, Structure
 from .own_axes import own_axes
 from .reduction_numbers import REDUCTION
 
@@ -49,7 +49,7 @@ def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
         apart = _laplacians(between)
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
         each = np.kron(_lumped(structure, m)[:, None, None] * apart, np.eye(3))
-        total += placed(total.shape[0], at.reshape(len(m.ids), -1), each)
+        total += _placed(total.shape[0], at.reshape(len(m.ids), -1), each)
     return _on_free(structure, total).matrix
 
 
@@ -84,12 +84,19 @@ def consistent_bars(structure: Structure) -> tuple[Term, ...]:
             a, b = ends[rows, 0], ends[rows, 1]
             across = np.eye(3)[np.argmin(np.abs(b - a), axis=1)]
             D = bar_mass(a, b, across, per_length, True) - bar_mass(a, b, across, per_length, False)
-            total += placed(total.shape[0], m.coordinates(rows), D)
+            total += _placed(total.shape[0], m.coordinates(rows), D)
     return (_on_free(structure, total),) if total.nnz else ()
 
 
 def _none(structure: Structure) -> sp.csr_matrix:
     return sp.csr_matrix((structure.model.expansion.shape[0],) * 2)
+
+
+def _placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
+    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
+    m = at.shape[1]
+    rows, columns = np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel()
+    return sp.csr_matrix((matrices.ravel(), (rows, columns)), (n, n))
 
 
 def _on_free(structure: Structure, A: sp.csr_matrix) -> Term:

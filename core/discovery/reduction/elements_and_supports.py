@@ -114,13 +114,6 @@ class Structure(Noun):
         return own_axes(self.model.geometry.xyz)
 
 
-def placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
-    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
-    m = at.shape[1]
-    rows, columns = np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel()
-    return sp.csr_matrix((matrices.ravel(), (rows, columns)), (n, n))
-
-
 def shelled(structure: Structure) -> Bools:
     """Whether each grid is one of a shell or solid, (n_grid,)."""
     out = np.zeros(len(structure.model.geometry.ids), bool)

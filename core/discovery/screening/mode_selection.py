@@ -63,7 +63,7 @@ def said_of_others(numbers: Ints) -> tuple[str, ...]:
 
 def reference_modes(model: Model, top_hz: float) -> Eigensolution:
     """Solve a model for a discovery, modes up to `top_hz` may pair; the factor is kept."""
-    fmax = SCREENING.modes_above * top_hz
+    fmax = SCREENING.modes_above * top_hz / SCREENING.usual
     solution = normal_modes.solve(model, fmax=fmax, keep_factor=True)
     least = SCREENING.modes_least
     if len(solution.eigenvalues) < least < model.n_free // SCREENING.modes_times:

@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit, distinct, softened
-from ..likelihood.map_fit import evaluate
+from ..likelihood.map_fit import evaluate, fit
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -66,12 +67,12 @@ def grown(
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
         for state in beam:
+            count = searcher.effort.branches * (SEARCH.few_branches if searcher.small else 1)
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
-            branches = searcher.branches(state, searcher.effort.branches)
-            for branch in _varied(searcher, branches, soft):
+            for branch in _varied(searcher, searcher.branches(state, count), soft):
                 wider = (*state.suspects, branch)
-                found.append(searcher.fitted(state, wider, small, True))
+                found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
             best = min(found, key=_objective)
             if depth > 1 and enough(levels[-1], best, SEARCH.hopeless):
                 break
@@ -80,19 +81,21 @@ def grown(
             break
         if depth > 1 and enough(levels[-1], chosen[0], SEARCH.hopeless):
             levels.append(chosen[0])
-            rivals.append(tuple(chosen[1 : SEARCH.rivals]))
+            rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
             break
         base = beam[0].objective
-        followed = chosen[: searcher.effort.beam - (depth > 1)]
+        followed = _leading(searcher, chosen, base)
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
         if depth > 1:
             beam[0] = searcher.unlike(searcher.reconsidered(beam[0]))
         beam = _distinct(searcher, sorted(beam, key=_objective))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
-        rivals.append(rest[: SEARCH.rivals])
+        rivals.append(rest[: SEARCH.rivals_kept])
+        levels[-1] = _fair(searcher, levels[-1], best)
+        previous = levels[-1]
         levels.append(best)
-        if enough(levels[-2], best, 1.0):
+        if enough(previous, best, 1.0):
             break
         beam = sorted(_near(searcher, beam, base), key=_objective)
     return Found(tuple(levels), tuple(rivals))
@@ -114,9 +117,22 @@ def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Return the best and the next few that gained nearly as much over `base`."""
-    near = fits[0].objective + SEARCH.worth * (base - fits[0].objective)
-    return [f for f in fits if f is fits[0] or f.objective < near][: searcher.effort.beam]
+    """Return the best and the next few that gained nearly as much over `base`.
+
+    One that changes the other matrix, where none of these does, comes along: while several
+    effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
+    """
+    near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
+    close = [f for f in fits if f is fits[0] or f.objective < near]
+    kept = close[: searcher.effort.beam - 1]
+    changed = {m for f in kept for m in _changed(searcher, f)}
+    others = (f for f in close[len(kept) :] if not _changed(searcher, f) <= changed)
+    return [*kept, *islice(others, 1)]
+
+
+def _changed(searcher: Searcher, f: Fit) -> set[str]:
+    """Return which matrices a hypothesis changes."""
+    return {searcher.problem.catalogue[s.kind].law.acts_on for s in f.suspects}
 
 
 def _objective(f: Fit) -> float:
@@ -136,10 +152,36 @@ def _varied(
     for score, s in branches:
         c = searcher.problem.catalogue[s.kind]
         kind = (c.kind.name, s.kind if c.ends else -1)
-        if base - score < SEARCH.worth * (base - best) and kept:
+        if base - score < SEARCH.worth_fitting * (base - best) and kept and not searcher.small:
             continue
         number[kind] += 1
-        few = number[kind] <= searcher.effort.of_each_kind
-        if few or number.total() <= searcher.effort.branches:
+        each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)
+        if number.total() <= searcher.effort.branches or number[kind] <= each:
             kept.append(s)
     return kept
+
+
+def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
+    """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
+    most = searcher.effort.beam - (len(fits[0].suspects) > 1)
+    kept, kinds = list(fits[:most]), set()
+    for f in fits:
+        kind = searcher.problem.catalogue[f.suspects[-1].kind].kind
+        near = base - f.objective > SEARCH.other_kind * (base - fits[0].objective)
+        if kind not in kinds and near and not any(f is g for g in kept):
+            kept.append(f)
+        kinds.add(kind)
+    return kept
+
+
+def _fair(searcher: Searcher, poorer: Fit, best: Fit) -> Fit:
+    """Return the poorer hypothesis, or the better one with a suspect less if that fits better.
+
+    A richer hypothesis must not win because its parameters came into a better valley.
+    """
+    for q in range(len(best.suspects)):
+        others = best.suspects[:q] + best.suspects[q + 1 :]
+        trial = fit(searcher.problem, best.nuisance, others, searcher.active, SEARCH.steps_fair)
+        if trial.objective < poorer.objective:
+            poorer = trial
+    return poorer

@@ -38,7 +38,7 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints, worth: float = np.
     if c.law.on == "A" and len(c.trials) > SEARCH.sizes_many:
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)
         rows_kept = np.argsort(guess.min(axis=1), kind="stable")[: SEARCH.sizes_places]
-        sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, : SEARCH.tried]]
+        sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, : SEARCH.sizes_each]]
         rows = rows[rows_kept]
         cost = scan(problem, state, kind, rows, sizes) + c.surprise(sizes)
         return Look(rows, cost.min(axis=1), sizes[np.arange(len(rows)), cost.argmin(axis=1)])

@@ -133,11 +133,13 @@ def lacks_nothing(deck: Judged, alone: Judged) -> bool:
 
     And neither the known parameters `alone` nor smooth fields are clearly likelier. The stiffness
     of shells is off as the square of element over wave, as their lumped mass is: a part of what
-    lumping does to their frequencies is no gap. Beams have no such excuse.
+    lumping does to their frequencies is no gap. Beams have no such excuse. A test that scatters
+    by more than such a model errs does not show that nothing is missing.
     """
     clearly = alone.evidence - deck.evidence > MODEL_ERROR.seen
     most = np.hypot(MODEL_ERROR.usual, SEARCH.nothing * deck.diffuse.mesh)
-    return bool(not clearly and deck.diffuse.error <= most)
+    shows = np.median(deck.problem.evidence.scatter) <= most
+    return bool(shows and not clearly and deck.diffuse.error <= most)
 
 
 def completeness(
@@ -225,12 +227,12 @@ def _centred(
             every.append(alike(tried, best, q))
             continue
         places = credible_places(searcher, best.fit, q, scale)
-        for _ in range(SEARCH.rounds if c.kind.at_points else 0):
+        for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
             s, suspects = middle(c, places), best.fit.suspects
             if s.row == suspects[q].row:
                 break
             moved = (*suspects[:q], s, *suspects[q + 1 :])
-            new = scored(searcher, searcher.fitted(best.fit, moved))
+            new = scored(searcher, searcher.fitted(best.fit, moved, SEARCH.steps_new))
             if 2.0 * (best.score - new.score) > SEARCH.credible:
                 break
             best = new
@@ -253,7 +255,7 @@ def _nearest(found: Found, k: int) -> list[Fit]:
     However much less these gain: beside an error of the model what fits worse may be likelier.
     """
     rivals = sorted(found.rivals[k], key=lambda f: f.objective)
-    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals))
+    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals_judged))
 
 
 def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:

@@ -8,7 +8,6 @@ import numpy as np
 from ...arrays import Floats
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
-from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
 from .model_selection import Scored
@@ -38,7 +37,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     near = np.flatnonzero(away < SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
-    trials = c.around(suspect.theta, np.array(SEARCH.sizes))
+    trials = c.around(suspect.theta, np.array(SEARCH.credible_sizes))
     score = scan(small, here, suspect.kind, rows, trials)
     order = np.argsort(score.min(axis=1), kind="stable")[: SEARCH.credible_fitted]
     own = np.flatnonzero(rows == suspect.row)
@@ -47,7 +46,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     for i in [*own, *order[order != own[0]]]:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
         suspects = (*before, moved, *after)
-        tried.append(fit(small, best.nuisance, suspects, searcher.active, LIKELIHOOD.steps_near))
+        tried.append(fit(small, best.nuisance, suspects, searcher.active, SEARCH.credible_steps))
         least = min(f.objective for f in tried)
         vain = 0 if tried[-1].objective - least < SEARCH.credible * scale else vain + 1
         if vain == SEARCH.credible_vain:

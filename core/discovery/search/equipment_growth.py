@@ -20,7 +20,6 @@ from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure
 from .exact_scan import scan
-from .footprints import with_kind
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -51,11 +50,10 @@ def as_blocks(
         stands = _stands(structure, c, s.row) if _at_point(own) else []
         if stands:
             made = equipment(c, stands, [block(float(np.exp(s.theta[0])), density)])
-            kind = len(searcher.problem.catalogue)
-            searcher = with_kind(searcher, kind, made)
+            searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
             new = Suspect(kind, 0, s.theta[:1])
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            state = searcher.fitted(state, suspects)
+            state = searcher.fitted(state, suspects, SEARCH.steps_moved)
     return searcher, state
 
 
@@ -76,7 +74,7 @@ def _one(structure: Structure, searcher: Searcher, state: Fit, q: int, scale: fl
     ]
     looked.sort(key=lambda place: place[0])
     best: Better = None
-    for _, c, stands in looked[: SEARCH.tried]:
+    for _, c, stands in looked[: SEARCH.equipment_tried]:
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
         if fit.objective < now.objective - scale * SEARCH.equipment_gain:
@@ -156,10 +154,11 @@ def _looked(
     """Look at bodies in place of one mass with all else as it stands in the best fit so far."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
     made = equipment(template, stands, bodies)
-    kind = len(searcher.problem.catalogue)
-    wide = with_kind(searcher, kind, made)
+    wide, kind = _with(searcher, made), len(searcher.problem.catalogue)
     small, here = wide.local(evaluate(wide.problem, now.nuisance, others))
-    trials = made.around(made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.sizes))
+    trials = made.around(
+        made.like(now.suspects[q].theta).tolist(), np.array(SEARCH.equipment_sizes)
+    )
     score = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     return _Look(wide, trials, score)
 
@@ -172,11 +171,11 @@ def _fitted(look: _Look, state: Fit, q: int, now: Fit) -> tuple[int, Searcher, F
     """
     wide, trials, score = look.searcher, look.trials, look.score
     kind, near, fits = len(wide.problem.catalogue) - 1, wide.local(state)[0], []
-    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.tried].tolist():
+    for row in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.equipment_tried].tolist():
         for theta in (trials[score[row].argmin()], trials[0]):
             new = Suspect(kind, row, tuple(theta.tolist()))
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            fits.append((row, wide.fitted(now, suspects, near)))
+            fits.append((row, wide.fitted(now, suspects, SEARCH.steps_instead, near)))
     row, fit = min(fits, key=lambda f: f[1].objective)
     return row, wide, fit
 
@@ -189,3 +188,15 @@ def _around(body: Body, step: float) -> list[Body]:
     out = [body, *(replace(body, offset=(x, y, z)) for x, y, z in centres)]
     radii = (body.radius + step, body.radius - step)
     return out + [replace(body, radius=r) for r in radii if r > 0.0]
+
+
+def _with(searcher: Searcher, made: Candidates) -> Searcher:
+    """Return the search with further candidates."""
+    p = searcher.problem
+    problem = replace(
+        p,
+        catalogue=(*p.catalogue, made),
+        factors=(*p.factors, made.factors(p.basis)),
+        missing=(*p.missing, None) if p.missing else (),
+    )
+    return replace(searcher, problem=problem, coarse=(*searcher.coarse, np.zeros(0, np.int64)))

@@ -54,12 +54,13 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     others = state.suspects[:q] + state.suspects[q + 1 :]
     without = evaluate(searcher.problem, state.nuisance, others)
     small, _ = searcher.local(without)
-    branches = searcher.branches(without, SEARCH.looked, lambda problem: problem)
+    branches = searcher.branches(without, SEARCH.look_each, lambda problem: problem)
     tried = [
-        searcher.fitted(without, (*others, s), small, True) for _, s in branches[: SEARCH.rivals]
+        searcher.fitted(without, (*others, s), SEARCH.steps_new, small, True)
+        for _, s in branches[: SEARCH.look_fitted]
     ]
-    far = SEARCH.worth * (without.objective - state.objective)
-    return _best([f for f in tried if f.objective - state.objective < far], SEARCH.looked)
+    far = SEARCH.rival_gain * (without.objective - state.objective)
+    return _best([f for f in tried if f.objective - state.objective < far], SEARCH.look_judged)
 
 
 def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
@@ -68,7 +69,7 @@ def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
     A patch that gives pays for every other shape that it takes by the choice there was.
     """
     tried: list[Scored] = []
-    for _ in range(SEARCH.rounds):
+    for _ in range(SEARCH.look_moves):
         before = best.score
         for q in range(len(best.fit.suspects)):
             c = searcher.problem.catalogue[best.fit.suspects[q].kind]
@@ -102,11 +103,12 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
         moved = (replace(o, theta=now.suspects[q].theta) for o in options)
         tried = [evaluate(searcher.problem, now.nuisance, (*before, o, *after)) for o in moved]
         return searcher, tried
-    options = promising(searcher, state, q, [*options, *near])
+    options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     tried = [
-        searcher.fitted(state, (*before, option, *after)) for option in options[: SEARCH.looked]
+        searcher.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        for option in options[: SEARCH.look_beside]
     ]
-    return searcher, _best(tried, SEARCH.tried)
+    return searcher, _best(tried, SEARCH.look_beside_judged)
 
 
 def _best(fits: Sequence[Fit], count: int) -> list[Fit]:

@@ -333,7 +333,8 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
         mode_misfits(p, *solve(p, best.nuisance, suspects)) for suspects in (others, best.suspects)
     )
     gained = (left - kept) / scale
-    return tuple(int(j) for j in np.flatnonzero(gained > SEARCH.explains))
+    clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())
+    return tuple(int(j) for j in np.flatnonzero(clear))
 
 
 def held_out(n: int, start: int, every: int, enough: int) -> Bools:

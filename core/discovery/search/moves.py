@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Suspect, beside as stretches_beside, parted
 from ..likelihood.hypothesis import Fit, Problem, softened
-from ..likelihood.likelihood_numbers import LIKELIHOOD, Effort
+from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
 from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
@@ -22,7 +22,7 @@ from .coarse_scan import Look, look
 from .exact_scan import best_apart, scan
 from .search_numbers import SEARCH
 
-_NONE, _SIZES = np.zeros(0, np.int64), np.array(SEARCH.sizes)
+_NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +44,21 @@ class Searcher:
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""
-        return fit(self.problem, self.start, (), self.active)
+        return fit(self.problem, self.start, (), self.active, iterations=SEARCH.steps_null)
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
+
+    def tuned(self, s: Suspect) -> bool:
+        """Whether a suspect is of a kind with a magnitude that tunes it."""
+        return self.problem.catalogue[s.kind].tunings > 1
+
+    @property
+    def small(self) -> bool:
+        """Whether there are so few places that many of them can be fitted."""
+        kinds = zip(self.problem.catalogue, self.coarse, strict=True)
+        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < SEARCH.few_places
 
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
@@ -68,7 +78,7 @@ class Searcher:
                 continue
             seen[kind] = look(small, here, kind, rows, worth)
             gain = here.objective - min(float(s.cost.min()) for s in seen.values())
-            worth = here.objective - SEARCH.worth_refining * gain
+            worth = np.inf if self.small else here.objective - SEARCH.worth_refining * gain
         apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
         for kind, coarse in seen.items():
             tried = self._finer(small, here, kind, coarse, worth)
@@ -101,7 +111,7 @@ class Searcher:
         number = np.arange(len(rows)) - np.searchsorted(which[order], which[order])
         kept = order[number < SEARCH.promising // 2]
         rows = rows[kept]
-        trials = np.array([c.around(coarse.theta[i], _SIZES) for i in which[kept]])
+        trials = np.array([c.around(coarse.theta[i], _NEARBY) for i in which[kept]])
         fine = scan(small, here, kind, rows, trials) + c.surprise(trials)
         each, best = np.arange(len(rows)), fine.argmin(axis=1)
         return Look(
@@ -132,21 +142,21 @@ class Searcher:
         self,
         state: Fit,
         suspects: Sequence[Suspect],
+        iterations: int = SEARCH.steps,
         small: Problem | None = None,
         soften: bool = False,
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small = small or self.local(state)[0]
-        steps = LIKELIHOOD.steps_near
         if soften:
-            near = fit(softened(small), state.nuisance, suspects, self.active, steps)
+            near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
-        quick = fit(small, state.nuisance, suspects, self.active, steps)
-        whole, last = self.problem, SEARCH.steps_whole
+        quick = fit(small, state.nuisance, suspects, self.active, iterations)
+        whole, steps = self.problem, SEARCH.steps_whole
         try:
-            return fit(whole, quick.nuisance, quick.suspects, self.active, last)
+            return fit(whole, quick.nuisance, quick.suspects, self.active, steps)
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
-            return fit(whole, state.nuisance, suspects, self.active, last)
+            return fit(whole, state.nuisance, suspects, self.active, steps)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""
@@ -165,9 +175,9 @@ class Searcher:
 
         Parameters that came from a poorer hypothesis may hold a fit in a valley of its own.
         """
-        fresh, steps = np.zeros_like(state.nuisance), LIKELIHOOD.steps_near
-        near = fit(softened(self.problem), fresh, state.suspects, self.active, steps)
-        again = fit(self.problem, near.nuisance, near.suspects, self.active, steps)
+        fresh = np.zeros_like(state.nuisance)
+        near = fit(softened(self.problem), fresh, state.suspects, self.active, SEARCH.steps)
+        again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
         return again if again.objective < state.objective else state
 
     def _neighbour(self, state: Fit, q: int) -> Fit | None:
@@ -185,55 +195,60 @@ class Searcher:
             return None
         small, here = self.local(without)
         alike = scan(softened(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
-        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.promising]]
-        trials = c.around(suspect.theta, _SIZES)
+        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
+        trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
         score = scan(softened(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]
         soft = softened(small)
         options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for i in np.argsort(score.min(axis=1), kind="stable"):
+        for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]:
             if rows[i] == suspect.row:
                 continue
             moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
             beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
             options.append((promised(soft, state.nuisance, beside, self.active), beside))
         stays = promised(soft, state.nuisance, state.suspects, self.active)
-        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.tried]:
+        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
             if hope > stays:
                 break
-            trial = self.fitted(state, beside, small)
+            trial = self.fitted(state, beside, SEARCH.steps_moved, small)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
-        before, after, steps = state.suspects[:q], state.suspects[q + 1 :], LIKELIHOOD.steps_near
+        before, after = state.suspects[:q], state.suspects[q + 1 :]
         small = self.local(evaluate(self.problem, state.nuisance, (*before, *after)))[0]
         tried = [
-            fit(small, state.nuisance, (*before, s, *after), self.active, steps) for s in options
+            fit(small, state.nuisance, (*before, s, *after), self.active, SEARCH.steps_moved)
+            for s in options
         ]
-        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.tried]:
-            trial = fit(self.problem, near.nuisance, near.suspects, self.active, steps)
+        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
+            trial = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps_moved)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
 
     def reconsidered(self, state: Fit) -> Fit:
-        """Take each suspect out in turn, and look for a better one anywhere, until one is found.
+        """Take each suspect out in turn and look for a better one anywhere.
 
-        But for the last one, which was looked for just so.
+        The last of a new state was looked for just so, and is left out in the first round.
         """
-        least = state.objective - SEARCH.better
-        for q in self.doubtful(state, first=True):
-            others = state.suspects[:q] + state.suspects[q + 1 :]
-            without = self.fitted(state, others)
-            for _, branch in self.branches(without, SEARCH.tried)[: SEARCH.tried]:
-                trial = self.fitted(without, (*others, branch), soften=True)
-                if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
-                    trial = self.settled(self.refined(trial))
-                if trial.objective < least:
-                    return trial
+        for number in range(SEARCH.anew_rounds):
+            moved = False
+            for q in self.doubtful(state, first=number == 0):
+                others = state.suspects[:q] + state.suspects[q + 1 :]
+                without = self.fitted(state, others, SEARCH.steps_moved)
+                for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
+                    trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
+                    if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
+                        trial = self.settled(self.refined(trial))
+                    if trial.objective < state.objective - SEARCH.better_anew:
+                        state, moved = trial, True
+                        break
+            if not moved:
+                break
         return state
 
     def unlike(self, state: Fit) -> Fit:
@@ -244,9 +259,9 @@ class Searcher:
         for q in self.doubtful(state):
             others = state.suspects[:q] + state.suspects[q + 1 :]
             for apart in parted(self.problem.catalogue, others):
-                near = self.fitted(state, apart, soften=True)
+                near = self.fitted(state, apart, SEARCH.steps_new, soften=True)
                 trial = self.settled(self.refined(near))
-                if trial.objective < state.objective - SEARCH.better:
+                if trial.objective < state.objective - SEARCH.better_anew:
                     return trial
         return state
 

@@ -1,10 +1,11 @@
-"""The shapes next to that of a patch, a row of elements more or less, and where else links end.
+"""Patches grow and shrink, a row of elements at a time, and links end elsewhere, where that pays.
 
 The catalogue has round and elongated patches of a few sizes. What is really there ends where a
 bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
-second effect beside the first. So the last look tries patches that take in the next row of elements
-on one side or all round, or give one up, or stop at the property they are on. So with links: the
-catalogue has those between some grids.
+second effect beside the first. So the patches of a hypothesis that earned its place take in the
+next row of elements on one side or all round, or give one up, or stop at the property they are on,
+as long as each step gains more than trying so many shapes is worth. So do links: the catalogue has
+those between some grids.
 """
 
 from collections.abc import Sequence
@@ -25,11 +26,42 @@ from .moves import Searcher
 from .search_numbers import SEARCH
 
 
+def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with patches of better shapes, and a searcher that knows them.
+
+    The noise has `scale` times the assumed variance: a step has to gain that much more.
+    """
+    for q in range(len(state.suspects)):
+        for _ in range(SEARCH.reshape_steps):
+            better = _step(searcher, state, q, scale)
+            if better is None:
+                break
+            searcher, state = better
+    return searcher, state
+
+
+def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
+    """Give one suspect the best of the shapes next to its own, None where none is worth it."""
+    wide, options = options_beside(searcher, state.suspects[q])
+    worth = 2.0 * scale * np.log(1.0 + len(options))
+    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
+        trial = _with(wide, state, q, option)
+        if trial.objective < state.objective - worth:
+            return wide, trial
+    return None
+
+
+def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
+    beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
+    return searcher.fitted(state, beside, SEARCH.steps_new)
+
+
 def promising(
     searcher: Searcher,
     state: Fit,
     q: int,
     options: Sequence[Suspect],
+    sizes: Sequence[float] = SEARCH.reshape_sizes,
 ) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
     others = state.suspects[:q] + state.suspects[q + 1 :]
@@ -38,7 +70,7 @@ def promising(
     for kind in sorted({s.kind for s in options}):
         rows = np.array([s.row for s in options if s.kind == kind])
         c = searcher.problem.catalogue[kind]
-        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(SEARCH.look_sizes))
+        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))

@@ -123,7 +123,7 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     for _ in range(SEARCH.made_anew):
         own, start, _ = _own_problem(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
-        new = fit(own, state.nuisance, start, active)
+        new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
         moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
         state = replace(on_whole_test(own, new), suspects=_back(state, new))
         kinds = (problem.catalogue[s.kind].kind for s in state.suspects)
@@ -202,6 +202,8 @@ def _own_problem(
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
     make = _known if places == deck else _own
     own = make(ground, places, problem.columns)
+    top = SEARCH.own_above * float(targets(problem.whole).max())
+    modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     new = replace(
         problem,
         basis=own.plain if as_deck else own.better,
@@ -211,7 +213,7 @@ def _own_problem(
         catalogue=tuple(_alone(c, row, state) for c, row in places),
         factors=own.factors,
         missing=(),
-        modes=min(own.seen.shape[1], problem.columns),
+        modes=min(own.seen.shape[1], max(modes, problem.columns)),
         turn=None,
         rest=None,
     )
@@ -296,11 +298,11 @@ def _in_deck(own: Problem, found: Fit) -> InDeck:
     own = replace(own, catalogue=held)
     n = len(found.log_p)
     start = np.append(found.log_p, 0.0)
-    near = fit(softened(own), start, found.suspects, tuple(range(n)))
-    all_of_them = fit(own, near.nuisance, found.suspects, tuple(range(n)))
+    near = fit(softened(own), start, found.suspects, tuple(range(n)), SEARCH.steps_polished)
+    all_of_them = fit(own, near.nuisance, found.suspects, tuple(range(n)), SEARCH.steps_polished)
     scale = noise_scale(own, on_whole_test(own, all_of_them))
     known = in_deck(all_of_them.log_p, all_of_them.information, scale)
     clear = tuple(np.flatnonzero(known.clear).tolist())
     start = np.append(known.alone, 0.0)
-    alone = fit(own, start, found.suspects, clear)
+    alone = fit(own, start, found.suspects, clear, SEARCH.steps_polished)
     return replace(known, alone=alone.log_p)

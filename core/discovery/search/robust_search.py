@@ -53,5 +53,5 @@ def _every(c: Candidates, rows: Ints, size: float) -> Ints:
 
 def _again(searcher: Searcher, f: Fit) -> Fit:
     """Fit a hypothesis by other errors, each suspect at its best neighbour."""
-    f = fit(searcher.problem, f.nuisance, f.suspects, searcher.active)
+    f = fit(searcher.problem, f.nuisance, f.suspects, searcher.active, SEARCH.steps_guided)
     return searcher.refined(f) if f.suspects else f

@@ -53,7 +53,7 @@ def _best_reach(searcher: Searcher, null: Fit, reaches: Reaches | None) -> Reach
     tried = []
     for row in range(len(reaches)):
         start = Suspect(0, row, tuple(reaches.typical))
-        f = fit(p, null.nuisance, (start,), searcher.active)
+        f = fit(p, null.nuisance, (start,), searcher.active, SEARCH.steps)
         judged = searcher.judged(p, f)
         if judged is not None:
             ((theta,),) = (s.theta for s in judged.fit.suspects)

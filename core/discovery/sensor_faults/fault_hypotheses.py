@@ -84,7 +84,7 @@ def alternatives(node: Node, axes: Floats | None, before: Before) -> list[Altern
             swapped = node.identity
             swapped[[a, b]] = swapped[[b, a]]
             log = float(of(swapped[None])[0])
-            prior = np.log(before.faulty * SENSORS.odd * 2.0 / (k * (k - 1)))
+            prior = np.log(before.faulty * SENSORS.exchanged * 2.0 / (k * (k - 1)))
             out.append(Alternative(SWAP.name, log + prior, (b, a)))
     if axes is not None:
         out += _turned(node, axes, of, before)
@@ -111,7 +111,7 @@ def _scaled(
     each = chance * gains * size / scale * step
     model = logsumexp(_student(off, SENSORS.tail), axis=0, b=each)
     wide = np.exp(-0.5 * (_LOG_GAIN / SENSORS.gain_spread) ** 2)
-    wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = np.finfo(float).tiny
+    wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = SENSORS.never
     as_fault = log + np.log(wide / wide.sum())
     weight = np.exp(as_fault - as_fault.max())
     weight /= weight.sum()
@@ -124,8 +124,8 @@ def _scaled(
         return Alternative(kind, float(logsumexp(log)) + np.log(prior), rows, size, deviation)
 
     return [
-        told(POLARITY.name, reverse + sound, sure * SENSORS.usual, -1.0),
-        told(GAIN.name, as_fault, sure * SENSORS.usual, factor, np.sqrt(spread)),
+        told(POLARITY.name, reverse + sound, sure * SENSORS.polarity, -1.0),
+        told(GAIN.name, as_fault, sure * SENSORS.gain, factor, np.sqrt(spread)),
         told("model", log + model, share, 1.0),
     ]
 
@@ -150,14 +150,16 @@ def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alte
         return Alternative(AXIS.name, log, rows, angle, float(np.degrees(spread)), turn)
 
     if k == 1:
-        return [told(tilted(axes[0], of), SENSORS.odd)]
-    share = SENSORS.usual
+        return [told(tilted(axes[0], of), SENSORS.lonely_axis)]
+    share = SENSORS.axis
     own = axes if k == 3 else np.vstack([axes, np.cross(*axes)])
     pair, three = share * np.array(SENSORS.about_pair), np.full(3, share / SENSORS.about_each)
     weights = three if k == 3 else pair
     out = [told(about(axes, u, of), w) for u, w in zip(own, weights, strict=True)]
     if k == 3:
-        out.append(told(anyhow(axes, _kabsch(node, axes), of), SENSORS.about_any * share))
+        found = anyhow(axes, _kabsch(node, axes), of)
+        if found is not None:
+            out.append(told(found, SENSORS.about_any * share))
     return out
 
 

@@ -44,15 +44,37 @@ def about(axes: Floats, axis: Floats, of: Evidence) -> tuple[float, Floats, floa
     return float(logsumexp(log) - np.log(len(angle))), mean * np.asarray(axis), spread
 
 
-def anyhow(axes: Floats, Q: Floats, of: Evidence) -> tuple[float, Floats, float]:
-    """Turn in space by a rotation (3, 3): as `about` its axis, all rotations as likely before.
+def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, float] | None:
+    """Turn in space: as `about`, by Laplace's approximation, all rotations as likely before.
 
-    The axis is known as well as the angle: Laplace's approximation with one deviation σ for all
-    three makes that a share σ²/2 of all axes.
+    `start` (3, 3) is a rotation near the best; None where the readings do not hold the rotation.
     """
+    Q, h = start, SENSORS.turn_step
+    steps = h * np.array([[0, 0, 0], *np.eye(3), *-np.eye(3)])
+    pairs = [(0, 1), (0, 2), (1, 2)]
+    mixed = [
+        s * np.eye(3)[a] + t * np.eye(3)[b] for a, b in pairs for s in (1, -1) for t in (1, -1)
+    ]
+    steps = np.vstack([steps, h * np.array(mixed)])
+    for _ in range(SENSORS.turn_rounds):
+        f = of(maps_of(axes, rotation(steps) @ Q))
+        g = (f[1:4] - f[4:7]) / (2.0 * h)
+        H = np.diag((f[1:4] + f[4:7] - 2.0 * f[0]) / h**2)
+        for n, (a, b) in enumerate(pairs):
+            q = f[7 + 4 * n : 11 + 4 * n]
+            H[a, b] = H[b, a] = (q[0] - q[1] - q[2] + q[3]) / (4.0 * h**2)
+        values = np.linalg.eigvalsh(-H)
+        if values[0] < SENSORS.turn_curved:
+            return None
+        step = np.linalg.solve(-H, g)
+        Q = rotation(np.clip(step, -SENSORS.turn_most, SENSORS.turn_most)) @ Q
+        if np.abs(step).max() < SENSORS.turn_done * h:
+            break
+    best = float(of(maps_of(axes, Q[None]))[0])
     vector = np.asarray(Rotation.from_matrix(Q).as_rotvec())
-    log, vector, spread = about(axes, vector / np.linalg.norm(vector), of)
-    return log + float(np.log(min(0.5 * spread**2, 1.0))), vector, spread
+    along = vector / max(float(np.linalg.norm(vector)), SENSORS.least_variance)
+    log = best + 1.5 * np.log(2.0 * np.pi) - 0.5 * np.log(values).sum() - np.log(8.0 * np.pi**2)
+    return float(log), vector, float(np.sqrt(along @ np.linalg.solve(-H, along)))
 
 
 def tilted(axis: Floats, of: Evidence) -> tuple[float, Floats, float]:

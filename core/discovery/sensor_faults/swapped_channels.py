@@ -40,7 +40,7 @@ def swaps(
     """Return the possible swaps among some nodes, the likeliest first."""
     total = {i: float(logsumexp([a.log for a in alone[i]])) for i in among}
     n = len(nodes)
-    prior = float(np.log(before.faulty * SENSORS.usual / max(n - 1, 1)))
+    prior = float(np.log(before.faulty * SENSORS.swapped / max(n - 1, 1)))
     out = []
     for i, j in combinations(among, 2):
         ways = _ways(nodes[i].reading.shape[1], nodes[j].reading.shape[1])

@@ -14,12 +14,13 @@ from trueup.core.discovery.search.credible_places import Place
 from trueup.core.discovery.search.model_selection import Scored
 
 
-def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0):
+def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0, scatter=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
     each = np.asarray(each, float)
     shared = Some(each=each, error=error, noise=noise, stray=chance, mesh=mesh)
     here = Some(nuisance=np.zeros(2))
-    return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here)
+    test = Some(evidence=Some(scatter=scatter))
+    return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here, problem=test)
 
 
 def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
@@ -63,8 +64,8 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
     assert not found(before=0.01).lacks_nothing
 
 
-def beside(gain, error=0.001, mesh=0.0):
-    deck = judged(np.zeros(10), error=error, mesh=mesh)
+def beside(gain, error=0.001, mesh=0.0, scatter=0.0):
+    deck = judged(np.zeros(10), error=error, mesh=mesh, scatter=scatter)
     alone = judged(np.zeros(10), error=0.0005, evidence=gain)
     return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
 
@@ -77,6 +78,11 @@ def test_a_deck_that_smooth_fields_explain_alone_lacks_something():
 def test_what_a_mesh_of_shells_leaves_is_no_gap():
     assert beside(-2.0, error=0.005, mesh=0.02).lacks_nothing
     assert not beside(-2.0, error=0.005, mesh=0.0).lacks_nothing
+
+
+def test_a_test_that_scatters_more_than_a_good_model_errs_shows_no_absence():
+    assert beside(0.0, scatter=0.002).lacks_nothing
+    assert not beside(0.0, scatter=0.05).lacks_nothing
 
 
 def test_less_error_than_right_models_leave_is_no_proof():
@@ -135,7 +141,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
         coarse=[np.arange(100)],
         size=1.0,
         effort=Some(apart=0.1),
-        fitted=lambda f, suspects: hypothesis(f.objective, *(t.row for t in suspects)),
+        fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
     accepted = len(found.levels) - 1

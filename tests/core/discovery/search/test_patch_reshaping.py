@@ -24,7 +24,7 @@ from trueup.core.discovery.search.credible_places import alike
 from trueup.core.discovery.search.last_look import looked_again
 from trueup.core.discovery.search.model_selection import ranked, scored
 from trueup.core.discovery.search.moves import Searcher
-from trueup.core.discovery.search.patch_reshaping import variants
+from trueup.core.discovery.search.patch_reshaping import reshaped, variants
 from trueup.core.elements.surfaces.quad4 import QUAD4
 from trueup.core.reduction.reduced_sum import ReducedSum
 
@@ -116,6 +116,24 @@ def suspecting(structure, soft, start):
     )  # fmt: skip
     s = Searcher(problem, (np.arange(1),), (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
     return s, fit(problem, np.zeros(1), (Suspect(0, 0, (np.log(0.5),)),), (0,), 10)
+
+
+@pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])
+def test_a_patch_grows_and_shrinks_into_what_is_soft(start):
+    soft = box((3, 7), (2, 5))
+    s, state = suspecting(membrane(), soft, start)
+    wide, better = reshaped(s, state, 1.0)
+    suspect = better.suspects[0]
+    c = wide.problem.catalogue[0]
+    assert c.where[suspect.row]["elements"] == (soft + 1).tolist()
+    assert np.exp(suspect.theta[0]) == pytest.approx(FACTOR, rel=0.05)
+    assert better.objective < 0.1 * state.objective
+
+
+def test_a_patch_that_is_right_stays():
+    soft = box((3, 7), (2, 5))
+    s, state = suspecting(membrane(), soft, soft)
+    assert reshaped(s, state, 1.0) == (s, state)
 
 
 def test_rows_are_taken_on_each_side():

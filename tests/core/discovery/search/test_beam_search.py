@@ -1,0 +1,36 @@
+"""Which hypotheses are grown further: on a string of beads."""
+
+from dataclasses import replace
+
+import numpy as np
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.likelihood.map_fit import evaluate
+from trueup.core.discovery.search.beam_search import _near
+
+MASS, SPRING = 0, 1
+
+
+def hypotheses(s, *chosen):
+    made = [evaluate(s.problem, np.zeros(2), (Suspect(k, row, (0.0,)),)) for k, row, _ in chosen]
+    return [replace(f, objective=c[2]) for f, c in zip(made, chosen, strict=True)]
+
+
+def test_the_best_that_changes_the_other_matrix_is_grown_beside_the_best():
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    fits = hypotheses(s, (SPRING, 3, 50.0), (SPRING, 9, 51.0), (SPRING, 15, 52.0), (MASS, 9, 60.0))
+    assert _near(s, fits, 100.0) == [fits[0], fits[1], fits[3]]
+
+
+def test_none_that_gained_much_less_is_grown():
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    fits = hypotheses(s, (SPRING, 3, 50.0), (SPRING, 9, 51.0), (MASS, 9, 80.0))
+    assert _near(s, fits, 100.0) == fits[:2]
+    assert _near(s, hypotheses(s, (SPRING, 3, 50.0), (MASS, 9, 80.0)), 100.0)[1:] == []
+
+
+def test_where_the_best_change_both_no_third_is_grown():
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    fits = hypotheses(s, (SPRING, 3, 50.0), (MASS, 9, 51.0), (MASS, 15, 52.0))
+    assert _near(s, fits, 100.0) == fits[:2]
