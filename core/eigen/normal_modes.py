@@ -18,8 +18,8 @@ from ..numerics.products import product, sparse_product
 from .dense_solver import dense_modes
 from .eigen_numbers import EIGEN
 from .mechanisms import Massless, hold, mechanism, refuse_linkage
-from .pencil import Pencil, Spectrum, widest_pattern
-from .rigid_body_modes import RigidBody, rigid_body
+from .pencil import Pencil, Spectrum
+from .rigid_body_modes import RigidBody, posed
 from .shift_invert_solver import Request, sparse_modes
 from .soft_modes import refined
 from .warm_modes import Kept, Near
@@ -192,7 +192,8 @@ def solve(
     if fmax is not None and not fmax > 0.0:
         raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
     owner = model if isinstance(model, Model) else None
-    given, body = _posed(model, p, near.kept if near else None, keep_factor)
+    place = near.kept.place if near and near.kept else None
+    given, body = posed(model, p, place, keep_factor)
     pencil = given
     rigid = body.modes if body else np.zeros((pencil.n, 0))
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
@@ -252,26 +253,6 @@ def solve(
         spectrum.count_factor,
         Kept(body.place, spectrum.counter) if body and spectrum.counter else None,
     )
-
-
-def _posed(
-    model: Model | tuple[sp.spmatrix, sp.spmatrix],
-    p: Floats | None,
-    kept: Kept | None,
-    for_others: bool,
-) -> tuple[Pencil, RigidBody | None]:
-    """Return the pencil, on a pattern that others have where it is for them, and its free motions.
-
-    The latter are of a `Model` alone.
-    """
-    pencil = Pencil.of(model, p)
-    if not isinstance(model, Model):
-        return pencil, None
-    if kept is not None:
-        pencil = pencil.on(kept.place.pattern)
-    elif for_others:
-        pencil = pencil.on(widest_pattern(model))
-    return pencil, rigid_body(model, pencil, kept.place if kept else None)
 
 
 def modes_of(model: Model, solution: Eigensolution) -> Modes:

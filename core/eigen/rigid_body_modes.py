@@ -15,7 +15,7 @@ from ..data.parametric_model import Model
 from ..errors import CheckError
 from ..numerics.factorisation import factorise
 from .eigen_numbers import EIGEN
-from .pencil import Pencil, magnitudes, same_entries
+from .pencil import Pencil, magnitudes, same_entries, widest_pattern
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +108,26 @@ class RigidBody:
         u, s, vt = np.linalg.svd((M @ Z).T @ G)
         count = int(np.count_nonzero(s > EIGEN.nearly))
         return Z @ u[:, :count], Z @ u[:, count:], G @ vt[:count].T
+
+
+def posed(
+    model: Model | tuple[sp.spmatrix, sp.spmatrix],
+    p: Floats | None,
+    place: Place | None,
+    for_others: bool,
+) -> tuple[Pencil, RigidBody | None]:
+    """Return the pencil, on a pattern that others have where it is for them, and its free motions.
+
+    The latter are of a `Model` alone.
+    """
+    pencil = Pencil.of(model, p)
+    if not isinstance(model, Model):
+        return pencil, None
+    if place is not None:
+        pencil = pencil.on(place.pattern)
+    elif for_others:
+        pencil = pencil.on(widest_pattern(model))
+    return pencil, rigid_body(model, pencil, place)
 
 
 def rigid_body(model: Model, pencil: Pencil, place: Place | None = None) -> RigidBody:

@@ -191,7 +191,8 @@ def _settings(integer: type[np.signedinteger[Any]], definite: bool) -> Numbers:
     return iparm
 
 
-def _pointer(array: Numbers) -> ctypes.c_void_p:
+def pointer(array: Numbers) -> ctypes.c_void_p:
+    """Return the address of an array's first entry."""
     return ctypes.c_void_p(array.ctypes.data)
 
 
@@ -214,12 +215,12 @@ def _call(
             ("perm", 0), ("silent", 0), ("error", 0),
         )
     }  # fmt: skip
-    p = {name: _pointer(value) for name, value in scalars.items()}
+    p = {name: pointer(value) for name, value in scalars.items()}
     a, ia, ja = matrix
     routine(
-        _pointer(pt), p["one"], p["one"], p["mtype"], p["phase"], p["n"],
-        _pointer(a), _pointer(ia), _pointer(ja), p["perm"], p["n_rhs"],
-        _pointer(iparm), p["silent"], _pointer(vectors[0]), _pointer(vectors[1]), p["error"],
+        pointer(pt), p["one"], p["one"], p["mtype"], p["phase"], p["n"],
+        pointer(a), pointer(ia), pointer(ja), p["perm"], p["n_rhs"],
+        pointer(iparm), p["silent"], pointer(vectors[0]), pointer(vectors[1]), p["error"],
     )  # fmt: skip
     return int(scalars["error"][0])
 

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import Floats
-from .pardiso import library
+from .pardiso import library, pointer
 
 _LARGE = 1_000_000
 """Multiplications from which on the way to MKL is worth its call."""
@@ -46,8 +46,8 @@ def product(a: Floats, b: Floats, out: Floats | None = None) -> Floats:
     (a, op_a, lda), (b, op_b, ldb) = _taken(a), _taken(b)
     one, zero = ctypes.c_double(1.0), ctypes.c_double(0.0)
     found.cblas_dgemm(
-        _ROW_MAJOR, op_a, op_b, n, m, k, one, _at(a), lda, _at(b), ldb, zero,
-        _at(out), led,
+        _ROW_MAJOR, op_a, op_b, n, m, k, one, pointer(a), lda, pointer(b), ldb, zero,
+        pointer(out), led,
     )  # fmt: skip
     return out
 
@@ -63,14 +63,15 @@ def sparse_product(a: sp.csr_matrix, x: Floats) -> Floats:
     ends = ctypes.c_void_p(a.indptr.ctypes.data + a.indptr.itemsize)
     _done(
         found.mkl_sparse_d_create_csr,
-        ctypes.byref(handle), 0, *a.shape, _at(a.indptr), ends, _at(a.indices), _at(a.data),
+        ctypes.byref(handle), 0, *a.shape,
+        pointer(a.indptr), ends, pointer(a.indices), pointer(a.data),
     )  # fmt: skip
     one, zero = ctypes.c_double(1.0), ctypes.c_double(0.0)
     try:
         _done(
             found.mkl_sparse_d_mm,
             _SPARSE_AS_IT_IS, one, handle, _Description(_GENERAL, 0, 0), _ROW_MAJOR,
-            _at(x), m, m, zero, _at(out), m,
+            pointer(x), m, m, zero, pointer(out), m,
         )  # fmt: skip
     finally:
         found.mkl_sparse_destroy(handle)
@@ -102,7 +103,3 @@ def _led(x: Floats) -> tuple[bool, int]:
     if rows == size and columns >= x.shape[0] * size and columns % size == 0:
         return False, columns // size
     return True, 0
-
-
-def _at(x: Floats) -> ctypes.c_void_p:
-    return ctypes.c_void_p(x.ctypes.data)

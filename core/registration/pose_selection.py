@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arrays import Floats
 from .pose_families import Family, family_of, members, sampled, step_of
@@ -29,7 +28,7 @@ class Choice:
     @property
     def angle(self) -> float:
         """Angle of the rotation, radians."""
-        return float(Rotation.from_matrix(self.pose.rotation[0]).magnitude())
+        return float(self.pose.angle[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,11 +105,16 @@ class _Judge:
         return -spoiled if self.scorer is None else self.scorer.score(poses) - spoiled
 
     def calm(self, poses: Poses, least: float) -> Floats:
-        """Minus the angle of rotation, far less where the worth or the fit falls short, (k,)."""
+        """Minus the angle of rotation at rest, far less where worth or fit falls short, (k,).
+
+        Motions of a family are known where they set out: what is led far along them settles first.
+        """
+        start, rounds = (poses.rotation, poses.translation), ALIGN.settled
+        poses = polish(self.cloud.surface, self.points, *start, rounds)
         short = np.maximum(least - self.worth(poses), 0.0)
-        spoiled = np.maximum(self._rms(poses) / (ALIGN.calm * self.floor) - 1.0, 0.0)
+        spoiled = np.maximum(poses.rms / (ALIGN.calm * self.floor) - 1.0, 0.0)
         lost = ALIGN.calm_short * short + ALIGN.calm_off * spoiled
-        return np.asarray(-Rotation.from_matrix(poses.rotation).magnitude() - lost)
+        return np.asarray(-poses.angle - lost)
 
     def margin(self, worth: float) -> float:
         """Difference of worth that does not count."""

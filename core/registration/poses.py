@@ -31,6 +31,11 @@ class Poses:
     def __len__(self) -> int:
         return len(self.rms)
 
+    @property
+    def angle(self) -> Floats:
+        """Angles of the rotations, radians (k,)."""
+        return np.asarray(Rotation.from_matrix(self.rotation).magnitude())
+
     def take(self, rows: Ints) -> Poses:
         """Return the poses of the given rows (indices or mask)."""
         return Poses(self.rotation[rows], self.translation[rows], self.rms[rows])

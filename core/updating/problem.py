@@ -22,7 +22,7 @@ from ..reduction.full_or_reduced import FullOrder, Order, ReducedOrder, reduce_a
 from .identifiability import Identifiability, identifiability, unsure
 from .objective import Objective, State, stacked
 from .residuals import Linearisation, Residual, Target, Weights
-from .scatter import Kind, Scatter, scatter_of
+from .scatter import Kind, Scatter, left_over, scatter_of
 from .updating_numbers import UPDATING
 
 Orders = Sequence[Order]
@@ -276,7 +276,8 @@ class Problem:
         p = np.asarray(point.factors)[free]
         if not any(r.believes_sigmas for r in residuals):
             data = sum(r.data(s.seen) for r in residuals for s in point.states)
-            prior = np.hypot(prior, np.sqrt(_left_over(lin, data)) / (UPDATING.damped * p))
+            left = left_over(lin.values, lin.gradient, data)
+            prior = np.hypot(prior, np.sqrt(left) / (UPDATING.damped * p))
         down, up = UPDATING.step
         least = np.maximum(lower[free] - p, -down * p) - UPDATING.slack
         most = np.minimum(upper[free] - p, up * p) + UPDATING.slack
@@ -385,14 +386,6 @@ def _without_factor(state: State) -> State:
 def _in_full(state: State) -> Eigensolution:
     assert isinstance(state.solution, Eigensolution)
     return state.solution
-
-
-def _left_over(lin: Linearisation, data: int) -> float:
-    """Return the variance of so many data beside their derivatives; 0 where these explain all."""
-    spare = data - lin.gradient.shape[1]
-    Q = np.linalg.qr(lin.gradient)[0]
-    left = lin.values - Q @ (Q.T @ lin.values)
-    return float(left @ left) / spare if spare > 0 else 0.0
 
 
 def _require_same(known: Parameter, other: Parameter, first: str, c: Configuration) -> None:

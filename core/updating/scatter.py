@@ -56,6 +56,17 @@ class Scatter(Noun):
         return np.asarray(_student(self.freedom) ** 2 * self.variance * self.widening)
 
 
+def left_over(values: Floats, gradient: Floats, data: int) -> float:
+    """Return the variance of values (m,) beside derivatives (m, n); 0 where these explain all.
+
+    `data` is how much was measured, at most m.
+    """
+    spare = data - gradient.shape[1]
+    Q = np.linalg.qr(gradient)[0]
+    left = values - Q @ (Q.T @ values)
+    return float(left @ left) / spare if spare > 0 else 0.0
+
+
 def scatter_of(kinds: Sequence[Kind], believed: bool = False) -> Scatter:
     """Estimate how far residuals scatter, each kind by its own where it has enough data.
 

@@ -31,6 +31,7 @@ class EffectNumbers:
     absorber_error: tuple[float, float] = number((0.08, 0.02), "of ln m, ln f", ERROR, MEASURED)
     masses_across: float = number(18.0, "places", "across the structure, each way, that a first scan looks at, of masses")
     springs_across: float = number(13.0, "places", "likewise, of springs and absorbers")
+    links_across: float = number(9.0, "places", "likewise, of both ends of springs between two places")
 
     rigid: float = number(1e-4, "of 1 / (ω² m)", "flexibility that an attached mass has, at least", ROUNDING)
     least_left: float = number(1e-7, "of the stiffest", "stiffness that freed coordinates keep, at least", ROUNDING)
@@ -72,8 +73,6 @@ class EffectNumbers:
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
-
-    links_across: float = number(9.0, "places", "likewise, of both ends of springs between two places")
     link_spacing: float = number(0.02, SIZE, "between the ends of links, at least")
     link_thinned: float = number(1.15, "-", "times the spacing, where there are more")
     link_ends: int = number(250, "grids", "that links may end at, at most", "memory")

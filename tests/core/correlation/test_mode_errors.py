@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from tests.core.correlation.test_comparison import analysis, measured
-from tests.core.updating.test_update import HALVES, chain, measured as target_of
+from tests.core.updating.spring_chain import HALVES, chain, measured as target_of
 from tests.core.updating.weighing import eigenvalue_residuals, shape_residuals
 
 from trueup.core.correlation.comparison import compare, place_test

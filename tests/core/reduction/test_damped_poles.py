@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from tests.core.chains import proportional
-from tests.core.updating.test_update import HALVES, chain
+from tests.core.updating.spring_chain import HALVES, chain
 
 from trueup.core.data.parametric_model import Term
 from trueup.core.reduction.damped_poles import Damped, ratio_slopes, ratios

@@ -1,5 +1,7 @@
 """Where geometry leaves several positions of a test, its shapes decide, or nothing does."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -56,6 +58,15 @@ def test_panel_without_shapes_stays_undecided_and_takes_the_smallest_rotation():
     assert found.warnings == (found.ambiguity,)
     assert angle_deg(found) == pytest.approx(40.0, abs=2.0)
     assert found.rms < 1.5
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+def test_the_smallest_rotation_does_not_hang_on_rounding(seed):
+    geo, test = panel(), measured(sensors_of_panel(), Rotation.from_rotvec([0.7, 0, 0]).as_matrix())
+    for k in range(3):
+        rounded = 1e-13 * np.random.default_rng([seed, k]).standard_normal(test.xyz.shape)
+        found = align(geo, replace(test, xyz=test.xyz + rounded))
+        assert angle_deg(found) == pytest.approx(np.degrees(0.7), abs=0.1)
 
 
 def test_shapes_that_share_the_symmetry_leave_the_panel_undecided():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from tests.core.chains import proportional
-from tests.core.updating.test_update import HALVES, N, chain, measured
+from tests.core.updating.spring_chain import HALVES, N, chain, measured
 
 from trueup.core.data.parameter import Parameter
 from trueup.core.updating import determined

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.core.updating.test_update import HALVES, chain, measured
+from tests.core.updating.spring_chain import HALVES, chain, measured
 
 from trueup.core.data.parameter import Parameter
 from trueup.core.updating.posterior import from_elsewhere, profile_intervals, remarks

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from tests.core.updating.test_update import HALVES, N, chain, measured
+from tests.core.updating.spring_chain import HALVES, N, chain, measured
 
 from trueup.core.data.parametric_model import Term
 from trueup.core.errors import InputError

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.core.updating.test_update import chain, measured
+from tests.core.updating.spring_chain import chain, measured
 
 from trueup.core.errors import InputError
 from trueup.core.updating.metropolis import Chains, adaptive_metropolis

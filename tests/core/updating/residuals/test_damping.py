@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.core.reduction.test_damped_poles import at, damped, full
-from tests.core.updating.test_update import HALVES, chain, measured
+from tests.core.updating.spring_chain import HALVES, chain, measured
 
 from trueup.core.correlation.criteria import Criteria
 from trueup.core.errors import InputError

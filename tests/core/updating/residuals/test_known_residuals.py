@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.core.updating.test_update import N, chain, measured
+from tests.core.updating.spring_chain import N, chain, measured
 
 from trueup.core.errors import InputError
 from trueup.core.updating.residuals import (

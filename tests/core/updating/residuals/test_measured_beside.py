@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from tests.core.updating.test_update import HALVES, N, chain, measured
+from tests.core.updating.spring_chain import HALVES, N, chain, measured
 
 from trueup.core.errors import InputError
 from trueup.core.updating.residuals import RESIDUALS, Beside, LoadCase, Seen, Slopes, Weights

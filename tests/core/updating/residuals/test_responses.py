@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from tests.core.reduction.test_damped_poles import damped
-from tests.core.updating.test_update import HALVES, chain, measured
+from tests.core.updating.spring_chain import HALVES, chain, measured
 
 from trueup.core.eigen.normal_modes import solve
 from trueup.core.errors import InputError
