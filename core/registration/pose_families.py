@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from ..arrays import Bools, Floats
 from ..sensors.outer_surface import Surface
@@ -51,10 +52,9 @@ def family_of(surface: Surface, points: Floats, pose: Poses, limit: float) -> Fa
     """
     centre, radius = centre_and_radius(pose.apply(points))
     free = freedoms(surface, points, pose, ALIGN.free * surface.size, limit)
-    free = _straightened(surface, points, pose, free, ALIGN.free, limit, must=True)
     for reach in ALIGN.followed:
         free = np.concatenate(_parted(free))
-        free = _straightened(surface, points, pose, free, reach, limit, must=False)
+        free = _straightened(surface, points, pose, free, reach, limit)
     turns, slides = _parted(free)
     motions = np.concatenate([turns, slides])
     return Family(pose, centre, radius, motions, np.arange(len(motions)) < len(turns))
@@ -67,13 +67,11 @@ def _straightened(
     motions: Floats,
     reach: float,
     limit: float,
-    must: bool,
 ) -> Floats:
     """Follow each motion for a share of the model's size and settle there: where that led to.
 
     The way from one resting pose to another that is far off tells an axis much better than the
-    surface beside the first. A motion that leads off the model stays as it was, or is dropped
-    where it `must` lead somewhere.
+    surface beside the first. A motion that leads off the model stays as it was.
     """
     if not len(motions):
         return motions
@@ -89,8 +87,7 @@ def _straightened(
     fits &= likeness > ALIGN.led_along * size
     both = (found * fits[:, None]).reshape(2, *motions.shape).sum(axis=0)
     led = fits.reshape(2, -1).sum(axis=0)
-    led_to = np.where(led[:, None] > 0, both / np.maximum(led, 1)[:, None], motions)
-    return np.asarray(led_to[led > 0] if must else led_to)
+    return np.where(led[:, None] > 0, both / np.maximum(led, 1)[:, None], motions)
 
 
 def _parted(free: Floats) -> tuple[Floats, Floats]:
@@ -111,36 +108,29 @@ def _parted(free: Floats) -> tuple[Floats, Floats]:
 def freedoms(surface: Surface, points: Floats, pose: Poses, step: float, limit: float) -> Floats:
     """Rigid motions that keep points in one pose, at rest, on the surface, (d, 6), d from 0 to 6.
 
-    Orthonormal, scaled as in `jacobian`; one is free when a motion by `step` leaves the rms
-    distance below `limit`. The squared distance is sampled a finite step away and fitted by a
-    quadratic form: points at the joints of a frame are held by a whisker in every direction, yet
-    slide freely.
+    Scaled as in `jacobian`. The points are moved by `step` along and about their principal axes,
+    and by any two of these motions at once, and come to rest again: from where they are held they
+    go back, and the ways to where else they rest, within the rms distance `limit`, span what is
+    free. Slopes would not tell: points at the joints of a frame are held by a whisker in every
+    direction, yet slide freely.
     """
     x = pose.apply(points)
     centre, radius = centre_and_radius(x)
-    J = jacobian(x, centre, radius)[0]
-    size = np.einsum("nxi,nxj->ij", J, J) / len(points)
+    J = jacobian(x, centre, radius)[0, ..., :3]
+    value, axes = np.linalg.eigh(np.einsum("nxi,nxj->ij", J, J) / len(points))
+    moving = np.append(value >= ALIGN.still, [True] * 3)
+    turns = axes / np.sqrt(np.where(moving[:3], value, 1.0))
+    motions = block_diag(turns.T, axes.T)
     # A motion that does not move the points (a turn about the line they lie on) is free.
-    value, vector = np.linalg.eigh(size)
-    moving = value >= ALIGN.still
-    still, basis = vector[:, ~moving].T, vector[:, moving] / np.sqrt(value[moving])
-    n = basis.shape[1]
-    i, j = np.triu_indices(n)
-    unit = np.eye(n)
-    way = unit[i] + unit[j]
-    way = way / np.linalg.norm(way, axis=1, keepdims=True)
-    trial = step * np.concatenate([way, -way]) @ basis.T
-    poses = displaced(pose, centre, radius, trial)
-    away = np.minimum(rms_of(surface, points, poses) ** 2, (2 * step) ** 2)
-    rise = (away[: len(i)] + away[len(i) :]) / (2 * step**2) - pose.rms[0] ** 2 / step**2
-    H = np.diag(rise[i == j])
-    off = i != j
-    H[i[off], j[off]] = rise[off] - (H[i[off], i[off]] + H[j[off], j[off]]) / 2
-    H[j[off], i[off]] = H[i[off], j[off]]
-    power, motions = np.linalg.eigh(H)
-    return np.concatenate(
-        [still, (basis @ motions[:, power < (limit**2 - pose.rms[0] ** 2) / step**2]).T]
-    )
+    motions, still = motions[moving], motions[~moving]
+    i, j = np.triu_indices(len(motions), 1)
+    two = np.concatenate([motions[i] + motions[j], motions[i] - motions[j]]) / np.sqrt(2.0)
+    way = step * np.concatenate([motions, two])
+    trial = displaced(pose, centre, radius, np.concatenate([way, -way]))
+    rested = polish(surface, points, trial.rotation, trial.translation, rounds=ALIGN.settling)
+    led = motion_between(pose, rested, centre, radius)[rested.rms <= limit] / step
+    _, strength, basis = np.linalg.svd(led @ np.linalg.pinv(motions), full_matrices=False)
+    return np.concatenate([still, basis[strength > ALIGN.led_least] @ motions])
 
 
 def members(family: Family, points: Floats, poses: Poses, surface: Surface) -> Bools:
