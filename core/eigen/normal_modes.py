@@ -94,7 +94,8 @@ class Eigensolution(Noun):
     factor : Factorisation or None
         Of K - sigma M, kept on request: sensitivities use it again.
     count_factor : Factorisation or None
-        Of K - s M, s next to the modes where these were known nearly.
+        Of K - s M, s next to the modes, by which they were counted: on request, or where they
+        were known nearly.
     kept : Kept or None
         On request, for solutions of the same model that are begun near another; the first of
         these makes `count_factor` its own.
@@ -133,6 +134,7 @@ def solve(
     backend: Backend | None = None,
     tolerance: float = EIGEN.tolerance,
     keep_factor: bool = False,
+    keep_counter: bool = False,
     count: bool = True,
     near: Near | None = None,
     seed: int = 0,
@@ -157,7 +159,9 @@ def solve(
         Of the residual of each Ritz pair beside its eigenvalue, both of (K - sigma M)^-1 M;
         the relative error of the eigenvalues is of the order of its square.
     keep_factor : bool
-        Keep the factorisation of K - sigma M in the solution, and what serves further ones.
+        Keep the factorisation of K - sigma M in the solution.
+    keep_counter : bool
+        Keep the factorisation that counted the modes, and what serves further solutions.
     count : bool
         Prove by an inertia count that no mode was missed (about a quarter of the time).
     near : Near, optional
@@ -193,7 +197,7 @@ def solve(
         raise InputError(f"fmax is {fmax:g} Hz; give a frequency above 0")
     owner = model if isinstance(model, Model) else None
     place = near.kept.place if near and near.kept else None
-    given, body = posed(model, p, place, keep_factor)
+    given, body = posed(model, p, place, keep_factor or keep_counter)
     pencil = given
     rigid = body.modes if body else np.zeros((pencil.n, 0))
     limit = None if fmax is None else (2.0 * np.pi * fmax) ** 2
@@ -202,7 +206,9 @@ def solve(
     small = pencil.n <= EIGEN.dense or (
         (wanted or 0) > pencil.n // EIGEN.dense_many and pencil.n <= EIGEN.dense_many * EIGEN.dense
     )
-    request = Request(wanted, limit, chosen, tolerance, count, keep_factor, seed, near)
+    request = Request(
+        wanted, limit, chosen, tolerance, count, keep_factor, keep_counter, seed, near
+    )
     held: list[str] = []
     while True:
         try:
@@ -251,7 +257,7 @@ def solve(
         tuple(notes),
         factor,
         spectrum.count_factor,
-        Kept(body.place, spectrum.counter) if body and spectrum.counter else None,
+        Kept(body.place, spectrum.count_factor) if body and spectrum.count_factor else None,
     )
 
 

@@ -71,15 +71,18 @@ class Pencil:
         """
         if same_entries(pattern, self.pattern):
             return self
-        k, m = (pattern + 1j * sp.triu(A, format="csr") for A in (self.K, self.M))
-        if max(k.nnz, m.nnz) > pattern.nnz:
+        number = np.arange(1.0, len(self._indices) + 1.0)  # exact in a float up to 2**53
+        own, every = (number, self._indices, self._indptr), (pattern.indices, pattern.indptr)
+        half = sp.csr_matrix((np.full(pattern.nnz, 0.5), *every), shape=pattern.shape)
+        both = half + sp.csr_matrix(own, shape=pattern.shape)
+        if both.nnz > pattern.nnz:
             return self
+        both.sort_indices()
+        place = np.flatnonzero(both.data > 1.0)
         out = copy(self)
-        k.sort_indices()
-        m.sort_indices()
-        out._indptr, out._indices, out._k = k.indptr, k.indices, k.data.imag.copy()
-        out._massive = np.flatnonzero(m.data.imag)
-        out._m = m.data.imag[out._massive]
+        out._indptr, out._indices, out._k = both.indptr, both.indices, np.zeros(both.nnz)
+        out._k[place] = self._k
+        out._massive = place[self._massive]
         return out
 
     def sprung(self, rows: Ints) -> Pencil:
@@ -316,9 +319,7 @@ class Spectrum(Noun):
     factor : Factorisation or None
         Of K - sigma M.
     count_factor : Factorisation or None
-        Of K - s M, s next to modes that were known nearly, by which they were counted.
-    counter : Factorisation or None
-        What counted the modes, to be factorised again: for other values on the pattern.
+        Of K - s M, s next to the modes, by which they were counted.
     ahead : (n,) float
         Rough values of the next eigenvalues, to find a gap.
     left_out : int
@@ -335,7 +336,6 @@ class Spectrum(Noun):
     ahead: Floats = field(default_factory=lambda: np.zeros(0))
     left_out: int = 0
     count_factor: Factorisation | None = None
-    counter: Factorisation | None = None
 
 
 def widest_gap(values: Floats, first: int, rounding: float = 0.0) -> int | None:

@@ -32,6 +32,7 @@ class Request:
     tolerance: float
     count: bool
     keep_factor: bool
+    keep_counter: bool
     seed: int
     near: Near | None = None
 
@@ -87,10 +88,8 @@ def _counted(
             count, factor = _inertia(pencil, gap, request.backend)
             missed = count - n_rigid - have
             if missed == 0:
-                if not request.keep_factor:
-                    return replace(found, missed=0)
-                factor.forget()
-                return replace(found, missed=0, counter=factor)
+                kept = factor if request.keep_counter else None
+                return replace(found, missed=0, count_factor=kept)
             del factor
             if missed < 0:
                 break

@@ -34,7 +34,7 @@ class Kept:
     ----------
     place : Place
     counter : Factorisation
-        Of K - s M, or what is left of it after `forget`.
+        Of K - s M, by which modes were counted.
     """
 
     place: Place
@@ -117,7 +117,7 @@ def warm_modes(
         step = _Step(X, Y, MX, sparse_product(pencil.M, Y))
         found = _polished(pencil, s, step, below, elastic) if counted else None
         if found is not None:
-            return replace(found, count_factor=factor, counter=factor)
+            return replace(found, count_factor=factor)
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
         X = product(X, C[:k])

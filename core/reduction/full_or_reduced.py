@@ -23,7 +23,8 @@ class FullOrder:
     """The model itself; `sensors` (n_sensor, n_free) read the vectors of `solve`.
 
     The static answers to `forces` (n_force, n_free) are in what is reduced of it. Where it is to
-    be solved the modes may be known nearly: the factor that counts them is kept then.
+    be solved the modes may be known nearly. The factor that counts them is kept: one at a time
+    answers, corrects and verifies.
     """
 
     model: Model
@@ -34,8 +35,7 @@ class FullOrder:
 
     def solve(self, p: Floats) -> Eigensolution:
         """Find and check the modes."""
-        keep = self.near is None
-        return solve(self.model, n_modes=self.n_modes, p=p, keep_factor=keep, near=self.near)
+        return solve(self.model, n_modes=self.n_modes, p=p, keep_counter=True, near=self.near)
 
     def sensitivities(
         self, p: Floats, solution: Spectral, T: Floats, active: Sequence[int], with_shapes: bool

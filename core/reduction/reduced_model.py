@@ -18,7 +18,7 @@ from ..eigen.normal_modes import Eigensolution, solve
 from ..eigen.pencil import Pencil
 from ..errors import InputError
 from ..noun import Noun
-from ..numerics.factorisation import factorise
+from ..numerics.factorisation import Factorisation, factorise
 from ..numerics.products import product
 from .derivative_numbers import DERIVATIVES
 from .eigenpair_derivatives import Sensitivities, clusters, coefficients, differentiate
@@ -147,14 +147,22 @@ class ReducedModel(Noun):
 
     def with_modes(self, found: Eigensolution) -> ReducedModel:
         """Return the model with the modes of another parameter point in its basis: exact there."""
-        return self._beside(found.vectors[:, found.rigid_body_modes :])
+        left = replace(
+            self.solution,
+            factor=found.factor,
+            count_factor=found.count_factor,
+            kept=found.kept or self.solution.kept,
+        )
+        X = found.vectors[:, found.rigid_body_modes :]
+        return replace(self, solution=left)._beside(X, DERIVATIVES.known_already)
 
     def corrected(self, p: Floats, found: ReducedModes) -> ReducedModel:
         """Return the model with what its modes at `p` lack, A^-1 (K - lambda M) phi, in its basis.
 
-        A is K - sigma M at `p0`: a step of Davidson's method (1975, Journal of Computational
-        Physics 17, 87), which leaves of an error the share by which K at `p` differs from that.
-        Being modes of the basis they leave no force along it: what they lack is A-orthogonal to it.
+        A is K - s M where the model was last solved in full, s next to the modes: a step of
+        Davidson's method (1975, Journal of Computational Physics 17, 87), which leaves of an error
+        the share by which K at `p` differs from that. Modes of the basis leave no force along it,
+        along the full modes below s neither, so that A is positive beside it.
         """
         free = slice(found.rigid_body_modes, None)
         lam = found.eigenvalues[free]
@@ -162,46 +170,47 @@ class ReducedModel(Noun):
         R, MX = self.stiffness.applied(p, X), self.mass.applied(p, X)
         MX *= lam
         R -= MX
-        factor = self.solution.factor
-        assert factor is not None
-        W = factor.solve(R)
-        return self._with(W, product(W.T, R), DERIVATIVES.too_little)
+        W = _factor(self.model, self.p0, self.solution).solve(R)
+        return self._beside(W, DERIVATIVES.too_little, np.ones(W.shape[1]))
 
     def differentiable(
-        self, p: Floats, found: Eigensolution, parameters: Sequence[int], count: int
+        self,
+        p: Floats,
+        found: Eigensolution,
+        parameters: Sequence[int],
+        count: int,
+        modes: Ints | None = None,
     ) -> ReducedModel:
         """Return the model with what derivatives of the modes `found` at `p` lack in its basis.
 
         They lack (K - lambda M)^-1 f of the loads f = (K' - lambda M') phi of modes by parameters.
         So many combinations of these, drawn at random, are solved for with the factor by which the
-        modes were counted, of K - s M with s next to them.
+        modes were counted, of K - s M with s next to them. By default of all `modes` but those of
+        a rigid body.
         """
-        factor = found.count_factor or found.factor
-        if factor is None:
-            factor = factorise(Pencil.of(self.model, p).shifted(found.sigma), True)
-        free = slice(found.rigid_body_modes, None)
-        X, lam = found.vectors[:, free], found.eigenvalues[free]
+        some = slice(found.rigid_body_modes, None) if modes is None else modes
+        X, lam = found.vectors[:, some], found.eigenvalues[some]
         weight, rng = 1.0 / np.sqrt(lam - found.sigma), np.random.default_rng(1)
         F = drawn_loads(self.model, p, parameters, X, lam, weight, count, rng)
-        return self._beside(factor.solve(F))
+        W = _factor(self.model, p, found).solve(F)
+        return self._beside(W, DERIVATIVES.known_already)
 
-    def _beside(self, W: Floats) -> ReducedModel:
-        """Return the model with what its basis lacks of vectors W, of any size."""
+    def _beside(self, W: Floats, least: float, beside: Floats | None = None) -> ReducedModel:
+        """Return the model with what its basis lacks of vectors W (n_free, s).
+
+        Of at least so much of an energy, `beside` (s,), by default their own.
+        """
         W = np.ascontiguousarray(W)  # as sparse products want
         sums = [terms.widened(self.parts, W) for terms in self._sums]
         A = sums[0].at(self.p0) - self.solution.sigma * sums[1].at(self.p0)
         n = self.size
-        known, scale = A[:n, n:], 1.0 / np.sqrt(A[n:, n:].diagonal())
+        own = A[n:, n:].diagonal() if beside is None else beside
+        known, scale = A[:n, n:], 1.0 / np.sqrt(np.where(own > 0.0, own, 1.0))
         lacking = (A[n:, n:] - known.T @ known) * np.outer(scale, scale)
-        T = scale[:, None] * _independent(lacking, DERIVATIVES.known_already)
+        T = scale[:, None] * _independent(lacking, least)
         last = np.vstack([-known @ T, T])
         V = replace(self, parts=(*self.parts, W)).spread(last)
         return self._widened(V, [s.ending(n, last) for s in sums])
-
-    def _with(self, W: Floats, energy: Floats, least: float) -> ReducedModel:
-        """Return the model with vectors W beside Q, of at least so much of their energy W^T A W."""
-        W = product(W, _independent(energy, least))
-        return self._widened(W, [terms.widened(self.parts, W) for terms in self._sums])
 
     @property
     def _sums(self) -> tuple[ReducedSum, ...]:
@@ -274,6 +283,12 @@ class ReducedModel(Noun):
         return differentiate(T, by_position, everything, size, matrices_of, at_modes, change_of)
 
 
+def _factor(model: Model, p: Floats, found: Eigensolution) -> Factorisation:
+    """Return the factor nearest to modes found at `p`, made where none was kept."""
+    near = found.count_factor or found.factor
+    return near or factorise(Pencil.of(model, p).shifted(found.sigma), True)
+
+
 def _independent(energy: Floats, least: float) -> Floats:
     """Return combinations of unit energy of vectors with W^T A W, of at least so much of theirs."""
     size, turn = np.linalg.eigh((energy + energy.T) / 2.0)
@@ -317,9 +332,9 @@ def build_reduced(
         Static vectors of less energy, beside that of a mode and for a factor moved by one, are
         left out; frequencies within 30 % are then good to about a tenth of this.
     sketch : int, optional
-        Where there are more static vectors, so many combinations of them drawn at random are
-        solved for in their place (Halko, Martinsson and Tropp 2011, SIAM Review 53, 217): a
-        basis that is to be corrected where it is used.
+        So many combinations of static vectors, at most, drawn at random, by the factor that
+        counted the modes in their place (Halko, Martinsson and Tropp 2011, SIAM Review 53, 217):
+        a basis that is to be corrected where it is used.
 
     Returns
     -------
@@ -342,15 +357,21 @@ def build_reduced(
         solution = solve(model, last + 1 + more_modes, p=p0, keep_factor=True)
     if last < 0 or last >= len(solution.eigenvalues) or min(targets) < 0:
         raise InputError(f"mode {last + 1} is a target, the model has {len(solution.eigenvalues)}")
-    factor = solution.factor or factorise(Pencil.of(model, p0).shifted(solution.sigma), True)
-    modes = solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma)
-    answers = static_answers(
-        model, p0, solution, factor, targets, parameters, max_static, least_energy, sketch
-    )
-    Q = np.hstack([modes, answers])
+    Q = solution.vectors / np.sqrt(solution.eigenvalues - solution.sigma)
+    if sketch is None or forces is not None:
+        A = solution.factor or factorise(Pencil.of(model, p0).shifted(solution.sigma), True)
+    if sketch is None:
+        answers = static_answers(
+            model, p0, solution, A, targets, parameters, max_static, least_energy
+        )
+        Q = np.hstack([Q, answers])
     if forces is not None:
-        Q = np.hstack([Q, answers_to(forces, factor, Q)])
+        Q = np.hstack([Q, answers_to(forces, A, Q)])
     K, M, D, H = (
         reduced_sum(terms, Q) for terms in (model.stiffness, model.mass, model.damping, model.loss)
     )
-    return ReducedModel(model, p0, (Q,), K, M, replace(solution, factor=factor), D, H)
+    reduced = ReducedModel(model, p0, (Q,), K, M, solution, D, H)
+    if sketch is None:
+        return reduced
+    few = min(sketch, len(targets) * len(parameters))
+    return reduced.differentiable(p0, solution, parameters, few, np.asarray(targets))

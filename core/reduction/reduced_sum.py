@@ -46,8 +46,8 @@ class ReducedSum:
         """Return the full sum at `p` times vectors X (n_free, k), whatever the basis."""
         out, by_rows = np.zeros(X.shape), np.ascontiguousarray(X)  # as sparse products want
         for term in self.terms:
-            some = own_rows(term.matrix)
-            part = sparse_product(term.matrix[some], by_rows)
+            some, own = own_part(term.matrix)
+            part = sparse_product(own, by_rows)
             part *= term.coefficient(p)
             out[some] += part
         return out
@@ -83,8 +83,8 @@ class ReducedSum:
         whole[:, :n, :n] = self.whole
         by_rows = np.ascontiguousarray(W)
         for out, term in zip(whole, self.terms, strict=True):
-            some = own_rows(term.matrix)
-            X = sparse_product(term.matrix[some], by_rows)
+            some, own = own_part(term.matrix)
+            X = sparse_product(own, by_rows)
             if n:
                 out[:n, n:] = np.vstack([product(V[some].T, X) for V in parts])
             out[n:, :n] = out[:n, n:].T
@@ -121,13 +121,27 @@ def projected(terms: Sequence[Term], Q: Floats) -> Floats:
     """Return Q^T A_t Q of each term A_t, (n_term, n_basis, n_basis)."""
     out = np.zeros((len(terms), Q.shape[1], Q.shape[1]))
     for k, term in enumerate(terms):
-        some = own_rows(term.matrix)
-        part = term.matrix[some][:, some]
+        some, own = own_part(term.matrix)
+        part = own[:, some]
         half = sp.triu(part, 1, "csr") + 0.5 * sp.diags(part.diagonal())
         q = np.ascontiguousarray(Q[some])
         upper = product(q.T, sparse_product(half, q))
         out[k] = upper + upper.T
     return out
+
+
+def own_part(matrix: sp.csr_matrix) -> tuple[slice | Ints, sp.csr_matrix]:
+    """Find the rows of a matrix that have entries, as `own_rows`, and the matrix of these alone.
+
+    A slice of rows shares the entries of the whole.
+    """
+    rows = own_rows(matrix)
+    if not isinstance(rows, slice):
+        return rows, matrix[rows]
+    ends = matrix.indptr[rows.start : rows.stop + 1]
+    stored = slice(ends[0], ends[-1])
+    parts = matrix.data[stored], matrix.indices[stored], ends - ends[0]
+    return rows, sp.csr_matrix(parts, (len(ends) - 1, matrix.shape[1]), copy=False)
 
 
 def own_rows(matrix: sp.csr_matrix) -> slice | Ints:

@@ -13,7 +13,7 @@ from ..eigen.normal_modes import Eigensolution
 from ..numerics.factorisation import Factorisation
 from ..numerics.products import product, sparse_product
 from .derivative_numbers import DERIVATIVES
-from .reduced_sum import own_rows
+from .reduced_sum import own_part
 
 
 def answers_to(forces: sp.csr_matrix, factor: Factorisation, Q: Floats) -> Floats:
@@ -35,40 +35,32 @@ def static_answers(
     parameters: Sequence[int],
     most: int,
     least: float,
-    sketch: int | None = None,
 ) -> Floats:
     """Find the static answers of modes to parameters, A^-1 (K' - lambda M') phi, (n_free, k).
 
     Each is weighted by the energy of its mode, so that parameters, all factors on the deck's
     values, compare; of their principal directions at `most` so many are kept, those of largest
     energy, of at `least` a share of that of a mode for a factor moved by one. A-orthonormal,
-    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes. Of more than `sketch`
-    so many combinations stand for all, with coefficients drawn at random.
+    A = K - sigma M being what `factor` is of, and A-orthogonal to the modes.
     """
     chosen = np.asarray(targets, np.int64)
     span = solution.eigenvalues - solution.sigma
     X, lam = solution.vectors[:, chosen], solution.eigenvalues[chosen]
     weight = 1.0 / np.sqrt(span[chosen])
     n, m = X.shape
-    drawn = min(sketch or m * len(parameters), m * len(parameters))
-    mixed = drawn < m * len(parameters)
-    group = len(parameters) if mixed else max(1, DERIVATIVES.block // max(m, 1))
+    group = max(1, DERIVATIVES.block // max(m, 1))
     groups = [parameters[k : k + group] for k in range(0, len(parameters), group)]
-    ends = np.cumsum([0] + [drawn if mixed else m * len(g) for g in groups])
-    rng = np.random.default_rng(0)
+    ends = np.cumsum([0] + [m * len(g) for g in groups])
 
     S = np.empty((n, ends[-1]), order="F")
     energy = np.zeros((ends[-1],) * 2)
     modal = np.empty((len(span), ends[-1]))
     for members, start, end in zip(groups, ends[:-1], ends[1:], strict=True):
-        if mixed:
-            F = drawn_loads(model, p0, members, X, lam, weight, drawn, rng)
-        else:
-            F = np.zeros((n, end - start))
-            for first, i in enumerate(members):
-                at = slice(first * m, (first + 1) * m)
-                for rows, part in _loads(model, p0, i, X, lam):
-                    F[rows, at] += part * weight
+        F = np.zeros((n, end - start))
+        for first, i in enumerate(members):
+            at = slice(first * m, (first + 1) * m)
+            for rows, part in _loads(model, p0, i, X, lam):
+                F[rows, at] += part * weight
         S[:, start:end] = factor.solve(F)
         energy[:end, start:end] = product(S[:, :end].T, F)
         energy[start:end, :start] = energy[:start, start:end].T
@@ -108,5 +100,5 @@ def _loads(
     """Find (K' - lambda M') phi of modes by a parameter: two parts, on the rows that each has."""
     for change, times in ((model.dK(i, p), np.ones(len(lam))), (model.dM(i, p), -lam)):
         if change.nnz:
-            rows = own_rows(change)
-            yield rows, sparse_product(change[rows], X) * times
+            rows, own = own_part(change)
+            yield rows, sparse_product(own, X) * times

@@ -375,8 +375,6 @@ class Problem:
 
 def _without_factor(state: State) -> State:
     found, damped = _in_full(state), state.seen.damped
-    if found.kept is not None:
-        found.kept.counter.forget()
     bare = replace(found, factor=None, count_factor=None, kept=None)
     if damped is not None:
         damped = replace(damped, model=replace(damped.model, solution=bare))

