@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ..arrays import Floats, Numbers, frozen
+from ..arrays import Floats, frozen
 from ..correlation.mode_pairing import Correlation
 from ..errors import InputError
 from .localisation_numbers import MAPS
@@ -202,10 +202,10 @@ def _slopes(lin: Linearisation, motion: Floats, mass: bool) -> Floats:
     """Change of all rows by a unit at each place, (n_place, n_pair * (1 + n_sensor))."""
     own = motion @ lin.modes
     factor = -lin.eigenvalue if mass else np.ones(len(lin.eigenvalue))
-    change: Numbers = np.einsum("prk,prj->jpk", motion, own) * factor[:, None, None]
+    change = np.matmul(np.swapaxes(own * factor, 1, 2), motion).swapaxes(0, 1)
     slope = np.empty((len(motion), *lin.residual.shape))
     slope[:, :, 0] = np.einsum("prj,prj->pj", own, own) * factor * lin.by_eigenvalue
-    slope[:, :, 1:] = np.moveaxis(change @ lin.by_mode, 0, 1)
+    slope[:, :, 1:] = (np.ascontiguousarray(change) @ lin.by_mode).swapaxes(0, 1)
     return slope.reshape(len(motion), lin.residual.size)
 
 

@@ -114,7 +114,7 @@ def depth_buffer(projected: Floats, faces: Ints, cells: int = 320) -> tuple[Dept
     s = (np.arange(samples) + 0.5) / samples
     u, v = (g.ravel() for g in np.meshgrid(s, s))
     weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
-    points = np.einsum("fcx,cs->fsx", corners, weights)
+    points = np.matmul(weights.T, corners)
     flat = points.reshape(-1, 3)
     index = buffer._cells(flat)
     np.minimum.at(buffer.depth, (index[:, 0], index[:, 1]), flat[:, 2])
