@@ -121,7 +121,7 @@ def warm_modes(
         values, C = _ritz(pencil, s, values, step, max(below, elastic) + EIGEN.guard)
         k = X.shape[1]
         X = product(X, C[:k])
-        X += product(Y, C[k:])
+        product(Y, C[k:], X, add=True)
         MX = sparse_product(pencil.M, X)
     return None
 

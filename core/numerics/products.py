@@ -27,8 +27,11 @@ class _Description(ctypes.Structure):
     _fields_ = (("type", ctypes.c_int), ("mode", ctypes.c_int), ("diag", ctypes.c_int))
 
 
-def product(a: Floats, b: Floats, out: Floats | None = None) -> Floats:
-    """Return a @ b of dense matrices (n, k) and (k, m), (n, m), in `out` where that is given."""
+def product(a: Floats, b: Floats, out: Floats | None = None, *, add: bool = False) -> Floats:
+    """Return a @ b of dense matrices (n, k) and (k, m), (n, m), in `out` where that is given.
+
+    With `add` it is added to what is there.
+    """
     found = library()
     (n, k), m = a.shape, b.shape[1]
     small = found is None or n * k * m < _LARGE or not _doubles(a, b)
@@ -38,15 +41,15 @@ def product(a: Floats, b: Floats, out: Floats | None = None) -> Floats:
         out = np.empty((n, m))
     by_rows, led = _led(out)
     if found is None or small or not led:
-        np.matmul(a, b, out=out)
+        np.add(out, a @ b, out=out) if add else np.matmul(a, b, out=out)
         return out
     if not by_rows:
-        product(b.T, a.T, out.T)
+        product(b.T, a.T, out.T, add=add)
         return out
     (a, op_a, lda), (b, op_b, ldb) = _taken(a), _taken(b)
-    one, zero = ctypes.c_double(1.0), ctypes.c_double(0.0)
+    one, of_old = ctypes.c_double(1.0), ctypes.c_double(float(add))
     found.cblas_dgemm(
-        _ROW_MAJOR, op_a, op_b, n, m, k, one, pointer(a), lda, pointer(b), ldb, zero,
+        _ROW_MAJOR, op_a, op_b, n, m, k, one, pointer(a), lda, pointer(b), ldb, of_old,
         pointer(out), led,
     )  # fmt: skip
     return out

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -100,8 +98,11 @@ class ReducedModel(Noun):
     def spread(self, q: Floats) -> Floats:
         """Return Q q of coordinates (n_basis, k), (n_free, k)."""
         ends = np.cumsum([part.shape[1] for part in self.parts])[:-1]
-        each = zip(self.parts, np.split(q, ends), strict=True)
-        return np.asarray(reduce(operator.iadd, (product(part, some) for part, some in each)))
+        first, *others = np.split(q, ends)
+        out = product(self.parts[0], first)
+        for part, some in zip(self.parts[1:], others, strict=True):
+            product(part, some, out, add=True)
+        return out
 
     def project(self, vectors: sp.spmatrix | Floats) -> Floats:
         """Return Q^T u of full vectors u, (n_free, k), as (n_basis, k).

@@ -43,6 +43,13 @@ def test_a_product_goes_where_it_is_wanted(layout: str) -> None:
     np.testing.assert_allclose(out, a @ b, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("layout", _layouts(_drawn(2, 2)))
+def test_a_product_is_added_to_what_is_there(layout: str) -> None:
+    a, b, out = _drawn(_N, _K), _drawn(_K, _M), _layouts(np.ones((_N, _M)))[layout]
+    assert product(a, b, out, add=True) is out
+    np.testing.assert_allclose(out, 1.0 + a @ b, rtol=0, atol=1e-11)
+
+
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_a_part_of_a_matrix_takes_a_product_and_leaves_the_rest(order: str) -> None:
     a, b, whole = _drawn(_N, _K), _drawn(_K, _M), np.zeros((_N, 2 * _M), order=order)
