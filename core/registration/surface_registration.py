@@ -67,12 +67,31 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = ALIGN.keep) 
     rounds = [(len(R) // part, softness) for part, softness in ALIGN.coarser]
     for count, softness in (*rounds, (keep, ALIGN.softest)):
         if count < len(R):
-            best = np.argsort(cloud.rms(R, t, few), kind="stable")[: max(count, keep)]
+            best = _best_first(cloud, R, t, few, apart=count == keep)[: max(count, keep)]
             R, t = R[best], t[best]
         for _ in range(ALIGN.coarse_steps):
             R, t = _coarse_step(cloud, R, t, few, softness)
     poses = polish(cloud.surface, points, R, t)
     return poses.take(np.argsort(poses.rms, kind="stable"))
+
+
+def _best_first(cloud: Cloud, R: Floats, t: Floats, points: Floats, apart: bool) -> Ints:
+    """Order poses by distance; where they are to be `apart`, those where a better one is last.
+
+    Many starts end in one position, and a symmetric structure has others that fit as well: by a
+    hair on the few points and the samples that thin them out, and shapes would tell them apart.
+    """
+    order = np.argsort(cloud.rms(R, t, points), kind="stable")
+    if not apart:
+        return order
+    x = Poses(R[order], t[order], np.zeros(len(R))).apply(points)
+    near = ALIGN.free * cloud.surface.size
+    first = np.ones(len(x), bool)
+    for k in range(len(x)):
+        if first[k]:
+            away = np.sqrt(np.mean(np.sum((x[k + 1 :] - x[k]) ** 2, axis=2), axis=1))
+            first[k + 1 :] &= away > near
+    return np.concatenate([order[first], order[~first]])
 
 
 def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:

@@ -1,6 +1,7 @@
 """Where geometry leaves several positions of a test, its shapes decide, or nothing does."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -24,8 +25,11 @@ from tests.core.placing import (
 )
 
 from trueup.core.data.dofs import Dofs
+from trueup.core.data.geometry import Geometry
 from trueup.core.data.modes import Modes
 from trueup.core.registration.alignment import align
+from trueup.core.registration.surface_registration import cloud_of, search
+from trueup.core.sensors.outer_surface import surface_of
 
 # ------------------------------------------------------------------ symmetric geometry
 
@@ -89,6 +93,37 @@ def test_panel_turned_in_its_own_place_is_found_out_by_its_shapes():
     found = align(geo, test, modes, read_test(modes, geo, xyz, test, up, half))
     assert error_of(found, test, xyz) < 6.0
     assert "check the coordinate frame" in found.warnings[0]
+
+
+def tower_of_bars():
+    """Five storeys on four columns: turned by half a turn it lies on itself."""
+    corners = [(0.0, 0.0), (400.0, 0.0), (400.0, 320.0), (0.0, 320.0)]
+    rows = {}
+    lines = []
+
+    def straight(a, b, n):
+        along = [tuple(p) for p in np.linspace(a, b, n + 1).round(6)]
+        rows.update({p: len(rows) + k for k, p in enumerate(q for q in along if q not in rows)})
+        lines.extend(pairwise(along))
+
+    for c in corners:
+        straight((*c, 0.0), (*c, 2250.0), 20)
+    for z in 450.0 * np.arange(1, 6):
+        for c, d in zip(corners, corners[1:] + corners[:1], strict=True):
+            straight((*c, z), (*d, z), 4)
+    ends = np.array([[rows[p] for p in line] for line in lines])
+    return Geometry(np.arange(len(rows)) + 1, np.array(list(rows)), None, {"line": ends})
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_every_position_of_a_symmetric_frame_is_looked_at_however_many_starts_end_in_one(seed):
+    geo, rng = tower_of_bars(), np.random.default_rng(seed)
+    points = geo.xyz[rng.choice(len(geo.xyz), 41, replace=False)] + rng.normal(0.0, 1.0, (41, 3))
+    poses = search(cloud_of(surface_of(geo)), points)
+    upright = [R for R, rms in zip(poses.rotation, poses.rms, strict=True) if rms < 2.0]
+    turns = np.array([R[0, 0] for R in upright])
+    assert np.any(turns > 0.99)
+    assert np.any(turns < -0.99)
 
 
 def test_poor_shapes_do_not_move_a_frame_that_fits():
