@@ -35,6 +35,7 @@ from .model_selection import (
     ranked,
     scored,
     stands,
+    worth_telling,
 )
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -98,14 +99,8 @@ class Completeness:
         It has to gain enough, the more where it leaves more than a small part of the error (what is
         not there hardly lessens it), and to be ahead of what else was found.
         """
-        small = self.left < SEARCH.small_part
-        least = 0.0 if small else SEARCH.each_mode * len(self.best.diffuse.each)
-        return bool(self.gain > max(needed(self.best), least) and self.ahead > SEARCH.suspect)
-
-    @property
-    def left(self) -> float:
-        """Part of the error that the known parameters alone leave."""
-        return self.best.diffuse.error / self.alone.diffuse.error
+        least = max(needed(self.best), worth_telling(self.alone, self.best))
+        return bool(self.gain > least and self.ahead > SEARCH.suspect)
 
     @property
     def true(self) -> bool:

@@ -202,12 +202,28 @@ def needed(judged: Judged) -> float:
 
 
 def kept(levels: Sequence[Scored]) -> int:
-    """Return the number of the richest hypothesis that earns its place over the poorer ones."""
+    """Return the number of the richest hypothesis that earns its place over the poorer ones.
+
+    0 where it gains less over the first than `worth_telling`.
+    """
     best = 0
     for k, level in enumerate(levels[1:], start=1):
         if earned(level, levels[best]):
             best = k
+    alone, judged = levels[0].judged, levels[best].judged
+    if alone and judged and levels[best].score - levels[0].score < worth_telling(alone, judged):
+        return 0
     return best
+
+
+def worth_telling(alone: Judged, best: Judged) -> float:
+    """Return the gain over the known parameters `alone` below which an effect is not told of.
+
+    Not in doubt either: an error of the model has a likeliest place too, and where more than a
+    small part of the error is left what gains less a mode was never right.
+    """
+    small = best.diffuse.error < SEARCH.small_part * alone.diffuse.error
+    return 0.0 if small else SEARCH.each_mode * len(best.diffuse.each)
 
 
 def earned(richer: Scored, poorer: Scored) -> bool:

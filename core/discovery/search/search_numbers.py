@@ -68,7 +68,7 @@ class SearchNumbers:
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")
-    each_mode: float = number(1.5, "ln L a test mode", "that an effect gains over the known parameters and smooth fields, at least, to be clear beside more than a small part of the error", "of 230 cases made by another program none of eight that gained less was right")
+    each_mode: float = number(1.5, "ln L a test mode", "that an effect gains over the known parameters and smooth fields, at least, to be told beside more than a small part of the error", "of 230 cases made by another program none of eight that gained less was right")
     small_part: float = number(0.25, "of the error before", "what true effects left, and false ones never", "twelve cases by another program")
     usual_left: float = number(0.6, "of the part of the error that is left", "adequacy above which an effect is claimed", "true and false claims among 115 cases made for development")
     rivals_judged: int = number(12, "rivals", "of as many suspects that are judged by the diffuse error, at most", "time")

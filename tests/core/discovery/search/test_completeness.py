@@ -159,11 +159,18 @@ def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):
 
 
 @pytest.mark.parametrize(("gains", "kept"), [(13.0, 0), (30.0, 1)])
-def test_in_a_deck_that_lacks_nothing_only_what_is_clear_is_told(monkeypatch, gains, kept):
+def test_what_gains_little_on_every_mode_is_not_told_in_doubt_either(monkeypatch, gains, kept):
     levels = hypothesis(100.0), hypothesis(40.0, 3)
     evidence = {(): 0.0, (3,): gains}
-    assert weighed(monkeypatch, Found(levels, ((), ())), evidence)[1] == 1
-    assert weighed(monkeypatch, Found(levels, ((), ())), evidence, nothing=True)[1] == kept
+    assert weighed(monkeypatch, Found(levels, ((), ())), evidence)[1] == kept
+
+
+@pytest.mark.parametrize(("rival", "kept"), [(30.0, 0), (20.0, 1)])
+def test_in_a_deck_that_lacks_nothing_only_what_is_clear_is_told(monkeypatch, rival, kept):
+    found = Found((hypothesis(100.0), hypothesis(40.0, 3)), ((), (hypothesis(41.0, 60),)))
+    evidence = {(): 0.0, (3,): 30.0, (60,): rival}
+    assert weighed(monkeypatch, found, evidence)[1] == 1
+    assert weighed(monkeypatch, found, evidence, nothing=True)[1] == kept
 
 
 def test_the_known_parameters_are_fitted_from_where_the_best_has_them_too(monkeypatch):
