@@ -85,7 +85,7 @@ def explain(place: Path) -> None:
 
     truth = json.loads((place / "truth.json").read_text())
     searcher, found, verdict = searched(place)
-    say(f"== {place.name}: noise scale {verdict.scale:.2f}, posterior {verdict.posterior:.2f}")
+    say(f"== {place.name}: noise scale {verdict.scale:.2f}")
     for k, level in enumerate(found.levels):
         mark = "chosen" if k == verdict.accepted else "level "
         say(f"  {mark} {k}  {describe(searcher, level)}")
