@@ -82,12 +82,6 @@ class ReducedOrder:
         modes = self.reduced.solve(p, self.reduced.size).take(self._some_more)
         return self._on(full, self.reduced.corrected(p, modes))
 
-    def differentiable(
-        self, full: FullOrder, p: Floats, found: Eigensolution, active: Sequence[int], count: int
-    ) -> ReducedOrder:
-        """Return it with so many vectors that derivatives at `p`, solved in full, lack."""
-        return self._on(full, self.reduced.differentiable(p, found, active, count))
-
     def near(self, p: Floats) -> Near:
         """Return what it knows of the full model's modes at `p`: those up to a gap, some above."""
         every = self.reduced.solve(p, self.reduced.size)

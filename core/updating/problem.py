@@ -182,20 +182,6 @@ class Problem:
             for part, order in zip(self.parts, orders, strict=True)
         ]
 
-    def differentiable(
-        self, orders: Sequence[ReducedOrder], point: Point, active: Sequence[int]
-    ) -> list[ReducedOrder]:
-        """Take what derivatives at a point that was solved in full lack into bases of sketches."""
-        out = []
-        for part, order, s in zip(self.parts, orders, point.states, strict=True):
-            moving, found = part.moving(active)[0], _in_full(s)
-            answers = (len(found.eigenvalues) - found.rigid_body_modes) * len(moving)
-            if answers > UPDATING.sketch:
-                p = point.factors[part.own]
-                order = order.differentiable(part.full, p, found, moving, UPDATING.differentiated)
-            out.append(order)
-        return out
-
     def nearly(self, orders: Sequence[ReducedOrder], p: Floats) -> Orders:
         """Return every configuration in full, its modes at the factors `p` nearly known."""
         return [

@@ -148,8 +148,6 @@ def update_configurations(
     active = sorted({k for s in stages for k in s.parameters})
     if near is None or active != sorted(stages[-1].parameters):
         near = problem.around(point, active)
-    else:
-        near = problem.differentiable(near, point, active)
     counted = _moved_by(stages)
     there = problem.at(near, point.factors, counted)
     said = problem.identified(near, there, active, counted)

@@ -46,8 +46,7 @@ class UpdatingNumbers:
     slack: float = number(1e-12, "-", "between the bounds of a step that would fall together", ROUNDING)
 
     reach: float = number(2.0, "times", "or part of, the factors of a reduced model, beyond which a profile is not followed", CHECK)
-    sketch: int = number(64, "static answers", "to random combinations of what parameters change, in a basis that is corrected", "time")
-    differentiated: int = number(32, "answers", "likewise where it ended, that such a basis is widened by for standard errors", CHECK)
+    sketch: int = number(48, "static answers", "to random combinations of what parameters change, in a basis that is corrected", "time")
     correct: float = number(1.5, "times", "or part of, the factors a basis was last corrected at, beyond which it may be again", CHECK)
     uncorrected: int = number(3, "steps", "on a basis before it is corrected, at most", CHECK)
     fallen: float = number(0.5, "of the objective where a basis was last corrected", "below which it is, so far away", CHECK)
