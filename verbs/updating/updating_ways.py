@@ -216,8 +216,9 @@ def _as_written(
     found = done.after.solution
     off = np.zeros(len(done.factors))
     for k, (spec, q) in enumerate(zip(analysis.specs, analysis.model.parameters, strict=True)):
-        if spec.fields[0] in wanted:
-            off[k] = wanted[spec.fields[0]] / q.deck_values[0] - done.factors[k]
+        ref = spec.fields[0]
+        kept = wanted[ref] / q.deck_values[0] if ref in wanted else 1.0
+        off[k] = kept - done.factors[k]
     modes = np.arange(found.rigid_body_modes, len(found.eigenvalues))
     moved = np.flatnonzero(off)
     slopes = sensitivities(analysis.model, done.factors, found, modes, moved.tolist()).slopes
