@@ -69,10 +69,6 @@ class Factorisation(Protocol):
         """
         ...
 
-    def forget(self) -> None:
-        """Give the factor up, but not the order of its pattern: for `refactorise` alone."""
-        ...
-
 
 def best_backend() -> Backend:
     """Return the fastest backend that is installed."""
@@ -159,9 +155,6 @@ class _PardisoFactorisation:
         else:
             self._factorise(upper)
 
-    def forget(self) -> None:
-        self._pardiso.forget()
-
     def solve(self, b: Numbers) -> Floats:
         d = self._scale[:, None]
         columns = np.asarray(b, np.float64).reshape(self.n, -1)
@@ -226,9 +219,6 @@ class _SuperluFactorisation:
                 f"not enough memory to factorise {self.n} degrees of freedom: "
                 "use a machine with more memory, a smaller model, or install mkl"
             ) from error
-
-    def forget(self) -> None:
-        self._lu = self._full = None
 
     def solve(self, b: Numbers) -> Floats:
         d = self._scale[:, None]

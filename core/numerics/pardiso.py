@@ -20,7 +20,7 @@ import scipy.sparse as sp
 from ..arrays import Floats, Numbers
 from ..errors import CheckError, InputError
 
-_ANALYSE, _FACTORISE, _SOLVE, _FORWARD, _FORGET, _RELEASE = 11, 22, 33, 331, 0, -1
+_ANALYSE, _FACTORISE, _SOLVE, _FORWARD, _RELEASE = 11, 22, 33, 331, -1
 
 _ALIKE = 90
 """Per cent of their entries that rows share which make a block."""
@@ -118,11 +118,6 @@ class Pardiso:
             raise InputError(f"{data.shape[0]} values for a pattern of {self._ja.shape[0]}")
         self._a = np.ascontiguousarray(data, np.float64)
         self._factorise()
-
-    def forget(self) -> None:
-        """Give the factor up, but not what its pattern was analysed for."""
-        self._run(_FORGET)
-        self._a = np.zeros(1)
 
     def _factorise(self) -> None:
         self._run(_FACTORISE)

@@ -180,17 +180,15 @@ class ReducedModel(Noun):
         found: Eigensolution,
         parameters: Sequence[int],
         count: int,
-        modes: Ints | None = None,
+        modes: Ints,
     ) -> ReducedModel:
         """Return the model with what derivatives of the modes `found` at `p` lack in its basis.
 
         They lack (K - lambda M)^-1 f of the loads f = (K' - lambda M') phi of modes by parameters.
         So many combinations of these, drawn at random, are solved for with the factor by which the
-        modes were counted, of K - s M with s next to them. By default of all `modes` but those of
-        a rigid body.
+        modes were counted, of K - s M with s next to them. `modes` are elastic ones, from 0.
         """
-        some = slice(found.rigid_body_modes, None) if modes is None else modes
-        X, lam = found.vectors[:, some], found.eigenvalues[some]
+        X, lam = found.vectors[:, modes], found.eigenvalues[modes]
         weight, rng = 1.0 / np.sqrt(lam - found.sigma), np.random.default_rng(1)
         F = drawn_loads(self.model, p, parameters, X, lam, weight, count, rng)
         W = _factor(self.model, p, found).solve(F)

@@ -67,7 +67,10 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = ALIGN.keep) 
     rounds = [(len(R) // part, softness) for part, softness in ALIGN.coarser]
     for count, softness in (*rounds, (keep, ALIGN.softest)):
         if count < len(R):
-            best = _best_first(cloud, R, t, few, apart=count == keep)[: max(count, keep)]
+            order = np.argsort(cloud.rms(R, t, few), kind="stable")
+            if count == keep:
+                order = _apart_first(cloud.surface, Poses(R, t, np.zeros(len(R))), few, order)
+            best = order[: max(count, keep)]
             R, t = R[best], t[best]
         for _ in range(ALIGN.coarse_steps):
             R, t = _coarse_step(cloud, R, t, few, softness)
@@ -75,17 +78,14 @@ def search(cloud: Cloud, points: Floats, seed: int = 0, keep: int = ALIGN.keep) 
     return poses.take(np.argsort(poses.rms, kind="stable"))
 
 
-def _best_first(cloud: Cloud, R: Floats, t: Floats, points: Floats, apart: bool) -> Ints:
-    """Order poses by distance; where they are to be `apart`, those where a better one is last.
+def _apart_first(surface: Surface, poses: Poses, points: Floats, order: Ints) -> Ints:
+    """Put those of `order`, best first, that lay points (n, 3) where a better one does last.
 
     Many starts end in one position, and a symmetric structure has others that fit as well: by a
     hair on the few points and the samples that thin them out, and shapes would tell them apart.
     """
-    order = np.argsort(cloud.rms(R, t, points), kind="stable")
-    if not apart:
-        return order
-    x = Poses(R[order], t[order], np.zeros(len(R))).apply(points)
-    near = ALIGN.free * cloud.surface.size
+    x = poses.take(order).apply(points)
+    near = ALIGN.free * surface.size
     first = np.ones(len(x), bool)
     for k in range(len(x)):
         if first[k]:
