@@ -14,7 +14,7 @@ class Effort:
     looked_at: int = number(6, "places", "of the first scan around which neighbours are scanned")
     around: int = number(22, "places", "scanned around each of them, at most")
     neighbours: int = number(160, "places", "that a suspect may move to at once, at most")
-    of_each_kind: int = number(2, "suspects", "of a kind that are fitted, whatever the others gain")
+    of_each_kind: int = number(1, "suspects", "of a kind that are fitted, whatever the others gain")
     most: int = number(4, "suspects", "of a hypothesis, at most")
     search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")

@@ -67,10 +67,11 @@ def grown(
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
         for state in beam:
-            count = searcher.effort.branches * (SEARCH.few_branches if searcher.small else 1)
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
-            for branch in _varied(searcher, searcher.branches(state, count), soft):
+            for branch in _varied(
+                searcher, searcher.branches(state, searcher.effort.branches), soft
+            ):
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
             best = min(found, key=_objective)
@@ -152,11 +153,13 @@ def _varied(
     for score, s in branches:
         c = searcher.problem.catalogue[s.kind]
         kind = (c.kind.name, s.kind if c.ends else -1)
-        if base - score < SEARCH.worth_fitting * (base - best) and kept and not searcher.small:
+        if base - score < SEARCH.worth_fitting * (base - best) and kept:
             continue
         number[kind] += 1
-        each = searcher.effort.of_each_kind * (SEARCH.few_each if searcher.small else 1)
-        if number.total() <= searcher.effort.branches or number[kind] <= each:
+        if (
+            number.total() <= searcher.effort.branches
+            or number[kind] <= searcher.effort.of_each_kind
+        ):
             kept.append(s)
     return kept
 

@@ -5,7 +5,9 @@ of its own eigenvectors; suspects are fitted together, moved to better neighbour
 one is taken out and looked for anew.
 """
 
+from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -54,18 +56,13 @@ class Searcher:
         """Whether a suspect is of a kind with a magnitude that tunes it."""
         return self.problem.catalogue[s.kind].tunings > 1
 
-    @property
-    def small(self) -> bool:
-        """Whether there are so few places that many of them can be fitted."""
-        kinds = zip(self.problem.catalogue, self.coarse, strict=True)
-        return sum(len(rows) for c, rows in kinds if c.tunings == 1) < SEARCH.few_places
-
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
     ) -> list[tuple[float, Suspect]]:
-        """Return the most promising further suspects of every kind by exact evaluation.
+        """Return the most promising further suspects of every kind, `count` of each.
 
-        ``by(problem)`` has the noise by which they promise.
+        By exact evaluation with all else as it stands, and of the best of these by what a step of
+        all unknowns would leave; ``by(problem)`` has the noise by which they promise.
         """
         small, here = self.local(state)
         small = by(small)
@@ -78,15 +75,37 @@ class Searcher:
                 continue
             seen[kind] = look(small, here, kind, rows, worth)
             gain = here.objective - min(float(s.cost.min()) for s in seen.values())
-            worth = np.inf if self.small else here.objective - SEARCH.worth_refining * gain
+            worth = here.objective - SEARCH.worth_refining * gain
         apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
         for kind, coarse in seen.items():
             tried = self._finer(small, here, kind, coarse, worth)
             spots = small.catalogue[kind].spots[tried.rows]
-            for i in best_apart(spots, tried.cost, apart, count):
+            for i in best_apart(spots, tried.cost, apart, SEARCH.hoped_each):
                 suspect = Suspect(kind, int(tried.rows[i]), tuple(tried.theta[i]))
                 out.append((float(tried.cost[i]), suspect))
-        return sorted(out, key=lambda b: b[0])
+        return self._followed(small, here, sorted(out, key=lambda b: b[0]), count)
+
+    def _followed(
+        self, small: Problem, here: Fit, scanned: list[tuple[float, Suspect]], count: int
+    ) -> list[tuple[float, Suspect]]:
+        """Return suspects by what is left once the known parameters follow, `count` of each kind.
+
+        What is right and what imitates it differ little before that, and much after.
+        """
+        first = Counter(s.kind for _, s in scanned[: SEARCH.hoped])
+        out, of_kind = list[tuple[float, Suspect]](), Counter[int]()
+        for _, s in scanned:
+            if of_kind[s.kind] < max(first[s.kind], 1):
+                of_kind[s.kind] += 1
+                with suppress(np.linalg.LinAlgError):
+                    suspects = (*here.suspects, s)
+                    out.append((promised(small, here.nuisance, suspects, self.active), s))
+        kept, of_kind = list[tuple[float, Suspect]](), Counter[int]()
+        for left, s in sorted(out, key=lambda b: b[0]):
+            of_kind[s.kind] += 1
+            if of_kind[s.kind] <= count:
+                kept.append((left, s))
+        return kept
 
     def _finer(self, small: Problem, here: Fit, kind: int, coarse: Look, worth: float) -> Look:
         """Return a first look at a kind with the best places next to the best of it that cost less.

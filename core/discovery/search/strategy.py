@@ -134,11 +134,16 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 
 
 def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
-    """Return the best fit of a state with one more suspect of each kind."""
+    """Return the best fit of a state with one more suspect of each kind.
+
+    Of a few, each moved to better neighbours: the first scan sees but few of the links, and one
+    that is right but for its ends gains no more there than others.
+    """
     best: dict[int, Fit] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
-        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        near = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        new = searcher.refined(near)
         kind = branch.kind
         if kind not in best or new.objective < best[kind].objective:
             best[kind] = new
-    return [searcher.refined(f) for f in best.values()]
+    return list(best.values())

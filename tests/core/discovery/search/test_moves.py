@@ -96,3 +96,17 @@ def test_a_suspect_moves_to_where_it_is_once_all_else_follows(off):
     assert [q.row for q in moved.suspects] == [9, 22]
     assert np.exp(moved.suspects[0].theta[0]) == pytest.approx(2.0, rel=0.05)
     assert np.exp(moved.suspects[1].theta[0]) == pytest.approx(250.0, rel=0.1)
+
+
+def test_branches_are_ranked_by_what_is_left_once_the_known_parameters_follow():
+    s = searcher(hidden(tension=1.3, masses=[(9, 2.0)]))
+    state = evaluate(s.problem, np.zeros(2), ())
+    small, here = s.local(state)
+    found = s.branches(state, 3, lambda p: p)
+    scores = [score for score, _ in found]
+    assert scores == sorted(scores)
+    for score, b in found:
+        assert score == pytest.approx(promised(small, here.nuisance, (b,), s.active))
+        assert score < evaluate(small, here.nuisance, (b,)).objective
+    assert (found[0][1].kind, found[0][1].row) == (MASS, 9)
+    assert max(np.bincount([b.kind for _, b in found])) == 3
