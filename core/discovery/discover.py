@@ -4,34 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..arrays import Bools, Floats
-from ..correlation.mac import realised
+from ..arrays import Bools
 from ..errors import TrueupError
-from ..reduction.reduced_sum import ReducedSum, reduced_sum
-from .dampers.damper_evidence import weighed
+from .dampers.damper_evidence import taken_off, weighed
 from .discovery_numbers import DISCOVERY
-from .effects import KINDS
-from .effects.candidates import Candidates, factors_of, lacking
-from .effects.effect_kind import Scale
+from .effects.candidates import factors_of, lacking
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
-from .likelihood.hypothesis import Fit, Prior, Problem
-from .likelihood.map_fit import evaluate, fit
-from .likelihood.mode_likelihood import Evidence, noise_of
+from .likelihood.hypothesis import Fit, Problem
+from .likelihood.map_fit import evaluate
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
 from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
-from .reduction.discretisation_error import consistent_bars, lumping
-from .reduction.residual_flexibility import Compliance
-from .reduction.search_basis import Basis, build_basis
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
@@ -52,6 +44,7 @@ from .search.robust_search import robust
 from .search.set_up import beside_reach
 from .search.strategy import searched
 from .sensor_faults.diagnosis import Bench, Verdicts
+from .starting_point import Deck, ground_of, prepared
 
 
 def discover(request: Request, progress: Callable[[str], None] = lambda _: None) -> Discovery:
@@ -63,26 +56,21 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     """
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)
-    solution, n = request.solution, len(bench.survey.node)
-    hz = bench.survey.frequencies_hz
-    modes_out = held_out(len(hz), *DISCOVERY.modes_held, DISCOVERY.modes_enough)
+    n, count = len(bench.survey.node), len(bench.survey.frequencies_hz)
+    modes_out = held_out(count, *DISCOVERY.modes_held, DISCOVERY.modes_enough)
     sensors_out = held_out(n, *DISCOVERY.sensors_held, DISCOVERY.sensors_enough)
-    motion = np.asarray(request.structure.model.expansion @ solution.vectors)
-    first = bench.judged(motion, solution.eigenvalues)
     progress("making the catalogue of effects")
-    ground = _ground(request, ~modes_out)
+    ground = ground_of(request, ~modes_out)
     progress("fitting the known parameters")
-    trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
-    tested = bench.judged_by(trial.problem, trial.null)
-    if np.any(tested.doubtful != first.doubtful):
-        trial = _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
+    trial = _tried(request, bench, ground, modes_out, sensors_out)
+    bench, trial = _dashpot_off(request, bench, trial, (modes_out, sensors_out))
     searcher, found, verdict = _searched(trial, progress)
     if verdict.accepted:
         tested = _judged(bench, trial, searcher, found, verdict)
         if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | tested.doubtful
-            trial = _Trial(request, ground, aside, tested.noise, modes_out, sensors_out)
+            trial = _Trial(trial.asked, ground, aside, tested.noise, modes_out, sensors_out)
             searcher, found, verdict = _searched(trial, progress)
     progress("weighing what was found against the error of the model")
     searcher, found, verdict, whole = _completed(trial, searcher, found, verdict)
@@ -93,8 +81,44 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     said = build_discovery(request, searcher, found, verdict, whole, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
-    said = with_damper(request, weighed(trial.request, searcher.problem, best), said)
+    sound = replace(request, placed=request.placed.take(~trial.aside))
+    said = with_damper(request, weighed(sound, searcher.problem, best), said)
     return with_responses(searcher.problem, found.levels[0].nuisance, best, said)
+
+
+def _tried(
+    request: Request, bench: Bench, ground: Deck, modes_out: Bools, sensors_out: Bools
+) -> _Trial:
+    """Fit the known parameters without the sensors that look faulty."""
+    motion = np.asarray(request.structure.model.expansion @ request.solution.vectors)
+    first = bench.judged(motion, request.solution.eigenvalues)
+    trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
+    tested = bench.judged_by(trial.problem, trial.null)
+    if np.any(tested.doubtful != first.doubtful):
+        return _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
+    return trial
+
+
+def _dashpot_off(
+    request: Request, bench: Bench, trial: _Trial, held: tuple[Bools, Bools]
+) -> tuple[Bench, _Trial]:
+    """Take a heavy dashpot off the test where the model then fits better, else leave it.
+
+    It moves frequencies and shapes, which a search for stiffness and mass would put down to such.
+    What it does follows from the model, whose parameters follow from the test without it: in turns.
+    """
+    for _ in range(DISCOVERY.dashpot_turns):
+        sound = replace(request, placed=request.placed.take(~trial.aside))
+        w = weighed(sound, trial.problem, trial.null)
+        if w is None or not w.heavy or request.responses is not None:
+            break
+        other = replace(request, placed=taken_off(w, request.placed, trial.problem))
+        its_bench = Bench(other.placed, request.structure.model)
+        without = _tried(other, its_bench, trial.ground, *held)
+        if without.null.objective >= trial.null.objective:
+            break
+        bench, trial = its_bench, without
+    return bench, trial
 
 
 class _Trial:
@@ -103,16 +127,16 @@ class _Trial:
     def __init__(
         self,
         request: Request,
-        ground: _Deck,
+        ground: Deck,
         aside: Bools,
         noise: float,
         modes_out: Bools,
         sensors_out: Bools,
     ) -> None:
-        self.ground, self.aside = ground, aside
+        self.asked, self.ground, self.aside = request, ground, aside
         self.request = replace(request, placed=request.placed.take(~aside))
         sensors = ~sensors_out[~aside]
-        self.problem, self.null, self.zero = _prepared(
+        self.problem, self.null, self.zero = prepared(
             self.request, ground, noise, ~modes_out, sensors
         )
         placed, structure = self.request.placed, request.structure
@@ -224,89 +248,6 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[S
 def _score(searcher: Searcher, found: Found) -> float:
     """Return ln of the evidence for what a search found, by the error of the model."""
     return scored(searcher, found.levels[judge(searcher, found).accepted]).score
-
-
-@dataclass(frozen=True, eq=False)
-class _Deck:
-    """What does not depend on the sensors.
-
-    The basis with the deck's masses and with consistent bars, the error of the mesh and what those
-    bars add on it, how many modes may match, what loads do to the deck as it is, and every effect
-    that may be missing.
-    """
-
-    plain: Basis
-    basis: Basis
-    mesh: ReducedSum
-    bars: ReducedSum
-    columns: int
-    compliance: Compliance
-    catalogue: list[Candidates]
-
-
-def _ground(request: Request, modes: Bools) -> _Deck:
-    top = float(request.placed.test.frequencies_hz.max())
-    targets = _below(request.solution.eigenvalues, top)
-    plain = build_basis(request.structure.model, request.solution, targets)
-    mesh = reduced_sum((lumping(request.structure),), plain.vectors)
-    bars = reduced_sum(consistent_bars(request.structure), plain.vectors)
-    return _Deck(
-        plain,
-        replace(plain, mass=plain.mass.and_also(bars)),
-        mesh,
-        bars,
-        targets + DISCOVERY.band_more,
-        Compliance(request.structure.model, request.solution),
-        _catalogue(request, request.placed.test.frequencies_hz[modes]),
-    )
-
-
-def _below(eigenvalues: Floats, top: float) -> int:
-    """Return the number of modes that may match one up to `top` [Hz]."""
-    return int(np.count_nonzero(eigenvalues < (2.0 * np.pi * DISCOVERY.band * top) ** 2))
-
-
-def _prepared(
-    request: Request, ground: _Deck, noise: float, modes: Bools, sensors: Bools
-) -> tuple[Problem, Fit, Fit]:
-    """Return the problem without suspects, its best fit, and the fit with nothing moved."""
-    model, placed = request.structure.model, request.placed
-    hz = placed.test.frequencies_hz
-    shapes = np.asarray(placed.weighted(realised(placed.test.shapes)))
-    unit = shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny)
-    scatter: float | Floats = 0.0
-    reading = 0.0
-    if placed.errors is not None:
-        scatter, reading = placed.errors.frequency, float(np.min(placed.errors.length))
-    whole = Evidence(hz, unit, noise_of(placed.errors, noise, placed.weights), scatter, reading)
-    e = whole.take(modes, sensors)
-    basis = ground.basis
-    observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
-    prior = Prior(
-        np.append(request.spread, DISCOVERY.mesh_spread),
-        np.append(np.log([q.lower for q in model.parameters]), DISCOVERY.mesh_bounds[0]),
-        np.append(np.log([q.upper for q in model.parameters]), DISCOVERY.mesh_bounds[1]),
-    )
-    mesh, size = ground.mesh.matrices[0], min(basis.size, DISCOVERY.modes)
-    problem = Problem(
-        e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
-    )
-    n = len(prior.spread)
-    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
-    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
-    columns = _below(null.eigenvalues, float(hz.max())) + DISCOVERY.band_more
-    return replace(problem, columns=columns), null, zero
-
-
-def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
-    """Return every kind of effect at every place."""
-    scale = Scale(
-        request.mass,
-        request.structure.model.geometry.size,
-        float((2.0 * np.pi * np.median(hz)) ** 2),
-        (float(hz.min()), float(hz.max())),
-    )
-    return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
 
 
 def _bettered(

@@ -1,17 +1,20 @@
 """A dashpot weighed on the model that a search ended with."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Floats, Ints, Numbers
-from ...correlation.mac import principal
+from ...arrays import Floats, Numbers
+from ...correlation.comparison import Placed
+from ...correlation.mac import principal, realised
+from ...correlation.mode_errors import ModeErrors, mode_errors
 from ..effects.local_damper import PEAKS, dashpots
 from ..effects.structure_points import Axes
-from ..likelihood.complex_modes import Oriented, complex_modes, oriented
+from ..likelihood.complex_modes import Oriented, oriented
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.mode_likelihood import Evidence
 from ..likelihood.request import Request
+from .damped_model import Damped, damped
 from .damper_numbers import DAMPERS
 from .damper_search import DamperFound, DampingEvidence, find_damper
 
@@ -27,15 +30,23 @@ class Weighed:
     modes : Oriented
     u : (n_place, n) float
         Motion of the places in the coordinates of `modes`.
-    known : (n, n) float
-        Dashpots of the deck on unit modal masses.
+    damped : Damped
+        The model with the dashpot at its best place.
+    vectors : (n_basis, n) float
+        Undamped modes of the model that `damped` speaks of, on the basis.
     """
 
     found: DamperFound
     places: Axes
     modes: Oriented
     u: Floats
-    known: Floats
+    damped: Damped
+    vectors: Floats
+
+    @property
+    def heavy(self) -> bool:
+        """Whether the dashpot is likely and moves modes that others are looked for by."""
+        return self.found.exists > DAMPERS.likely and len(self.damped.moved) > 0
 
 
 def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
@@ -49,17 +60,57 @@ def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
     e = Evidence(test.frequencies_hz, unit, problem.whole.noise)
     modes = oriented(e, state.eigenvalues, sensors, problem.columns)
     own = sensors @ modes.turn
-    turn = V @ modes.turn
     places = dashpots(structure)
-    free = problem.basis.vectors @ turn
-    u = np.asarray(places.root @ free)
-    known = np.zeros((len(modes.omega),) * 2)
+    free = problem.basis.vectors @ V
+    motion = np.asarray(places.root @ free)
+    known = np.zeros((V.shape[1],) * 2)
     if structure.damping is not None:
         known = np.asarray(free.T @ (structure.damping @ free))
+    u = motion @ modes.turn
+    low = np.setdiff1d(np.arange(V.shape[1]), modes.above)
+    omega = np.sqrt(np.maximum(state.eigenvalues[low], 0.0))
+
+    def exact(row: int, c: float, level: float) -> Damped:
+        w = motion[row, low]
+        D = known[np.ix_(low, low)] + c * np.outer(w, w) + np.diag(2.0 * level * omega)
+        return damped(e, shapes, omega, sensors[:, low], D)
+
     imaginary = _imaginary(shapes, own[:, : modes.count])
     evidence = DampingEvidence(test.damping, imaginary, e.noise.independent)
-    found = find_damper(evidence, modes, u, own, known, np.log(PEAKS))
-    return None if found is None else Weighed(found, places, modes, u, known)
+    turned = modes.turn.T @ known @ modes.turn
+    found = find_damper(evidence, modes, u, own, turned, np.log(PEAKS), exact)
+    if found is None:
+        return None
+    level = float(np.exp(np.mean(np.log(found.level_with))))
+    best = exact(int(found.rows[0]), float(np.exp(found.log_size[0])), level)
+    return Weighed(found, places, modes, u, best, V[:, low])
+
+
+def taken_off(w: Weighed, placed: Placed, problem: Problem) -> Placed:
+    """Return a test as it would be without the dashpot: frequencies and real shapes.
+
+    The model says by how much both differ, a share of which counts as error; `placed` may have
+    more sensors than were weighed.
+    """
+    test, d = placed.test, w.damped
+    sensors = np.asarray(placed.observation.matrix @ (problem.basis.motion @ w.vectors))
+    with_it, real = sensors @ d.shapes, realised(test.shapes)
+    length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
+    scaled = real * (np.sum(with_it * real, axis=0) / length)
+    change = sensors @ d.undamped - with_it
+    without = scaled + change
+    hz = test.frequencies_hz / d.stretched
+    off, wrong = DAMPERS.own_share * np.abs(hz - test.frequencies_hz), DAMPERS.own_share * change
+    errors = mode_errors(hz, without, off, np.abs(wrong))
+    if placed.errors is not None:
+        own = placed.errors
+        frequency, shape = (
+            np.hypot(own.frequency, errors.frequency),
+            np.hypot(own.shape, errors.shape),
+        )
+        errors = ModeErrors(frequency, shape)
+    test = replace(test, frequencies_hz=hz, shapes=without)
+    return replace(placed, test=test, errors=errors)
 
 
 def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
@@ -69,21 +120,3 @@ def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
     real = np.asarray(shapes.real)
     length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
     return np.asarray(shapes.imag * (np.sum(own * real, axis=0) / length))
-
-
-def moved(w: Weighed) -> Ints:
-    """Return the test modes whose frequency or real shape the dashpot moves, numbers from 0.
-
-    A heavy dashpot couples close modes: to a search for missing stiffness and mass that looks
-    like something else at its place.
-    """
-    n, found, omega = w.modes.count, w.found, w.modes.omega
-    u = w.u[found.rows[0]]
-    level = np.full(len(omega), float(np.exp(np.mean(np.log(found.level_with)))))
-    level[:n] = found.level_with
-    D = w.known + np.exp(found.log_size[0]) * np.outer(u, u) + np.diag(2.0 * level * omega)
-    poles, Q = complex_modes(omega, D)
-    shift = np.abs(np.abs(poles[:n]) / omega[:n] - 1.0)
-    turned = np.linalg.norm(Q.real[:, :n] - np.eye(len(omega))[:, :n], axis=0)
-    still = (shift < DAMPERS.shifted) & (turned < DAMPERS.turned)
-    return np.flatnonzero(~still)

@@ -1,9 +1,9 @@
 """Is there a dashpot, and where: damping ratios and complex shapes against every place.
 
-A dashpot leaves undamped frequencies and shapes nearly alone, so it is weighed on evidence of its
-own, given the model that the search completed. Every place and direction is tried over a range of
-sizes to first order, the best of them by the exact quadratic eigenproblem; places, sizes and what
-the structure has of damping by itself are integrated out.
+Whether there is one, damping says: every place and direction is tried over a range of sizes to
+first order, given a model; places, sizes and what the structure has of damping by itself are
+integrated out. Where one is likely and how large it is say the exact modes of the model with it at
+the best places: ratios, frequencies and shapes of the test together.
 """
 
 from collections.abc import Callable
@@ -13,9 +13,13 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...arrays import Bools, Floats, Ints
-from ..likelihood.complex_modes import Oriented, added, imaginary, predicted
+from ..likelihood.complex_modes import Oriented, added, imaginary
+from .damped_model import Damped
 from .damper_numbers import DAMPERS
 from .damping_ratios import Levels, expected_level, levels_for, log_likelihood, marginal
+
+Exact = Callable[[int, float, float], Damped]
+"""Modes of a model with a dashpot at a place, of a size, beside a ratio that all modes have."""
 
 Gain = Callable[[Ints, Floats], Floats]
 """How much likelier (ln) dashpots at some places (n,), of sizes (n, t), make the shapes, (n, t)."""
@@ -77,14 +81,20 @@ class DamperFound:
 
 
 def find_damper(
-    e: DampingEvidence, modes: Oriented, u: Floats, sensors: Floats, known: Floats, trials: Floats
+    e: DampingEvidence,
+    modes: Oriented,
+    u: Floats,
+    sensors: Floats,
+    known: Floats,
+    trials: Floats,
+    exact: Exact | None = None,
 ) -> DamperFound | None:
     """Weigh a dashpot at every place against none; None where fewer than five ratios are known.
 
     `u` (n_place, n) is the motion of every place in the coordinates of `modes`, along the direction
     tried there, `sensors` (n_sensor, n) likewise; `known` (n, n) are dashpots that the deck has, on
     unit modal masses; `trials` (n_trial,) are ln of the ratio that the mode which feels a dashpot
-    most gets from it.
+    most gets from it. By `exact`, where given, the best places are weighed once more.
     """
     chosen = np.flatnonzero(e.known)
     if len(chosen) < DAMPERS.fewest or not len(u):
@@ -96,30 +106,41 @@ def find_damper(
         return None
     first = w.scores(live, _coarse(w)).max(axis=1)
     best = np.argsort(-first, kind="stable")[: DAMPERS.screened]
-    rows = live[best[first[best] > first.max() - DAMPERS.behind]]
+    kept = first[best] > first.max() - DAMPERS.behind
+    kept[: DAMPERS.exact] = True
+    rows = live[best[kept]]
     score = w.scores(rows, w.grid)
-    for i in np.argsort(-logsumexp(score, axis=1), kind="stable")[: DAMPERS.exact]:
-        for k in np.flatnonzero(score[i] > score[i].max() + np.log(DAMPERS.worth)):
-            score[i, k] += w.correction(modes, known, u[rows[i]], int(rows[i]), int(k))
-    place = logsumexp(score, axis=1) - np.log(len(trials))
-    order = np.argsort(-place, kind="stable")
-    rows, score, place = rows[order], score[order], place[order]
-    odds = float(logsumexp(place)) - np.log(len(live)) - DAMPERS.rare
-    within = np.exp(score - logsumexp(score, axis=1)[:, None])
-    log_c = np.log(w.sizes[rows])
-    mean = np.sum(within * log_c, axis=1)
+    odds = float(logsumexp(score)) - np.log(len(trials) * len(live)) - DAMPERS.rare
+    exists = 1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most)))
+    order = np.argsort(-logsumexp(score, axis=1), kind="stable")
+    rows, score = rows[order], score[order]
+    with_one = w.level(int(rows[0]), _mean(score[:1], w.sizes[rows[:1]])[0])
+    if exact is not None and exists > DAMPERS.likely:
+        rows = rows[: DAMPERS.exact]
+        score = w.exact_scores(rows, exact, float(np.exp(np.mean(np.log(with_one)))))
+        order = np.argsort(-logsumexp(score, axis=1), kind="stable")
+        rows, score = rows[order], score[order]
+    place = logsumexp(score, axis=1)
+    mean = np.log(_mean(score, w.sizes[rows]))
+    within = np.exp(score - place[:, None])
     step = float(np.ptp(trials)) / max(len(trials) - 1, 1)
-    deviation = np.sqrt(np.sum(within * (log_c - mean[:, None]) ** 2, axis=1) + step**2 / 12.0)
+    spread = np.sum(within * (np.log(w.sizes[rows]) - mean[:, None]) ** 2, axis=1)
     return DamperFound(
-        1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most))),
+        exists,
         2.0 * odds,
         rows,
         np.exp(place - logsumexp(place)),
         mean,
-        deviation,
+        np.sqrt(spread + step**2 / 12.0),
         _everywhere(w.level(None, 0.0), modes, chosen),
-        _everywhere(w.level(int(rows[0]), float(np.exp(mean[0]))), modes, chosen),
+        _everywhere(with_one, modes, chosen),
     )
+
+
+def _mean(score: Floats, sizes: Floats) -> Floats:
+    """Return the (geometric) mean size at each place, (n,), by the scores (n, n_trial)."""
+    within = np.exp(score - logsumexp(score, axis=1)[:, None])
+    return np.asarray(np.exp(np.sum(within * np.log(sizes), axis=1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,23 +181,20 @@ class _Weighing:
         part = self.own + c * self.gives[row]
         return expected_level(self.measured, self.grid, part, c * self.wrong[row])
 
-    def correction(self, modes: Oriented, known: Floats, u: Floats, row: int, k: int) -> float:
-        """Return what the exact eigenproblem adds to a score.
+    def exact_scores(self, rows: Ints, exact: Exact, level: float) -> Floats:
+        """Return ln of how likely each size makes ratios, frequencies and shapes, (n, n_trial).
 
-        Where modes overlap, ratios by first order and exact ones differ, and how an
-        identification shared the damping out among them is not known: each counts half.
+        How far off the model is in frequencies and shapes is unknown and integrated out (prior
+        1/σ): of each mode they count as two readings.
         """
-        c = float(self.sizes[row, k])
-        level = self.level(row, c)
-        base = np.full(len(modes.omega), float(np.exp(np.mean(np.log(level)))))
-        base[self.chosen] = level
-        total = predicted(modes.omega, known + c * np.outer(u, u), base)[self.chosen]
-        exact = np.where(np.isfinite(total), np.maximum(total - level, 0.0), 1.0)
-        simple, full = (
-            float(marginal(self.measured, self.grid, part, c * self.wrong[row]))
-            for part in (self.own + c * self.gives[row], exact)
-        )
-        return float(np.logaddexp(simple, full)) - float(np.log(2.0)) - simple
+        out = np.empty((len(rows), self.sizes.shape[1]))
+        for i, row in enumerate(rows):
+            for k, c in enumerate(self.sizes[row]):
+                d = exact(int(row), float(c), level)
+                part = np.maximum(d.ratios[self.chosen] - level, 0.0)
+                ratio = marginal(self.measured, self.grid, part, c * self.wrong[row])
+                out[i, k] = float(ratio) - len(d.omega) * np.log(d.misfit)
+        return out
 
 
 def _weighing(

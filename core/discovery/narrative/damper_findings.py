@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Floats, Ints
-from ..dampers.damper_evidence import Weighed, moved
+from ..dampers.damper_evidence import Weighed
 from ..effects import KINDS
 from ..effects.local_damper import KIND, sentence
 from ..findings import Discovery, Finding, ModalDamping, Where
 from ..likelihood.complex_modes import added
 from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.request import Request
+from ..model_error.model_error_numbers import MODEL_ERROR
 from ..search.model_selection import times
 from .narrative_numbers import NARRATIVE
 from .sentences import alternative, region
@@ -36,12 +37,13 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
     model = [f for f in said.findings if f.side == "model"]
     rest = [f for f in said.findings if f.side != "model"]
     verdict, decide = said.verdict, said.would_decide
-    if verdict not in {"effect", "undecided"}:
+    left = verdict == "undecided" and (model or said.adequacy < MODEL_ERROR.claimed)
+    if verdict != "effect" and not left:
         verdict = "effect" if sure >= NARRATIVE.damper_sure else "undecided"
     if verdict == "undecided":
         decide = (*decide, _would_decide(request, w))
     beside_it = _beside(request, finding, model)
-    shaken = moved(w) if beside_it else np.zeros(0, np.int64)
+    shaken = w.damped.moved if beside_it else np.zeros(0, np.int64)
     if len(shaken):
         verdict = "undecided"
         which = ", ".join(str(int(request.numbers[j])) for j in shaken)

@@ -10,11 +10,13 @@ import pytest
 import scipy.sparse as sp
 
 from trueup.core.data.geometry import Geometry
-from trueup.core.discovery.dampers.damper_evidence import Weighed, moved
+from trueup.core.discovery.dampers.damped_model import damped
+from trueup.core.discovery.dampers.damper_evidence import Weighed
 from trueup.core.discovery.dampers.damper_search import DamperFound
 from trueup.core.discovery.effects.structure_points import Axes
 from trueup.core.discovery.findings import Discovery, Finding, Where
 from trueup.core.discovery.likelihood.complex_modes import Oriented
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 from trueup.core.discovery.narrative.damper_findings import with_damper
 
 XYZ = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11), np.zeros(11)])
@@ -45,9 +47,13 @@ def weighed(exists, weights, omega=(10.0, 10.5, 20.0, 30.0), c=0.2):
         LEVEL,
         LEVEL,
     )
-    modes = Oriented(np.array(omega), np.eye(4), 3)
+    omega = np.array(omega)
+    modes = Oriented(omega, np.eye(4), 3)
     u = np.tile([1.0, 0.8, 0.3, 0.5], (11, 1))
-    return Weighed(found, PLACES, modes, u, np.zeros((4, 4)))
+    test = Evidence(omega[:3] / (2.0 * np.pi), np.eye(4)[:, :3], Noise())
+    D = c * np.outer(u[0], u[0]) + np.diag(2.0 * 0.01 * omega)
+    with_it = damped(test, test.shapes, omega, np.eye(4), D)
+    return Weighed(found, PLACES, modes, u, with_it, np.eye(4))
 
 
 def at(*pairs):
@@ -97,9 +103,21 @@ def test_nothing_is_said_where_no_damping_was_measured():
 
 
 def test_a_heavy_dashpot_moves_close_modes_and_a_light_one_does_not():
-    assert set(moved(weighed(0.99, at((4, 1.0)), c=2.0)).tolist()) >= {0, 1}
-    assert not len(moved(weighed(0.99, at((4, 1.0)), c=0.05)))
-    assert not len(moved(weighed(0.99, at((4, 1.0)), (10.0, 15.0, 20.0, 30.0), c=0.2)))
+    heavy, light = weighed(0.99, at((4, 1.0)), c=2.0), weighed(0.99, at((4, 1.0)), c=0.05)
+    assert set(heavy.damped.moved.tolist()) >= {0, 1}
+    assert heavy.heavy
+    assert not light.heavy
+    assert not weighed(0.1, at((4, 1.0)), c=2.0).heavy
+
+
+def test_beside_an_error_everywhere_a_dashpot_is_claimed_if_right_models_leave_as_much():
+    """The error that the model completed by the dashpot leaves decides, as for any effect."""
+    w = weighed(0.99, at((4, 1.0)))
+    usual = replace(QUIET, verdict="undecided", adequacy=0.4)
+    assert with_damper(REQUEST, w, usual).verdict == "effect"
+    assert with_damper(REQUEST, w, replace(usual, adequacy=0.1)).verdict == "undecided"
+    beside_doubt = replace(usual, findings=(spring(9.5),))
+    assert with_damper(REQUEST, w, beside_doubt).verdict == "undecided"
 
 
 def test_a_spring_beside_a_heavy_dashpot_is_not_believed():
