@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,14 +26,13 @@ from .narrative.damper_findings import with_damper
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
-from .search.equipment_growth import as_blocks, equipped
+from .search.equipment_growth import as_blocks
 from .search.footprints import footed, settled
 from .search.model_selection import (
     Judgement,
     adequate,
     held_out,
     judge,
-    scored,
     usual,
 )
 from .search.moves import Searcher
@@ -42,7 +40,7 @@ from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
 from .search.robust_search import robust
 from .search.set_up import beside_reach
-from .search.strategy import searched
+from .search.strategy import bettered, evidence, on_stands, searched
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
 
@@ -204,15 +202,14 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if verdict.scale > DISCOVERY.estimated and not adequate(searcher, best):
         progress("estimating how far off the model is everywhere")
         ways = [(searcher, found), robust(searcher, progress)]
-        searcher, found = max(ways, key=lambda way: _score(*way))
+        searcher, found = max(ways, key=lambda way: evidence(*way))
     progress("weighing the best hypotheses on bases of their own")
     searcher, found, explained = _footed(trial, searcher, found)
-    searcher, found = _bettered(searcher, found, reshaped)
+    searcher, found = bettered(searcher, found, reshaped)
     if not explained:
         searcher, found, explained = _footed(trial, searcher, found)
     if not explained:
-        on_stands = partial(equipped, trial.request.structure)
-        searcher, found = _bettered(searcher, found, on_stands)
+        searcher, found = on_stands(trial.request.structure, searcher, found, progress)
     found, verdict = _weighed(trial, searcher, found)
     if not explained:
         searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
@@ -243,24 +240,6 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[S
             if laid.objective < best.objective:
                 return wide, laid
     return searcher, best
-
-
-def _score(searcher: Searcher, found: Found) -> float:
-    """Return ln of the evidence for what a search found, by the error of the model."""
-    return scored(searcher, found.levels[judge(searcher, found).accepted]).score
-
-
-def _bettered(
-    searcher: Searcher,
-    found: Found,
-    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
-) -> tuple[Searcher, Found]:
-    """Give patches of the hypotheses that earned their place better shapes, or masses stands."""
-    verdict = judge(searcher, found)
-    levels = list(found.levels)
-    for k in range(1, verdict.accepted + 1):
-        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
-    return searcher, Found(tuple(levels), found.rivals)
 
 
 def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:

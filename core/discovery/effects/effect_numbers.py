@@ -47,6 +47,7 @@ class EffectNumbers:
     patch_reach: float = number(1.6, "radii", "within which its elements are", "more than half its diagonal")
     patch_largest: float = number(0.5, "of all elements", "that a patch may hold")
     sheet_bend: float = number(0.7, "cosine", "between the ways across a side that shells on either side of it lie, of one sheet", "half a right angle")
+    sheet_thick: float = number(0.5, "of its width", "thickness up to which grids beside each other are a sheet that equipment stands up from")
     sheets_at_side: int = number(5, "shells", "that may meet at a side")
     patch_left: float = number(1e-5, "of the trace", "that a row of a patch's root is worth, at least")
     patch_rounding: float = number(1e-12, "of the largest eigenvalue", "below which one of an element is zero", ROUNDING)

@@ -17,6 +17,7 @@ from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates, places_of, together
 from .effect_kind import Words
 from .effect_laws import MassLaw
+from .effect_numbers import EFFECTS
 from .structure_points import rotations, translations
 
 
@@ -64,12 +65,17 @@ class Stand:
         Its translations and rotations.
     turn : (3, 3) float
         Takes the offset of the first of places alike to that here.
+    axes : (3, 3) float
+        Rows: the normal of the sheet it stands on, and two ways along it; basic axes on no sheet.
+    sheet : bool
     """
 
     xyz: Floats
     grids: tuple[int, ...]
     motion: sp.csr_matrix
     turn: Floats
+    axes: Floats
+    sheet: bool
 
 
 def stand(structure: Structure, grids: Sequence[int], turn: Floats) -> Stand | None:
@@ -91,13 +97,31 @@ def stand(structure: Structure, grids: Sequence[int], turn: Floats) -> Stand | N
         turns = rotations(structure, points)
         if np.diff(turns.indptr).min() == 0:
             return None
-        return Stand(xyz, (int(g.ids[rows[0]]),), sp.vstack([moves, turns]).tocsr(), turn)
+        return Stand(
+            xyz, (int(g.ids[rows[0]]),), sp.vstack([moves, turns]).tocsr(), turn, np.eye(3), False
+        )
     size = float(np.linalg.norm(g.xyz[rows] - xyz, axis=1).max())
     rigid = np.concatenate([np.hstack([np.eye(3), -_cross(x - xyz) / size]) for x in g.xyz[rows]])
     if np.linalg.matrix_rank(rigid) < rigid.shape[1]:
         return None
     fitted = np.linalg.pinv(rigid) / np.repeat([1.0, size], 3)[:, None]
-    return Stand(xyz, tuple(g.ids[rows].tolist()), sp.csr_matrix(fitted) @ moves, turn)
+    motion = sp.csr_matrix(fitted) @ moves
+    return Stand(xyz, tuple(g.ids[rows].tolist()), motion, turn, *_axes(g.xyz[rows] - xyz))
+
+
+def _axes(around: Floats) -> tuple[Floats, bool]:
+    """Return the normal of a sheet of grids (n, 3) and two ways along it, one near to an axis.
+
+    Basic axes where they are no sheet; also whether they are one.
+    """
+    _, extent, ways = np.linalg.svd(around - around.mean(axis=0), full_matrices=False)
+    if extent[2] > EFFECTS.sheet_thick * extent[1]:
+        return np.eye(3), False
+    normal = ways[2] * np.sign(ways[2][np.argmax(np.abs(ways[2]))])
+    along = np.eye(3)[np.argmin(np.abs(normal))]
+    along = along - normal * (normal @ along)
+    along /= np.linalg.norm(along)
+    return np.array([normal, along, np.cross(normal, along)]), True
 
 
 def equipment(template: Candidates, stands: Sequence[Stand], bodies: Sequence[Body]) -> Candidates:

@@ -1,8 +1,9 @@
 """A mass grows into equipment where the test tells its offset or how it resists being turned.
 
 A mass on a stand of 60 mm looks like a heavier one, or like one with an absorber beside it. So each
-mass of a hypothesis that earned its place is tried with its centre off the structure and with radii
-of gyration, in steps that get smaller, which have to gain more than four more unknowns are worth.
+mass of a hypothesis that earned its place is tried with its centre off the structure, above it
+first, and with radii of gyration, in steps that get smaller. The test has to be clearly likelier
+with them by the error of the model: what a mass on no stand leaves is no noise to weigh them by.
 Where the model is off by more than right ones are, the test does not tell a heavy mass from a less
 heavy one that resists being turned; there a mass is a solid block of what the structure is made
 of: equipment is rarely more compact.
@@ -15,28 +16,27 @@ import numpy as np
 from ...arrays import Floats
 from ..effects import point_mass
 from ..effects.candidates import Candidates, Suspect, places_of
-from ..effects.equipment import Body, Equipment, Stand, block, equipment, stand
+from ..effects.equipment import Body, Equipment, Stand, block, equipment, stand, stands_off
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Structure
 from .exact_scan import scan
+from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
 Better = tuple[Searcher, Fit] | None
 
 
-def equipped(
-    structure: Structure, searcher: Searcher, state: Fit, scale: float
-) -> tuple[Searcher, Fit]:
-    """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them.
-
-    The noise has `scale` times the assumed variance: what equipment gains has to be that much more.
-    """
+def equipped(structure: Structure, searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
+    """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them."""
     for q, s in enumerate(state.suspects):
-        if searcher.problem.catalogue[s.kind].kind.joins(point_mass.KIND):
-            better = _one(structure, searcher, state, q, scale)
-            searcher, state = better or (searcher, state)
+        c = searcher.problem.catalogue[s.kind]
+        if c.kind.joins(point_mass.KIND) and not stands_off(c, s.row):
+            better = _one(structure, searcher, state, q)
+            gain = scored(*better).score - scored(searcher, state).score if better else 0.0
+            if better and gain > SEARCH.suspect:
+                searcher, state = better
     return searcher, state
 
 
@@ -61,23 +61,23 @@ def _at_point(c: Candidates) -> bool:
     return c.kind is point_mass.KIND and bool(c.rows_each) and not isinstance(c, Equipment)
 
 
-def _one(structure: Structure, searcher: Searcher, state: Fit, q: int, scale: float) -> Better:
+def _one(structure: Structure, searcher: Searcher, state: Fit, q: int) -> Better:
     """Return a hypothesis with equipment in place of one mass, None where that is not worth it."""
-    if state.misfit <= scale * SEARCH.equipment_gain:
+    if state.misfit <= SEARCH.equipment_gain:
         return None
-    body = Body((0.0, 0.0, 0.0), SEARCH.equipment_steps[-1] * searcher.size)
     places = [(c, _stands(structure, c, row)) for c, row in _places(searcher, state.suspects[q])]
-    looked = [
-        (float(_looked(searcher, state, q, c, stands, [body], state).score.min()), c, stands)
-        for c, stands in places
-        if stands
-    ]
+    looked: list[tuple[float, Candidates, list[Stand], Body]] = []
+    for c, stands in places:
+        if stands:
+            bodies = _upright(stands[0], searcher.size)
+            hopes = _looked(searcher, state, q, c, stands, bodies, state).score.min(axis=1)
+            looked.append((float(hopes.min()), c, stands, bodies[int(hopes.argmin())]))
     looked.sort(key=lambda place: place[0])
     best: Better = None
-    for _, c, stands in looked[: SEARCH.equipment_tried]:
+    for _, c, stands, body in looked[: SEARCH.equipment_tried]:
         wide, fit = _grown(searcher, state, q, c, stands, body)
         now = state if best is None else best[1]
-        if fit.objective < now.objective - scale * SEARCH.equipment_gain:
+        if fit.objective < now.objective - SEARCH.equipment_gain:
             best = (wide, fit)
     return best
 
@@ -113,14 +113,14 @@ def _grown(
 ) -> tuple[Searcher, Fit]:
     """Return a hypothesis with the best body in place of one mass, from a body on.
 
-    Where the first step is no good it is given up: no better than the same mass on no mount.
+    Where the first step is no good it is given up: no better than the first body.
     """
     best: tuple[Searcher, Fit] | None = None
     look = _looked(searcher, state, q, template, stands, [body], state)
     least = max(state.objective, _fitted(look, state, q, state)[2].objective)
     for step in SEARCH.equipment_steps:
         for _ in range(SEARCH.equipment_rounds):
-            tried = _around(body, step * searcher.size)
+            tried = _around(body, step * searcher.size, stands[0].axes)
             now = state if best is None else best[1]
             look = _looked(searcher, state, q, template, stands, tried, now)
             k, wide, fit = _fitted(look, state, q, now)
@@ -180,12 +180,24 @@ def _fitted(look: _Look, state: Fit, q: int, now: Fit) -> tuple[int, Searcher, F
     return row, wide, fit
 
 
-def _around(body: Body, step: float) -> list[Body]:
-    """Return a body, and those whose centre or radius differs by a step."""
-    moves: Floats = step * np.vstack([np.eye(3), -np.eye(3)])
+def _upright(s: Stand, size: float) -> list[Body]:
+    """Return a body at a place, and those above and below a sheet, by steps of two sizes."""
+    radius = SEARCH.equipment_steps[-1] * size
+    steps = SEARCH.equipment_steps[:2] if s.sheet else ()
+    heights = [0.0, *(way * h * size for h in steps for way in (1.0, -1.0))]
+    return [_body(h * s.axes[0], radius) for h in heights]
+
+
+def _body(offset: Floats, radius: float) -> Body:
+    x, y, z = (float(v) for v in offset)
+    return Body((x, y, z), radius)
+
+
+def _around(body: Body, step: float, axes: Floats) -> list[Body]:
+    """Return a body, and those whose centre, along `axes` (3, 3), or radius differs by a step."""
+    moves: Floats = step * np.vstack([axes, -axes])
     off = np.array(body.offset)
-    centres = [tuple(float(v) for v in off + m) for m in moves]
-    out = [body, *(replace(body, offset=(x, y, z)) for x, y, z in centres)]
+    out = [body, *(_body(off + m, body.radius) for m in moves)]
     radii = (body.radius + step, body.radius - step)
     return out + [replace(body, radius=r) for r in radii if r > 0.0]
 

@@ -68,7 +68,7 @@ def burden(searcher: Searcher, f: Fit) -> float:
     """
     catalogue = searcher.problem.catalogue
     total = sum(price(searcher, s) for s in f.suspects)
-    total += SEARCH.equipment_gain * sum(stands_off(catalogue[s.kind], s.row) for s in f.suspects)
+    total += _stands(searcher, f)
     for i, s in enumerate(f.suspects):
         for t in f.suspects[:i]:
             a, b = catalogue[s.kind], catalogue[t.kind]
@@ -77,6 +77,13 @@ def burden(searcher: Searcher, f: Fit) -> float:
                 total += SEARCH.same_effect
                 break
     return total
+
+
+def _stands(searcher: Searcher, f: Fit) -> float:
+    """Return what the unknowns of equipment on stands must lower the objective by."""
+    catalogue = searcher.problem.catalogue
+    off = sum(stands_off(catalogue[s.kind], s.row) for s in f.suspects)
+    return SEARCH.equipment_gain * off
 
 
 def judge(searcher: Searcher, found: Found) -> Judgement:
@@ -164,6 +171,7 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool =
     `alike` the best, the same in another shape, they do not help more than that.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
+    paid += 0.5 * _stands(searcher, f)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid

@@ -14,8 +14,21 @@ import numpy as np
 
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
+from ..reduction.elements_and_supports import Structure
 from .beam_search import Found, grown
-from .model_selection import adequate, complete, cost, enough, noise_scale, usual, with_unseen
+from .equipment_growth import equipped
+from .model_selection import (
+    adequate,
+    complete,
+    cost,
+    earned,
+    enough,
+    judge,
+    noise_scale,
+    scored,
+    usual,
+    with_unseen,
+)
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -60,9 +73,65 @@ def _better(searcher: Searcher, found: Found, other: Found) -> Found:
     """Return the likelier of two outcomes with the levels of the other among its rivals."""
     if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
         found, other = other, found
+    return _beside_others(found, other)
+
+
+def _beside_others(found: Found, other: Found) -> Found:
+    """Return an outcome with the hypotheses of another among its rivals."""
     levels = len(found.rivals)
     others = (f for level in other.rivals[:levels] for f in level)
     return found.with_rivals((*other.levels[1:levels], *others))
+
+
+def bettered(
+    searcher: Searcher,
+    found: Found,
+    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
+) -> tuple[Searcher, Found]:
+    """Give patches better shapes, or masses stands, in what is chosen and with a suspect less."""
+    verdict = judge(searcher, found)
+    levels = list(found.levels)
+    for k in range(max(verdict.accepted - 1, 1), verdict.accepted + 1):
+        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
+    return searcher, Found(tuple(levels), found.rivals)
+
+
+def on_stands(
+    structure: Structure,
+    searcher: Searcher,
+    found: Found,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[Searcher, Found]:
+    """Put masses on stands; where one gains as much as an effect more, search on from it.
+
+    What was found beside a mass on no stand made up for its stand. Not where little is left.
+    """
+
+    def standing(s: Searcher, f: Fit, _: float) -> tuple[Searcher, Fit]:
+        return equipped(structure, s, f)
+
+    searcher, new = bettered(searcher, found, standing)
+    pairs = enumerate(zip(new.levels, found.levels, strict=True))
+    gained = (
+        k
+        for k, (f, old) in pairs
+        if f is not old and earned(scored(searcher, f), scored(searcher, old))
+    )
+    first = next(gained, None)
+    chosen = new.levels[judge(searcher, new).accepted]
+    if first is None or adequate(searcher, chosen):
+        return searcher, new
+    progress("searching on beside equipment on its stand")
+    simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
+    other = grown(simple, enough(simple), progress, new.levels[: first + 1])
+    searcher, other = bettered(searcher, other, standing)
+    ways = sorted((new, other), key=lambda way: evidence(searcher, way))
+    return searcher, _beside_others(ways[1], ways[0])
+
+
+def evidence(searcher: Searcher, found: Found) -> float:
+    """Return ln of the evidence for what is chosen of an outcome, by the error of the model."""
+    return scored(searcher, found.levels[judge(searcher, found).accepted]).score
 
 
 def simplified(searcher: Searcher, found: Found) -> Found:

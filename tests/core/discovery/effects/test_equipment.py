@@ -57,3 +57,26 @@ def test_mirrored_places_have_mirrored_offsets(tmp_path):
     made = equipment(masses, both, [Body((0.02, 0.01, 0.0), 0.0)])
     assert made.copies == ((0, 1),)
     assert [b.offset for b in made.single.bodies] == [(0.02, 0.01, 0.0), (-0.02, 0.01, 0.0)]
+
+
+def test_equipment_stands_up_from_a_sheet_and_on_a_bar_along_the_basic_axes(tmp_path):
+    path = tmp_path / "it.bdf"
+    tilted = PLATE.replace(",0.\nGRID", ",0.\nGRID")
+    for j in range(4):
+        for i in range(4):
+            grid, y = 1 + i + 4 * j, 0.1 * j
+            flat = f"GRID,{grid},,{0.1 * i},{y},0.\n"
+            tilted = tilted.replace(flat, f"GRID,{grid},,{0.1 * i},{0.8 * y},{0.6 * y}\n")
+    path.write_text(tilted)
+    structure = build_structure(trueup.read_deck(path), ())
+    place = stand(structure, [6], np.eye(3))
+    axes = place.axes
+    assert place.sheet
+    assert axes[0] == pytest.approx([0.0, -0.6, 0.8])
+    assert axes[1] == pytest.approx([1.0, 0.0, 0.0])
+    assert axes @ axes.T == pytest.approx(np.eye(3))
+    path.write_text(BEAM)
+    structure = build_structure(trueup.read_deck(path), ())
+    place = stand(structure, [3], np.eye(3))
+    assert not place.sheet
+    assert place.axes == pytest.approx(np.eye(3))

@@ -134,7 +134,13 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
     )
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
     kind = Some(
-        kind=point_mass.KIND, tunings=1, xyz=xyz, spots=xyz, many=lambda row: 1, where=[{}] * 100
+        kind=point_mass.KIND,
+        tunings=1,
+        xyz=xyz,
+        spots=xyz,
+        many=lambda row: 1,
+        where=[{}] * 100,
+        single=None,
     )
     searcher = Some(
         problem=Some(catalogue=[kind]),

@@ -55,7 +55,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     point = s.fitted(
         s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
     )
-    wide, grown = equipped(request.structure, s, point, 1.0)
+    wide, grown = equipped(request.structure, s, point)
     (found,) = grown.suspects
     c = wide.problem.catalogue[found.kind]
     assert c.where[found.row]["grids"] == [6]
