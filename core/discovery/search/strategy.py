@@ -205,14 +205,16 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind.
 
-    Of a few, each moved to better neighbours: the first scan sees but few of the links, and one
-    that is right but for its ends gains no more there than others.
+    Of the best few, each moved to better neighbours: the first scan sees but few of the links, and
+    one that is right but for its ends gains no more there than others.
     """
-    best: dict[int, Fit] = {}
+    fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
-        near = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
-        new = searcher.refined(near)
-        kind = branch.kind
-        if kind not in best or new.objective < best[kind].objective:
-            best[kind] = new
-    return list(best.values())
+        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        fits.setdefault(branch.kind, []).append(new)
+    first = (sorted(own, key=_objective)[: SEARCH.late_moved] for own in fits.values())
+    return [min(map(searcher.refined, own), key=_objective) for own in first]
+
+
+def _objective(f: Fit) -> float:
+    return f.objective

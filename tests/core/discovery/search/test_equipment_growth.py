@@ -9,6 +9,7 @@ from trueup.core.discovery import discover as core
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.narrative.sentences import magnitude_of, sentence_of
 from trueup.core.discovery.search.equipment_growth import as_blocks, equipped
+from trueup.core.discovery.starting_point import ground_of
 
 FRAME = (
     "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\n"
@@ -48,7 +49,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     request = asked(tmp_path, monkeypatch)
     every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
     nothing = ~every[1]
-    trial = core._Trial(request, core._ground(request, every[0]), nothing, 0.01, ~every[0], nothing)
+    trial = core._Trial(request, ground_of(request, every[0]), nothing, 0.01, ~every[0], nothing)
     s = core._searcher(trial)
     masses = s.problem.catalogue[0]
     row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
@@ -70,7 +71,7 @@ def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_
     assert request.densest == pytest.approx(7850.0)
     every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
     nothing = ~every[1]
-    trial = core._Trial(request, core._ground(request, every[0]), nothing, 0.01, ~every[0], nothing)
+    trial = core._Trial(request, ground_of(request, every[0]), nothing, 0.01, ~every[0], nothing)
     s = core._searcher(trial)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     point = s.fitted(
