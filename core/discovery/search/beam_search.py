@@ -74,10 +74,10 @@ def grown(
             ):
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
-            best = min(found, key=_objective)
+            best = min(found, key=objective_of)
             if depth > 1 and enough(levels[-1], best, SEARCH.hopeless):
                 break
-        chosen = _distinct(searcher, sorted(found, key=_objective))
+        chosen = _distinct(searcher, sorted(found, key=objective_of))
         if not chosen:
             break
         if depth > 1 and enough(levels[-1], chosen[0], SEARCH.hopeless):
@@ -86,10 +86,10 @@ def grown(
             break
         base = beam[0].objective
         followed = _leading(searcher, chosen, base)
-        beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=_objective)
+        beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=objective_of)
         if depth > 1:
             beam[0] = searcher.unlike(searcher.reconsidered(beam[0]))
-        beam = _distinct(searcher, sorted(beam, key=_objective))
+        beam = _distinct(searcher, sorted(beam, key=objective_of))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
         rivals.append(rest[: SEARCH.rivals_kept])
@@ -98,7 +98,7 @@ def grown(
         levels.append(best)
         if enough(previous, best, 1.0):
             break
-        beam = sorted(_near(searcher, beam, base), key=_objective)
+        beam = sorted(_near(searcher, beam, base), key=objective_of)
     return Found(tuple(levels), tuple(rivals))
 
 
@@ -136,7 +136,8 @@ def _changed(searcher: Searcher, f: Fit) -> set[str]:
     return {searcher.problem.catalogue[s.kind].law.acts_on for s in f.suspects}
 
 
-def _objective(f: Fit) -> float:
+def objective_of(f: Fit) -> float:
+    """Return what hypotheses are ordered by: misfit and prior, -2 ln."""
     return f.objective
 
 

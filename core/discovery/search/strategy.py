@@ -15,7 +15,7 @@ import numpy as np
 from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
-from .beam_search import Found, grown
+from .beam_search import Found, grown, objective_of
 from .equipment_growth import equipped
 from .model_selection import (
     adequate,
@@ -212,9 +212,5 @@ def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
         fits.setdefault(branch.kind, []).append(new)
-    first = (sorted(own, key=_objective)[: SEARCH.late_moved] for own in fits.values())
-    return [min(map(searcher.refined, own), key=_objective) for own in first]
-
-
-def _objective(f: Fit) -> float:
-    return f.objective
+    first = (sorted(own, key=objective_of)[: SEARCH.late_moved] for own in fits.values())
+    return [min(map(searcher.refined, own), key=objective_of) for own in first]
