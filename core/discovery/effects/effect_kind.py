@@ -78,8 +78,6 @@ class EffectKind:
         same as its own kind alone.
     spread_out : bool
         Whether it is what small patches of its nature become when they grow.
-    limits : callable
-        What it becomes where its tuning says nothing, with which size: sizes (t,) to sizes by kind.
     further : callable
         Further words of the magnitude of one place.
     in_modes : bool
@@ -99,7 +97,6 @@ class EffectKind:
     directed: bool = False
     nature: str = ""
     spread_out: bool = False
-    limits: Callable[[Floats], dict[EffectKind, float]] = lambda _: {}
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
     in_modes: bool = True
     plural: str = ""

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
-from . import ground_spring, point_mass
 from .candidates import Candidates
 from .effect_kind import EffectKind, Magnitude, Scale
 from .effect_laws import TunedLaw
@@ -35,12 +33,6 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     return (made,)
 
 
-def _limits(sizes: Floats) -> dict[EffectKind, float]:
-    """Far below the band an absorber is a spring to ground, far above it a mass."""
-    mass, hz = sizes
-    return {ground_spring.KIND: mass * (2.0 * np.pi * hz) ** 2, point_mass.KIND: mass}
-
-
 KIND = EffectKind(
     name="tuned_absorber",
     label="tuned absorber",
@@ -54,6 +46,5 @@ KIND = EffectKind(
     places=_places,
     across=EFFECTS.springs_across,
     directed=True,
-    limits=_limits,
     late=True,
 )

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit, distinct, softened
-from ..likelihood.map_fit import evaluate, fit
+from ..likelihood.map_fit import evaluate
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -93,7 +93,6 @@ def grown(
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
         rivals.append(rest[: SEARCH.rivals_kept])
-        levels[-1] = _fair(searcher, levels[-1], best)
         previous = levels[-1]
         levels.append(best)
         if enough(previous, best, 1.0):
@@ -176,16 +175,3 @@ def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
             kept.append(f)
         kinds.add(kind)
     return kept
-
-
-def _fair(searcher: Searcher, poorer: Fit, best: Fit) -> Fit:
-    """Return the poorer hypothesis, or the better one with a suspect less if that fits better.
-
-    A richer hypothesis must not win because its parameters came into a better valley.
-    """
-    for q in range(len(best.suspects)):
-        others = best.suspects[:q] + best.suspects[q + 1 :]
-        trial = fit(searcher.problem, best.nuisance, others, searcher.active, SEARCH.steps_fair)
-        if trial.objective < poorer.objective:
-            poorer = trial
-    return poorer

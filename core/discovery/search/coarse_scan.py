@@ -2,8 +2,9 @@
 
 Sizes are gone through smallest first: what a place can give shows from a small effect on, so
 places that gain least of all at every other size are not looked at with the sizes between.
-Where a kind has very many sizes, those that promise most to first order are evaluated, at the
-places that do. Every figure that comes back is an exact evaluation.
+Where a kind has very many sizes, and of springs that pull at one point, those that promise most
+to first order are evaluated, at the places that do. Every figure that comes back is an exact
+evaluation.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Candidates
-from ..effects.effect_laws import Rows
+from ..effects.effect_laws import Law, Rows
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.mode_likelihood import Evidence, targets
 from ..reduction.elements_and_supports import thinned
@@ -35,7 +36,8 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints, worth: float = np.
     Of places that cost more than is `worth` a closer look at every other size only.
     """
     c = problem.catalogue[kind]
-    if c.law.on == "A" and len(c.trials) > SEARCH.sizes_many:
+    many = c.law.on == "A" and len(c.trials) > SEARCH.sizes_many
+    if many or (c.law.on == "K" and c.rows_each == 1):
         guess = promising(problem, state, kind, rows, c.trials) + c.surprise(c.trials)
         rows_kept = np.argsort(guess.min(axis=1), kind="stable")[: SEARCH.sizes_places]
         sizes = c.trials[np.argsort(guess, axis=1, kind="stable")[rows_kept, : SEARCH.sizes_each]]
@@ -86,27 +88,34 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     """Return the misfit of every place and size to first order, (n, n_trial).
 
     To a structure with eigenvalues λᵢ and modes φᵢ that it pulls at along u, a mass m on a spring
-    of flexibility c is the flexibility c − 1/(mλ). An eigenvalue λ of both and its shape, scaled
-    by any mode i that takes part, satisfy
+    of flexibility c is the flexibility c − 1/(mλ), a spring alone is c. An eigenvalue λ of both
+    and its shape, scaled by any mode i that takes part, satisfy
 
         λ = λᵢ + uᵢ s,   φ = φᵢ − s Σ_{j≠i} uⱼ φⱼ / (λⱼ − λ),
         s = uᵢ / (c − 1/(mλ) + Σ_{j≠i} uⱼ² / (λⱼ − λ)).
 
     At the eigenvalue of a test mode this gives, with no eigensolution, by how much frequency and
-    shape are missed. See `scan` for the arguments; kinds with a coordinate of their own only.
+    shape are missed. See `scan` for the arguments; kinds with one row each only.
     """
     U, law = problem.part(kind, rows, state.nuisance)
     modes = state.vectors[: problem.basis.size]
     U, seen = U @ modes, problem.sensors @ modes
     lam, aim = np.maximum(state.eigenvalues, 0.0), targets(problem.evidence)
-    inertia = 1.0 / (law.value(trials, rows)[:, :1] * aim)
     out = []
     for start in range(0, len(rows), SEARCH.at_once):
         part = np.arange(len(rows))[start : start + SEARCH.at_once]
         each = [np.broadcast_to(t, (len(part), len(t))) for t in trials]
-        own = np.stack([law.flexibility(t, part)[:, :1] for t in each], axis=1)
-        out.append(_misfit(problem.evidence, seen, lam, U[part, 0], own - inertia))
+        own = np.stack([_flexibility(law, t, part, aim) for t in each], axis=1)
+        out.append(_misfit(problem.evidence, seen, lam, U[part, 0], own))
     return np.concatenate(out)
+
+
+def _flexibility(law: Law, theta: Floats, rows: Ints, aim: Floats) -> Floats:
+    """Return the flexibility of what pulls at each row at some eigenvalues, (n, n_test)."""
+    c = law.value(theta, rows)[:, :1]
+    if law.on == "K":
+        return np.broadcast_to(1.0 / c, (len(rows), len(aim)))
+    return np.asarray(law.flexibility(theta, rows)[:, :1] - 1.0 / (c * aim))
 
 
 def _misfit(e: Evidence, sensors: Floats, lam: Floats, u: Floats, flexibility: Floats) -> Floats:

@@ -20,9 +20,8 @@ class SearchNumbers:
     steps_new: int = number(5, "steps", "for a suspect more, or another in place of one")
     steps_moved: int = number(4, "steps", "for a suspect that moved to a neighbour, changed its stretch, or was taken out")
     steps_whole: int = number(2, "steps", "on the whole basis after those on a small one")
-    steps_fair: int = number(12, "steps", "for a hypothesis with a suspect less, before the richer one is compared with it")
     steps_guided: int = number(15, "steps", "by errors that were estimated anew")
-    steps_instead: int = number(8, "steps", "for a simple effect in place of an absorber")
+    steps_instead: int = number(8, "steps", "for equipment in place of a mass")
     steps_polished: int = number(20, "steps", "on a basis made for one hypothesis")
     rounds: int = number(6, "moves", "of each suspect to a neighbour, at most")
     locals_kept: int = number(4, "states", "whose modes are kept, among which suspects move", "memory")
@@ -62,7 +61,6 @@ class SearchNumbers:
     every_across: float = number(40.0, "places", "across the structure, each way, that a search by estimated errors looks at, where there are many")
     every_most: int = number(3000, "grids", "that it looks at one by one, at most", "time")
 
-    clearly: float = number(1.3, "of a simple effect's gain", "what a tuned one must gain")
     late_tried: int = number(6, "places", "of an absorber or a link that are tried beside what was found")
     late_moved: int = number(4, "of these", "that are moved to better neighbours", "time")
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")

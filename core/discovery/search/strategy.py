@@ -12,7 +12,6 @@ from functools import partial
 
 import numpy as np
 
-from ..effects.candidates import Candidates, Suspect
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
 from .beam_search import Found, grown, objective_of
@@ -64,9 +63,7 @@ def searched(
     if top is None or price > costs[best]:
         return found.with_rivals(f for _, f in tried if len(f.suspects) <= best)
     levels = [*found.levels[: len(top.suspects)], top]
-    return _better(
-        searcher, found, simplified(searcher, grown(simple, enough(searcher), progress, levels))
-    )
+    return _better(searcher, found, grown(simple, enough(searcher), progress, levels))
 
 
 def _better(searcher: Searcher, found: Found, other: Found) -> Found:
@@ -132,54 +129,6 @@ def on_stands(
 def evidence(searcher: Searcher, found: Found) -> float:
     """Return ln of the evidence for what is chosen of an outcome, by the error of the model."""
     return scored(searcher, found.levels[judge(searcher, found).accepted]).score
-
-
-def simplified(searcher: Searcher, found: Found) -> Found:
-    """Return an outcome with absorbers replaced where a mass or a spring there does nearly as well.
-
-    Tuned far above the band an absorber is a mass, far below it a spring to ground. Tuned within
-    the band it does what neither can; where it hardly gains more it makes up for what is wrong with
-    the structure under it.
-    """
-    levels, beaten = list(found.levels), []
-    scale = _scale(searcher, found, found)
-    for k, f in enumerate(found.levels):
-        for q in (q for q, s in enumerate(f.suspects) if searcher.tuned(s)):
-            others = f.suspects[:q] + f.suspects[q + 1 :]
-            left = searcher.fitted(f, others, SEARCH.steps_instead)
-            limits = _limits(searcher, levels[k], q)
-            if not limits:
-                continue
-            plain = searcher.refined(min(limits, key=lambda t: cost(searcher, t, scale)))
-            without, own, simple = (cost(searcher, t, scale) for t in (left, levels[k], plain))
-            if simple < own:
-                beaten.append(levels[k])
-            if simple < own or without - own < SEARCH.clearly * (without - simple):
-                levels[k] = plain
-    return Found(tuple(levels), found.rivals).with_rivals(beaten)
-
-
-def _limits(searcher: Searcher, f: Fit, q: int) -> list[Fit]:
-    """Return fits with a tuned suspect replaced by the simple ones it becomes at its limits."""
-    catalogue, out = searcher.problem.catalogue, []
-    s = f.suspects[q]
-    own = catalogue[s.kind]
-    sizes = own.kind.limits(np.exp(s.theta))
-    for kind, c in enumerate(catalogue):
-        if c.kind in sizes and c.rows_each:
-            size = c.like([float(np.log(sizes[c.kind]))])
-            plain = Suspect(kind, _same_place(own, s.row, c), tuple(size.tolist()))
-            suspects = (*f.suspects[:q], plain, *f.suspects[q + 1 :])
-            out.append(searcher.fitted(f, suspects, SEARCH.steps_instead))
-    return out
-
-
-def _same_place(own: Candidates, row: int, other: Candidates) -> int:
-    """Return the row of another kind at a place, in the same direction where it has one."""
-    away = np.linalg.norm(other.xyz - own.xyz[row], axis=1)
-    along = own.where[row].get("components")
-    same = np.array([w.get("components", along) == along for w in other.where])
-    return int(np.argmin(np.where(same, away, np.inf)))
 
 
 def _scale(searcher: Searcher, found: Found, other: Found) -> float:

@@ -7,12 +7,9 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search import strategy
-from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.model_selection import judge
-from trueup.core.discovery.search.strategy import searched, simplified
+from trueup.core.discovery.search.strategy import searched
 
 
 def told(s):
@@ -40,38 +37,6 @@ def test_an_absorber_is_found_where_no_simple_kind_does_as_well():
 def test_a_quiet_string_has_neither(seed):
     kinds, _ = told(searcher(hidden(tension=1.1), modes_out=(4, 10), seed=seed))
     assert kinds == []
-
-
-@pytest.mark.parametrize(
-    ("truth", "theta", "kind"),
-    [
-        ({"springs": [(9, 300.0)]}, (2.0, -0.7), "ground_spring"),
-        ({"masses": [(9, 2.0)]}, (0.7, 1.6), "point_mass"),
-    ],
-)
-def test_an_absorber_at_its_limit_is_told_as_what_it_is_there(truth, theta, kind):
-    s = searcher(hidden(**truth), modes_out=(4, 10))
-    null = s.null()
-    tuned = fit(s.problem, null.nuisance, (Suspect(2, 9, theta),), (0,), 20)
-    found = simplified(s, Found((null, tuned), ((), ())))
-    (suspect,) = found.levels[1].suspects
-    assert (s.problem.catalogue[suspect.kind].kind.name, suspect.row) == (kind, 9)
-    assert found.rivals[1][0] is tuned
-
-
-def test_an_absorber_that_gains_little_more_than_a_mass_is_told_as_one():
-    """A mass on a spring that is stiff, its own frequency just above the measured band."""
-    s = searcher(hidden(absorbers=[(9, 2.0, 6.6)]), modes_out=(4, 10))
-    null = s.null()
-    tuned, mass = (
-        fit(s.problem, null.nuisance, (Suspect(kind, 9, theta),), (0,), 20)
-        for kind, theta in ((2, (0.7, 1.9)), (0, (0.7,)))
-    )
-    assert tuned.objective < mass.objective - 20.0
-    found = simplified(s, Found((null, tuned), ((), ())))
-    (suspect,) = found.levels[1].suspects
-    assert (s.problem.catalogue[suspect.kind].kind.name, suspect.row) == ("point_mass", 9)
-    assert found.rivals[1] == ()
 
 
 @pytest.mark.parametrize("usual", [True, False])
