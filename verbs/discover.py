@@ -19,6 +19,7 @@ from ..core.discovery.likelihood.frf_evidence import place_responses
 from ..core.discovery.reduction.elements_and_supports import Structure
 from ..core.discovery.screening.completed_model import (
     SolvedModel,
+    borne_out,
     upheld,
     written,
 )
@@ -126,6 +127,7 @@ def discover(
         )  # fmt: skip
 
     found, done = upheld(written(found, "significant"), completed)
+    found = borne_out(found, before.correlation, done.after.compared.correlation)
     if asked.adopt != "significant":
         found = written(found, asked.adopt)
         done = completed(found)

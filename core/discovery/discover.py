@@ -37,7 +37,14 @@ from .search.model_selection import (
 )
 from .search.moves import Searcher
 from .search.patch_reshaping import reshaped
-from .search.refit_own_basis import Ground, by_model_error, completed_modes, for_deck, polished
+from .search.refit_own_basis import (
+    Ground,
+    by_model_error,
+    completed_modes,
+    for_deck,
+    polished,
+    solves,
+)
 from .search.robust_search import robust
 from .search.set_up import beside_reach
 from .search.strategy import bettered, evidence, on_stands, searched
@@ -279,7 +286,7 @@ def _completed(
     """Keep the effects that are likelier than an error of the model without any place.
 
     Their magnitudes are those at which the test is likeliest beside such an error; in a poor
-    model masses are blocks.
+    model masses are blocks. Of what leaves a model that does not solve the next best is taken.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, careful = found.levels, verdict.accepted
@@ -297,7 +304,11 @@ def _completed(
         if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)
-        best = replace(best, suspects=whole.best.fit.suspects)
+        sized = replace(best, suspects=whole.best.fit.suspects)
+        best = sized if solves(trial.own, searcher.problem, sized) else best
+        if best is not sized and not solves(trial.own, searcher.problem, best):
+            found = Found(found.levels[:kept], found.rivals[:kept])
+            return _completed(trial, searcher, found, judge(searcher, found))
     found = Found((*found.levels[:kept], best), found.rivals[: kept + 1])
     return searcher, found, replace(judge(searcher, found), accepted=kept), whole
 

@@ -11,6 +11,8 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates
 from .effects.effect_kind import Scale
+from .effects.element_patches import PatchCandidates, gives
+from .effects.strain_energies import strain_energies
 from .likelihood.hypothesis import Fit, Prior, Problem
 from .likelihood.map_fit import fit
 from .likelihood.mode_likelihood import Evidence, noise_of
@@ -52,7 +54,7 @@ def ground_of(request: Request, modes: Bools) -> Deck:
         bars,
         targets + DISCOVERY.band_more,
         Compliance(request.structure.model, request.solution),
-        _catalogue(request, request.placed.test.frequencies_hz[modes]),
+        _catalogue(request, request.placed.test.frequencies_hz[modes], targets),
     )
 
 
@@ -93,12 +95,17 @@ def prepared(
     return replace(problem, columns=columns), null, zero
 
 
-def _catalogue(request: Request, hz: Floats) -> list[Candidates]:
+def _catalogue(request: Request, hz: Floats, targets: int) -> list[Candidates]:
     """Return every kind of effect at every place."""
+    s = request.solution
+    energies = strain_energies(request.structure, s.vectors[:, :targets], s.eigenvalues[:targets])
     scale = Scale(
         request.mass,
         request.structure.model.geometry.size,
         float((2.0 * np.pi * np.median(hz)) ** 2),
         (float(hz.min()), float(hz.max())),
     )
-    return [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
+    every = [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
+    return [
+        c.following(energies) if isinstance(c, PatchCandidates) and gives(c) else c for c in every
+    ]

@@ -200,6 +200,44 @@ class FactorLaw(Law):
 
 
 @dataclass(frozen=True, eq=False)
+class FollowingFactorLaw(FactorLaw):
+    """A stiffness factor f = e^θ beside known parameters adds (f − 1) g·A to K.
+
+    A is as the deck has it, g = exp(elasticity · ln p) by how much the known parameters change it:
+    f counts from where they stand, as in the deck that is written, and never takes more than
+    there is. `elasticity` (n, n_parameter) is ∂ln A/∂ln p of each place, `log_p` (n_parameter,).
+    """
+
+    elasticity: Floats
+    log_p: Floats | None = None
+
+    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
+        """Return the law where the parameters stand."""
+        return FollowingFactorLaw(self.elasticity[rows], log_p)
+
+    def value(self, theta: Floats, rows: Ints) -> Floats:
+        """Return (f − 1) g."""
+        return np.asarray(super().value(theta, rows) * self._followed(rows))
+
+    def slope(self, theta: Floats, rows: Ints) -> Floats:
+        """Return its derivative by θ."""
+        return np.asarray(super().slope(theta, rows) * self._followed(rows)[:, :, None])
+
+    def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats | None:
+        """Return the derivative by ln p of a known parameter."""
+        if parameter >= self.elasticity.shape[1]:
+            return None
+        return np.asarray(self.elasticity[rows, parameter, None] * self.value(theta, rows))
+
+    def _followed(self, rows: Ints) -> Floats:
+        """Return g, (n, 1)."""
+        known = self.elasticity[rows]
+        if self.log_p is None:
+            return np.ones((len(rows), 1))
+        return np.asarray(np.exp(known @ self.log_p[: known.shape[1]])[:, None])
+
+
+@dataclass(frozen=True, eq=False)
 class SpringLaw(Law):
     """A spring k = e^θ adds k·A to K.
 

@@ -18,8 +18,9 @@ from ..reduction.elements_and_supports import Members, Structure, thinned
 from ..reduction.search_basis import Basis
 from .candidates import Candidates
 from .effect_kind import EffectKind
-from .effect_laws import Law, Rows
+from .effect_laws import FollowingFactorLaw, Law, Rows
 from .effect_numbers import EFFECTS
+from .strain_energies import Energies
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,12 +194,14 @@ Described = Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]]
 class PatchCandidates(Candidates):
     """Candidates whose matrix is the stiffness or the mass of a patch of elements.
 
-    `described` says where patches are.
+    `described` says where patches are, `energies` what their elements hold and how known
+    parameters change it, None where the law does not ask.
     """
 
     structure: Structure
     patches: tuple[Patch, ...]
     described: Described
+    energies: Energies | None = None
 
     @property
     def first(self) -> Ints:
@@ -207,12 +210,19 @@ class PatchCandidates(Candidates):
 
     def with_patches(self, patches: Sequence[Patch]) -> PatchCandidates:
         """Return the candidates with further patches after those they have."""
-        return replace(
+        more = replace(
             self,
             xyz=np.concatenate([self.xyz, [p.xyz for p in patches]]),
             where=(*self.where, *self.described(self.structure, patches)),
             patches=(*self.patches, *patches),
         )
+        return more if self.energies is None else more.following(self.energies)
+
+    def following(self, energies: Energies) -> PatchCandidates:
+        """Return the candidates as factors on a stiffness that known parameters change."""
+        held = np.array([energies[p.member][p.rows].sum(axis=0) for p in self.patches])
+        slopes = held[:, 1:] / np.maximum(held[:, :1], np.finfo(float).tiny)
+        return replace(self, law=FollowingFactorLaw(slopes), energies=energies)
 
     def extended(self, known: Rows) -> PatchRows:
         """Return the rows of these candidates from those of the first of them."""

@@ -8,11 +8,14 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...correlation.comparison import Comparison, Placed
+from ...correlation.mode_pairing import Correlation
 from ...data.dofs import Dofs
 from ...eigen.normal_modes import Eigensolution
 from ...errors import TrueupError
+from ..effects import KINDS, local_damper
 from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
+from ..narrative.narrative_numbers import NARRATIVE
 from .screening_numbers import SCREENING
 
 
@@ -45,9 +48,40 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
         if not found.adopted:
             raise
         why = f"a deck that solves: completed as found, {error}"
-        decide = (why, *found.would_decide)
-        found = replace(found, verdict="undecided", proposal=False, would_decide=decide)
+        found = _in_doubt(found, why, proposal=False)
         return found, complete(found)
+
+
+def borne_out(found: Discovery, before: Correlation, after: Correlation) -> Discovery:
+    """Return what was found, a claim as a proposal where its deck is hardly nearer to the test.
+
+    Nearer is: more modes pair, or those that pair both times deviate less in frequency. Dashpots
+    show in the damping.
+    """
+    damped = any(f.kind == local_damper.KIND.name for f in found.findings)
+    if found.verdict != "effect" or damped or len(after.pairs) > len(before.pairs):
+        return found
+    was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
+    both = was.keys() & now.keys()
+    if sum(now[k] for k in both) < SCREENING.nearer * sum(was[k] for k in both):
+        return found
+    why = "what brings the completed deck nearer to the test: frequencies are hardly less off"
+    return _in_doubt(found, why, proposal=True)
+
+
+def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:
+    sure = min(found.posterior, NARRATIVE.doubted)
+    return replace(
+        found,
+        verdict="undecided",
+        proposal=proposal,
+        would_decide=(why, *found.would_decide),
+        posterior=sure,
+        findings=tuple(
+            replace(f, confidence=min(f.confidence, sure)) if f.kind in KINDS else f
+            for f in found.findings
+        ),
+    )
 
 
 def written(found: Discovery, adopt: str) -> Discovery:

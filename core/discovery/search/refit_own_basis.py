@@ -132,6 +132,15 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     return state
 
 
+def solves(ground: Ground, problem: Problem, state: Fit) -> bool:
+    """Whether the model completed by a fit has no negative stiffness."""
+    try:
+        _own_problem(ground, problem, state)
+    except CheckError:
+        return False
+    return True
+
+
 def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Floats, Floats]:
     """Return modes of a completed model on all analysis dofs (n_dof, n), their eigenvalues (n,).
 

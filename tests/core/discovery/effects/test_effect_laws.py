@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.discovery.effects.effect_laws import ReleaseLaw, directions
+from trueup.core.discovery.effects.effect_laws import FollowingFactorLaw, ReleaseLaw, directions
 
 RNG = np.random.default_rng(8)
 NO_PARAMETERS = np.zeros(0)
@@ -54,3 +54,24 @@ def test_the_slope_of_a_release_is_that_of_its_value():
     rise = law.value(theta + step, first) - law.value(theta - step, first)
     np.testing.assert_allclose(law.slope(theta, first)[:, 0], rise / (2.0 * step), atol=1e-8)
     assert law.slope(theta, first)[0, 0, 0] == 0.0
+
+
+def test_a_factor_takes_no_more_than_the_known_parameters_left():
+    law = FollowingFactorLaw(np.array([[1.0, 0.0], [3.0, 1.0]]))
+    left = np.log([0.7, 0.9])
+    there = law.on_basis(np.array([1]), None, left, 0.0)
+    theta, first = np.log([[0.05]]), np.zeros(1, int)
+    held = 0.7**3 * 0.9
+    np.testing.assert_allclose(there.value(theta, first), [[(0.05 - 1.0) * held]])
+    assert held + there.value(theta, first)[0, 0] > 0.0
+    step = 1e-6
+    rise = there.value(theta + step, first) - there.value(theta - step, first)
+    np.testing.assert_allclose(there.slope(theta, first)[:, 0], rise / (2.0 * step), rtol=1e-7)
+    for q in (0, 1):
+        up, down = (
+            law.on_basis(np.array([1]), None, left + s * np.eye(2)[q], 0.0).value(theta, first)
+            for s in (step, -step)
+        )
+        slope = there.by_parameter(theta, first, q)
+        np.testing.assert_allclose(slope, (up - down) / (2.0 * step), rtol=1e-7)
+    assert there.by_parameter(theta, first, 2) is None

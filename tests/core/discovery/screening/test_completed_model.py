@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from trueup.core.discovery.findings import Discovery, MovedParameter
-from trueup.core.discovery.screening.completed_model import upheld, written
+from trueup.core.discovery.screening.completed_model import borne_out, upheld, written
 from trueup.core.errors import CheckError
 
 
@@ -16,12 +16,31 @@ class Said:
     would_decide: tuple = field(default=("a sensor",))
     parameters: tuple = ()
     proposal: bool = False
+    posterior: float = 0.9
 
     completes = Discovery.completes
     adopted = Discovery.adopted
 
 
-MASS = Said("effect", ("a mass",))
+@dataclass(frozen=True)
+class Named:
+    kind: str
+    confidence: float = 0.9
+
+
+@dataclass(frozen=True)
+class Paired:
+    test: int
+    deviation_percent: float
+
+
+@dataclass(frozen=True)
+class Pairs:
+    pairs: tuple
+
+
+MASS = Said("effect", (Named("point_mass"), Named("sensor_swap")))
+BEFORE = Pairs((Paired(0, -4.0), Paired(1, 2.0)))
 
 
 def test_a_completed_deck_that_does_not_solve_is_the_findings_fault():
@@ -33,7 +52,9 @@ def test_a_completed_deck_that_does_not_solve_is_the_findings_fault():
     found, done = upheld(MASS, complete)
     assert done == "the deck as it is"
     assert found.verdict == "undecided"
-    assert found.findings == MASS.findings
+    assert [f.kind for f in found.findings] == ["point_mass", "sensor_swap"]
+    assert [f.confidence for f in found.findings] == [0.4, 0.9]
+    assert found.posterior == 0.4
     assert "completed as found, the model is a mechanism" in found.would_decide[0]
 
 
@@ -43,7 +64,7 @@ def test_a_proposal_that_does_not_solve_is_none():
             raise CheckError("the model is a mechanism")
         return "the deck as it is"
 
-    found, done = upheld(Said("undecided", ("two masses",), proposal=True), complete)
+    found, done = upheld(Said("undecided", (Named("point_mass"),), proposal=True), complete)
     assert (done, found.proposal) == ("the deck as it is", False)
 
 
@@ -53,6 +74,29 @@ def test_a_deck_that_never_solved_is_not():
 
     with pytest.raises(CheckError, match="mechanism"):
         upheld(Said("no_gap"), complete)
+
+
+def test_a_claim_whose_deck_is_no_nearer_to_the_test_is_a_proposal():
+    found = borne_out(MASS, BEFORE, Pairs((Paired(0, 3.5), Paired(1, -2.0))))
+    assert (found.verdict, found.proposal, found.posterior) == ("undecided", True, 0.4)
+    assert "hardly less off" in found.would_decide[0]
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        pytest.param((Paired(0, 1.0), Paired(1, -1.0)), id="frequencies come nearer"),
+        pytest.param((Paired(0, 1.0),), id="one leaves, what is left comes nearer"),
+        pytest.param((Paired(0, 4.0), Paired(1, 2.0), Paired(2, 9.0)), id="another mode pairs"),
+    ],
+)
+def test_a_claim_whose_deck_is_nearer_stays(after):
+    assert borne_out(MASS, BEFORE, Pairs(after)) is MASS
+
+
+def test_a_dashpot_shows_in_the_damping():
+    dashpot = Said("effect", (Named("local_damper"),))
+    assert borne_out(dashpot, BEFORE, BEFORE) is dashpot
 
 
 CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)

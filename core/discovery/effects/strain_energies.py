@@ -1,0 +1,71 @@
+"""How known parameters change what elements hold in the deck's modes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...arrays import Floats, Ints
+from ..reduction.elements_and_supports import Members, Structure
+from .effect_numbers import EFFECTS
+
+Energies = Sequence[Floats]
+
+
+def strain_energies(structure: Structure, modes: Floats, eigenvalues: Floats) -> Energies:
+    """Return the energy of each element in some modes, and its derivatives by ln p.
+
+    Each mode counts by the energy of an element as a share of that of the whole. A stiffness that
+    is made of several parts (membrane and bending of a shell, one by the thickness, one by its
+    cube) follows a parameter by the mean of their exponents in these modes.
+
+    Parameters
+    ----------
+    structure : Structure
+    modes : (n_free, n_mode) float
+    eigenvalues : (n_mode,) float
+        Those of modes that strain nothing are left out.
+
+    Returns
+    -------
+    sequence of (n_element, 1 + n_parameter) float
+        For each card of the structure; zeros where an element has no stiffness.
+    """
+    strained = eigenvalues > EFFECTS.strained * eigenvalues.max(initial=0.0)
+    unit = modes[:, strained] / np.sqrt(eigenvalues[strained])
+    motion = np.asarray(structure.displacement @ unit)
+    return [_of_card(structure, m, motion) for m in structure.members]
+
+
+def _of_card(structure: Structure, m: Members, motion: Floats) -> Floats:
+    deck = structure.model.deck_point
+    rows = np.arange(len(m.ids))
+    out = np.zeros((len(rows), 1 + len(deck)))
+    out[:, 0] = _energy(m, rows, deck, motion)
+    for q in range(len(deck)):
+        concerned = [k for k, on in enumerate(m.block.depends) if q in on]
+        moved = rows[np.isin(m.block.depends_of, concerned)]
+        if len(moved):
+            up, down = (
+                _energy(m, moved, _times(deck, q, np.exp(s)), motion)
+                for s in (EFFECTS.log_step, -EFFECTS.log_step)
+            )
+            out[moved, 1 + q] = (up - down) / (2.0 * EFFECTS.log_step)
+    return out
+
+
+def _times(deck: Floats, q: int, factor: float) -> Floats:
+    p = deck.copy()
+    p[q] *= factor
+    return p
+
+
+def _energy(m: Members, rows: Ints, p: Floats, motion: Floats) -> Floats:
+    """Return the energy of some elements, summed over the motions, (n,)."""
+    out = np.zeros(len(rows))
+    for first in range(0, len(rows), EFFECTS.elements_at_once):
+        part = slice(first, first + EFFECTS.elements_at_once)
+        K, _ = m.matrices(rows[part], p)
+        if K is not None:
+            U = motion[m.coordinates(rows[part])]
+            out[part] = np.sum(U * np.matmul(K, U), axis=(1, 2))
+    return out
