@@ -97,10 +97,14 @@ class Completeness:
         """Whether what was found explains more than an error of the model would seem to.
 
         It has to gain enough, the more where it leaves more than a small part of the error (what is
-        not there hardly lessens it), and to be ahead of what else was found.
+        not there hardly lessens it), and to be ahead of what else was found, by less where a right
+        model may leave as much: the odds are then those of a model that has no error.
         """
         least = max(needed(self.best), worth_telling(self.alone, self.best))
-        return bool(self.gain > least and self.ahead > SEARCH.suspect)
+        explains = self.adequacy > MODEL_ERROR.explained
+        return bool(
+            self.gain > least and self.ahead > (MODEL_ERROR.seen if explains else SEARCH.suspect)
+        )
 
     @property
     def true(self) -> bool:

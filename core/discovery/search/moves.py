@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ..effects.candidates import Suspect, beside as stretches_beside, parted
+from ..effects.candidates import Suspect, beside as stretches_beside
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
@@ -268,20 +268,6 @@ class Searcher:
                         break
             if not moved:
                 break
-        return state
-
-    def unlike(self, state: Fit) -> Fit:
-        """Return twins and another suspect as two that are not alike, if these fit better.
-
-        What two masses at places that are nearly alike differ by looks like a third beside twins.
-        """
-        for q in self.doubtful(state):
-            others = state.suspects[:q] + state.suspects[q + 1 :]
-            for apart in parted(self.problem.catalogue, others):
-                near = self.fitted(state, apart, SEARCH.steps_new, soften=True)
-                trial = self.settled(self.refined(near))
-                if trial.objective < state.objective - SEARCH.better_anew:
-                    return trial
         return state
 
     def doubtful(self, state: Fit, first: bool = False) -> list[int]:

@@ -47,6 +47,13 @@ def test_five_nats_a_mode_are_clear_whatever_is_left():
     assert not found(error=0.3, gain=40.0).clear
 
 
+def test_the_odds_count_as_they_are_where_a_right_model_may_leave_as_much():
+    assert found(ahead=3.5).clear
+    assert not found(ahead=2.5).clear
+    assert not found(ahead=3.5, error=0.02, gain=50.0).clear
+    assert found(ahead=5.5, error=0.02, gain=50.0).clear
+
+
 def test_what_takes_only_a_part_of_the_error_away_has_to_leave_what_is_usual():
     assert found(error=0.004, before=0.1).true
     assert not found(error=0.004, before=0.0045).true

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
-from trueup.core.discovery.effects.candidates import Suspect, factors_of, together
+from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
 
@@ -45,27 +45,6 @@ def test_two_masses_side_by_side_are_one_between_them_on_points_and_patches_alik
     spots = p.catalogue[MASS].spots
     assert beside
     assert min(np.linalg.norm(spots[b.row] - spots[9]) for b in beside) >= s.effort.apart * s.size
-
-
-@pytest.mark.parametrize(("truth", "apart"), [
-    ([(5, 2.0), (24, 1.5)], True), ([(5, 2.0), (26, 2.0), (16, 1.0)], False),
-])  # fmt: skip
-def test_twins_and_a_third_are_two_that_are_not_alike_where_these_fit_better(truth, apart):
-    s = searcher(hidden(masses=truth))
-    single = s.problem.catalogue[MASS]
-    first = np.arange(12)
-    pairs = together(single, np.column_stack([first, len(single) - 1 - first]))
-    catalogue = (*s.problem.catalogue, pairs)
-    problem = replace(
-        s.problem, catalogue=catalogue, factors=factors_of(catalogue, s.problem.basis)
-    )
-    s = replace(s, problem=problem, coarse=(*s.coarse, first))
-    third = Suspect(MASS, 16 if len(truth) > 2 else 22, (-1.0,))
-    state = s.fitted(s.null(), (Suspect(len(catalogue) - 1, 5, (0.5,)), third))
-    found = s.unlike(state)
-    assert (found is not state) is apart
-    if apart:
-        assert sorted((f.row, f.kind) for f in found.suspects) == [(5, MASS), (24, MASS)]
 
 
 def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
