@@ -55,17 +55,22 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
 def borne_out(found: Discovery, before: Correlation, after: Correlation) -> Discovery:
     """Return what was found, a claim as a proposal where its deck is hardly nearer to the test.
 
-    Nearer is: more modes pair, or those that pair both times deviate less in frequency. Dashpots
-    show in the damping.
+    Nearer is: more modes pair, or as many, and those that pair both times deviate less in
+    frequency. Dashpots show in the damping.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
-    if found.verdict != "effect" or damped or len(after.pairs) > len(before.pairs):
+    more = len(after.pairs) - len(before.pairs)
+    if found.verdict != "effect" or damped or more > 0:
         return found
     was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
     both = was.keys() & now.keys()
-    if sum(now[k] for k in both) < SCREENING.nearer * sum(was[k] for k in both):
+    less = sum(now[k] for k in both) < SCREENING.nearer * sum(was[k] for k in both)
+    if less and not more:
         return found
-    why = "what brings the completed deck nearer to the test: frequencies are hardly less off"
+    why = (
+        "what brings the completed deck nearer to the test: "
+        "fewer modes pair, or their frequencies are hardly less off"
+    )
     return _in_doubt(found, why, proposal=True)
 
 
