@@ -305,10 +305,12 @@ def _completed(
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)
         sized = replace(best, suspects=whole.best.fit.suspects)
-        best = sized if solves(trial.own, searcher.problem, sized) else best
-        if best is not sized and not solves(trial.own, searcher.problem, best):
+        solving = (f for f in (sized, best) if solves(trial.own, searcher.problem, f))
+        solved = next(solving, None)
+        if solved is None:
             found = Found(found.levels[:kept], found.rivals[:kept])
             return _completed(trial, searcher, found, judge(searcher, found))
+        best = solved
     found = Found((*found.levels[:kept], best), found.rivals[: kept + 1])
     return searcher, found, replace(judge(searcher, found), accepted=kept), whole
 

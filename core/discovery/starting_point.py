@@ -11,8 +11,7 @@ from .discovery_numbers import DISCOVERY
 from .effects import KINDS
 from .effects.candidates import Candidates
 from .effects.effect_kind import Scale
-from .effects.element_patches import PatchCandidates, gives
-from .effects.strain_energies import strain_energies
+from .effects.element_patches import gives
 from .likelihood.hypothesis import Fit, Prior, Problem
 from .likelihood.map_fit import fit
 from .likelihood.mode_likelihood import Evidence, noise_of
@@ -20,6 +19,7 @@ from .likelihood.request import Request
 from .reduction.discretisation_error import consistent_bars, lumping
 from .reduction.residual_flexibility import Compliance
 from .reduction.search_basis import Basis, build_basis
+from .reduction.strain_energies import strain_energies
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +106,4 @@ def _catalogue(request: Request, hz: Floats, targets: int) -> list[Candidates]:
         (float(hz.min()), float(hz.max())),
     )
     every = [c for kind in KINDS.values() for c in kind.places(request.structure, scale)]
-    return [
-        c.following(energies) if isinstance(c, PatchCandidates) and gives(c) else c for c in every
-    ]
+    return [c.following(energies) if gives(c) else c for c in every]

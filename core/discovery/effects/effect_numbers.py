@@ -35,9 +35,6 @@ class EffectNumbers:
 
     rigid: float = number(1e-4, "of 1 / (ω² m)", "flexibility that an attached mass has, at least", ROUNDING)
     least_left: float = number(1e-7, "of the stiffest", "stiffness that freed coordinates keep, at least", ROUNDING)
-    strained: float = number(1e-6, "of the highest eigenvalue", "below it a mode strains nothing", ROUNDING)
-    log_step: float = number(1e-3, "of ln p", "by which a known parameter is moved for its derivatives", ROUNDING)
-    elements_at_once: int = number(4096, "elements", "whose energies are found together", "memory")
 
     patch_radii: tuple[float, ...] = number((0.045, 0.056, 0.07, 0.088, 0.11, 0.14, 0.175, 0.22), SIZE, "radii of patches of stiffness; every third is scanned first")
     mass_radii: tuple[float, ...] = number((0.062, 0.075, 0.092, 0.11, 0.14, 0.175, 0.22), SIZE, "radii of a distributed mass; what is smaller is one at a point")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 import scipy.linalg as la
@@ -16,11 +16,11 @@ from scipy.spatial import cKDTree
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure, thinned
 from ..reduction.search_basis import Basis
+from ..reduction.strain_energies import Energies
 from .candidates import Candidates
 from .effect_kind import EffectKind
 from .effect_laws import FollowingFactorLaw, Law, Rows
 from .effect_numbers import EFFECTS
-from .strain_energies import Energies
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +261,7 @@ class PatchCandidates(Candidates):
         return self.law.on == "M"
 
 
-def gives(c: Candidates) -> bool:
+def gives(c: Candidates) -> TypeGuard[PatchCandidates]:
     """Whether candidates are patches of more or less stiffness."""
     return isinstance(c, PatchCandidates) and c.law.on == "K"
 

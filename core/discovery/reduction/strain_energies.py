@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure
-from .effect_numbers import EFFECTS
+from .elements_and_supports import Members, Structure
+from .reduction_numbers import REDUCTION
 
 Energies = Sequence[Floats]
 
@@ -14,7 +14,8 @@ Energies = Sequence[Floats]
 def strain_energies(structure: Structure, modes: Floats, eigenvalues: Floats) -> Energies:
     """Return the energy of each element in some modes, and its derivatives by ln p.
 
-    Each mode counts by the energy of an element as a share of that of the whole. A stiffness that
+    Modal strain energy (Johnson and Kienholz 1982, AIAA Journal 20, 1284): each mode counts by the
+    energy of an element as a share of that of the whole. A stiffness that
     is made of several parts (membrane and bending of a shell, one by the thickness, one by its
     cube) follows a parameter by the mean of their exponents in these modes.
 
@@ -30,7 +31,7 @@ def strain_energies(structure: Structure, modes: Floats, eigenvalues: Floats) ->
     sequence of (n_element, 1 + n_parameter) float
         For each card of the structure; zeros where an element has no stiffness.
     """
-    strained = eigenvalues > EFFECTS.strained * eigenvalues.max(initial=0.0)
+    strained = eigenvalues > REDUCTION.strained * eigenvalues.max(initial=0.0)
     unit = modes[:, strained] / np.sqrt(eigenvalues[strained])
     motion = np.asarray(structure.displacement @ unit)
     return [_of_card(structure, m, motion) for m in structure.members]
@@ -47,9 +48,9 @@ def _of_card(structure: Structure, m: Members, motion: Floats) -> Floats:
         if len(moved):
             up, down = (
                 _energy(m, moved, _times(deck, q, np.exp(s)), motion)
-                for s in (EFFECTS.log_step, -EFFECTS.log_step)
+                for s in (REDUCTION.log_step, -REDUCTION.log_step)
             )
-            out[moved, 1 + q] = (up - down) / (2.0 * EFFECTS.log_step)
+            out[moved, 1 + q] = (up - down) / (2.0 * REDUCTION.log_step)
     return out
 
 
@@ -62,8 +63,8 @@ def _times(deck: Floats, q: int, factor: float) -> Floats:
 def _energy(m: Members, rows: Ints, p: Floats, motion: Floats) -> Floats:
     """Return the energy of some elements, summed over the motions, (n,)."""
     out = np.zeros(len(rows))
-    for first in range(0, len(rows), EFFECTS.elements_at_once):
-        part = slice(first, first + EFFECTS.elements_at_once)
+    for first in range(0, len(rows), REDUCTION.elements_at_once):
+        part = slice(first, first + REDUCTION.elements_at_once)
         K, _ = m.matrices(rows[part], p)
         if K is not None:
             U = motion[m.coordinates(rows[part])]

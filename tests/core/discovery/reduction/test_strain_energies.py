@@ -6,7 +6,7 @@ import pytest
 from trueup.adapters.nastran import read_deck
 from trueup.adapters.nastran.discovery.build_structure import build_structure
 from trueup.adapters.nastran.fields.parameter_references import FieldRef, ParameterSpec
-from trueup.core.discovery.effects.strain_energies import strain_energies
+from trueup.core.discovery.reduction.strain_energies import strain_energies
 from trueup.core.eigen.normal_modes import solve
 
 SIDE = 6
