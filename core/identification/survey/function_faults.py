@@ -48,7 +48,7 @@ def noise_ratio(values: Numbers, measured: Bools, roughness: Callable[[Numbers],
     The smaller of two ratios to the median: of the noise itself among the functions of the same
     input, and of noise to size among all. A weak function has little noise, a strong one much.
     By parts of the range, as the notches of a force spectrum are: the ratio is exceeded in the
-    worst `noisy_part` of them.
+    worst `noisy_part` of them. What is smoother than a measurement has rounding, no noise: 0.
 
     Parameters
     ----------
@@ -64,6 +64,7 @@ def noise_ratio(values: Numbers, measured: Bools, roughness: Callable[[Numbers],
     relative = noise / np.maximum(size, 1e-300)
     among = np.nanmedian(noise, axis=0), np.nanmedian(relative, axis=(0, 1))
     both = np.minimum(noise / np.maximum(among[0], 1e-300), relative / np.maximum(among[1], 1e-300))
+    both = np.where(relative < SURVEY.too_smooth, 0.0, both)
     found = np.zeros(measured.shape)
     found[measured] = np.quantile(both[measured], 1.0 - SURVEY.noisy_part, axis=1)
     return found
