@@ -30,7 +30,8 @@ Below one they are those of A. The probe tells the Frobenius norm within its dra
 _AT_ONCE = 128
 """Loads whose compliances are found at once: memory."""
 _WORTH = 32
-"""Unknowns a load up to which the inverse on the pattern takes less time than solutions do."""
+"""Unknowns a load, of all that were asked for, up to which the inverse on the pattern takes less
+time than solutions do."""
 
 
 class Factorisation(Protocol):
@@ -188,7 +189,8 @@ class _SuperluFactorisation:
         self._lu: Any = None
         self._full: Any = None
         self._pattern: tuple[Ints, Ints] | None = None
-        self._inverse: sp.csr_matrix | None = None
+        self._inverse: tuple[sp.csr_matrix, sp.csr_matrix] | None = None
+        self._asked = 0
         self.refactorise(a)
 
     def refactorise(self, a: sp.spmatrix) -> None:
@@ -200,7 +202,7 @@ class _SuperluFactorisation:
             self._order = nodal_order(full, self._groups)
             self._pattern = upper.indptr, upper.indices
         self._full = full[self._order][:, self._order].tocsc()
-        self._inverse = None
+        self._inverse, self._asked = None, 0
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", spla.MatrixRankWarning)
@@ -231,14 +233,17 @@ class _SuperluFactorisation:
 
     def compliances(self, loads: sp.csr_matrix) -> Floats:
         out, far = np.empty(loads.shape[0]), np.ones(loads.shape[0], bool)
-        if self._inverse is None and self.n < _WORTH * len(out) and self._symmetric:
-            self._inverse = self._on_pattern()
+        self._asked += len(out)
+        if self._inverse is None and self.n < _WORTH * self._asked and self._symmetric:
+            found = self._on_pattern()
+            self._inverse = found, abs(found).sign()
         if self._inverse is not None:
+            inverse, stored = self._inverse
             scaled = loads @ sp.diags(self._scale)
             there = abs(scaled).sign()
-            pairs = (there @ abs(self._inverse).sign()).multiply(there).sum(axis=1)
+            pairs = (there @ stored).multiply(there).sum(axis=1)
             far = np.asarray(pairs).ravel() != np.diff(scaled.indptr) ** 2
-            out = np.asarray((scaled @ self._inverse).multiply(scaled).sum(axis=1)).ravel()
+            out = np.asarray((scaled @ inverse).multiply(scaled).sum(axis=1)).ravel()
         out[far] = _by_parts(_by_solving(self.solve), loads[far])
         return out
 

@@ -263,8 +263,7 @@ def lacking(
     """
     if not c.rows_each:
         return None
-    if c.law.shared:
-        loads = c.root if c.loads is None else c.loads
-        turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
-        return SharedFlexibility(compliance, vectors, inverse, loads, turns, c.rows_each)
-    return Flexibility(compliance, vectors, inverse, c.root, c.rows_each)
+    loads = c.root if c.loads is None else c.loads
+    turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
+    of = SharedFlexibility if c.law.shared else Flexibility
+    return of(compliance, vectors, inverse, loads, turns, c.rows_each)

@@ -85,17 +85,21 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
     line = xyz[b] - xyz[a]
     n = line / np.linalg.norm(line, axis=1)[:, None]
     rows, three, shape = np.repeat(np.arange(len(a)), 3), np.arange(3), (len(a), 3 * len(used))
+    moves = at.of(used).moves
     push, pull = (
-        sp.csr_matrix((n.ravel(), (rows, (3 * end[:, None] + three).ravel())), shape)
+        (sp.csr_matrix((n.ravel(), (rows, (3 * end[:, None] + three).ravel())), shape) @ moves)
         for end in np.split(ends.ravel(), 2)
     )
+    one = sp.identity(len(a), format="csr")
     return Links(
         kind=KIND,
         xyz=0.5 * (xyz[a] + xyz[b]),
         law=SpringLaw(np.zeros((len(a), 1))),
         trials=like.trials,
-        root=((pull - push) @ at.of(used).moves).tocsr(),
+        root=(pull - push).tocsr(),
         rows_each=1,
+        loads=sp.vstack([push, pull]).tocsr(),
+        turns=sp.hstack([-one, one]).tocsr(),
         where=tuple(
             {"grids": [*grids[i], *grids[j]], "ends": [grids[i], grids[j]], "components": [1]}
             for i, j in zip(a.tolist(), b.tolist(), strict=True)

@@ -31,18 +31,9 @@ class Compliance:
         keys = [loads.indices[a:b].tobytes() + loads.data[a:b].tobytes() for a, b in ends]
         new = {k: i for i, k in enumerate(keys) if k not in self._known}
         if new:
-            exact = self._each(loads[list(new.values())])
+            exact = self._factor.compliances(loads[list(new.values())])
             self._known |= dict(zip(new, exact.tolist(), strict=True))
         return np.array([self._known[k] for k in keys])
-
-    def _each(self, loads: sp.csr_matrix) -> Floats:
-        """Return the compliance of loads (n,), by that of what they pull at where this is less."""
-        n, dofs = loads.shape[0], np.unique(loads.indices)
-        if len(dofs) < min(n, REDUCTION.shared_at_once):
-            unit = sp.identity(loads.shape[1], format="csr")[dofs]
-            pulled = loads[:, dofs].toarray()
-            return np.asarray(np.sum((pulled @ self.among(unit)) * pulled, axis=1))
-        return self._factor.compliances(loads)
 
     def responses(self, loads: Floats) -> Floats:
         """Return (K − σM)⁻¹ L of loads L (n_free, n)."""
@@ -64,6 +55,9 @@ class Compliance:
 class Flexibility:
     """The flexibility of loads that a basis does not have, found when asked for, then kept.
 
+    What a basis lacks is local: loads that are apart, as the ends of a spring between two places,
+    lack what each of them does.
+
     Parameters
     ----------
     compliance : Compliance
@@ -71,8 +65,12 @@ class Flexibility:
         The basis.
     inverse : (r, r) float
         See `Compliance.on`.
-    root : (n · q, n_free) sparse
-        Loads of n candidates, q each.
+    loads : (m, n_free) sparse
+        Each at one place.
+    turns : (n · q, m) sparse
+        Loads of n candidates, q each, as sums of those.
+    each : int
+        q.
     """
 
     def __init__(
@@ -80,25 +78,29 @@ class Flexibility:
         compliance: Compliance,
         vectors: Floats,
         inverse: Floats,
-        root: sp.csr_matrix,
+        loads: sp.csr_matrix,
+        turns: sp.csr_matrix,
         each: int,
     ) -> None:
         self._compliance = compliance
         self._vectors, self._inverse = vectors, inverse
-        self._root = root
-        self._kept = np.full((root.shape[0] // max(each, 1), max(each, 1)), np.nan)
+        self._loads, self._turns, self._each = loads, turns.multiply(turns).tocsr(), each
+        self._kept = np.full(loads.shape[0], np.nan)
 
     def __getitem__(self, rows: Ints) -> Floats:
         """Return what the basis lacks, (len(rows), q)."""
-        wanted = np.unique(rows)
-        new = wanted[np.isnan(self._kept[wanted, 0])] if len(wanted) else wanted
-        q = self._kept.shape[1]
+        q = self._each
+        turns = self._turns[(rows[:, None] * q + np.arange(q)).ravel()]
+        wanted = np.unique(turns.indices)
+        new = wanted[np.isnan(self._kept[wanted])]
         if len(new):
-            own = self._root[(new[:, None] * q + np.arange(q)).ravel()]
+            own = self._loads[new]
             seen = np.asarray(own @ self._vectors)
             lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
-            self._kept[new] = np.maximum(lost, 0.0).reshape(-1, q)
-        return np.asarray(self._kept[rows])
+            self._kept[new] = np.maximum(lost, 0.0)
+        known = np.zeros_like(self._kept)
+        known[wanted] = self._kept[wanted]
+        return np.asarray(turns @ known).reshape(len(rows), q)
 
 
 class SharedFlexibility:

@@ -69,12 +69,27 @@ def test_what_a_basis_lacks_is_the_rest_of_the_flexibility(loads):
     K, M = sp.csr_matrix(half @ half.T), sp.identity(30, format="csr")
     model = SimpleNamespace(K=lambda: K, M=lambda: M)
     known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
-    lacking = Flexibility(known, V, known.on(V), loads, 2)
+    each = sp.identity(8, format="csr")
+    lacking = Flexibility(known, V, known.on(V), loads, each, 2)
     A = K.toarray() + 2.0 * np.eye(30)
     lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
     expected = np.einsum("ij,jk,ik->i", loads.toarray(), lost, loads.toarray()).reshape(4, 2)
     for rows in ([2], [0, 2, 3, 2]):
         np.testing.assert_allclose(lacking[np.array(rows)], expected[rows], rtol=1e-8)
+
+
+def test_a_spring_between_two_places_lacks_what_a_basis_lacks_at_either_end():
+    half, near = RNG.normal(size=(15, 15)), RNG.normal(size=(15, 3))
+    K, M = sp.block_diag([half @ half.T] * 2, format="csr"), sp.identity(30, format="csr")
+    basis = np.kron(np.eye(2), near)
+    model = SimpleNamespace(K=lambda: K, M=lambda: M)
+    known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
+    ends = sp.csr_matrix(np.eye(30)[[2, 20]])
+    lacking = Flexibility(known, basis, known.on(basis), ends, sp.csr_matrix([[-1.0, 1.0]]), 1)
+    A = K.toarray() + 2.0 * np.eye(30)
+    lost = np.linalg.inv(A) - basis @ np.linalg.inv(basis.T @ A @ basis) @ basis.T
+    line = np.eye(30)[20] - np.eye(30)[2]
+    np.testing.assert_allclose(lacking[np.array([0])], [[line @ lost @ line]], rtol=1e-8)
 
 
 def test_what_a_basis_lacks_among_the_loads_of_a_candidate_is_the_rest_of_the_flexibility():
