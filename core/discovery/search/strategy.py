@@ -154,12 +154,13 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind.
 
-    Of the best few, each moved to better neighbours: the first scan sees but few of the links, and
-    one that is right but for its ends gains no more there than others.
+    Of the best few, each of them moved to better neighbours: the first scan sees but few of the
+    links, and one that is right but for its ends gains no more there than others.
     """
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
         fits.setdefault(branch.kind, []).append(new)
     first = (sorted(own, key=objective_of)[: SEARCH.late_moved] for own in fits.values())
-    return [min(map(searcher.refined, own), key=objective_of) for own in first]
+    moved = ([searcher.refined(f, len(state.suspects)) for f in own] for own in first)
+    return [searcher.refined(min(own, key=objective_of)) for own in moved]
