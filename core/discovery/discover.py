@@ -300,11 +300,11 @@ def _completed(
             searcher, solid = as_blocks(structure, searcher, best, densest)
             judged = trial.judged(searcher.problem, solid)
             if judged is not None:
-                best, whole = solid, replace(whole, best=judged)
+                best, whole = solid, replace(whole, best=judged, told=judged)
         if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)
-        sized = replace(best, suspects=whole.best.fit.suspects)
+        sized = replace(best, suspects=whole.told.fit.suspects)
         solving = (f for f in (sized, best) if solves(trial.own, searcher.problem, f))
         solved = next(solving, None)
         if solved is None:

@@ -47,8 +47,9 @@ class Completeness:
 
     Parameters
     ----------
-    deck, alone, best : Judged
-        The deck as it is; the known parameters alone; the hypothesis that is accepted.
+    deck, alone, best, told : Judged
+        The deck as it is; the known parameters alone; the hypothesis that is accepted; that in the
+        middle of those as likely, whose places and magnitudes are told.
     gain : float
         ln of how much likelier the test is by the best, its choices paid for.
     last : float
@@ -67,6 +68,7 @@ class Completeness:
     deck: Judged
     alone: Judged
     best: Judged
+    told: Judged
     gain: float
     last: float
     ahead: float
@@ -87,9 +89,9 @@ class Completeness:
 
     @property
     def deviations(self) -> Floats:
-        """Standard deviations of the magnitudes of the best, suspect after suspect."""
-        n = sum(len(s.theta) for s in self.best.fit.suspects)
-        variance = np.diag(np.linalg.pinv(self.best.information))
+        """Standard deviations of the magnitudes that are told, suspect after suspect."""
+        n = sum(len(s.theta) for s in self.told.fit.suspects)
+        variance = np.diag(np.linalg.pinv(self.told.information))
         return np.asarray(np.sqrt(np.maximum(variance[len(variance) - n :], 0.0)))
 
     @property
@@ -185,18 +187,20 @@ def completeness(
     alone = levels[0].judged
     assert alone is not None
     number = kept(levels)
-    best, places = _centred(searcher, levels[number], fields[number], verdict.scale)
-    found = _led(found, best.fit)
+    best, told, places = _centred(searcher, levels[number], fields[number], verdict.scale)
+    found = _led(found, told.fit)
     others = contenders(searcher, found, number)
     rivals = [s for s in fields[number] if any(s.fit is f for f in others)]
     ahead = float(best.score - max((s.score for s in rivals), default=-np.inf))
     assert best.judged is not None
+    assert told.judged is not None
     fewer = max((level.score for level in levels[:number]), default=best.score)
     gain, last = best.score - levels[0].score, best.score - fewer
     agree = agreement(foretold(best.judged), foretold(alone)) if number else 0.0
-    whole = Completeness(deck, alone, best.judged, gain, last, ahead, agree, places)
+    judged = best.judged, told.judged
+    whole = Completeness(deck, alone, *judged, gain, last, ahead, agree, places)
     if not whole.clear and whole.lacks_nothing:
-        none = Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
+        none = Completeness(deck, alone, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
         return searcher, found, 0, none
     return searcher, found, number, whole
 
@@ -213,21 +217,21 @@ def _unsettled(best: Scored) -> bool:
 
 def _centred(
     searcher: Searcher, best: Scored, tried: Sequence[Scored], scale: float
-) -> tuple[Scored, list[list[Place]]]:
-    """Return a hypothesis with what is at points in the middle of where it may be, and the places.
+) -> tuple[Scored, Scored, list[list[Place]]]:
+    """Return a hypothesis, that in the middle of where and how large it may be, and the places.
 
-    What is found does not hang on which of places that are as likely happens to be the best. Of
-    patches that give the places are those that were `tried`: the larger one is the less it gives.
+    What is found does not hang on which of places that are as likely happens to be the best: what
+    is at points is put in the middle of them. Of patches that give the places are those that were
+    `tried`, the larger one is the less it gives: the one that does the middling is told.
     """
-    every = []
-    for q in range(len(best.fit.suspects)):
-        c = searcher.problem.catalogue[best.fit.suspects[q].kind]
+    kinds = [searcher.problem.catalogue[s.kind] for s in best.fit.suspects]
+    every: list[list[Place]] = [[] for _ in kinds]
+    for q, c in enumerate(kinds):
         if gives(c):
-            every.append(alike(tried, best, q))
             continue
         places = credible_places(searcher, best.fit, q, scale)
         for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
-            s, suspects = middle(c, places), best.fit.suspects
+            s, suspects = places[middle(c, places)].suspect, best.fit.suspects
             if s.row == suspects[q].row:
                 break
             moved = (*suspects[:q], s, *suspects[q + 1 :])
@@ -236,8 +240,14 @@ def _centred(
                 break
             best = new
             places = credible_places(searcher, best.fit, q, scale)
-        every.append(places)
-    return best, every
+        every[q] = places
+    told = best
+    for q, c in enumerate(kinds):
+        if gives(c):
+            others = (s for s in tried if s is not told)
+            near, every[q] = alike((told, *others), told, q)
+            told = near[middle(c, every[q])]
+    return best, told, every
 
 
 def _fitted_as(searcher: Searcher, alone: Scored, best: Scored) -> Scored:

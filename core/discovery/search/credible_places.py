@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Floats
 from ..effects.candidates import Candidates, Suspect
+from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
@@ -58,10 +59,10 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
     return sorted(places, key=lambda p: -p.weight)
 
 
-def alike(tried: Sequence[Scored], best: Scored, number: int) -> list[Place]:
-    """Return where one suspect was `tried` that is about as likely by the error of the model.
+def alike(tried: Sequence[Scored], best: Scored, number: int) -> tuple[list[Scored], list[Place]]:
+    """Return what was `tried` that is about as likely by the error of the model, and where.
 
-    On bases of their own: no other tells the size of a patch that gives.
+    One suspect elsewhere, on bases of their own: no other tells the size of a patch that gives.
     """
 
     def same(s: Scored) -> bool:
@@ -70,10 +71,11 @@ def alike(tried: Sequence[Scored], best: Scored, number: int) -> list[Place]:
         kinds = [t.kind for t in s.fit.suspects] == [o.kind for o in best.fit.suspects]
         return kinds and others and 2.0 * (best.score - s.score) < SEARCH.credible
 
-    near = [(s.score, s.judged.fit.suspects[number]) for s in tried if s.judged and same(s)]
-    weight = np.exp([score - best.score for score, _ in near])
+    near = [s for s in tried if s.judged and same(s)]
+    where = [s.judged.fit.suspects[number] for s in near if s.judged]
+    weight = np.exp([s.score - best.score for s in near])
     share = (weight / weight.sum()).tolist()
-    return [Place(s, w) for (_, s), w in zip(near, share, strict=True)]
+    return near, [Place(s, w) for s, w in zip(where, share, strict=True)]
 
 
 def between(places: Sequence[Place]) -> Floats:
@@ -84,11 +86,14 @@ def between(places: Sequence[Place]) -> Floats:
     return np.asarray(np.sqrt(np.sum(weight * (theta - mean) ** 2, axis=0) / weight.sum()))
 
 
-def middle(c: Candidates, places: Sequence[Place]) -> Suspect:
-    """Return a suspect at that of its places which is nearest to where it may be, on average.
+def middle(c: Candidates, places: Sequence[Place]) -> int:
+    """Return the number of that place which is nearest to where a suspect may be, on average.
 
-    Along a beam that hardly stretches a spring in its direction does the same anywhere.
+    Along a beam that hardly stretches a spring in its direction does the same anywhere. Patches
+    that give are near each other by how much they do, the larger one is the less.
     """
-    spots = c.spots[[p.suspect.row for p in places]]
-    away = np.linalg.norm(spots[:, None] - spots, axis=2) @ [p.weight for p in places]
-    return places[int(np.argmin(away))].suspect
+    at = c.spots[[p.suspect.row for p in places]]
+    if gives(c):
+        at = np.array([p.suspect.theta for p in places])
+    away = np.linalg.norm(at[:, None] - at, axis=2) @ [p.weight for p in places]
+    return int(np.argmin(away))

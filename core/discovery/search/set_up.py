@@ -39,7 +39,8 @@ def beside_reach(
     ahead = scored(searcher, found.levels[kept]).score - reach.score
     if ahead < 0.0:
         nothing = 0.0, 0.0, np.inf, 0.0
-        return 0, Completeness(whole.deck, whole.alone, whole.alone, *nothing, [], reach.far)
+        alone = (whole.alone,) * 3
+        return 0, Completeness(whole.deck, *alone, *nothing, [], reach.far)
     far = reach.far if ahead < SEARCH.suspect else None
     return kept, replace(whole, ahead=min(whole.ahead, ahead), reach=far)
 

@@ -26,7 +26,7 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0, scat
 def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):
     none = judged(np.zeros(10), error=before, stray=lost)
     best = judged(np.zeros(10), **more)
-    return Completeness(none, none, best, gain, gain, ahead, agree, [])
+    return Completeness(none, none, best, best, gain, gain, ahead, agree, [])
 
 
 def test_what_many_modes_gain_by_and_foretell_is_clear():
@@ -74,7 +74,7 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
 def beside(gain, error=0.001, mesh=0.0, scatter=0.0):
     deck = judged(np.zeros(10), error=error, mesh=mesh, scatter=scatter)
     alone = judged(np.zeros(10), error=0.0005, evidence=gain)
-    return Completeness(deck, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
+    return Completeness(deck, alone, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
 
 
 def test_a_deck_that_smooth_fields_explain_alone_lacks_something():

@@ -230,7 +230,7 @@ def test_the_middle_is_nearest_to_where_a_suspect_may_be_each_place_as_likely_as
 
     def at(weights):
         places = [Place(Suspect(0, row, (float(row),)), w) for row, w in weights.items()]
-        return middle(c, places)
+        return places[middle(c, places)].suspect
 
     assert at({7: 0.2, 8: 0.2, 9: 0.2, 10: 0.2, 11: 0.2}) == Suspect(0, 9, (9.0,))
     assert at({7: 0.6, 8: 0.1, 9: 0.1, 10: 0.1, 11: 0.1}).row == 7

@@ -20,7 +20,7 @@ from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 from trueup.core.discovery.model_error.model_error_numbers import MODEL_ERROR
 from trueup.core.discovery.reduction.elements_and_supports import Structure
 from trueup.core.discovery.reduction.search_basis import Basis
-from trueup.core.discovery.search.credible_places import alike
+from trueup.core.discovery.search.credible_places import Place, alike, middle
 from trueup.core.discovery.search.last_look import looked_again
 from trueup.core.discovery.search.model_selection import ranked, scored
 from trueup.core.discovery.search.moves import Searcher
@@ -171,7 +171,7 @@ def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_mi
     best = tried[0].fit
     assert wide.problem.catalogue[0].where[best.suspects[0].row]["elements"] == (told + 1).tolist()
     assert best.objective > state.objective
-    places = alike(tried, tried[0], 0)
+    _, places = alike(tried, tried[0], 0)
     assert [p.suspect.row for p in places] == [best.suspects[0].row]
     assert sum(p.weight for p in places) == pytest.approx(1.0)
 
@@ -200,3 +200,13 @@ def test_a_patch_may_end_with_its_property():
     shapes = {tuple(p.rows) for p in found}
     assert tuple(box((3, 5), (2, 5))) in shapes
     assert tuple(box((5, 7), (2, 5))) in shapes
+
+
+def test_the_middle_of_shapes_as_likely_is_the_one_that_does_the_middling():
+    """What a patch gains in area it loses in strength."""
+    start = box((4, 6), (3, 5))
+    s, state = suspecting(membrane(), start, start)
+    patches = s.problem.catalogue[0]
+    sizes = {-2.0: 0.4, -1.1: 0.25, -1.0: 0.3, 0.3: 0.05}
+    places = [Place(Suspect(0, state.suspects[0].row, (t,)), w) for t, w in sizes.items()]
+    assert places[middle(patches, places)].suspect.theta == (-1.1,)

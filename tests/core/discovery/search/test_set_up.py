@@ -47,7 +47,7 @@ def weighed(truth, evidence=lambda _, f: -0.5 * f.objective, effect=()):
     null = s.null()
     found = Found((null, *(evaluate(s.problem, null.nuisance, (e,)) for e in effect)), ((), ()))
     alone, best = (judged(s.problem, f) for f in (null, found.levels[-1]))
-    whole = Completeness(alone, alone, best, 99.0, 99.0, np.inf, 3.0, [])
+    whole = Completeness(alone, alone, best, best, 99.0, 99.0, np.inf, 3.0, [])
     return beside_reach(s, found, len(effect), whole, REACHES)
 
 
