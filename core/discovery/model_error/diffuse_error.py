@@ -10,8 +10,10 @@ noise of the readings are what makes the test likeliest.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -87,69 +89,85 @@ class Seen:
     reading: float = 0.0
     mesh: float = 0.0
 
+    @cached_property
+    def gram(self) -> Floats:
+        """Products of the modes at the sensors, (n, n)."""
+        return np.asarray(self.modes.T @ self.modes)
+
 
 def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> Diffuse:
     """Return the likelihood of a test at the diffuse error and the noise that make it largest.
 
-    Those `near` a known one are tried where there is one, else all; none beside the first where
-    that is below `least`.
+    Of a grid of both those near a known one are tried where there is one, else some all over it
+    and then closer and closer ones, aslant too where the one makes up for the other; none beside
+    the first where that is below `least`.
     """
-    low, high, n = MODEL_ERROR.errors
-    step = float(np.log(high / low)) / (n - 1)
-    tried = {k: _at(seen, low * np.exp(k * step)) for k in _first(near, low, step, n)}
-    while True:
-        best = max(tried, key=lambda k: tried[k].log)
-        beside = [k for k in (best - 1, best + 1) if 0 <= k < n and k not in tried]
-        if not beside or tried[best].log < least:
-            top = float(np.exp((best + _top(tried, best)) * step))
-            return replace(tried[best], error=low * top)
-        tried |= {k: _at(seen, low * np.exp(k * step)) for k in beside}
+    errors, noises = np.geomspace(*MODEL_ERROR.errors), _noises(seen)
+    tried: dict[tuple[int, int], Diffuse] = {}
 
+    def best_of(places: Iterable[tuple[int, int]]) -> tuple[int, int]:
+        for k, j in places:
+            if (k, j) not in tried and 0 <= k < len(errors) and 0 <= j < len(noises):
+                tried[k, j] = _at(seen, errors[k], noises[j])
+        return max(tried, key=lambda place: tried[place].log)
 
-def _top(tried: Mapping[int, Diffuse], k: int) -> float:
-    """Return how far from one error the largest likelihood is, in steps: a parabola's top."""
-    if k - 1 not in tried or k + 1 not in tried:
-        return 0.0
-    a, b, c = (tried[i].log for i in (k - 1, k, k + 1))
-    bend = 2.0 * b - a - c
-    return 0.5 * (c - a) / bend if bend > 0.0 else 0.0
-
-
-def _first(near: Diffuse | None, low: float, step: float, n: int) -> Sequence[int]:
     if near is None:
-        return range(0, n, 2)
-    return (round(float(np.log(near.error / low) / step)),)
+        wide = MODEL_ERROR.wide
+        best = best_of(product(range(0, len(errors), wide), range(0, len(noises), wide)))
+    else:
+        wide = 1
+        best = best_of([(_nearest(errors, near.error), _nearest(noises, near.noise))])
+    while tried[best].log >= least:
+        k, j = best
+        best = best_of([(k - wide, j), (k + wide, j), (k, j - wide), (k, j + wide)])
+        if best == (k, j):
+            best = best_of([(k - wide, j + wide), (k + wide, j - wide)])
+        if best == (k, j):
+            if wide == 1:
+                break
+            wide //= 2
+    return replace(tried[best], error=float(errors[best[0]] * _top(tried, best, errors)))
+
+
+def _nearest(grid: Floats, value: float) -> int:
+    return int(np.argmin(np.abs(np.log(grid / value))))
+
+
+def _top(tried: Mapping[tuple[int, int], Diffuse], best: tuple[int, int], errors: Floats) -> float:
+    """Return times one error the largest likelihood is at: a parabola's top."""
+    k, j = best
+    if (k - 1, j) not in tried or (k + 1, j) not in tried:
+        return 1.0
+    a, b, c = (tried[i, j].log for i in (k - 1, k, k + 1))
+    bend = 2.0 * b - a - c
+    return float((errors[1] / errors[0]) ** (0.5 * (c - a) / bend)) if bend > 0.0 else 1.0
 
 
 def likelihood_of(seen: Seen, known: Diffuse) -> Floats:
     """Return ln of the likelihood of each test mode at a known error and noise, (n_test,)."""
-    return _at(seen, known.error, np.array([known.noise])).each
+    return _at(seen, known.error, known.noise).each
 
 
 def _noises(seen: Seen) -> Floats:
-    low, high, n = MODEL_ERROR.noises
-    return np.asarray(np.unique(np.maximum(np.geomspace(low, high, n), seen.reading)))
+    grid = np.geomspace(*MODEL_ERROR.noises)
+    return np.asarray(np.unique(np.maximum(grid, seen.reading)))
 
 
-def _at(seen: Seen, error: float, noises: Floats | None = None) -> Diffuse:
-    """Return the best over the noise at one error."""
-    noises = _noises(seen) if noises is None else noises
+def _at(seen: Seen, error: float, noise: float) -> Diffuse:
+    """Return the likelihood at one error and noise."""
+    n = len(seen.shapes)
     frequencies, astray = _frequencies(seen, error), _stray(seen)
-    most = 0.5 * _weight(seen) * len(seen.shapes) * np.log(len(seen.shapes) / noises.min() ** 2)
+    most = 0.5 * _weight(seen) * n * np.log(n / noise**2)
     near = np.flatnonzero(np.any(frequencies + most > astray - MODEL_ERROR.nil, axis=0))
-    logs = frequencies[:, near] + _shapes(seen, error, noises, near)
-    both = np.full((len(noises), *frequencies.shape), astray)
-    both[:, :, near] = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)
-    best = None
-    for noise, L in zip(noises, both, strict=True):
-        rows, match = linear_sum_assignment(-L)
-        each = L[rows, match]
-        if best is None or each.sum() > best.log:
-            chance = np.exp(astray - each)
-            log = float(each.sum())
-            best = Diffuse(log, float(error), float(noise), each, match, chance, seen.mesh)
-    assert best is not None
-    return best
+    logs = frequencies[:, near] + _shapes(seen, error, noise, near)
+    L = np.full(frequencies.shape, astray)
+    L[:, near] = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)
+    match = L.argmax(axis=1)
+    if len(set(match.tolist())) < len(match):
+        match = linear_sum_assignment(-L)[1]
+    each = L[np.arange(len(L)), match]
+    chance, log = np.exp(astray - each), float(each.sum())
+    return Diffuse(log, float(error), float(noise), each, match, chance, seen.mesh)
 
 
 def _stray(seen: Seen) -> float:
@@ -185,37 +203,47 @@ def _roots(seen: Seen, error: float, columns: Ints) -> Floats:
     return np.asarray(np.sqrt(share / np.maximum(length, np.finfo(float).tiny)[:, None]))
 
 
-def _shapes(seen: Seen, error: float, noises: Floats, columns: Ints) -> Floats:
-    """Return ln of the likelihood of each shape by some modes, (n_noise, n_test, len(columns)).
+def _shapes(seen: Seen, error: float, noise: float, columns: Ints) -> Floats:
+    """Return ln of the likelihood of each shape by some modes, (n_test, len(columns)).
 
     But for (2π)^(-n/2). Shapes have the covariance c² A Δ Aᵀ + s² I; c² makes their length that of
     the mode.
     """
-    n = len(seen.shapes)
-    A, T = seen.modes, seen.shapes
-    G, X = A.T @ A, A.T @ T
-    root = _roots(seen, error, columns)
-    mu, U = np.linalg.eigh(root[:, :, None] * G * root[:, None, :])
-    mu = np.maximum(mu, 0.0)
-    Y2 = np.matmul(U.transpose(0, 2, 1), root[:, :, None] * X) ** 2
-    s2 = noises[:, None] ** 2 / n
-    log_det = n * np.log(s2[:, 0]) + np.sum(np.log1p(mu[:, None] / s2), axis=2)
-    left = (1.0 - np.matmul(1.0 / (s2 + mu[:, None]), Y2)) / s2
-    out = -0.5 * (log_det[:, :, None] + np.maximum(left, 0.0)).transpose(1, 2, 0)
-    return np.asarray(_weight(seen) * out)
+    n, T = len(seen.shapes), seen.shapes
+    X = np.broadcast_to(T, (len(columns), *T.shape))
+    log_det, taken = _by_modes(seen, error, noise, columns, X)
+    s2 = noise**2 / n
+    left = (1.0 - np.sum(taken**2, axis=2)) / s2
+    out = -0.5 * ((n * np.log(s2) + log_det)[:, None] + np.maximum(left, 0.0))
+    return np.asarray(_weight(seen) * out.T)
 
 
-def covariances(seen: Seen, found: Diffuse) -> Callable[[int, Floats], Floats]:
-    """Return what makes vectors (n_sensor, q) white that scatter as the shape of one test mode."""
-    root = _roots(seen, found.error, found.match)[:, :, None]
-    s = found.noise / np.sqrt(len(seen.shapes))
-    mu, U = np.linalg.eigh(root * (seen.modes.T @ seen.modes) * root.transpose(0, 2, 1))
-    wide = np.hypot(s, np.sqrt(np.maximum(mu, 0.0)))
-    less = -1.0 / (wide * (wide + s))
-    along = np.matmul(seen.modes, root * U)
+def _by_modes(
+    seen: Seen, error: float, noise: float, columns: Ints, X: Floats
+) -> tuple[Floats, Floats]:
+    """Return what the modes make of the covariance c² A Δ Aᵀ + s² I of shapes paired with some.
 
-    def white(j: int, X: Floats) -> Floats:
-        L = along[j]
-        return np.asarray((X + L @ (less[j][:, None] * (L.T @ X))) * (np.sqrt(_weight(seen)) / s))
+    ln of its determinant over that of s² I, (m,), and of vectors X (m, n_sensor, q) what the modes
+    take of their square over s²: rows (m, q, n) whose products are that. Both by one Cholesky
+    factor, of I + R Aᵀ A R with R = c Δ^½ / s, bordered by R Aᵀ X.
+    """
+    A, s = seen.modes, noise / np.sqrt(len(seen.shapes))
+    root = _roots(seen, error, columns)[:, :, None] / s
+    Y = (root * np.matmul(A.T, X)).transpose(0, 2, 1)
+    n, q = A.shape[1], X.shape[2]
+    whole = np.zeros((len(X), n + q, n + q))
+    whole[:, :n, :n] = root * seen.gram * root.transpose(0, 2, 1)
+    whole[:, n:, :n] = Y
+    here = np.arange(n + q)
+    whole[:, here[:n], here[:n]] += 1.0
+    whole[:, here[n:], here[n:]] = 1.0 + np.sum(Y**2, axis=(1, 2))[:, None]
+    L = np.linalg.cholesky(whole)
+    return 2.0 * np.sum(np.log(L[:, here[:n], here[:n]]), axis=1), L[:, n:, :n]
 
-    return white
+
+def quadratic(seen: Seen, found: Diffuse, X: Floats) -> Floats:
+    """Return Xᵀ C⁻¹ X of vectors (n_test, n_sensor, q), C the covariance of each test shape."""
+    _, taken = _by_modes(seen, found.error, found.noise, found.match, X)
+    by_s2 = _weight(seen) * len(seen.shapes) / found.noise**2
+    own = np.matmul(X.transpose(0, 2, 1), X)
+    return np.asarray(by_s2 * (own - np.matmul(taken, taken.transpose(0, 2, 1))))

@@ -20,7 +20,7 @@ from ..likelihood.hypothesis import Fit, Prior, Problem
 from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import products, stepped, surprise
 from ..likelihood.mode_likelihood import targets
-from .diffuse_error import Diffuse, Seen, covariances, diffuse
+from .diffuse_error import Diffuse, Seen, diffuse, quadratic
 from .model_error_numbers import MODEL_ERROR
 from .smooth_fields import Fields
 
@@ -262,11 +262,9 @@ def _normal_equations(
     dlam = 0.5 * F[:, k, count] / floor
     H = (dlam * (sure / variance)) @ dlam.T
     g = dlam @ (off * sure / variance)
-    white = covariances(here, d)
-    for j in range(len(k)):
-        X = white(j, np.column_stack([J[:, :, j].T, -rest[:, j]]))
-        H += sure[j] * X[:, :-1].T @ X[:, :-1]
-        g += sure[j] * X[:, :-1].T @ X[:, -1]
+    X = np.concatenate([J, -rest[None]]).transpose(2, 1, 0)
+    both = np.tensordot(sure, quadratic(here, d, X), 1)
+    H, g = H + both[:-1, :-1], g + both[:-1, -1]
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
     spread = _spread(problem, now, active)
     mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
