@@ -12,8 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import product
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -94,15 +93,20 @@ class Seen:
         """Products of the modes at the sensors, (n, n)."""
         return np.asarray(self.modes.T @ self.modes)
 
+    @cached_property
+    def cross(self) -> Floats:
+        """Products of the modes and the test's shapes, (n, n_test)."""
+        return np.asarray(self.modes.T @ self.shapes)
+
 
 def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> Diffuse:
     """Return the likelihood of a test at the diffuse error and the noise that make it largest.
 
-    Of a grid of both those near a known one are tried where there is one, else some all over it
-    and then closer and closer ones, aslant too where the one makes up for the other; none beside
-    the first where that is below `least`.
+    Looked for uphill over a grid of both, aslant too where the one makes up for the other, from a
+    known one `near` or from the middle, there in wide steps first; not beyond the first where that
+    is below `least`.
     """
-    errors, noises = np.geomspace(*MODEL_ERROR.errors), _noises(seen)
+    errors, noises = _grid(*MODEL_ERROR.errors), _noises(seen.reading)
     tried: dict[tuple[int, int], Diffuse] = {}
 
     def best_of(places: Iterable[tuple[int, int]]) -> tuple[int, int]:
@@ -113,19 +117,21 @@ def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> 
 
     if near is None:
         wide = MODEL_ERROR.wide
-        best = best_of(product(range(0, len(errors), wide), range(0, len(noises), wide)))
+        best = best_of([(len(errors) // 2, len(noises) // 2)])
     else:
         wide = 1
         best = best_of([(_nearest(errors, near.error), _nearest(noises, near.noise))])
     while tried[best].log >= least:
         k, j = best
         best = best_of([(k - wide, j), (k + wide, j), (k, j - wide), (k, j + wide)])
-        if best == (k, j):
-            best = best_of([(k - wide, j + wide), (k + wide, j - wide)])
-        if best == (k, j):
-            if wide == 1:
-                break
+        if best != (k, j):
+            continue
+        if wide > 1:
             wide //= 2
+            continue
+        best = best_of([(k - 1, j + 1), (k + 1, j - 1)])
+        if best == (k, j):
+            break
     return replace(tried[best], error=float(errors[best[0]] * _top(tried, best, errors)))
 
 
@@ -148,9 +154,14 @@ def likelihood_of(seen: Seen, known: Diffuse) -> Floats:
     return _at(seen, known.error, known.noise).each
 
 
-def _noises(seen: Seen) -> Floats:
-    grid = np.geomspace(*MODEL_ERROR.noises)
-    return np.asarray(np.unique(np.maximum(grid, seen.reading)))
+@cache
+def _grid(low: float, high: float, n: int) -> Floats:
+    return np.geomspace(low, high, n)
+
+
+@cache
+def _noises(least: float) -> Floats:
+    return np.asarray(np.unique(np.maximum(_grid(*MODEL_ERROR.noises), least)))
 
 
 def _at(seen: Seen, error: float, noise: float) -> Diffuse:
@@ -209,41 +220,39 @@ def _shapes(seen: Seen, error: float, noise: float, columns: Ints) -> Floats:
     But for (2π)^(-n/2). Shapes have the covariance c² A Δ Aᵀ + s² I; c² makes their length that of
     the mode.
     """
-    n, T = len(seen.shapes), seen.shapes
-    X = np.broadcast_to(T, (len(columns), *T.shape))
-    log_det, taken = _by_modes(seen, error, noise, columns, X)
+    n = len(seen.shapes)
+    log_det, taken = _by_modes(seen, error, noise, columns, seen.cross)
     s2 = noise**2 / n
-    left = (1.0 - np.sum(taken**2, axis=2)) / s2
+    left = (1.0 - np.einsum("ctn,ctn->ct", taken, taken)) / s2
     out = -0.5 * ((n * np.log(s2) + log_det)[:, None] + np.maximum(left, 0.0))
     return np.asarray(_weight(seen) * out.T)
 
 
 def _by_modes(
-    seen: Seen, error: float, noise: float, columns: Ints, X: Floats
+    seen: Seen, error: float, noise: float, columns: Ints, Y: Floats
 ) -> tuple[Floats, Floats]:
     """Return what the modes make of the covariance c² A Δ Aᵀ + s² I of shapes paired with some.
 
-    ln of its determinant over that of s² I, (m,), and of vectors X (m, n_sensor, q) what the modes
-    take of their square over s²: rows (m, q, n) whose products are that. Both by one Cholesky
-    factor, of I + R Aᵀ A R with R = c Δ^½ / s, bordered by R Aᵀ X.
+    ln of its determinant over that of s² I, (m,), and of vectors X, of which Y = Aᵀ X (n, q) or
+    (m, n, q), what the modes take of their square over s²: rows (m, q, n) whose products are that.
+    Both by one Cholesky factor, of I + R Aᵀ A R with R = c Δ^½ / s, bordered by R Y.
     """
-    A, s = seen.modes, noise / np.sqrt(len(seen.shapes))
-    root = _roots(seen, error, columns)[:, :, None] / s
-    Y = (root * np.matmul(A.T, X)).transpose(0, 2, 1)
-    n, q = A.shape[1], X.shape[2]
-    whole = np.zeros((len(X), n + q, n + q))
-    whole[:, :n, :n] = root * seen.gram * root.transpose(0, 2, 1)
-    whole[:, n:, :n] = Y
-    here = np.arange(n + q)
-    whole[:, here[:n], here[:n]] += 1.0
-    whole[:, here[n:], here[n:]] = 1.0 + np.sum(Y**2, axis=(1, 2))[:, None]
+    root = _roots(seen, error, columns) * (np.sqrt(len(seen.shapes)) / noise)
+    RY = root[:, None, :] * Y.swapaxes(-1, -2)
+    (m, q, n), here = RY.shape, np.arange(sum(RY.shape[1:]))
+    whole = np.zeros((m, n + q, n + q))
+    np.multiply(root[:, :, None] * seen.gram, root[:, None, :], out=whole[:, :n, :n])
+    whole[:, n:, :n] = RY
+    whole[:, here, here] += 1.0
+    whole[:, here[n:], here[n:]] += np.einsum("mqn,mqn->m", RY, RY)[:, None]
     L = np.linalg.cholesky(whole)
     return 2.0 * np.sum(np.log(L[:, here[:n], here[:n]]), axis=1), L[:, n:, :n]
 
 
 def quadratic(seen: Seen, found: Diffuse, X: Floats) -> Floats:
     """Return Xᵀ C⁻¹ X of vectors (n_test, n_sensor, q), C the covariance of each test shape."""
-    _, taken = _by_modes(seen, found.error, found.noise, found.match, X)
+    Y = np.matmul(seen.modes.T, X)
+    _, taken = _by_modes(seen, found.error, found.noise, found.match, Y)
     by_s2 = _weight(seen) * len(seen.shapes) / found.noise**2
     own = np.matmul(X.transpose(0, 2, 1), X)
     return np.asarray(by_s2 * (own - np.matmul(taken, taken.transpose(0, 2, 1))))

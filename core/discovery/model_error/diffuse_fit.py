@@ -195,8 +195,8 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
     """Return a hypothesis moved from a state, at which `best` is the diffuse error."""
     now, height = state, best.log - 0.5 * surprise(problem, state.nuisance, state.suspects)
     damping = 0.0
+    H, g = _normal_equations(problem, now, best, active)
     for _ in range(MODEL_ERROR.steps):
-        H, g = _normal_equations(problem, now, best, active)
         better = None
         for _ in range(MODEL_ERROR.dampings):
             with suppress(np.linalg.LinAlgError):
@@ -216,9 +216,9 @@ def _climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse)
             break
         gained = better[2] - height
         now, best, height = better
+        H, g = _normal_equations(problem, now, best, active)
         if gained < MODEL_ERROR.tolerance:
             break
-    H, _ = _normal_equations(problem, now, best, active)
     spread = _spread(problem, now, active)
     occam = 0.5 * float(np.linalg.slogdet(spread[:, None] * H * spread)[1])
     evidence = height - occam

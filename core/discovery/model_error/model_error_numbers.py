@@ -13,7 +13,7 @@ class ModelErrorNumbers:
     errors: tuple[float, float, int] = number((3e-4, 1.0, 19), "of K", "least and largest diffuse error that is tried, and how many")
     noises: tuple[float, float, int] = number((0.005, 0.5, 15), NOISE, "least and largest noise of a reading that is tried, and how many")
     frequency: float = number(0.001, "of f", "standard deviation of a measured frequency, at least")
-    wide: int = number(4, "steps", "between errors, and noises, that are tried first", "time")
+    wide: int = number(4, "steps", "between errors, and noises, that are tried first where none is known", "time")
     reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
     stray: float = number(0.03, "-", "chance that a test mode is none of the model's")
     nil: float = number(20.0, "ln L", "less than the likelihood of a stray mode, below which a pair is not looked at", "double precision")
