@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,8 @@ import scipy.sparse as sp
 from ..arrays import Floats, Ints
 from ..data.parametric_model import Factor, Term
 from ..numerics.products import product, sparse_product
+
+_Kept = dict[tuple[int, ...] | None, tuple[bytes, Floats]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +32,7 @@ class ReducedSum:
     terms: tuple[Term, ...]
     whole: Floats
     turn: Floats | None = None
+    _last: _Kept = field(default_factory=dict, init=False)
 
     @cached_property
     def matrices(self) -> Floats:
@@ -39,8 +42,22 @@ class ReducedSum:
         return np.asarray(np.matmul(self.turn.T, np.matmul(self.whole, self.turn)))
 
     def at(self, p: Floats) -> Floats:
-        """Return the sum at the parameter values `p`, (r, r)."""
-        return np.asarray(np.tensordot([t.coefficient(p) for t in self.terms], self.matrices, 1))
+        """Return the sum at the parameter values `p`, (r, r), read only."""
+        return self._added(None, p, lambda: np.array([t.coefficient(p) for t in self.terms]))
+
+    def _added(
+        self, what: tuple[int, ...] | None, p: Floats, weights: Callable[[], Floats]
+    ) -> Floats:
+        """Return the matrices added up by weights; the last of each kind is kept.
+
+        Many hypotheses are looked at with the same values of the parameters.
+        """
+        same = p.tobytes()
+        if what not in self._last or self._last[what][0] != same:
+            found = np.asarray(np.tensordot(weights(), self.matrices, 1))
+            found.flags.writeable = False
+            self._last[what] = same, found
+        return self._last[what][1]
 
     def applied(self, p: Floats, X: Floats) -> Floats:
         """Return the full sum at `p` times vectors X (n_free, k), whatever the basis."""
@@ -53,12 +70,16 @@ class ReducedSum:
         return out
 
     def slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:
-        """Return its derivatives by some parameters, (len(parameters), r, r)."""
+        """Return its derivatives by some parameters, (len(parameters), r, r), read only."""
+        return self._added(tuple(parameters), p, lambda: self._slopes(p, parameters))
+
+    def _slopes(self, p: Floats, parameters: Sequence[int]) -> Floats:
+        """Return the derivatives of the terms' weights, (len(parameters), n_term)."""
         c = np.zeros((len(parameters), len(self.terms)))
         for row, k in zip(c, parameters, strict=True):
             for i in self.moved_by.get(k, ()):
                 row[i] = self.terms[i].coefficient_derivative(p, k)
-        return np.asarray(np.tensordot(c, self.matrices, 1))
+        return c
 
     @cached_property
     def moved_by(self) -> dict[int, list[int]]:

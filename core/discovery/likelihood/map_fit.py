@@ -29,11 +29,12 @@ def _matrices(
         c = law.value(theta, _FIRST)[0]
         if law.on == "A":
             k = np.broadcast_to(1.0 / law.flexibility(theta, _FIRST)[0], len(U))
-            K += (U.T * k) @ U
+            K = K + (U.T * k) @ U
             own.append((-(U.T * (k / np.sqrt(c))), k / c))
+        elif law.on == "K":
+            K = K + (U.T * c) @ U
         else:
-            target = K if law.on == "K" else M
-            target += (U.T * c) @ U
+            M = M + (U.T * c) @ U
     if own:
         side = np.hstack([a for a, _ in own])
         corner = np.diag(np.concatenate([b for _, b in own]))
