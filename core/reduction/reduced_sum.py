@@ -105,11 +105,11 @@ class ReducedSum:
         by_rows = np.ascontiguousarray(W)
         for out, term in zip(whole, self.terms, strict=True):
             some, own = own_part(term.matrix)
-            X = sparse_product(own, by_rows)
+            X = sparse_product(own, by_rows).T
             if n:
-                out[:n, n:] = np.vstack([product(V[some].T, X) for V in parts])
-            out[n:, :n] = out[:n, n:].T
-            out[n:, n:] = product(W[some].T, X)
+                out[n:, :n] = np.hstack([product(X, V[some]) for V in parts])
+            out[:n, n:] = out[n:, :n].T
+            out[n:, n:] = product(X, W[some])
         return ReducedSum(self.terms, whole)
 
     def ending(self, n: int, last: Floats) -> ReducedSum:

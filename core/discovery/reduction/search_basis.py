@@ -109,7 +109,7 @@ def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
     """
     before = _lengths(X, M)
     for _ in range(2):
-        X = X - phi @ (phi.T @ (M @ X))
+        X = X - (((M @ X).T @ phi) @ phi.T).T
     length = _lengths(X, M)
     new = length > REDUCTION.rounding * before
     X = X[:, new] / length[new]

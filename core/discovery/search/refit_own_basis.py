@@ -7,7 +7,6 @@ modes of the deck and its responses to the known parameters.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -121,7 +120,7 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     follows the known parameters by its slopes alone, so it is made anew where they came to stand.
     """
     for _ in range(SEARCH.made_anew):
-        own, start, _ = _own_problem(ground, problem, state)
+        own, start, *_ = _own_problem(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
         new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
         moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
@@ -146,8 +145,7 @@ def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Float
 
     Beside an effect they move as the basis of the search cannot: a support that gives.
     """
-    own, start, added = _own_problem(ground, problem, state)
-    values, modes = _modes(own, state, start)
+    _, _, added, (values, modes) = _own_problem(ground, problem, state)
     V = ground.basis.vectors
     a, b, _ = np.split(modes, [V.shape[1], V.shape[1] + added.shape[1]])
     return np.asarray(ground.structure.model.expansion @ (V @ a + added @ b)), values
@@ -159,7 +157,7 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     A deck has neither the trend for the error of the mesh nor masses better than its elements':
     moduli, thicknesses and inertias have to absorb both.
     """
-    own, start, _ = _own_problem(ground, problem, state, as_deck=True)
+    own, start, *_ = _own_problem(ground, problem, state, as_deck=True)
     return replace(state, in_deck=_in_deck(own, replace(state, suspects=start)))
 
 
@@ -172,8 +170,7 @@ def by_model_error(
     fields where they could not bring it to the evidence `least`; where nothing is `moving`, the
     error of the mesh alone.
     """
-    own, start, _ = _own_problem(ground, problem, state)
-    _, modes = _modes(own, state, start)
+    own, start, _, (_, modes) = _own_problem(ground, problem, state)
     T = structural(*np.split(modes, [len(own.mesh)]))
     small = own.turned(T).entire()
     here = evaluate(small, state.nuisance, start)
@@ -189,11 +186,6 @@ def by_model_error(
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
 
 
-def _modes(own: Problem, state: Fit, start: Sequence[Suspect]) -> tuple[Floats, Floats]:
-    size = min(SEARCH.own_times * own.modes, len(own.mesh))
-    return solve(own, state.nuisance, start, size)
-
-
 def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
     """Return suspects at their places with the magnitudes that were fitted."""
     both = zip(state.suspects, own.suspects, strict=True)
@@ -202,10 +194,10 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
 
 def _own_problem(
     ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
-) -> tuple[Problem, tuple[Suspect, ...], Floats]:
+) -> tuple[Problem, tuple[Suspect, ...], Floats, tuple[Floats, Floats]]:
     """Return the problem on a basis of its own, masses better than a deck's or not, and a start.
 
-    Also what the basis has beside the ground's, (n_free, s).
+    Also what the basis has beside the ground's, (n_free, s), and eigenvalues and modes there.
     """
     deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
@@ -227,10 +219,11 @@ def _own_problem(
         rest=None,
     )
     start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
-    values = evaluate(new, state.nuisance, start).eigenvalues
-    if values[0] < -SEARCH.rigid * values[-1]:
+    size = min(SEARCH.own_times * new.modes, len(own.mesh.whole[0]))
+    values, vectors = solve(new, state.nuisance, start, size)
+    if values[0] < -SEARCH.rigid * values[new.modes - 1]:
         raise CheckError("the completed model has a negative stiffness")
-    return new, start, own.added
+    return new, start, own.added, (values, vectors)
 
 
 def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tuple[Candidates, int]:
