@@ -103,8 +103,8 @@ def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> 
     """Return the likelihood of a test at the diffuse error and the noise that make it largest.
 
     Looked for uphill over a grid of both, aslant too where the one makes up for the other, from a
-    known one `near` or from the middle, there in wide steps first; not beyond the first where that
-    is below `least`.
+    known one `near`, or from the best of a few from small to large in wide steps first; not beyond
+    the first where that is below `least`.
     """
     errors, noises = _grid(*MODEL_ERROR.errors), _noises(seen.reading)
     tried: dict[tuple[int, int], Diffuse] = {}
@@ -117,7 +117,7 @@ def diffuse(seen: Seen, near: Diffuse | None = None, least: float = -np.inf) -> 
 
     if near is None:
         wide = MODEL_ERROR.wide
-        best = best_of([(len(errors) // 2, len(noises) // 2)])
+        best = best_of(zip(range(0, len(errors), wide), range(0, len(noises), wide), strict=False))
     else:
         wide = 1
         best = best_of([(_nearest(errors, near.error), _nearest(noises, near.noise))])
