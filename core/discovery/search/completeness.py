@@ -19,6 +19,7 @@ from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..model_error.diffuse_fit import Judged
+from ..model_error.geometry_error import Misshapen
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
@@ -62,6 +63,8 @@ class Completeness:
         Where each suspect of the best may be.
     reach : float or None
         How far in supports that hold more than the deck says explain the test as well or better.
+    shape : Misshapen or None
+        A shape other than drawn that does.
     """
 
     deck: Judged
@@ -73,6 +76,7 @@ class Completeness:
     agree: float
     places: list[list[Place]]
     reach: float | None = None
+    shape: Misshapen | None = None
 
     @property
     def moved(self) -> float:
