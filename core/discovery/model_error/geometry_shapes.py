@@ -76,9 +76,21 @@ def shapes_of(xyz: Floats) -> tuple[Shape, ...]:
     wide = half > MODEL_ERROR.flat * half.max()
     x, half = np.where(wide, x, 0.0), np.where(wide, half, 1.0)
     long = wide & (half > MODEL_ERROR.short * half.max())
-    at = _Places(axes, x / half, x, *(tuple(np.flatnonzero(k).tolist()) for k in (wide, long)))
-    about = _round_about(x)
-    return tuple(_straight(at) if about is None else _round(at, about))
+    unit, round_ = x / half, _round_about(x)
+    about, x = (None, x) if round_ is None else round_
+    at = _Places(axes, unit, x, *(tuple(np.flatnonzero(k).tolist()) for k in (wide, long)))
+    every = _straight(at) if about is None else _round(at, about)
+    return tuple(s for s in every if _deforms(xyz, s.by))
+
+
+def _deforms(xyz: Floats, by: Floats) -> bool:
+    """Whether nodes (n, 3) do not move as a whole."""
+    away = xyz - xyz.mean(axis=0)
+    away = away / (np.abs(away).max() or 1.0)
+    motions = [np.tile(e, (len(xyz), 1)) for e in np.eye(3)] + [np.cross(e, away) for e in np.eye(3)]
+    rigid = np.array([u.ravel() for u in motions]).T
+    left = by.ravel() - rigid @ np.linalg.lstsq(rigid, by.ravel(), rcond=None)[0]
+    return bool(np.linalg.norm(left) > MODEL_ERROR.flat * np.linalg.norm(by))
 
 
 def _straight(at: _Places) -> Iterator[Shape]:
@@ -155,14 +167,33 @@ def _round(at: _Places, about: int) -> Iterator[Shape]:
         yield from (Shape(name, name, name, u) for u in both)
 
 
-def _round_about(x: Floats) -> int | None:
-    """Return the own axis about which nodes are round, None where there is none.
+def _round_about(x: Floats) -> tuple[int, Floats] | None:
+    """Return the own axis about which nodes are round and their positions from it, None without.
 
-    Their moments of second and fourth order across it are then those of a circle.
+    Their moments of second and fourth order across it are those of a circle, or they lie on an arc.
     """
     for k in range(3):
-        z = x[:, (k + 1) % 3] + 1j * x[:, (k + 2) % 3]
+        across = [j for j in range(3) if j != k]
+        if np.any(np.ptp(x[:, across], axis=0) == 0.0):
+            continue
+        z = x[:, across[0]] + 1j * x[:, across[1]]
         apart = (abs(np.sum(z**n)) / max(float(np.sum(abs(z) ** n)), _TINY) for n in (2, 4))
-        if np.ptp(z.real) > 0.0 and np.ptp(z.imag) > 0.0 and max(apart) < MODEL_ERROR.round:
-            return k
+        if max(apart) < MODEL_ERROR.round:
+            return k, x
+        centre = _centre(x[:, across])
+        if centre is not None:
+            from_it = x.copy()
+            from_it[:, across] -= centre
+            return k, from_it
     return None
+
+
+def _centre(xy: Floats) -> Floats | None:
+    """Return the centre of the arc that points (n, 2) lie on all along, None where on none."""
+    sides = np.column_stack([2.0 * xy, np.ones(len(xy))])
+    centre = np.asarray(np.linalg.lstsq(sides, np.sum(xy**2, axis=1), rcond=None)[0][:2])
+    z = (xy - centre) @ np.array([1.0, 1j])
+    radius = float(np.abs(z).mean())
+    gaps = np.sort(np.diff(np.sort(np.angle(z)), append=np.angle(z).min() + 2.0 * np.pi))
+    on_it = np.ptp(np.abs(z)) < MODEL_ERROR.round * radius and radius < np.ptp(xy, axis=0).max()
+    return centre if on_it and gaps[-2] < MODEL_ERROR.arc_gap else None
