@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
 
-import trueup
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.geometry_error import Misshapen
