@@ -87,7 +87,9 @@ def _deforms(xyz: Floats, by: Floats) -> bool:
     """Whether nodes (n, 3) do not move as a whole."""
     away = xyz - xyz.mean(axis=0)
     away = away / (np.abs(away).max() or 1.0)
-    motions = [np.tile(e, (len(xyz), 1)) for e in np.eye(3)] + [np.cross(e, away) for e in np.eye(3)]
+    motions = [np.tile(e, (len(xyz), 1)) for e in np.eye(3)] + [
+        np.cross(e, away) for e in np.eye(3)
+    ]
     rigid = np.array([u.ravel() for u in motions]).T
     left = by.ravel() - rigid @ np.linalg.lstsq(rigid, by.ravel(), rcond=None)[0]
     return bool(np.linalg.norm(left) > MODEL_ERROR.flat * np.linalg.norm(by))

@@ -22,7 +22,9 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
     if whole.reach is not None:
-        said.append(f"it looks like supports that reach {whole.reach:.2g} deck units further in")
+        said.append(
+            f"it looks like supports that reach {whole.reach.far:.2g} deck units further in"
+        )
     if whole.shape is not None:
         said.append(f"it looks like {_shape(whole.shape)}")
     elif whole.reach is None and best.drifts and best.evidence - best.bare > MODEL_ERROR.seen:

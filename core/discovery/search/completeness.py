@@ -22,6 +22,7 @@ from ..model_error.diffuse_fit import Judged
 from ..model_error.geometry_error import Misshapen
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
+from ..model_error.support_reach import Reach
 from .beam_search import Found
 from .credible_places import Place, alike, credible_places, middle
 from .last_look import looked_again
@@ -61,8 +62,8 @@ class Completeness:
         foretells them better than the known parameters alone do.
     places : list of list of Place
         Where each suspect of the best may be.
-    reach : float or None
-        How far in supports that hold more than the deck says explain the test as well or better.
+    reach : Reach or None
+        Supports that hold more than the deck says and explain the test as well or better.
     shape : Misshapen or None
         A shape other than drawn that does.
     """
@@ -75,7 +76,7 @@ class Completeness:
     ahead: float
     agree: float
     places: list[list[Place]]
-    reach: float | None = None
+    reach: Reach | None = None
     shape: Misshapen | None = None
 
     @property

@@ -30,22 +30,20 @@ def beside_geometry(
     """Return how many of what was found are told where a structure may be of another shape.
 
     None where that is likelier; else what was found has to be as far ahead of it as of anything
-    elsewhere.
+    elsewhere, and a shape is told that what is found leaves room for.
     """
+    if ground.structure.moved is None:
+        return kept, whole
     best = scored(searcher, found.levels[kept]).score
-    if ground.structure.moved is None or not _worth_trying(kept, whole, best):
-        return kept, whole
-    shape = likeliest(ground, modal(ground, searcher.problem, found.levels[0]))
-    if shape is None or shape.score - whole.alone.evidence < SEARCH.suspect:
-        return kept, whole
-    if not kept:
-        return 0, replace(whole, shape=shape)
-    ahead = best - shape.score
-    if ahead < 0.0:
-        nothing = 0.0, 0.0, np.inf, 0.0
-        return 0, Completeness(whole.deck, whole.alone, whole.alone, *nothing, [], shape=shape)
-    told = shape if ahead < SEARCH.suspect else None
-    return kept, replace(whole, ahead=min(whole.ahead, ahead), shape=told)
+    if _worth_trying(kept, whole, best):
+        shape = likeliest(ground, modal(ground, searcher.problem, found.levels[0]))
+        if shape and shape.score - whole.alone.evidence > SEARCH.suspect:
+            kept, whole = _beside(shape, kept, whole, best)
+    if kept and whole.shape is None and whole.adequacy < MODEL_ERROR.explained:
+        shape = likeliest(ground, modal(ground, searcher.problem, found.levels[kept]))
+        if shape and shape.score - whole.best.evidence > SEARCH.suspect:
+            whole = replace(whole, shape=shape)
+    return kept, whole
 
 
 def _worth_trying(kept: int, whole: Completeness, best: float) -> bool:
@@ -55,6 +53,23 @@ def _worth_trying(kept: int, whole: Completeness, best: float) -> bool:
         return best < alone.evidence + MODEL_ERROR.drift_gain
     drifts = alone.evidence - alone.bare > MODEL_ERROR.seen
     return not whole.lacks_nothing and (drifts or whole.adequacy < MODEL_ERROR.explained)
+
+
+def _beside(
+    shape: Misshapen, kept: int, whole: Completeness, best: float
+) -> tuple[int, Completeness]:
+    """Weigh a shape against what was found, or else against supports that reach further in."""
+    if not kept:
+        ahead = np.inf if whole.reach is None else shape.score - whole.reach.score
+        told = shape if ahead > -SEARCH.suspect else None
+        reach = whole.reach if ahead < SEARCH.suspect else None
+        return 0, replace(whole, shape=told, reach=reach)
+    ahead = best - shape.score
+    if ahead < 0.0:
+        nothing = 0.0, 0.0, np.inf, 0.0
+        return 0, Completeness(whole.deck, whole.alone, whole.alone, *nothing, [], shape=shape)
+    told = shape if ahead < SEARCH.suspect else None
+    return kept, replace(whole, ahead=min(whole.ahead, ahead), shape=told)
 
 
 def likeliest(ground: Ground, m: Modal) -> Misshapen | None:

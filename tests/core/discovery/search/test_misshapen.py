@@ -10,6 +10,7 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.geometry_error import Misshapen
+from trueup.core.discovery.model_error.support_reach import Reach
 from trueup.core.discovery.search import misshapen
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness
@@ -19,7 +20,7 @@ SHAPE = 50.0
 """ln of the evidence for another shape."""
 
 
-def weighed(monkeypatch, evidence, kept, error=0.02, moved=True):
+def weighed(monkeypatch, evidence, kept, error=0.006, moved=True, reach=None):
     """Return how many effects are told beside a shape, how well they explain, shapes tried."""
 
     def judged(problem, f, _=0.0):
@@ -41,7 +42,7 @@ def weighed(monkeypatch, evidence, kept, error=0.02, moved=True):
     effect = [Suspect(1, 9, (np.log(200.0),))] * kept
     found = Found((null, *(evaluate(s.problem, null.nuisance, (e,)) for e in effect)), ((), ()))
     alone, best = (judged(s.problem, f) for f in (null, found.levels[-1]))
-    whole = Completeness(alone, alone, best, 99.0, 99.0, np.inf, 3.0, [])
+    whole = Completeness(alone, alone, best, 99.0, 99.0, np.inf, 3.0, [], reach)
     ground = Some(structure=Some(moved=moved or None))
     return *misshapen.beside_geometry(ground, s, found, kept, whole), len(tried)
 
@@ -60,8 +61,28 @@ def test_what_imitates_a_shape_is_not_told_and_what_is_no_clearer_not_claimed(
 
 
 def test_none_is_tried_where_nothing_is_left_or_an_effect_is_beyond_it(monkeypatch):
-    for asked in ({"kept": 0, "error": 0.0005}, {"kept": 1}, {"kept": 0, "moved": False}):
+    for asked in (
+        {"kept": 0, "error": 0.0005},
+        {"kept": 1, "error": 0.0005},
+        {"kept": 0, "moved": False},
+    ):
         _, whole, tried = weighed(monkeypatch, 300.0, **asked)
         assert whole.shape is None
         assert not tried
     assert weighed(monkeypatch, 300.0, 0)[1].shape.name == "bowed along x"
+
+
+@pytest.mark.parametrize(("reach", "told"), [(30.0, "s"), (48.0, "rs"), (53.0, "rs"), (70.0, "r")])
+def test_of_a_shape_and_a_clamp_that_reaches_further_in_the_likelier_is_told_or_both(
+    monkeypatch, reach, told
+):
+    _, whole, _ = weighed(monkeypatch, 0.0, 0, reach=Reach(12.0, reach))
+    assert "r" * bool(whole.reach) + "s" * bool(whole.shape) == told
+
+
+@pytest.mark.parametrize(("evidence", "told"), [(40.0, True), (200.0, False)])
+def test_what_an_effect_leaves_may_be_another_shape(monkeypatch, evidence, told):
+    monkeypatch.setattr(misshapen, "_worth_trying", lambda *_: False)
+    kept, whole, tried = weighed(monkeypatch, evidence, 1)
+    assert (kept, tried) == (1, 1)
+    assert (whole.shape is not None) == told
