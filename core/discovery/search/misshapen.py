@@ -52,7 +52,7 @@ def _worth_trying(kept: int, whole: Completeness, best: float) -> bool:
     if kept:
         return best < alone.evidence + MODEL_ERROR.drift_gain
     drifts = alone.evidence - alone.bare > MODEL_ERROR.seen
-    return not whole.lacks_nothing and (drifts or whole.adequacy < MODEL_ERROR.explained)
+    return not whole.lacks_nothing and (drifts or alone.diffuse.error > MODEL_ERROR.usual)
 
 
 def _beside(
