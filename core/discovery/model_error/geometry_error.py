@@ -79,8 +79,8 @@ class Movable:
         self._products = tuple(A @ modes for A in self._now)
         self._unit = MODEL_ERROR.shape * structure.model.geometry.size
 
-    def deviation(self, shape: Shape, count: int) -> Deviation:
-        """Return a shape on the modes, with the static answers of the first `count`."""
+    def deviation(self, shape: Shape) -> Deviation:
+        """Return a shape on the modes."""
         moved = self._structure.moved
         assert moved is not None
         V, h = self._modes, MODEL_ERROR.shape_step
@@ -90,28 +90,27 @@ class Movable:
             (0.5 * (there - back) / h, (0.5 * (there + back) - now) / h**2)
             for there, back, now in zip((K @ V, M @ V), (k @ V, m @ V), self._products, strict=True)
         )
-        loads = stiffness[0][:, :count]
+        loads = stiffness[0]
         W = V @ (self._inverse @ (V.T @ loads)) - self._compliance.responses(loads)
         pairs = zip(self._now, (stiffness, mass), strict=True)
         return Deviation(shape, self._unit, *(_to_second(A, V, W, *own) for A, own in pairs))
 
 
 def _to_second(A: sp.csr_matrix, V: Floats, W: Floats, first: Floats, second: Floats) -> Floats:
-    """Return Tᵀ A(a) T, T = V + a [W, 0], to first and second order of a, (2, r, r).
+    """Return (V + aW)ᵀ A(a) (V + aW) to first and second order of a, (2, r, r).
 
     `first` and `second` (n, r) are what A(a) gives of V to these orders.
     """
-    AW, n = A @ W, W.shape[1]
-    out = np.array([V.T @ first, V.T @ second])
-    for order, answers in zip(out, (AW.T @ V, W.T @ first), strict=True):
-        order[:n] += answers
-        order[:, :n] += answers.T
-    out[1, :n, :n] += W.T @ AW
-    return out
+    AW = A @ W
+    a, b = AW.T @ V, W.T @ first
+    return np.array([V.T @ first + a + a.T, V.T @ second + b + b.T + W.T @ AW])
 
 
 def with_deviation(problem: Problem, d: Deviation) -> Problem:
-    """Return a problem whose known parameters are followed by the amplitude of a shape."""
+    """Return a problem whose known parameters are followed by the amplitude of a shape.
+
+    It may be on the first modes of the problem alone.
+    """
     n, u = len(problem.prior.spread) - 1, MODEL_ERROR.shape_unit
     most = MODEL_ERROR.shape_most * u
     p = problem.prior
@@ -120,12 +119,17 @@ def with_deviation(problem: Problem, d: Deviation) -> Problem:
     stiffness, mass = b.stiffness, b.mass
     for k, series in enumerate(orders):
         f = Factor(n, series, 0.0, 2.0)
-        stiffness, mass = stiffness.plus(d.stiffness[k], f), mass.plus(d.mass[k], f)
+        stiffness = stiffness.plus(_padded(d.stiffness[k], b.size), f)
+        mass = mass.plus(_padded(d.mass[k], b.size), f)
     return replace(
         problem,
         basis=replace(b, stiffness=stiffness, mass=mass),
         prior=Prior(*(np.insert(a, n, x) for a, x in ends)),
     )
+
+
+def _padded(A: Floats, size: int) -> Floats:
+    return np.pad(A, (0, size - len(A)))
 
 
 def misshapen(d: Deviation, found: Judged, choices: int) -> Misshapen:

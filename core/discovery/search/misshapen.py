@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -75,16 +74,20 @@ def _beside(
 def likeliest(ground: Ground, m: Modal) -> Misshapen | None:
     """Return the shape beside which a hypothesis is likeliest, None where none can be.
 
-    All are tried with the static answers of the modes that may match, the best again with those of
-    all, and what its family amounts to in any direction.
+    All are tried on the modes that may match, the best again on all modes, and what its family
+    amounts to in any direction.
     """
-    structure, everyone = ground.structure, m.vectors.shape[1]
-    look = _Look(m, Movable(structure, m.vectors, ground.compliance))
+    structure = ground.structure
+    plain = judged(m.problem, m.state, everything(m.problem))
+    few, every = (
+        _Look(m, plain, Movable(structure, V, ground.compliance))
+        for V in (m.vectors[:, : m.problem.columns], m.vectors)
+    )
     shapes = shapes_of(structure.model.geometry.xyz)
-    tried = look.at(shapes, m.problem.columns)
+    tried = few.at(shapes)
     if not tried:
         return None
-    again = look.at((tried[0].deviation.shape, *look.between(tried)), everyone)
+    again = every.at((tried[0].deviation.shape, *few.between(tried)))
     best = again[0] if again else tried[0]
     j = best.judged
     full = with_drift(j.problem, j.fit, m.known, m.smooth)
@@ -106,24 +109,20 @@ class _Tried:
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """A hypothesis on its modes, beside which shapes are looked at."""
+    """A hypothesis on its modes, as it is `plain`, beside which shapes are looked at."""
 
     m: Modal
+    plain: Judged
     movable: Movable
 
-    @cached_property
-    def plain(self) -> Judged:
-        """The hypothesis without any."""
-        return judged(self.m.problem, self.m.state, everything(self.m.problem))
-
-    def at(self, shapes: Iterable[Shape], answers: int) -> list[_Tried]:
+    def at(self, shapes: Iterable[Shape]) -> list[_Tried]:
         """Return shapes as they are fitted, the likeliest first; those that are nothing left out.
 
         Each from the best of several amplitudes.
         """
         out = []
         for shape in shapes:
-            d = self.movable.deviation(shape, answers)
+            d = self.movable.deviation(shape)
             p = with_deviation(self.m.problem, d)
             starts = [s for a in MODEL_ERROR.shape_starts for s in self._start(p, a)]
             if starts:
