@@ -178,8 +178,9 @@ def _round_about(x: Floats) -> tuple[int, Floats] | None:
         across = [j for j in range(3) if j != k]
         if np.any(np.ptp(x[:, across], axis=0) == 0.0):
             continue
-        z = x[:, across[0]] + 1j * x[:, across[1]]
-        apart = (abs(np.sum(z**n)) / max(float(np.sum(abs(z) ** n)), _TINY) for n in (2, 4))
+        second = (x[:, across[0]] + 1j * x[:, across[1]]) ** 2
+        moments = second, second**2
+        apart = (abs(np.sum(w)) / max(float(np.sum(np.abs(w))), _TINY) for w in moments)
         if max(apart) < MODEL_ERROR.round:
             return k, x
         centre = _centre(x[:, across])
