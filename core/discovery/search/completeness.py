@@ -105,7 +105,7 @@ class Completeness:
         not there hardly lessens it), and to be ahead of what else was found, by less where a right
         model may leave as much: the odds are then those of a model that has no error.
         """
-        least = max(needed(self.best), worth_telling(self.alone, self.best))
+        least = max(needed(self.best), worth_telling(self.alone, self.best.diffuse.error))
         explains = self.adequacy > MODEL_ERROR.explained
         return bool(
             self.gain > least and self.ahead > (MODEL_ERROR.seen if explains else SEARCH.suspect)

@@ -17,7 +17,7 @@ from ..model_error.geometry_shapes import Shape, shapes_of
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
 from .completeness import Completeness
-from .model_selection import scored
+from .model_selection import scored, worth_telling
 from .moves import Searcher
 from .refit_own_basis import Ground, Modal, modal
 from .search_numbers import SEARCH
@@ -36,11 +36,11 @@ def beside_geometry(
     best = scored(searcher, found.levels[kept]).score
     if _worth_trying(kept, whole, best):
         shape = likeliest(ground, modal(ground, searcher.problem, found.levels[0]))
-        if shape and shape.score - whole.alone.evidence > SEARCH.suspect:
+        if shape and _worth_telling(shape, whole.alone):
             kept, whole = _beside(shape, kept, whole, best)
     if kept and whole.shape is None and whole.adequacy < MODEL_ERROR.explained:
         shape = likeliest(ground, modal(ground, searcher.problem, found.levels[kept]))
-        if shape and shape.score - whole.best.evidence > SEARCH.suspect:
+        if shape and _worth_telling(shape, whole.best):
             whole = replace(whole, shape=shape)
     return kept, whole
 
@@ -52,6 +52,12 @@ def _worth_trying(kept: int, whole: Completeness, best: float) -> bool:
         return best < alone.evidence + MODEL_ERROR.drift_gain
     drifts = alone.evidence - alone.bare > MODEL_ERROR.seen
     return not whole.lacks_nothing and (drifts or alone.diffuse.error > MODEL_ERROR.usual)
+
+
+def _worth_telling(shape: Misshapen, without: Judged) -> bool:
+    """Whether a shape gains a share of every mode, and more than smooth fields do."""
+    beyond_fields = shape.score - without.evidence > SEARCH.suspect
+    return beyond_fields and shape.score - without.bare > worth_telling(without, shape.error)
 
 
 def _beside(

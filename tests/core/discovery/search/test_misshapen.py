@@ -80,7 +80,7 @@ def test_of_a_shape_and_a_clamp_that_reaches_further_in_the_likelier_is_told_or_
     assert "r" * bool(whole.reach) + "s" * bool(whole.shape) == told
 
 
-@pytest.mark.parametrize(("evidence", "told"), [(40.0, True), (200.0, False)])
+@pytest.mark.parametrize(("evidence", "told"), [(20.0, True), (40.0, False), (200.0, False)])
 def test_what_an_effect_leaves_may_be_another_shape(monkeypatch, evidence, told):
     monkeypatch.setattr(misshapen, "_worth_trying", lambda *_: False)
     kept, whole, tried = weighed(monkeypatch, evidence, 1)
