@@ -28,6 +28,7 @@ from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
 from .search.equipment_growth import as_blocks
 from .search.footprints import footed, settled
+from .search.misshapen import beside_geometry
 from .search.model_selection import (
     Judgement,
     adequate,
@@ -293,6 +294,7 @@ def _completed(
     searcher, found, kept, whole = completeness(searcher, found, verdict, deck)
     reaches = reaches_of(trial.request.structure)
     kept, whole = beside_reach(searcher, found, kept, whole, reaches)
+    kept, whole = beside_geometry(trial.own, searcher, found, kept, whole)
     best = found.levels[kept]
     if kept:
         structure, densest = trial.request.structure, trial.request.densest

@@ -126,10 +126,10 @@ class ReducedSum:
         """Return the sum with the terms of another, both on the basis as it was made."""
         return ReducedSum(self.terms + other.terms, np.concatenate([self.whole, other.whole]))
 
-    def plus(self, change: Floats, parameter: int | None = None) -> ReducedSum:
-        """Return the sum with a matrix (r, r) on the basis more, times p - 1 of a `parameter`."""
+    def plus(self, change: Floats, factor: Factor | None = None) -> ReducedSum:
+        """Return the sum with a matrix (r, r) on the basis more, times a `factor`."""
         none = sp.csr_matrix(self.terms[0].matrix.shape)
-        factors = () if parameter is None else (Factor(parameter, (0.0, 1.0), 0.0, 2.0),)
+        factors = () if factor is None else (factor,)
         return ReducedSum((*self.terms, Term(none, factors)), np.stack([*self.matrices, change]))
 
 

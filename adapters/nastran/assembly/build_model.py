@@ -78,12 +78,15 @@ class Assembly:
         Over the g-set.
     fixed : (n_dof,) bool
         What single-point constraints fix.
+    kept : (n_free,) int or None
+        Which degree of freedom of the g-set each free one is; None where some are condensed.
     """
 
     model: Model
     structure: Structure
     stiffness: tuple[Term, ...]
     fixed: Bools
+    kept: Ints | None
 
 
 def assemble(
@@ -129,7 +132,21 @@ def assemble(
         D, H = damping_terms(deck, model, variation, parameters)
         model = replace(model, damping=D, loss=H)
     _require_influence(model)
-    return Assembly(model, structure, whole[0], constraints.fixed)
+    return Assembly(model, structure, whole[0], constraints.fixed, kept if sets is None else None)
+
+
+def moved(deck: Deck, kept: Ints, by: Floats) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Return stiffness and mass (n_free, n_free) of a deck, its grids moved `by` (n_grid, 3).
+
+    On the degrees of freedom `kept` of the g-set; see `Assembly`.
+    """
+    structure = read_structure(deck, read_variation(deck, ()), by)
+    points = structure.points
+    constraints = read_constraints(deck, points)
+    reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
+    reduced = reduced.drop(np.flatnonzero(~np.isin(reduced.kept, kept)))
+    terms = _each(_terms(deck, structure, read_variation(deck, ()), ()), reduced.apply)
+    return _total(terms[0]), _total(terms[1])
 
 
 def _terms(

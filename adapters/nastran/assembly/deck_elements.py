@@ -1,7 +1,7 @@
 """The elements of a deck over the g-set, and their matrices at parameter values."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,8 +40,10 @@ class Structure(Noun):
     notes: tuple[str, ...] = ()
 
 
-def read_structure(deck: Deck, variation: Variation) -> Structure:
-    """Collect the elements of a deck.
+def read_structure(deck: Deck, variation: Variation, by: Floats | None = None) -> Structure:
+    """Collect the elements of a deck, its grids moved `by` (n_grid, 3), basic axes, if at all.
+
+    Displacement systems stay.
 
     Raises
     ------
@@ -51,6 +53,8 @@ def read_structure(deck: Deck, variation: Variation) -> Structure:
     """
     _refuse(deck)
     points = read_points(deck.bulk)
+    if by is not None:
+        points = replace(points, xyz=points.xyz + by)
     settings = Settings(
         k6rot=deck.param("K6ROT", 100.0),
         snorm=deck.param("SNORM", 20.0),

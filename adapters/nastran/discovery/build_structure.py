@@ -1,13 +1,14 @@
 """The elements of a deck one by one, for discovery."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
 from ....core.discovery.reduction.elements_and_supports import Members, Structure, Supports
-from ..assembly.build_model import Assembly, assemble
+from ..assembly.build_model import Assembly, assemble, moved
 from ..assembly.deck_damping import free_damping
 from ..deck.read_deck import Deck
 from ..fields.parameter_references import ParameterSpec
@@ -30,8 +31,14 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
         for g, b in zip(parts.groups, parts.blocks, strict=True)
         if g.element.shape
     )
+    kept = whole.kept
     return Structure(
-        model, members, displacement, _supports(whole, displacement), free_damping(deck, model)
+        model,
+        members,
+        displacement,
+        _supports(whole, displacement),
+        free_damping(deck, model),
+        None if kept is None else partial(moved, deck, kept),
     )
 
 

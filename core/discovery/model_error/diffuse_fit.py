@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Floats
+from ...data.parametric_model import Factor
 from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import magnitudes
 from ..likelihood.hypothesis import Fit, Prior, Problem
@@ -159,7 +160,7 @@ def _moved(matrices: ReducedSum, changes: Floats, first: int) -> ReducedSum:
     """Return a sum with `changes` times p − 1 of parameters from `first` on."""
     for k, A in enumerate(changes):
         if A.any():
-            matrices = matrices.plus(A, first + k)
+            matrices = matrices.plus(A, Factor(first + k, (0.0, 1.0), 0.0, 2.0))
     return matrices
 
 

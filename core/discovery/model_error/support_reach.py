@@ -22,6 +22,14 @@ from ..reduction.search_basis import Basis
 from .model_error_numbers import MODEL_ERROR
 
 
+@dataclass(frozen=True)
+class Reach:
+    """How far in supports hold more than the deck says, and ln of the evidence for it."""
+
+    far: float
+    score: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Reaches(Candidates):
     """Reaches by one and more rows of elements.

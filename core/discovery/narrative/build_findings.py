@@ -76,6 +76,8 @@ def build_discovery(
         word = "undecided"
     elif accused:
         word = "test_fault"
+    elif whole.shape is not None:
+        word = "undecided"
     elif whole.moved > NARRATIVE.matters:
         word = "parameters_only"
     elif not whole.lacks_nothing:

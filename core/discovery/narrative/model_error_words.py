@@ -5,6 +5,7 @@ import numpy as np
 from ...arrays import Ints
 from ..effects.sentence_parts import mode_ranges
 from ..model_error.diffuse_fit import Drift
+from ..model_error.geometry_error import Misshapen
 from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.set_up_fields import MESH, SENSORS, SUSPENSION
 from ..search.completeness import Completeness
@@ -21,11 +22,20 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
     if whole.reach is not None:
-        said.append(f"it looks like supports that reach {whole.reach:.2g} deck units further in")
-    elif best.drifts and best.evidence - best.bare > MODEL_ERROR.seen:
+        said.append(
+            f"it looks like supports that reach {whole.reach.far:.2g} deck units further in"
+        )
+    if whole.shape is not None:
+        said.append(f"it looks like {_shape(whole.shape)}")
+    elif whole.reach is None and best.drifts and best.evidence - best.bare > MODEL_ERROR.seen:
         said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)
+
+
+def _shape(s: Misshapen) -> str:
+    off = f"a structure that is {s.name} by {s.amplitude:.2g} deck units"
+    return f"{off}, which leaves {100.0 * s.error:.2g} %"
 
 
 def _drift(d: Drift) -> str:

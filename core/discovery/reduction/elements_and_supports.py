@@ -1,5 +1,6 @@
 """Where on a structure something may be missing."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,6 +14,8 @@ from ...elements import Element
 from ...noun import Noun
 from .own_axes import own_axes
 from .reduction_numbers import REDUCTION
+
+Moved = Callable[[Floats], tuple[sp.csr_matrix, sp.csr_matrix]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +92,9 @@ class Structure(Noun):
     supports : Supports or None
     damping : (n_free, n_free) sparse or None
         Dashpots of the deck, force over velocity; None where it has none.
+    moved : callable, optional
+        Stiffness and mass of the deck with its nodes moved by (n_node, 3) in basic axes, each
+        (n_free, n_free) sparse; None where these cannot be had.
     """
 
     model: Model
@@ -96,6 +102,7 @@ class Structure(Noun):
     displacement: sp.csr_matrix
     supports: Supports | None = None
     damping: sp.csr_matrix | None = None
+    moved: Moved | None = None
 
     def centroids(self, m: Members) -> Floats:
         """Centroids of the elements of one card, (n, 3)."""

@@ -19,8 +19,10 @@ from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..model_error.diffuse_fit import Judged
+from ..model_error.geometry_error import Misshapen
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
+from ..model_error.support_reach import Reach
 from .beam_search import Found
 from .credible_places import Place, alike, credible_places, middle
 from .last_look import looked_again
@@ -61,8 +63,10 @@ class Completeness:
         foretells them better than the known parameters alone do.
     places : list of list of Place
         Where each suspect of the best may be.
-    reach : float or None
-        How far in supports that hold more than the deck says explain the test as well or better.
+    reach : Reach or None
+        Supports that hold more than the deck says and explain the test as well or better.
+    shape : Misshapen or None
+        A shape other than drawn that does.
     """
 
     deck: Judged
@@ -74,7 +78,8 @@ class Completeness:
     ahead: float
     agree: float
     places: list[list[Place]]
-    reach: float | None = None
+    reach: Reach | None = None
+    shape: Misshapen | None = None
 
     @property
     def moved(self) -> float:
@@ -102,7 +107,7 @@ class Completeness:
         not there hardly lessens it), and to be ahead of what else was found, by less where a right
         model may leave as much: the odds are then those of a model that has no error.
         """
-        least = max(needed(self.best), worth_telling(self.alone, self.best))
+        least = max(needed(self.best), worth_telling(self.alone, self.best.diffuse.error))
         explains = self.adequacy > MODEL_ERROR.explained
         return bool(
             self.gain > least and self.ahead > (MODEL_ERROR.seen if explains else SEARCH.suspect)
@@ -127,6 +132,11 @@ class Completeness:
     def unexplained(self) -> tuple[int, ...]:
         """Test modes that are more likely none of the model's than one that it has, as rows."""
         return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.stray > 0.5))
+
+
+def nothing_found(deck: Judged, alone: Judged) -> Completeness:
+    """Return how well the known parameters alone explain a test, nothing beside them."""
+    return Completeness(deck, alone, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
 
 
 def lacks_nothing(deck: Judged, alone: Judged) -> bool:
@@ -200,8 +210,7 @@ def completeness(
     judged = best.judged, told.judged
     whole = Completeness(deck, alone, *judged, gain, last, ahead, agree, places)
     if not whole.clear and whole.lacks_nothing:
-        none = Completeness(deck, alone, alone, alone, 0.0, 0.0, np.inf, 0.0, [])
-        return searcher, found, 0, none
+        return searcher, found, 0, nothing_found(deck, alone)
     return searcher, found, number, whole
 
 

@@ -219,19 +219,23 @@ def kept(levels: Sequence[Scored]) -> int:
         if earned(level, levels[best]):
             best = k
     alone, judged = levels[0].judged, levels[best].judged
-    if alone and judged and levels[best].score - levels[0].score < worth_telling(alone, judged):
+    if (
+        alone
+        and judged
+        and levels[best].score - levels[0].score < worth_telling(alone, judged.diffuse.error)
+    ):
         return 0
     return best
 
 
-def worth_telling(alone: Judged, best: Judged) -> float:
-    """Return the gain over the known parameters `alone` below which an effect is not told of.
+def worth_telling(alone: Judged, error: float) -> float:
+    """Return the gain over the known parameters `alone` below which nothing is told of.
 
     Not in doubt either: an error of the model has a likeliest place too, and where more than a
-    small part of the error is left what gains less a mode was never right.
+    small part of it is left, the `error`, what gains less a mode was never right.
     """
-    small = best.diffuse.error < SEARCH.small_part * alone.diffuse.error
-    return 0.0 if small else SEARCH.each_mode * len(best.diffuse.each)
+    small = error < SEARCH.small_part * alone.diffuse.error
+    return 0.0 if small else SEARCH.each_mode * len(alone.diffuse.each)
 
 
 def earned(richer: Scored, poorer: Scored) -> bool:

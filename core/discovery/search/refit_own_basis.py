@@ -170,7 +170,43 @@ def by_model_error(
     fields where they could not bring it to the evidence `least`; where nothing is `moving`, the
     error of the mesh alone.
     """
-    own, start, _, (_, modes) = _own_problem(ground, problem, state)
+    m = modal(ground, problem, state)
+    if moving:
+        found = with_drift(m.problem, m.state, m.known, m.smooth, least)
+    else:
+        found = with_known(m.problem, m.state, everything(m.problem)[-1:], m.coarse)
+    return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
+
+
+@dataclass(frozen=True, eq=False)
+class Modal:
+    """A hypothesis on modes of its own, the whole test its evidence.
+
+    Parameters
+    ----------
+    problem, state : Problem, Fit
+    parts : tuple of ((n_free, q), (q, r)) float
+        Bases and what the modes are on each.
+    coarse, known, smooth : Fields
+        The error of the mesh; that and what the set-up does; smooth fields.
+    """
+
+    problem: Problem
+    state: Fit
+    parts: tuple[tuple[Floats, Floats], ...]
+    coarse: Fields
+    known: Fields
+    smooth: Fields
+
+    @cached_property
+    def vectors(self) -> Floats:
+        """The modes, (n_free, r)."""
+        return np.asarray(sum(V @ T for V, T in self.parts))
+
+
+def modal(ground: Ground, problem: Problem, state: Fit) -> Modal:
+    """Return a fit on modes of its own."""
+    own, start, added, (_, modes) = _own_problem(ground, problem, state)
     T = structural(*np.split(modes, [len(own.mesh)]))
     small = own.turned(T).entire()
     here = evaluate(small, state.nuisance, start)
@@ -179,11 +215,9 @@ def by_model_error(
     if np.count_nonzero(here.eigenvalues < SEARCH.rigid * here.eigenvalues.max()) >= 6:
         M, lowest = small.basis.M(np.exp(state.log_p)), float(targets(small.whole).min())
         known = known.and_also(suspension(M, smooth, lowest))
-    if moving:
-        found = with_drift(small, here, known, smooth, least)
-    else:
-        found = with_known(small, here, everything(small)[-1:], coarse)
-    return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
+    bases = ground.basis.vectors, added
+    parts = tuple(zip(bases, np.split(T, [ground.basis.size]), strict=True))
+    return Modal(small, here, parts, coarse, known, smooth)
 
 
 def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:

@@ -1,26 +1,18 @@
 """What the set-up of a test does that no effect of the list is: its clamps reach further in."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import fit
-from ..model_error.support_reach import Reaches
+from ..model_error.support_reach import Reach, Reaches
 from .beam_search import Found
-from .completeness import Completeness
+from .completeness import Completeness, nothing_found
 from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH
-
-
-@dataclass(frozen=True)
-class Reach:
-    """How far in supports hold more than the deck says, and ln of the evidence for it."""
-
-    far: float
-    score: float
 
 
 def beside_reach(
@@ -35,14 +27,12 @@ def beside_reach(
     if reach is None or reach.score - whole.alone.evidence < SEARCH.suspect:
         return kept, whole
     if not kept:
-        return 0, replace(whole, reach=reach.far)
+        return 0, replace(whole, reach=reach)
     ahead = scored(searcher, found.levels[kept]).score - reach.score
     if ahead < 0.0:
-        nothing = 0.0, 0.0, np.inf, 0.0
-        alone = (whole.alone,) * 3
-        return 0, Completeness(whole.deck, *alone, *nothing, [], reach.far)
-    far = reach.far if ahead < SEARCH.suspect else None
-    return kept, replace(whole, ahead=min(whole.ahead, ahead), reach=far)
+        return 0, replace(nothing_found(whole.deck, whole.alone), reach=reach)
+    told = reach if ahead < SEARCH.suspect else None
+    return kept, replace(whole, ahead=min(whole.ahead, ahead), reach=told)
 
 
 def _best_reach(searcher: Searcher, null: Fit, reaches: Reaches | None) -> Reach | None:

@@ -56,7 +56,7 @@ def test_how_far_a_clamp_reaches_is_told(part):
     k, m = hidden()
     kept, whole = weighed((k + 1e4 * FIRST + part / (1.0 - part) * SECOND, m))
     assert kept == 0
-    assert whole.reach == pytest.approx(X[0] + part * (X[1] - X[0]), abs=0.2 * X[0])
+    assert whole.reach.far == pytest.approx(X[0] + part * (X[1] - X[0]), abs=0.2 * X[0])
 
 
 def test_none_is_told_where_nothing_is_held_further_in():
