@@ -74,7 +74,7 @@ class Assembly:
     ----------
     model : Model
     structure : Structure
-    stiffness : tuple of Term
+    stiffness, mass : tuple of Term
         Over the g-set.
     fixed : (n_dof,) bool
         What single-point constraints fix.
@@ -83,6 +83,7 @@ class Assembly:
     model: Model
     structure: Structure
     stiffness: tuple[Term, ...]
+    mass: tuple[Term, ...]
     fixed: Bools
 
 
@@ -129,7 +130,7 @@ def assemble(
         D, H = damping_terms(deck, model, variation, parameters)
         model = replace(model, damping=D, loss=H)
     _require_influence(model)
-    return Assembly(model, structure, whole[0], constraints.fixed)
+    return Assembly(model, structure, *whole, constraints.fixed)
 
 
 def _terms(

@@ -11,7 +11,7 @@ from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Structure, Supports, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
-from .effect_laws import ReleaseLaw, directions
+from .effect_laws import Law, ReleaseLaw, directions
 from .effect_numbers import EFFECTS
 from .shell_edges import Edge, edges_of
 
@@ -85,6 +85,27 @@ def at_parameters(structure: Structure, c: Candidates, row: int, log_p: Floats) 
     assert isinstance(made.law, ReleaseLaw)
     law = replace(made.law, base=log_p)
     return replace(made, law=law, typical=c.typical, spread=c.spread)
+
+
+def given(c: Candidates, theta: tuple[float, ...], law: Law, forces: Floats) -> Floats:
+    """Return what supports give by in vectors of a basis, (n, r), n those of the structure.
+
+    Of the one place of `c`, see `at_parameters`; `forces` (q, r) are its rows on the basis, `law`
+    is where the known parameters stand.
+    """
+    assert c.turns is not None
+    softness = law.value(np.array([theta]), np.zeros(1, np.int64))[0]
+    return np.asarray(c.turns.T @ (softness[:, None] * forces))
+
+
+def carried(s: Supports, free: Floats, give: Floats) -> Floats:
+    """Return the mass that moves with supports that give, in vectors of a basis, (r, r).
+
+    Their own and what they share with the `free` degrees of freedom, vectors (n_free, r); `give`
+    (n, r) is what they give by.
+    """
+    shared = give.T @ (s.inertia @ free)
+    return np.asarray(shared + shared.T + give.T @ (s.mass @ give))
 
 
 def _at(structure: Structure, s: Supports, p: Floats) -> Supports:

@@ -68,8 +68,8 @@ class Ground:
     mesh, bars : ReducedSum
         What lumping does to shells, and what consistent masses add to bars, on it.
     compliance : Compliance
-    observation : (n_sensor, n_free) sparse
-        Of all sensors, weighted.
+    observation, at_supports : (n_sensor, n_free), (n_sensor, n_support) sparse
+        Of all sensors, weighted: of free degrees of freedom, of supports where these give.
     seen : (n_sensor,) bool
         Those of the evidence.
     loaded : (n_sensor, n_free) sparse
@@ -84,6 +84,7 @@ class Ground:
     bars: ReducedSum
     compliance: Compliance
     observation: sp.csr_matrix
+    at_supports: sp.csr_matrix
     seen: Bools
     loaded: sp.csr_matrix
     known: dict[Places, Own] = field(default_factory=dict)
@@ -121,7 +122,7 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     follows the known parameters by its slopes alone, so it is made anew where they came to stand.
     """
     for _ in range(SEARCH.made_anew):
-        own, start, _ = _own_problem(ground, problem, state)
+        own, start, *_ = _own_problem(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
         new = fit(own, state.nuisance, start, active, SEARCH.steps_polished)
         moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
@@ -146,11 +147,12 @@ def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Float
 
     Beside an effect they move as the basis of the search cannot: a support that gives.
     """
-    own, start, added = _own_problem(ground, problem, state)
+    own, start, free, give = _own_problem(ground, problem, state)
     values, modes = _modes(own, state, start)
-    V = ground.basis.vectors
-    a, b, _ = np.split(modes, [V.shape[1], V.shape[1] + added.shape[1]])
-    return np.asarray(ground.structure.model.expansion @ (V @ a + added @ b)), values
+    moved = modes[: free.shape[1]]
+    out = np.asarray(ground.structure.model.expansion @ (free @ moved))
+    supports = ground.structure.supports
+    return out if supports is None else out + supports.motion @ (give @ moved), values
 
 
 def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
@@ -159,7 +161,7 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     A deck has neither the trend for the error of the mesh nor masses better than its elements':
     moduli, thicknesses and inertias have to absorb both.
     """
-    own, start, _ = _own_problem(ground, problem, state, as_deck=True)
+    own, start, *_ = _own_problem(ground, problem, state, as_deck=True)
     return replace(state, in_deck=_in_deck(own, replace(state, suspects=start)))
 
 
@@ -172,7 +174,7 @@ def by_model_error(
     fields where they could not bring it to the evidence `least`; where nothing is `moving`, the
     error of the mesh alone.
     """
-    own, start, _ = _own_problem(ground, problem, state)
+    own, start, *_ = _own_problem(ground, problem, state)
     _, modes = _modes(own, state, start)
     T = structural(*np.split(modes, [len(own.mesh)]))
     small = own.turned(T).entire()
@@ -202,10 +204,11 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
 
 def _own_problem(
     ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
-) -> tuple[Problem, tuple[Suspect, ...], Floats]:
+) -> tuple[Problem, tuple[Suspect, ...], Floats, Floats]:
     """Return the problem on a basis of its own, masses better than a deck's or not, and a start.
 
-    Also what the basis has beside the ground's, (n_free, s).
+    Also its vectors, (n_free, r), and what supports that give move by in them, (n_support, r): in
+    these they have a mass, and sensors on them read, as the start has it.
     """
     deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
@@ -213,13 +216,27 @@ def _own_problem(
     own = make(ground, places, problem.columns)
     top = SEARCH.own_above * float(targets(problem.whole).max())
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
+    catalogue = tuple(_alone(c, row, state) for c, row in places)
+    basis, free = own.plain if as_deck else own.better, np.hstack([ground.basis.vectors, own.added])
+    give, supports, seen = np.zeros((0, free.shape[1])), ground.structure.supports, own.seen
+    if supports is not None:
+        both = zip(places, state.suspects, catalogue, own.factors, strict=True)
+        give = np.zeros((len(supports.grid), free.shape[1])) + sum(
+            support_flexibility.given(c, s.theta, alone.law, rows[0])
+            for (c, _), s, alone, rows in both
+            if c.kind is support_flexibility.KIND
+        )
+        if give.any():
+            seen = seen + ground.at_supports @ give
+            carried = support_flexibility.carried(supports, free, give)
+            basis = replace(basis, mass=basis.mass.plus(carried))
     new = replace(
         problem,
-        basis=own.plain if as_deck else own.better,
-        sensors=own.seen[ground.seen],
-        everywhere=own.seen,
+        basis=basis,
+        sensors=seen[ground.seen],
+        everywhere=seen,
         mesh=own.mesh.whole[0],
-        catalogue=tuple(_alone(c, row, state) for c, row in places),
+        catalogue=catalogue,
         factors=own.factors,
         missing=(),
         modes=min(own.seen.shape[1], max(modes, problem.columns)),
@@ -230,7 +247,7 @@ def _own_problem(
     values = evaluate(new, state.nuisance, start).eigenvalues
     if values[0] < -SEARCH.rigid * values[-1]:
         raise CheckError("the completed model has a negative stiffness")
-    return new, start, own.added
+    return new, start, free, give
 
 
 def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tuple[Candidates, int]:
