@@ -11,7 +11,7 @@ from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Structure, Supports, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
-from .effect_laws import Law, ReleaseLaw, directions
+from .effect_laws import ReleaseLaw, directions
 from .effect_numbers import EFFECTS
 from .shell_edges import Edge, edges_of
 
@@ -87,14 +87,13 @@ def at_parameters(structure: Structure, c: Candidates, row: int, log_p: Floats) 
     return replace(made, law=law, typical=c.typical, spread=c.spread)
 
 
-def given(c: Candidates, theta: tuple[float, ...], law: Law, forces: Floats) -> Floats:
+def given(c: Candidates, theta: tuple[float, ...], forces: Floats) -> Floats:
     """Return what supports give by in vectors of a basis, (n, r), n those of the structure.
 
-    Of the one place of `c`, see `at_parameters`; `forces` (q, r) are its rows on the basis, `law`
-    is where the known parameters stand.
+    Of the one place of `c`, see `at_parameters`; `forces` (q, r) are its rows on the basis.
     """
     assert c.turns is not None
-    softness = law.value(np.array([theta]), np.zeros(1, np.int64))[0]
+    softness = c.law.value(np.array([theta]), np.zeros(1, np.int64))[0]
     return np.asarray(c.turns.T @ (softness[:, None] * forces))
 
 

@@ -217,19 +217,17 @@ def _own_problem(
     top = SEARCH.own_above * float(targets(problem.whole).max())
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     catalogue = tuple(_alone(c, row, state) for c, row in places)
+    start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
     basis, free = own.plain if as_deck else own.better, np.hstack([ground.basis.vectors, own.added])
-    give, supports, seen = np.zeros((0, free.shape[1])), ground.structure.supports, own.seen
-    if supports is not None:
-        both = zip(places, state.suspects, catalogue, own.factors, strict=True)
-        give = np.zeros((len(supports.grid), free.shape[1])) + sum(
-            support_flexibility.given(c, s.theta, alone.law, rows[0])
-            for (c, _), s, alone, rows in both
-            if c.kind is support_flexibility.KIND
-        )
-        if give.any():
-            seen = seen + ground.at_supports @ give
-            carried = support_flexibility.carried(supports, free, give)
-            basis = replace(basis, mass=basis.mass.plus(carried))
+    give, supports, seen = (
+        _given(ground, catalogue, start, own),
+        ground.structure.supports,
+        own.seen,
+    )
+    if supports is not None and give.any():
+        seen = seen + ground.at_supports @ give
+        carried = support_flexibility.carried(supports, free, give)
+        basis = replace(basis, mass=basis.mass.plus(carried))
     new = replace(
         problem,
         basis=basis,
@@ -243,11 +241,21 @@ def _own_problem(
         turn=None,
         rest=None,
     )
-    start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
     values = evaluate(new, state.nuisance, start).eigenvalues
     if values[0] < -SEARCH.rigid * values[-1]:
         raise CheckError("the completed model has a negative stiffness")
     return new, start, free, give
+
+
+def _given(
+    ground: Ground, catalogue: Sequence[Candidates], start: Sequence[Suspect], own: Own
+) -> Floats:
+    """Return what supports move by in the vectors of a basis, (n_support, r)."""
+    out = np.zeros((ground.at_supports.shape[1], own.seen.shape[1]))
+    for c, s, rows in zip(catalogue, start, own.factors, strict=True):
+        if c.kind is support_flexibility.KIND:
+            out += support_flexibility.given(c, s.theta, rows[0])
+    return out
 
 
 def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tuple[Candidates, int]:
