@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import Bools
+from ..correlation.comparison import Placed
 from ..errors import TrueupError
 from .dampers.damper_evidence import taken_off, weighed
 from .discovery_numbers import DISCOVERY
@@ -23,6 +24,7 @@ from .model_error.diffuse_fit import Judged
 from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
+from .reduction.elements_and_supports import Structure
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
@@ -37,9 +39,9 @@ from .search.model_selection import (
     usual,
 )
 from .search.moves import Searcher
+from .search.own_basis import Ground
 from .search.patch_reshaping import reshaped
 from .search.refit_own_basis import (
-    Ground,
     by_model_error,
     completed_modes,
     for_deck,
@@ -127,6 +129,13 @@ def _dashpot_off(
     return bench, trial
 
 
+def _at_supports(placed: Placed, structure: Structure) -> sp.csr_matrix:
+    """Return what sensors read, weighted, of supports that move, (n_sensor, n_support)."""
+    supports, matrix = structure.supports, placed.observation.matrix
+    motion = sp.csr_matrix((matrix.shape[1], 0)) if supports is None else supports.motion
+    return sp.csr_matrix(placed.weighted(matrix @ motion))
+
+
 class _Trial:
     """A search without the sensors that are set aside."""
 
@@ -151,7 +160,8 @@ class _Trial:
         nodes = len(np.unique(placed.observation.sensors.node))
         self.own = Ground(
             structure, ground.plain, ground.mesh, ground.bars, ground.compliance, observation,
-            sensors, sp.csr_matrix(np.sqrt(request.mass / nodes) * motion),
+            _at_supports(placed, structure), sensors,
+            sp.csr_matrix(np.sqrt(request.mass / nodes) * motion),
         )  # fmt: skip
         self._judged: dict[object, Judged | None] = {}
         self._laid: dict[object, tuple[Searcher, Fit]] = {}

@@ -1,4 +1,4 @@
-"""Supports that give all alike: an edge that turns, the feet of a table."""
+"""Supports that give: an edge that turns, the feet of a table all alike, one that sinks."""
 
 import json
 
@@ -83,3 +83,23 @@ def test_all_of_them_are_found_together_and_sized(structure, where, tmp_path, ca
     assert finding["kind"] == "support_flexibility"
     assert (len(finding["where"]["grids"]), finding["magnitude"]["components"]) == where
     assert finding["magnitude"]["stiffness"] == pytest.approx(TURNS, rel=0.35)
+
+
+@pytest.mark.slow
+def test_a_foot_that_sinks_takes_its_mass_and_its_sensor_along(tmp_path, call):
+    """It was 0.7 of its stiffness and in doubt while its mass and its sensor stood still."""
+    deck, truth = table(None), [c for c in table(None) if c != "SPC1,1,123456,11"]
+    truth += ["SPC1,1,12456,11", "CELAS2,5000,10000.,11,3"]
+    deck, truth = write(tmp_path / "deck.bdf", deck), write(tmp_path / "truth.bdf", truth)
+    test, out = tmp_path / "truth.unv", tmp_path / "run"
+    assert call("solve", truth, "-n", 12, "--out", test, "--quiet").status == 0
+    words = ("--deck-length-unit", "mm", "--out", out, "--quiet")
+    assert call("discover", deck, test, *words).status == 0
+    result = json.loads((out / "result.json").read_text())
+    assert result["verdict"] == "effect"
+    (finding,) = result["findings"]
+    assert finding["kind"] == "support_flexibility"
+    assert finding["where"]["grids"] == [11]
+    assert finding["magnitude"]["components"] == [3]
+    assert finding["magnitude"]["stiffness"] == pytest.approx(1.0e4, rel=0.1)
+    assert result["gap"]["after"]["mean_abs_deviation_percent"] < 0.5

@@ -74,7 +74,7 @@ class Assembly:
     ----------
     model : Model
     structure : Structure
-    stiffness : tuple of Term
+    stiffness, mass : tuple of Term
         Over the g-set.
     fixed : (n_dof,) bool
         What single-point constraints fix.
@@ -85,6 +85,7 @@ class Assembly:
     model: Model
     structure: Structure
     stiffness: tuple[Term, ...]
+    mass: tuple[Term, ...]
     fixed: Bools
     kept: Ints | None
 
@@ -132,7 +133,7 @@ def assemble(
         D, H = damping_terms(deck, model, variation, parameters)
         model = replace(model, damping=D, loss=H)
     _require_influence(model)
-    return Assembly(model, structure, whole[0], constraints.fixed, kept if sets is None else None)
+    return Assembly(model, structure, *whole, constraints.fixed, kept if sets is None else None)
 
 
 def moved(deck: Deck, kept: Ints, by: Floats) -> tuple[sp.csr_matrix, sp.csr_matrix]:

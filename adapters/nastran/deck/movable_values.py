@@ -19,17 +19,21 @@ class Doubt:
     Parameters
     ----------
     fields : tuple of str
-        Moved together, those that are not blank.
+        Each by itself, those that are not blank.
     spread : float
         Of ln of the factor.
     lower, upper : float
         Bounds of the factor.
+    binding : str
+        Field that, where it is not blank, moves together with all of `fields`: a product of
+        inertia has limits that follow theirs.
     """
 
     fields: tuple[str, ...]
     spread: float
     lower: float
     upper: float
+    binding: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ....core.arrays import Floats, Ints
+from ....core.data.parametric_model import Term
 from ....core.discovery.reduction.elements_and_supports import Members, Structure, Supports
 from ..assembly.build_model import Assembly, assemble, moved
 from ..assembly.deck_damping import free_damping
@@ -48,10 +49,7 @@ def _supports(whole: Assembly, displacement: sp.csr_matrix) -> Supports | None:
     held = held[held < 6 * len(points.ids)]
     if not len(held):
         return None
-    K = sum(
-        (t.coefficient(p) * t.matrix[held] for t in stiffness[1:]),
-        stiffness[0].coefficient(p) * stiffness[0].matrix[held],
-    )
+    K, M = (_rows(terms, held, p) for terms in (stiffness, whole.mass))
     coupling = K[:, held].tocsr()
     root = (K @ displacement).tocsr()
     live = np.flatnonzero((np.diff(root.indptr) > 0) & (coupling.diagonal() > 0.0))
@@ -65,7 +63,15 @@ def _supports(whole: Assembly, displacement: sp.csr_matrix) -> Supports | None:
     )
     grid, component = own // 6, own % 6 + 1
     held_by = root[live], coupling[live][:, live], slopes
-    return Supports(points.ids[grid], component, points.xyz[grid], _axes(points, own), *held_by)
+    moved = (M @ displacement)[live].tocsr(), M[live][:, own].tocsr(), to_basic(points)[:, own]
+    at = points.ids[grid], component, points.xyz[grid], _axes(points, own)
+    return Supports(*at, *held_by, *moved)
+
+
+def _rows(terms: Sequence[Term], rows: Ints, p: Floats) -> sp.csr_matrix:
+    """Return some rows of a sum at the parameter values `p`."""
+    none = sp.csr_matrix((len(rows), terms[0].matrix.shape[1]))
+    return sum((t.coefficient(p) * t.matrix[rows] for t in terms), none).tocsr()
 
 
 def _axes(points: Points, dofs: Ints) -> Floats:

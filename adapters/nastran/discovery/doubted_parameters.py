@@ -7,7 +7,12 @@ import numpy as np
 
 from ....core.arrays import Floats
 from ....core.discovery.reduction.elements_and_supports import Structure
-from ....core.discovery.screening.parameter_screening import noticeable, shifts, tied
+from ....core.discovery.screening.parameter_screening import (
+    noticeable,
+    shifts,
+    tied,
+    told_apart,
+)
 from ....core.eigen.normal_modes import Eigensolution
 from ....core.errors import InputError
 from ..assembly.deck_elements import read_structure
@@ -28,13 +33,14 @@ SPREAD = 0.4
 
 @dataclass(frozen=True, eq=False)
 class Doubted:
-    """Parameters of a discovery: those named, the usual ones, and from `first` on concentrated.
+    """Parameters of a discovery: those named, then the usual ones, from `first` on concentrated.
 
-    `spreads` are those of ln p.
+    `spreads` are those of ln p; the first `named` are those that the user names.
     """
 
     specs: tuple[ParameterSpec, ...]
     spreads: tuple[float, ...]
+    named: int
     first: int
 
 
@@ -48,6 +54,7 @@ def doubted(deck: Deck, named: Sequence[ParameterSpec]) -> Doubted:
     return Doubted(
         (*named, *(every[k][0] for k in used)),
         (*(_NAMED for _ in named), *(every[k][1] for k in used)),
+        len(named),
         len(named) + sum(k < len(usual) for k in used),
     )
 
@@ -55,15 +62,15 @@ def doubted(deck: Deck, named: Sequence[ParameterSpec]) -> Doubted:
 def _usual(deck: Deck) -> Iterator[tuple[ParameterSpec, float]]:
     """Return what an analyst would doubt first, and how far each may be off (spread of ln p).
 
-    Moduli of materials, thicknesses of shells and bending inertias of bars (both axes together).
+    Moduli of materials, thicknesses of shells and bending inertias of bars, each by itself.
     """
     for name, doubt in ((n, m.doubt) for n, m in movable().items() if m.doubt):
         for number, card in sorted(deck.bulk.table(name).items()):
-            held = tuple(f for f in doubt.fields if getattr(card, f.lower()))
-            if held:
-                refs = tuple(FieldRef(name, number, f) for f in held)
-                called = f"{name} {number} {'+'.join(held)}"
-                yield ParameterSpec(called, refs, doubt.lower, doubt.upper), doubt.spread
+            bound = bool(doubt.binding and getattr(card, doubt.binding.lower()))
+            fields = (*doubt.fields, doubt.binding) if bound else doubt.fields
+            refs = (FieldRef(name, number, f) for f in fields if getattr(card, f.lower()))
+            each = [ParameterSpec(str(r), (r,), doubt.lower, doubt.upper) for r in refs]
+            yield from ((s, doubt.spread) for s in ([joined(each)] if bound else each))
 
 
 def _used(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
@@ -77,7 +84,10 @@ def _used(deck: Deck, specs: Sequence[ParameterSpec]) -> list[int]:
 def settled(
     deck: Deck, structure: Structure, solution: Eigensolution, hz: Floats, every: Doubted
 ) -> tuple[Structure, Doubted]:
-    """Keep of the concentrated properties those that the measured modes notice.
+    """Keep of the properties that nobody named those that the measured modes notice.
+
+    Values of one property that the modes do not tell apart, such as both inertias of a bar that
+    bends in one plane, move together.
 
     Parameters
     ----------
@@ -96,17 +106,33 @@ def settled(
         With those that are left.
     left : Doubted
     """
-    first, small = every.first, every.specs[every.first :]
-    if not small:
-        return structure, every
-    rows = range(first, len(every.specs))
-    slopes = shifts(structure.model, solution, (float(np.min(hz)), float(np.max(hz))), rows)
-    chosen = noticeable(slopes, alike(deck, small), SPREAD)
-    groups = [*((k,) for k in range(first)), *(tuple(first + k for k in g) for g in chosen)]
-    specs = (*every.specs[:first], *(joined([small[k] for k in g]) for g in chosen))
-    spreads = (*every.spreads[:first], *(SPREAD for _ in chosen))
-    left = Doubted(specs, spreads, first)
-    return tied(structure, groups, [s.name for s in specs]), left
+    named, first, specs = every.named, every.first, every.specs
+    band = float(np.min(hz)), float(np.max(hz))
+    slopes = shifts(structure.model, solution, band, range(named, len(specs)))
+    usual, small = slopes[: first - named], slopes[first - named :]
+    own = [g for one in _of_one_card(specs[named:first]) for g in told_apart(usual, one, SPREAD)]
+    concentrated = noticeable(small, alike(deck, specs[first:]), SPREAD)
+    groups = [
+        *((k,) for k in range(named)),
+        *(tuple(named + k for k in g) for g in own),
+        *(tuple(first + k for k in g) for g in concentrated),
+    ]
+    left = Doubted(
+        tuple(joined([specs[k] for k in g]) for g in groups),
+        tuple(every.spreads[g[0]] for g in groups),
+        named,
+        named + len(own),
+    )
+    return tied(structure, groups, [s.name for s in left.specs]), left
+
+
+def _of_one_card(specs: Sequence[ParameterSpec]) -> list[tuple[int, ...]]:
+    """Return numbers of the parameters of each card."""
+    cards: dict[tuple[str, int], list[int]] = {}
+    for k, spec in enumerate(specs):
+        ref = spec.fields[0]
+        cards.setdefault((ref.card, ref.id), []).append(k)
+    return [tuple(g) for g in cards.values()]
 
 
 def concentrated_parameters(deck: Deck) -> tuple[ParameterSpec, ...]:
@@ -139,7 +165,11 @@ def alike(deck: Deck, specs: Sequence[ParameterSpec]) -> list[tuple[int, ...]]:
 
 def joined(specs: Sequence[ParameterSpec]) -> ParameterSpec:
     """Return one parameter that moves the values of several."""
+    if len(specs) == 1:
+        return specs[0]
     fields = tuple(f for s in specs for f in s.fields)
     first = fields[0]
-    name = str(first) if len(fields) == 1 else f"{first} and {len(fields) - 1} alike"
+    name = f"{first} and {len(fields) - 1} alike"
+    if len({(f.card, f.id) for f in fields}) == 1:
+        name = f"{first.title} {'+'.join(f.field for f in fields)}"
     return ParameterSpec(name, fields, specs[0].lower, specs[0].upper, specs[0].weight)

@@ -87,6 +87,26 @@ def at_parameters(structure: Structure, c: Candidates, row: int, log_p: Floats) 
     return replace(made, law=law, typical=c.typical, spread=c.spread)
 
 
+def given(c: Candidates, theta: tuple[float, ...], forces: Floats) -> Floats:
+    """Return what supports give by in vectors of a basis, (n, r), n those of the structure.
+
+    Of the one place of `c`, see `at_parameters`; `forces` (q, r) are its rows on the basis.
+    """
+    assert c.turns is not None
+    softness = c.law.value(np.array([theta]), np.zeros(1, np.int64))[0]
+    return np.asarray(c.turns.T @ (softness[:, None] * forces))
+
+
+def carried(s: Supports, free: Floats, give: Floats) -> Floats:
+    """Return the mass that moves with supports that give, in vectors of a basis, (r, r).
+
+    Their own and what they share with the `free` degrees of freedom, vectors (n_free, r); `give`
+    (n, r) is what they give by.
+    """
+    shared = give.T @ (s.inertia @ free)
+    return np.asarray(shared + shared.T + give.T @ (s.mass @ give))
+
+
 def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
     """Return the supports of a structure with other parameters."""
     n, grids = structure.displacement.shape[0], structure.model.geometry.index_of(s.grid)

@@ -68,6 +68,10 @@ class Supports:
         Stiffness among them, all else fixed.
     slopes : tuple of (n, n) sparse
         Its derivatives by the parameters, at the deck's values.
+    inertia, mass : (n, n_free), (n, n) sparse
+        Mass between them and the free degrees of freedom, and among them.
+    motion : (n_dof, n) sparse
+        Motion of all analysis dofs, basic axes, by a unit displacement of each.
     """
 
     grid: Ints
@@ -77,6 +81,9 @@ class Supports:
     root: sp.csr_matrix
     coupling: sp.csr_matrix
     slopes: tuple[sp.csr_matrix, ...]
+    inertia: sp.csr_matrix
+    mass: sp.csr_matrix
+    motion: sp.csr_matrix
 
 
 @dataclass(frozen=True, eq=False)

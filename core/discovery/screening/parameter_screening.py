@@ -1,9 +1,10 @@
-"""Which of many small properties could matter, and a model in which the others stay put.
+"""Which known properties could matter, and a model in which the others stay put.
 
-A concentrated mass or a spring that is wrong shows in the test only where it takes part in the
-measured modes. Of a deck with many of them those move whose error, as large as it may be, shifts
-the frequency of a mode in the measured band noticeably; values alike that are too small to be
-noticed alone move together where all of them can be noticed.
+A property that is wrong shows in the test only where it takes part in the measured modes. Those
+move whose error, as large as it may be, shifts the frequency of a mode in the measured band
+noticeably: what others do to it would be put down to one that hardly does anything. Values of one
+property move together where the modes do not tell them apart, and so do concentrated masses and
+springs alike that are too small to be noticed alone.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,36 +29,60 @@ Groups = Sequence[tuple[int, ...]]
 def shifts(
     model: Model, solution: Eigensolution, band_hz: tuple[float, float], parameters: Sequence[int]
 ) -> Floats:
-    """Return ∂ln f/∂ln p of the modes in the measured band at the deck, (n, n_mode).
+    """Return ∂ln f/∂ln p of the modes in the measured band at the deck, (n, n_pair).
 
-    First order, each mode apart from all others (Fox and Kapoor 1968); `solution` is that of the
-    deck as it is, `band_hz` the lowest and highest frequency measured.
+    First order, each mode apart from all others (Fox and Kapoor 1968) but for those as close as a
+    shift that is noticed: what turns such a pair is a column of its own, so that which vectors of
+    equal frequency a solver chose does not count. `solution` is that of the deck as it is,
+    `band_hz` the lowest and highest frequency measured.
     """
     hz = solution.frequencies_hz
     inside = (hz > band_hz[0] / SCREENING.around) & (hz < band_hz[1] * SCREENING.around)
     inside[: solution.rigid_body_modes] = False
     phi, values = solution.vectors[:, inside], solution.eigenvalues[inside]
+    ln_f = 0.5 * np.log(values)
+    i, j = np.nonzero(np.triu(np.abs(ln_f[:, None] - ln_f) < SCREENING.noticed))
     p = model.deck_point
-    out = np.zeros((len(parameters), phi.shape[1]))
+    out = np.zeros((len(parameters), len(i)))
     for row, k in zip(out, parameters, strict=True):
-        dK, dM = (np.einsum("ij,ij->j", phi, D(k, p) @ phi) for D in (model.dK, model.dM))
-        row[:] = 0.5 * (dK / values - dM)
+        dK, dM = (
+            np.einsum("ij,ij->j", phi[:, i], (D(k, p) @ phi)[:, j]) for D in (model.dK, model.dM)
+        )
+        row[:] = 0.5 * (dK / np.sqrt(values[i] * values[j]) - dM)
     return out
+
+
+def told_apart(slopes: Floats, group: tuple[int, ...], spread: float) -> list[tuple[int, ...]]:
+    """Return groups of the values of one property, those that a test tells apart by themselves.
+
+    `slopes` (n, n_pair), see `shifts`, of which `group` are the property's. All move together
+    unless one that is off alone, by `spread` of ln p, leaves noticeably more than all of them,
+    moved alike, can follow; none moves where it would not be noticed.
+    """
+    own = slopes[list(group)]
+    whole = own.sum(axis=0)
+    share = own @ whole / max(float(whole @ whole), np.finfo(float).tiny)
+    left = spread * np.abs(own - share[:, None] * whole).max(initial=0.0)
+    groups = [(k,) for k in group] if left >= SCREENING.noticed else [group]
+    return [g for g in groups if _effect(slopes, g, spread) >= SCREENING.noticed]
+
+
+def _effect(slopes: Floats, group: tuple[int, ...], spread: float) -> float:
+    """Return the largest shift of ln f by a group that is off by `spread` of ln p."""
+    return spread * float(np.abs(slopes[list(group)].sum(axis=0)).max(initial=0.0))
 
 
 def noticeable(slopes: Floats, alike: Groups, spread: float) -> list[tuple[int, ...]]:
     """Return groups of parameters that would be noticed if they were wrong by `spread` of ln p.
 
-    Of rows of `slopes` (n, n_mode), see `shifts`, each moves alone where it is noticed alone, and
+    Of rows of `slopes` (n, n_pair), see `shifts`, each moves alone where it is noticed alone, and
     those `alike`, with one value in the deck, together; `most` groups at the most.
     """
     effect = spread * np.abs(slopes).max(axis=1, initial=0.0)
     groups: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(effect >= SCREENING.noticed)]
     rest = [tuple(k for k in group if effect[k] < SCREENING.noticed) for group in alike]
     groups += [group for group in rest if len(group) > 1]
-    together = [
-        spread * float(np.abs(slopes[list(g)].sum(axis=0)).max(initial=0.0)) for g in groups
-    ]
+    together = [_effect(slopes, g, spread) for g in groups]
     order = sorted(range(len(groups)), key=lambda i: -together[i])[: SCREENING.most]
     return [groups[i] for i in sorted(order) if together[i] >= SCREENING.noticed]
 

@@ -19,7 +19,8 @@ from .beam_search import Found
 from .completeness import Completeness, nothing_found
 from .model_selection import scored, worth_telling
 from .moves import Searcher
-from .refit_own_basis import Ground, Modal, modal
+from .own_basis import Ground
+from .refit_own_basis import Modal, modal
 from .search_numbers import SEARCH
 
 

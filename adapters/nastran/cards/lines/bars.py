@@ -58,7 +58,7 @@ CARDS = (
         moves=Moves(
             also={"AREA": "A", "I11": "I1", "I22": "I2"},
             linear=("A", "I1", "I2", "I12", "J", "NSM"),
-            doubt=Doubt(("I1", "I2"), 0.4, 0.25, 4.0),
+            doubt=Doubt(("I1", "I2"), 0.4, 0.25, 4.0, binding="I12"),
         ),
     ),
     Card(

@@ -63,7 +63,12 @@ def detached(
         for e in elements:
             if e in table:
                 member = find_card(text, name, e)
-                held = next(k for k in definition.grid_fields if _is(member, k, grid))
+                held = next((k for k in definition.grid_fields if _is(member, k, grid)), None)
+                if held is None:
+                    raise InputError(
+                        f"{name} {e} is detached from grid {grid} already, by another effect: put "
+                        "the second spring there by hand"
+                    )
                 edits.append((member, {held: new}))
     return site.added(edit_cards(text, edits), rows, grid)
 

@@ -210,6 +210,18 @@ def test_a_support_with_more_on_it_than_elements_is_not_taken_apart(tmp_path, ca
         adopt(text, read_deck(tmp_path / "deck.bdf"), what)
 
 
+def test_a_support_that_gives_already_is_not_taken_apart_again(tmp_path):
+    (tmp_path / "deck.bdf").write_text(STIFF_ARMS)
+    deck = read_deck(tmp_path / "deck.bdf")
+    one, other = (
+        finding("support_flexibility", {"stiffness": 300.0, "components": [c]}, grids=[1])
+        for c in (3, 5)
+    )
+    text = adopt(read_deck_text(tmp_path / "deck.bdf"), deck, one).deck
+    with pytest.raises(InputError, match="detached from grid 1 already"):
+        adopt(text, deck, other)
+
+
 def test_an_edge_of_eight_noded_shells_gives_as_one(tmp_path):
     """A stiff shell on two feet that sink alike: a mass on one spring."""
     deck = """CEND

@@ -11,7 +11,12 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.data.parameter import Parameter
 from trueup.core.data.parametric_model import Model, Term
 from trueup.core.discovery.reduction.elements_and_supports import Members, Structure
-from trueup.core.discovery.screening.parameter_screening import noticeable, shifts, tied
+from trueup.core.discovery.screening.parameter_screening import (
+    noticeable,
+    shifts,
+    tied,
+    told_apart,
+)
 from trueup.core.discovery.screening.screening_numbers import SCREENING
 from trueup.core.eigen.normal_modes import Eigensolution
 from trueup.core.elements.connectors.lumped import SPRING
@@ -97,3 +102,46 @@ def test_tied_parameters_move_alike_and_the_others_not_at_all():
     K, _ = tied_member.matrices(np.array([0]), p)
     assert K is not None
     assert K[0, 0, 0] == 1.0 + 10.0 * 2.0 + 100.0 * 2.0
+
+
+def two_axes(turn):
+    """Equal masses, each on a spring 1 + p along its own axis; modes turned by an angle."""
+    names = ("along", "across")
+    p = tuple(Parameter(n, (n.upper(),), (1.0,), *BOUNDS) for n in names)
+    K = [sp.csr_matrix(np.diag(d)) for d in ([1.0, 0.0], [0.0, 1.0])]
+    one = sp.identity(2, format="csr")
+    model = Model(
+        Geometry(np.array([1]), np.zeros((1, 3)), ()),
+        Dofs(np.array([1, 1]), np.array([1, 2])),
+        one,
+        (Term(0.0 * one), *(Term(m, (proportional(k, *BOUNDS),)) for k, m in enumerate(K))),
+        (Term(one),),
+        p,
+    )
+    c, s = np.cos(turn), np.sin(turn)
+    vectors = np.array([[c, -s], [s, c]])
+    return model, Eigensolution(np.ones(2), vectors, 0, {}, "lapack", 0.0, -1.0)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 0.25 * np.pi])
+def test_which_vectors_of_equal_frequency_a_solver_chose_does_not_count(turn):
+    model, solution = two_axes(turn)
+    hz = float(solution.frequencies_hz[0])
+    slopes = shifts(model, solution, (hz, hz), (0, 1))
+    assert told_apart(slopes, (0, 1), 0.4) == [(0,), (1,)]
+
+
+def test_values_of_one_property_that_do_alike_move_together():
+    slopes = np.array([[0.2, 0.1], [0.1, 0.05], [0.0, 0.2]])
+    assert told_apart(slopes, (0, 1), 0.4) == [(0, 1)]
+    assert told_apart(slopes, (0, 2), 0.4) == [(0,), (2,)]
+
+
+def test_a_value_that_hardly_shows_follows_the_other_of_its_property():
+    slopes = np.array([[0.2, 0.1], [0.0, 0.005]])
+    assert told_apart(slopes, (0, 1), 0.4) == [(0, 1)]
+
+
+def test_a_property_that_no_measured_mode_notices_stays_put():
+    slopes = np.array([[0.01, 0.0], [0.0, 0.01]])
+    assert told_apart(slopes, (0, 1), 0.4) == []
