@@ -8,7 +8,6 @@ best of these the search goes on with the others, and the likelier of the two ou
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -45,7 +44,13 @@ def searched(
     """
     kinds = [c.kind.late for c in searcher.problem.catalogue]
     simple = _with(searcher, [not late for late in kinds])
-    found = grown(simple, enough(simple), progress, explains=partial(complete, simple))
+
+    def explains(f: Fit) -> bool:
+        """Whether a hypothesis leaves nothing, or what right models do once its masses are laid."""
+        laid = adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
+        return laid or complete(simple, f)
+
+    found = grown(simple, enough(simple), progress, explains=explains)
     scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
     best = int(np.argmin(costs))
     if not any(kinds) or explained(searcher, found.levels[best], scale):
@@ -133,7 +138,11 @@ def evidence(searcher: Searcher, found: Found) -> float:
 
 def _scale(searcher: Searcher, found: Found, other: Found) -> float:
     best = min((*found.levels, *other.levels), key=lambda f: f.objective)
-    return noise_scale(searcher.problem, with_unseen(searcher, best))
+    return _scale_of(searcher, best)
+
+
+def _scale_of(searcher: Searcher, f: Fit) -> float:
+    return noise_scale(searcher.problem, with_unseen(searcher, f))
 
 
 def _costs(searcher: Searcher, found: Found, other: Found) -> list[float]:
