@@ -203,15 +203,17 @@ def _frequencies(seen: Seen, error: float) -> Floats:
 def _roots(seen: Seen, error: float, columns: Ints) -> Floats:
     """Return the standard deviations of what shapes paired with modes hold of all modes.
 
-    Of shapes of unit length: (columns, n).
+    Of shapes of unit length: (columns, n). A mode that the sensors hardly see has that length of
+    rounding, and holds others as the least that counts.
     """
     values = np.maximum(seen.eigenvalues, np.finfo(float).tiny)
     own = values[columns, None]
     z = error**2 * own * values
     share = z / np.maximum((own - values) ** 2 + z, np.finfo(float).tiny)
     share[np.arange(len(columns)), columns] = 1.0
-    length = np.sum(seen.modes[:, columns] ** 2, axis=0)
-    return np.asarray(np.sqrt(share / np.maximum(length, np.finfo(float).tiny)[:, None]))
+    lengths = np.diag(seen.gram)
+    least = max(MODEL_ERROR.unseen * lengths.max(), np.finfo(float).tiny)
+    return np.asarray(np.sqrt(share / np.maximum(lengths[columns], least)[:, None]))
 
 
 def _shapes(seen: Seen, error: float, noise: float, columns: Ints) -> Floats:

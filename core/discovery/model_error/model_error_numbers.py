@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...number_table import number
+from ...number_table import ROUNDING, number
 
 NOISE = "of the rms of a shape"
 BY_HAND = "set by hand from the errors left where what was hidden is known, not yet calibrated"
@@ -17,6 +17,7 @@ class ModelErrorNumbers:
     reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
     stray: float = number(0.03, "-", "chance that a test mode is none of the model's")
     nil: float = number(20.0, "ln L", "less than the likelihood of a stray mode, below which a pair is not looked at", "double precision")
+    unseen: float = number(1e-6, "of the largest squared length", "of a mode at the sensors, at least: what they do not see is rounding", ROUNDING)
     independent: float = number(24.0, "readings", "of a shape that count as independent, at most")
     cells: int = number(8, "boxes", "along the longest side, in each of which a smooth field is one value")
     degree: int = number(2, "-", "of the polynomials that smooth fields are made of, at most")

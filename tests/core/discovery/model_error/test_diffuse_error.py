@@ -112,3 +112,14 @@ def test_the_larger_the_error_the_less_adequate():
     assert said == sorted(said, reverse=True)
     assert said[0] > 0.9
     assert said[-1] < 0.03
+
+
+def test_a_mode_that_no_sensor_sees_changes_nothing():
+    """What sensors read of it is rounding; they read fewer than there are modes."""
+    seen = made(0.03, sensors=18)
+    blind = np.random.default_rng(3).normal(size=(len(seen.modes), 1)) * 1e-14
+    modes = np.hstack([seen.modes[:, :6], blind, seen.modes[:, 6:]])
+    values = np.insert(seen.eigenvalues, 6, seen.eigenvalues[6] * (1.0 + 1e-9))
+    found = diffuse(replace(seen, eigenvalues=values, modes=modes, columns=21))
+    assert found.match.tolist() == [0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15]
+    assert found.log == pytest.approx(diffuse(seen).log, abs=1e-6)
