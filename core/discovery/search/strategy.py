@@ -46,8 +46,9 @@ def searched(
     simple = _with(searcher, [not late for late in kinds])
 
     def explains(f: Fit) -> bool:
-        """Whether a hypothesis leaves nothing, or what right models do once its masses are laid."""
-        laid = adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
+        """Whether a hypothesis leaves nothing, or its masses on footprints what right models do."""
+        on_grids = any(searcher.problem.catalogue[s.kind].law.acts_on == "M" for s in f.suspects)
+        laid = on_grids and adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
         return laid or complete(simple, f)
 
     found = grown(simple, enough(simple), progress, explains=explains)

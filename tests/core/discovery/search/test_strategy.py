@@ -55,3 +55,15 @@ def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
     kinds, best = told(s)
     assert sorted(kinds) == ["point_mass", "tuned_absorber"]
     assert {q.row for q in best.suspects} == {9, 22}
+
+
+@pytest.mark.parametrize(
+    ("hide", "last"), [({"masses": [(5, 2.0)]}, 1), ({"springs": [(5, 40.0)]}, 2)]
+)
+def test_masses_that_explain_all_on_their_footprints_end_the_search(hide, last, monkeypatch):
+    """Not known parameters alone, nor stiffness: beside these there is room for more."""
+    monkeypatch.setattr(strategy, "adequate", lambda *_: True)
+    monkeypatch.setattr(strategy, "complete", lambda *_: False)
+    said = []
+    searched(searcher(hidden(**hide), modes_out=(4, 10)), said.append, lambda *_: True)
+    assert [line for line in said if "missing" in line][-1].startswith(f"looking for {last} ")
