@@ -63,9 +63,9 @@ def _supports(whole: Assembly, displacement: sp.csr_matrix) -> Supports | None:
     )
     grid, component = own // 6, own % 6 + 1
     held_by = root[live], coupling[live][:, live], slopes
-    moved = (M @ displacement)[live].tocsr(), M[live][:, own].tocsr(), to_basic(points)[:, own]
+    with_them = (M @ displacement)[live].tocsr(), M[live][:, own].tocsr(), to_basic(points)[:, own]
     at = points.ids[grid], component, points.xyz[grid], _axes(points, own)
-    return Supports(*at, *held_by, *moved)
+    return Supports(*at, *held_by, *with_them)
 
 
 def _rows(terms: Sequence[Term], rows: Ints, p: Floats) -> sp.csr_matrix:
