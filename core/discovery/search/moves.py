@@ -177,12 +177,12 @@ class Searcher:
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
             return fit(whole, state.nuisance, suspects, self.active, steps)
 
-    def refined(self, state: Fit, first: int = 0) -> Fit:
-        """Move every suspect from the `first` on to better neighbours until none is better."""
-        n = len(state.suspects) - first
+    def refined(self, state: Fit) -> Fit:
+        """Move every suspect to better neighbours until none is better."""
+        n = len(state.suspects)
         left, q = n, 0
         for _ in range(SEARCH.rounds * n):
-            better = self._neighbour(state, first + q)
+            better = self._neighbour(state, q)
             state, left = (state, left - 1) if better is None else (better, n)
             if not left:
                 break

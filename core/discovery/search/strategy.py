@@ -46,9 +46,10 @@ def searched(
     simple = _with(searcher, [not late for late in kinds])
 
     def explains(f: Fit) -> bool:
-        """Whether a hypothesis leaves nothing, or its masses on footprints what right models do."""
-        on_grids = any(searcher.problem.catalogue[s.kind].law.acts_on == "M" for s in f.suspects)
-        laid = on_grids and adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
+        """Whether a hypothesis leaves nothing, or masses on footprints what right models do."""
+        laws = [searcher.problem.catalogue[s.kind].law for s in f.suspects]
+        masses = bool(laws) and all(law.acts_on == "M" for law in laws)
+        laid = masses and adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
         return laid or complete(simple, f)
 
     found = grown(simple, enough(simple), progress, explains=explains)
@@ -164,13 +165,12 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
 def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind.
 
-    Of the best few, each of them moved to better neighbours: the first scan sees but few of the
-    links, and one that is right but for its ends gains no more there than others.
+    Of the best few, each moved to better neighbours: the first scan sees but few of the links, and
+    one that is right but for its ends gains no more there than others.
     """
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
         fits.setdefault(branch.kind, []).append(new)
     first = (sorted(own, key=objective_of)[: SEARCH.late_moved] for own in fits.values())
-    moved = ([searcher.refined(f, len(state.suspects)) for f in own] for own in first)
-    return [searcher.refined(min(own, key=objective_of)) for own in moved]
+    return [min(map(searcher.refined, own), key=objective_of) for own in first]
