@@ -141,12 +141,13 @@ def moved(deck: Deck, kept: Ints, by: Floats) -> tuple[sp.csr_matrix, sp.csr_mat
 
     On the degrees of freedom `kept` of the g-set; see `Assembly`.
     """
-    structure = read_structure(deck, read_variation(deck, ()), by)
+    variation = read_variation(deck, ())
+    structure = read_structure(deck, variation, by)
     points = structure.points
     constraints = read_constraints(deck, points)
     reduced = reduction(points.n_dof, constraints.equations, constraints.fixed, points.label)
     reduced = reduced.drop(np.flatnonzero(~np.isin(reduced.kept, kept)))
-    terms = _each(_terms(deck, structure, read_variation(deck, ()), ()), reduced.apply)
+    terms = _each(_terms(deck, structure, variation, ()), reduced.apply)
     return _total(terms[0]), _total(terms[1])
 
 
