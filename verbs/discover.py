@@ -23,7 +23,12 @@ from ..core.discovery.screening.completed_model import (
     upheld,
     written,
 )
-from ..core.discovery.screening.mode_selection import reference_modes, said_of_others, vibrating
+from ..core.discovery.screening.mode_selection import (
+    matchable,
+    reference_modes,
+    said_of_others,
+    vibrating,
+)
 from ..core.eigen.normal_modes import Eigensolution, modes_of
 from ..core.errors import InputError
 from ..core.localisation.error_localisation import Disagreement, disagreement
@@ -103,13 +108,14 @@ def discover(
     deck, named_ones = parameters_of(given, asked.parameters)
     every = doubted(deck, named_ones)
     structure = build_structure(deck, every.specs)
-    solution = reference_modes(structure.model, top)
+    solution = reference_modes(structure.model, top, len(side.modes))
     before = _compared(deck, structure, solution, side, asked)
     elastic = vibrating(before.placed, solution, structure.model)
     part = asked.criteria.test_modes(before.test.frequencies_hz)
     moving, elastic = elastic, elastic & part
     if not elastic.any():
         raise InputError("no mode that takes part is elastic; exclude fewer")
+    matchable(int(elastic.sum()), solution)
     structure, known = settled(
         deck, structure, solution, before.test.frequencies_hz[elastic], every
     )

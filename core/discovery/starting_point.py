@@ -42,8 +42,7 @@ class Deck:
 
 def ground_of(request: Request, modes: Bools) -> Deck:
     """Return what does not depend on the sensors, of the test modes that are searched by."""
-    top = float(request.placed.test.frequencies_hz.max())
-    targets = _below(request.solution.eigenvalues, top)
+    targets = _targets(request.solution.eigenvalues, request.placed.test.frequencies_hz)
     plain = build_basis(request.structure.model, request.solution, targets)
     mesh = reduced_sum((lumping(request.structure),), plain.vectors)
     bars = reduced_sum(consistent_bars(request.structure), plain.vectors)
@@ -58,9 +57,10 @@ def ground_of(request: Request, modes: Bools) -> Deck:
     )
 
 
-def _below(eigenvalues: Floats, top: float) -> int:
-    """Return the number of modes that may match one up to `top` [Hz]."""
-    return int(np.count_nonzero(eigenvalues < (2.0 * np.pi * DISCOVERY.band * top) ** 2))
+def _targets(eigenvalues: Floats, hz: Floats) -> int:
+    """Return the number of modes that may match those at `hz` [Hz]: as many as these at least."""
+    below = np.count_nonzero(eigenvalues < (2.0 * np.pi * DISCOVERY.band * hz.max()) ** 2)
+    return min(max(int(below), len(hz)), len(eigenvalues))
 
 
 def prepared(
@@ -91,7 +91,7 @@ def prepared(
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
-    columns = _below(null.eigenvalues, float(hz.max())) + DISCOVERY.band_more
+    columns = _targets(null.eigenvalues, hz) + DISCOVERY.band_more
     return replace(problem, columns=columns), null, zero
 
 

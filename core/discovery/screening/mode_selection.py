@@ -61,11 +61,32 @@ def said_of_others(numbers: Ints) -> tuple[str, ...]:
     )
 
 
-def reference_modes(model: Model, top_hz: float) -> Eigensolution:
-    """Solve a model for a discovery, modes up to `top_hz` may pair; the factor is kept."""
+def reference_modes(model: Model, top_hz: float, tests: int = 1) -> Eigensolution:
+    """Solve a model for a discovery, modes up to `top_hz` may pair; the factor is kept.
+
+    Where it has them, as many elastic modes as the test has: a deck that is far too stiff has few
+    up to there.
+    """
     fmax = SCREENING.modes_above * top_hz / SCREENING.usual
     solution = normal_modes.solve(model, fmax=fmax, keep_factor=True)
-    least = SCREENING.modes_least
-    if len(solution.eigenvalues) < least < model.n_free // SCREENING.modes_times:
+    many = min(SCREENING.modes_least, model.n_free // SCREENING.modes_times)
+    least = max(many, tests + solution.rigid_body_modes)
+    if len(solution.eigenvalues) < least:
         solution = normal_modes.solve(model, n_modes=least, keep_factor=True)
     return solution
+
+
+def matchable(tests: int, solution: Eigensolution) -> None:
+    """Refuse more `tests` than modes that a model has.
+
+    Raises
+    ------
+    InputError
+        It has fewer.
+    """
+    modes = len(solution.eigenvalues) - solution.rigid_body_modes
+    if tests > modes:
+        raise InputError(
+            f"{tests} elastic modes of the test take part and the model has only {modes}; exclude "
+            "those that it cannot have, or refine the mesh"
+        )

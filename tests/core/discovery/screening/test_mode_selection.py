@@ -1,10 +1,16 @@
-"""A free structure on bungees: its suspension is not an effect that the model lacks."""
+"""Which modes take part: a suspension is no effect, and a model too stiff has enough modes."""
 
 from types import SimpleNamespace as Of
 
 import numpy as np
+import pytest
+import scipy.sparse as sp
+from tests.core.discovery import strings
 
-from trueup.core.discovery.screening.mode_selection import elastic
+from trueup.core.data.geometry import Geometry
+from trueup.core.data.parametric_model import Dofs, Model, Term
+from trueup.core.discovery.screening.mode_selection import elastic, matchable, reference_modes
+from trueup.core.errors import InputError
 
 X = np.linspace(-1.0, 1.0, 9)
 RIGID = np.column_stack([np.ones(9), X])
@@ -50,3 +56,22 @@ def test_what_the_sensors_do_not_measure_is_told_by_its_frequency_alone():
 def test_a_held_structure_has_no_such_modes():
     test = placed([2.0], [RIGID[:, 0]])
     assert elastic(test, solved(rigid=0), BENDING).tolist() == [True]
+
+
+def string():
+    grids, zero = np.arange(1, strings.N + 1), np.zeros(strings.N)
+    geometry = Geometry(grids, np.column_stack([strings.X, zero, zero]))
+    dofs, eye = Dofs(grids, np.ones(strings.N, np.int64)), sp.identity(strings.N, format="csr")
+    return Model(geometry, dofs, eye, (Term(sp.csr_matrix(strings.K)),), (Term(eye),))
+
+
+def test_a_model_far_too_stiff_has_as_many_modes_as_the_test_all_the_same():
+    lowest = np.sqrt(np.linalg.eigvalsh(strings.K)[0]) / (2.0 * np.pi)
+    assert len(reference_modes(string(), 0.1 * lowest, 12).eigenvalues) >= 12
+
+
+def test_more_modes_of_a_test_than_a_model_has_are_refused_with_both_numbers():
+    solution = reference_modes(string(), 1.0, 100)
+    matchable(strings.N, solution)
+    with pytest.raises(InputError, match=r"33 elastic modes .* only 32"):
+        matchable(strings.N + 1, solution)
