@@ -190,7 +190,8 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     magnitude = magnitude_of(c, row, sizes, intervals, masses)
     first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
-    modes = [int(o.request.numbers[j]) for j in explained(o.searcher, best, number, scale)]
+    rows = explained(o.searcher, best, number, scale)
+    modes = [int(o.request.numbers[j]) for j in rows if j not in o.whole.unexplained]
     where = Where.of(c.where[row], c.xyz[row], region=spot)
     many = len(o.places(s))
     text = sentence_of(c.kind, magnitude, spot, interval, modes, masses, many)
@@ -271,8 +272,9 @@ def _would_decide(o: _Outcome, held: Bools) -> tuple[str, ...]:
     near = [f for f in rivals if o.behind(f) < NARRATIVE.rival] or rivals[:1]
     told_apart = tuple((_in_words(o, f), f) for f in near[: NARRATIVE.rivals])
     p, model = o.searcher.problem, o.request.structure.model
+    stray = np.isin(np.flatnonzero(~held), o.whole.unexplained)
     return (
-        *further_sensors(p, model, o.best, told_apart, o.request.numbers[~held]),
+        *further_sensors(p, model, o.best, told_apart, o.request.numbers[~held], stray),
         *further_modes(p, model, o.best, told_apart),
     )
 

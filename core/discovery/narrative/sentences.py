@@ -108,7 +108,7 @@ def sentence_of(
     text = kind.sentence.format(**values)
     if many > 1:
         text += f" (one of {many} alike, by the symmetry of the structure)"
-    what = mode_ranges(modes) if modes else "the test a little better"
+    what = mode_ranges(modes) if modes else "the test better as a whole"
     text += f" explains {what} (95 %: {low} to {high}"
     text += ")" if known or "size" in values else ", the test hardly tells)"
     if "inertia_assumed" in values:

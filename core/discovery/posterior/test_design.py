@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from ...data.parametric_model import Model
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import misfit, solve
@@ -25,19 +25,21 @@ Rivals = tuple[tuple[str, Fit], ...]
 
 
 def further_sensors(
-    problem: Problem, model: Model, best: Fit, rivals: Rivals, modes: Ints
+    problem: Problem, model: Model, best: Fit, rivals: Rivals, modes: Ints, stray: Bools
 ) -> tuple[str, ...]:
     """Name the grids of a model and directions where the explanations differ most.
 
     At most three, apart from each other, by what all the rivals together gain; `modes` (n_test,)
-    are the numbers of the test modes of the evidence.
+    are the numbers of the test modes of the evidence. A mode that is `stray` (n_test,), which
+    nothing explains, tells no explanations apart.
     """
-    if not rivals:
+    if not rivals or stray.all():
         return ()
     rows = np.flatnonzero(model.dofs.component <= 3)
     own = _forecast(problem, best, rows)
     a = own.motion[:, own.match]
     apart = np.stack([_differences(a, _forecast(problem, f, rows)) for _, f in rivals])
+    apart[:, :, stray] = 0.0
     told = np.einsum("rdm->d", np.minimum(apart, 1.0) ** 2)
     out: list[str] = []
     chosen: list[Floats] = []

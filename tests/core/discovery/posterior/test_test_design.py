@@ -17,6 +17,7 @@ from trueup.core.discovery.posterior.test_design import (
 
 GRIDS = np.arange(1, N + 1)
 MODES = np.arange(1, 13)
+NONE = np.zeros(12, bool)
 
 
 def model():
@@ -35,7 +36,7 @@ def two(first, second):
 
 def test_a_sensor_is_proposed_where_the_two_explanations_differ_most():
     p, (best, rival) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 24, (0.7,)),))
-    said = further_sensors(p, model(), best, (("a mass near grid 25", rival),), MODES)
+    said = further_sensors(p, model(), best, (("a mass near grid 25", rival),), MODES, NONE)
     assert 1 <= len(said) <= 3
     grid = int(said[0].split("grid ")[1].split()[0])
     a, b = (p.basis.motion @ f.vectors[:N, f.match] for f in (best, rival))
@@ -46,11 +47,25 @@ def test_a_sensor_is_proposed_where_the_two_explanations_differ_most():
     assert "a mass near grid 25" in said[0]
 
 
+def test_a_mode_that_nothing_explains_tells_no_explanations_apart():
+    p, (best, rival) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 24, (0.7,)),))
+    rivals = (("a mass near grid 25", rival),)
+    named = {
+        s.split("there mode ")[1].split()[0]
+        for s in further_sensors(p, model(), best, rivals, MODES, NONE)
+    }
+    stray = np.isin(MODES, [int(k) for k in named])
+    left = further_sensors(p, model(), best, rivals, MODES, stray)
+    assert left
+    assert named.isdisjoint(s.split("there mode ")[1].split()[0] for s in left)
+    assert further_sensors(p, model(), best, rivals, MODES, ~NONE) == ()
+
+
 def test_explanations_that_say_the_same_need_no_sensor_and_no_mode():
     p, (best, same) = two((Suspect(0, 7, (0.7,)),), (Suspect(0, 7, (0.7,)),))
-    assert further_sensors(p, model(), best, (("the same", same),), MODES) == ()
+    assert further_sensors(p, model(), best, (("the same", same),), MODES, NONE) == ()
     assert further_modes(p, model(), best, (("the same", same),)) == ()
-    assert further_sensors(p, model(), best, (), MODES) == ()
+    assert further_sensors(p, model(), best, (), MODES, NONE) == ()
 
 
 def test_a_mode_beyond_those_measured_is_proposed_with_both_frequencies():
