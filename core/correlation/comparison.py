@@ -25,6 +25,7 @@ from .correlation_numbers import CORRELATION
 from .criteria import Criteria
 from .mode_errors import ModeErrors, mode_errors, told
 from .mode_pairing import Correlation, correlate
+from .odd_modes import said_of_odd
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +167,7 @@ def place_test(
     """
     if measurement.modes is None or not len(measurement.modes):
         raise InputError("the test holds no modes")
-    resting = _frequencies(measurement.modes)
+    odd = said_of_odd(measurement.modes)
     measured = measurement.geometry
     if measured.size == 0.0 and len(measured.ids) > 1:
         raise InputError(
@@ -203,7 +204,7 @@ def place_test(
     in_frame = replace(moved, xyz=alignment.apply(moved.xyz))
     # An undecided alignment warns of its ambiguity itself.
     ambiguity = (alignment.ambiguity,) if alignment.ambiguity and alignment.decided else ()
-    warnings = (*measurement.warnings, *resting, *units.warnings, *alignment.warnings, *ambiguity)
+    warnings = (*measurement.warnings, *odd, *units.warnings, *alignment.warnings, *ambiguity)
     errors = _errors(measurement, rows)
     weighed = (told(errors, kept.sensors.labels),) if errors else ()
     said = (*warnings, *seen.warnings, *weighed)
@@ -219,22 +220,6 @@ def place_test(
         damping_std=measurement.damping_std,
         frfs=measurement.frfs,
     )
-
-
-def _frequencies(modes: Modes) -> tuple[str, ...]:
-    """Refuse frequencies that are none; say which modes are at rest."""
-    hz = modes.frequencies_hz
-    wrong = np.flatnonzero(~np.isfinite(hz) | (hz < 0.0))
-    if len(wrong):
-        raise InputError(
-            f"mode {wrong[0] + 1} of the test has a frequency of {hz[wrong[0]]:g} Hz; a frequency "
-            "is zero or above: correct it in the test file"
-        )
-    zero = np.flatnonzero(hz == 0.0) + 1
-    if not len(zero):
-        return ()
-    which = f"mode{'s' if len(zero) > 1 else ''} {', '.join(map(str, zero))}"
-    return (f"test {which}: the frequency is 0 Hz or blank in the file, so nothing can pair",)
 
 
 def _errors(measurement: Measurement, rows: Numbers) -> ModeErrors | None:

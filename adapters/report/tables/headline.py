@@ -83,6 +83,8 @@ def _discover(answer: DiscoverTables) -> list[str]:
     verdict, found = answer.verdict, answer.findings
     best = _found(found)
     told = [_VERDICT_SENTENCES.get(verdict, f"{verdict}.")]
+    if verdict in ("no_gap", "parameters_only"):
+        told = [told[0][:-1] + _but_for(answer.judgement.unexplained) + "."]
     if best and verdict == "undecided":
         told.append(_sentence(f"the best explanation so far: {best}"))
     elif best:
@@ -117,6 +119,11 @@ def _found(findings: Sequence[Finding]) -> str:
     if at_fault:
         said.append(f"the test is at fault: {listed(at_fault)}")
     return ", and ".join(said)
+
+
+def _but_for(unexplained: Sequence[int]) -> str:
+    """Name the test modes that no mode of the model explains, though the others agree."""
+    return f", but for {mode_ranges(unexplained)}, which nothing explains" if unexplained else ""
 
 
 def _lost(answer: ChangingTables) -> list[str]:

@@ -83,6 +83,17 @@ def test_every_verdict_has_a_sentence(discovery: dict[str, Any], verdict: str, s
     assert said in story(answer_of(discovery))[0]
 
 
+@pytest.mark.parametrize("verdict", ["no_gap", "parameters_only"])
+def test_modes_that_nothing_explains_are_named_where_nothing_is_missing(
+    discovery: dict[str, Any], verdict: str
+) -> None:
+    judged = discovery["judgement"] | {"unexplained": [2, 8]}
+    discovery |= {"verdict": verdict, "findings": [], "judgement": judged}
+    first = story(answer_of(discovery))[0]
+    assert first.endswith(", but for test modes 2 and 8, which nothing explains.")
+    assert len(first) < 140
+
+
 def test_nothing_pairs(correlation: dict[str, Any]) -> None:
     correlation |= {"pairs": [], "unpaired_test": [1, 2, 3]}
     assert headline(answer_of(correlation)) == "None of the 3 test modes pairs with the model."
