@@ -133,7 +133,8 @@ def discover(
         )  # fmt: skip
 
     found, done = upheld(written(found, "significant"), completed)
-    found = borne_out(found, before.correlation, done.after.compared.correlation)
+    pairs = before.correlation, done.after.compared.correlation
+    found = borne_out(found, *pairs, int(np.count_nonzero(elastic)))
     if asked.adopt != "significant":
         found = written(found, asked.adopt)
         done = completed(found)

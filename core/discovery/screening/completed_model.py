@@ -52,14 +52,17 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
         return found, complete(found)
 
 
-def borne_out(found: Discovery, before: Correlation, after: Correlation) -> Discovery:
+def borne_out(found: Discovery, before: Correlation, after: Correlation, tests: int) -> Discovery:
     """Return what was found, a claim as a proposal where its deck is hardly nearer to the test.
 
     Nearer is: more modes pair, or as many, and those that pair both times deviate less in
-    frequency. Dashpots show in the damping.
+    frequency. Dashpots show in the damping. Nor is anything said to be complete of which most of
+    the `tests`, the modes that take part, pair with nothing.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
     more = len(after.pairs) - len(before.pairs)
+    if found.verdict in ("no_gap", "parameters_only", "test_fault"):
+        return _seen_in_pairs(found, len(after.pairs), tests)
     if found.verdict != "effect" or damped or more > 0:
         return found
     was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
@@ -72,6 +75,17 @@ def borne_out(found: Discovery, before: Correlation, after: Correlation) -> Disc
         "fewer modes pair, or their frequencies are hardly less off"
     )
     return _in_doubt(found, why, proposal=True)
+
+
+def _seen_in_pairs(found: Discovery, pairs: int, tests: int) -> Discovery:
+    """Return what was found, in doubt where hardly a mode of the test pairs."""
+    if pairs >= SCREENING.pairs * tests:
+        return found
+    why = (
+        f"a test of which more modes pair than {pairs} of {tests}: see whether its sensors lie on "
+        "the model where they were, in the directions they measured"
+    )
+    return _in_doubt(found, why, proposal=found.adopted)
 
 
 def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:

@@ -84,7 +84,7 @@ def test_a_deck_that_never_solved_is_not():
     ],
 )
 def test_a_claim_whose_deck_is_no_nearer_to_the_test_is_a_proposal(after):
-    found = borne_out(MASS, BEFORE, Pairs(after))
+    found = borne_out(MASS, BEFORE, Pairs(after), 4)
     assert (found.verdict, found.proposal, found.posterior) == ("undecided", True, 0.4)
     assert "hardly less off" in found.would_decide[0]
 
@@ -97,12 +97,25 @@ def test_a_claim_whose_deck_is_no_nearer_to_the_test_is_a_proposal(after):
     ],
 )
 def test_a_claim_whose_deck_is_nearer_stays(after):
-    assert borne_out(MASS, BEFORE, Pairs(after)) is MASS
+    assert borne_out(MASS, BEFORE, Pairs(after), 4) is MASS
 
 
 def test_a_dashpot_shows_in_the_damping():
     dashpot = Said("effect", (Named("local_damper"),))
-    assert borne_out(dashpot, BEFORE, BEFORE) is dashpot
+    assert borne_out(dashpot, BEFORE, BEFORE, 4) is dashpot
+
+
+@pytest.mark.parametrize(
+    ("verdict", "proposal"),
+    [("no_gap", False), ("test_fault", False), ("parameters_only", True)],
+)
+def test_nothing_is_said_to_be_missing_where_hardly_a_mode_pairs(verdict, proposal):
+    """A node 50 m off, a test whose directions were exchanged: 0 of 10 pair, and no gap it was."""
+    said = Said(verdict)
+    assert borne_out(said, BEFORE, BEFORE, 4) is said
+    found = borne_out(said, BEFORE, BEFORE, 5)
+    assert (found.verdict, found.proposal, found.posterior) == ("undecided", proposal, 0.4)
+    assert "than 2 of 5" in found.would_decide[0]
 
 
 CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)
