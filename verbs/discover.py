@@ -34,6 +34,7 @@ from ..core.errors import InputError
 from ..core.localisation.error_localisation import Disagreement, disagreement
 from ..core.results.correlation import compared
 from ..core.results.discovery import JudgementTable, gap_table
+from ..core.results.doubts import doubts
 from ..core.results.evidence import damping_table, misfit_table, response_table
 from ..core.results.plain import Table
 from ..core.results.update import ParameterRow
@@ -173,6 +174,7 @@ def discover(
             *deck.warnings,
             *structure.model.warnings,
             *before.warnings,
+            *doubts(before, None),
             *found.warnings,
             *said_of_others(np.flatnonzero(part & ~moving) + 1),
             *unplaced,

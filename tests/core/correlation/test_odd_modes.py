@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.correlation.odd_modes import repeated, said_of_odd
+from trueup.core.correlation.odd_modes import said_of_odd
 from trueup.core.data.dofs import Dofs
 from trueup.core.data.modes import Modes
 from trueup.core.errors import InputError
@@ -18,20 +18,6 @@ def modes(hz, shapes):
 
 def test_sound_modes_need_no_word():
     assert said_of_odd(modes([10.0, 20.0, 20.0, 30.0], SHAPES)) == ()
-
-
-def test_a_mode_that_is_given_twice_is_named_whatever_its_scale():
-    twice = np.column_stack([SHAPES[:, :2], -3.0 * SHAPES[:, 0], SHAPES[:, 2]])
-    given = modes([10.0, 20.0, 10.0, 30.0], twice)
-    assert repeated(given).tolist() == [False, False, True, False]
-    (said,) = said_of_odd(given)
-    assert said.startswith("test mode 3: the same frequency and shape")
-
-
-def test_close_modes_of_one_frequency_or_one_shape_are_none():
-    near = np.column_stack([SHAPES[:, 0], SHAPES[:, 0] + 1e-4 * SHAPES[:, 1]])
-    assert not repeated(modes([10.0, 10.0], near)).any()
-    assert not repeated(modes([10.0, 10.001], SHAPES[:, [0, 0]])).any()
 
 
 def test_a_shape_of_zeros_is_named():

@@ -1,0 +1,36 @@
+"""Discover on tests that hold less than they seem to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.cli.test_far_too_stiff import mast
+
+import trueup
+
+
+@pytest.fixture
+def deck_and_test(tmp_path):
+    deck, test = tmp_path / "mast.bdf", tmp_path / "mast.unv"
+    deck.write_text(mast(1.0e-5))
+    trueup.convert(trueup.solve(deck, number=8), test)
+    return deck, trueup.read_test(test)
+
+
+def said_of(deck, test, columns, shapes=None):
+    modes = test.modes.take(np.array(columns))
+    if shapes is not None:
+        modes = replace(modes, shapes=shapes(modes.shapes))
+    return trueup.discover(deck, replace(test, modes=modes), deck_length_unit="mm")
+
+
+def test_a_mode_that_is_listed_twice_is_said(deck_and_test):
+    told = said_of(*deck_and_test, [0, 1, 2, 2])
+    assert any("one mode listed twice" in w for w in told.warnings)
+
+
+def test_shapes_that_no_mode_has_are_no_sign_that_nothing_is_missing(deck_and_test):
+    rng = np.random.default_rng(2)
+    told = said_of(*deck_and_test, range(6), lambda s: rng.standard_normal(s.shape))
+    assert told.verdict == "undecided"
+    assert any("more modes pair" in w for w in told.would_decide)
