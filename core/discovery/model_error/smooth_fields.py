@@ -118,6 +118,16 @@ def _cells(xyz: Floats) -> tuple[Ints, int]:
     return number.ravel(), int(number.max()) + 1
 
 
+def _said(which: tuple[int, ...]) -> str:
+    """Say along what a product of coordinates changes."""
+    axes = ["xyz"[i] for i in which]
+    if len(axes) == 1:
+        return f"along {axes[0]}"
+    if len(set(axes)) == 1:
+        return f"from the middle to the ends along {axes[0]}"
+    return f"from corner to corner in {' and '.join(sorted(set(axes)))}"
+
+
 def _polynomials(xyz: Floats, weights: Floats) -> tuple[Floats, tuple[str, ...]]:
     """Return polynomials at points, orthogonal by weight and of rms 1, (n, k), and their names."""
     x = xyz - np.average(xyz, axis=0, weights=weights)
@@ -126,7 +136,7 @@ def _polynomials(xyz: Floats, weights: Floats) -> tuple[Floats, tuple[str, ...]]
     for degree in range(1, MODEL_ERROR.degree + 1):
         for which in combinations_with_replacement(range(3), degree):
             columns.append(np.prod(x[:, which], axis=1))
-            names.append("along " + "".join("xyz"[i] for i in which))
+            names.append(_said(which))
     w = np.sqrt(weights / weights.sum())
     kept: list[Floats] = []
     words = []

@@ -46,4 +46,5 @@ def _drift(d: Drift) -> str:
         return f"{d.name}, {100.0 * d.amplitude:.2g} % of the structure's in all"
     if d.name.startswith(MESH):
         return f"{d.name}, by {abs(d.amplitude):.2g} of what lumped masses do"
-    return f"{d.name} that drifts by {100.0 * abs(d.amplitude):.2g} %"
+    what, _, way = d.name.partition(" ")
+    return f"{what} that drifts by {100.0 * abs(d.amplitude):.2g} % {way}".rstrip()

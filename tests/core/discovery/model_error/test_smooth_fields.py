@@ -13,6 +13,7 @@ def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
     assert np.allclose(gram, np.eye(9), atol=1e-12)
     assert np.allclose(mass @ q, 0.0, atol=1e-10)
     assert names[:3] == ("along x", "along y", "along z")
+    assert names[3:5] == ("from the middle to the ends along x", "from corner to corner in x and y")
 
 
 def test_a_flat_structure_has_no_field_across():
