@@ -55,3 +55,12 @@ def test_a_stiffness_that_may_be_anything_is_not_told_as_one_figure(interval, si
     where = "The support gives near grid 1, direction 2 and freely in direction 4"
     expected = f"{where}, with a stiffness of {size}: it explains test mode 1 (95 %: {within})."
     assert text == expected
+
+
+def test_a_factor_that_is_clearly_not_one_is_not_told_as_one():
+    kind, said = KINDS["local_stiffness"], {"factor": 1.0306}
+    text = sentence_of(kind, said, "near grid 3", (1.0155, 1.0459), [], MassUnit())
+    assert text == (
+        "The stiffness is 1.03 times the deck's near grid 3: a local change of stiffness explains "
+        "the test better as a whole (95 %: 1.02 to 1.05)."
+    )
