@@ -74,9 +74,9 @@ def reconcile_units(analysis: Geometry, test: Geometry, deck_unit: str | None = 
     sizes = _sizes(surface, test, deck, measured)
     if unit is None:
         raise InputError(
-            f"the {silent} does not state its length unit and none of {', '.join(METRES)} makes "
-            f"{sizes} agree; state it{option}, or check that both are the same structure"
-            + _apart(test)
+            f"the {silent} does not state its length unit and by none of {', '.join(METRES)} are "
+            f"both of one size ({sizes}); state it{option}, or check that they are the same "
+            "structure" + _apart(test)
         )
     share = choices[unit] * test.size / surface.size
     warning = (

@@ -112,6 +112,11 @@ def test_wrong_structure_gets_no_unit_proposed():
     assert "--deck" not in str(caught.value)
 
 
+def test_sizes_that_no_unit_brings_together_are_told():
+    with pytest.raises(InputError, match=r"by none of m, mm, in, ft are both of one size \(the "):
+        reconcile_units(plate(None), sensors(3.0e7, "m"))
+
+
 def test_sensors_on_a_small_part_of_the_model_are_no_unit_error():
     units = reconcile_units(plate("mm"), sensors(1e-3, "m", share=0.05))
     assert units.warnings == ()
