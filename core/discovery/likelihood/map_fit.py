@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg as la
 
 from ...arrays import Floats, Ints
+from ...numerics.lapack import eigenpairs
 from ..effects.candidates import Suspect, changed, magnitudes
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
@@ -56,7 +57,7 @@ def solve(
     if n < LIKELIHOOD.few_modes * len(K):
         values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
         return values, vectors
-    values, vectors = la.eigh(K, M, driver="gvd", check_finite=False)
+    values, vectors = eigenpairs(K, M)
     return values[:n], vectors[:, :n]
 
 
