@@ -66,17 +66,21 @@ def burden(searcher: Searcher, f: Fit) -> float:
     Two suspects of one nature side by side are more likely one effect whose shape the catalogue
     does not have, so the second costs more.
     """
-    catalogue = searcher.problem.catalogue
     total = sum(price(searcher, s) for s in f.suspects)
-    total += _stands(searcher, f)
+    return total + _stands(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f))
+
+
+def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
+    """Return numbers of suspects that may be one effect: each with the first beside it before."""
+    catalogue = searcher.problem.catalogue
+    found = dict[int, int]()
     for i, s in enumerate(f.suspects):
-        for t in f.suspects[:i]:
+        for j, t in enumerate(f.suspects[:i]):
             a, b = catalogue[s.kind], catalogue[t.kind]
             apart = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row]))
             if a.law.acts_on == b.law.acts_on and apart < SEARCH.beside * searcher.size:
-                total += SEARCH.same_effect
-                break
-    return total
+                found.setdefault(i, j)
+    return [(j, i) for i, j in found.items()]
 
 
 def _stands(searcher: Searcher, f: Fit) -> float:
@@ -167,11 +171,12 @@ class Scored:
 def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool = False) -> Scored:
     """Return a hypothesis with its evidence, less ln of the number of choices it had.
 
-    Where the `best` is so far ahead that it does not matter, smooth fields are not tried. What is
-    `alike` the best, the same in another shape, they do not help more than that.
+    And less what suspects cost that may be one, see `burden`. Where the `best` is so far ahead that
+    it does not matter, smooth fields are not tried. What is `alike` the best, the same in another
+    shape, they do not help more than that.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    paid += 0.5 * _stands(searcher, f)
+    paid += 0.5 * (_stands(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f)))
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
