@@ -104,7 +104,7 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     accepted = int(np.argmin([cost(searcher, f, scale) for f in found.levels]))
     if accepted + 1 < len(found.levels) and not _settles(searcher, found, accepted):
         levels = [scored(searcher, f) for f in found.levels]
-        richer = levels[kept(levels)]
+        richer = levels[kept(searcher, levels)]
         if richer.judged and richer.score - levels[0].score > needed(richer.judged):
             accepted = max(accepted, len(richer.fit.suspects))
     return Judgement(scale, accepted)
@@ -171,12 +171,11 @@ class Scored:
 def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool = False) -> Scored:
     """Return a hypothesis with its evidence, less ln of the number of choices it had.
 
-    And less what suspects cost that may be one, see `burden`. Where the `best` is so far ahead that
-    it does not matter, smooth fields are not tried. What is `alike` the best, the same in another
-    shape, they do not help more than that.
+    Where the `best` is so far ahead that it does not matter, smooth fields are not tried. What is
+    `alike` the best, the same in another shape, they do not help more than that.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    paid += 0.5 * (_stands(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f)))
+    paid += 0.5 * _stands(searcher, f)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
@@ -214,14 +213,14 @@ def needed(judged: Judged) -> float:
     return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
 
 
-def kept(levels: Sequence[Scored]) -> int:
-    """Return the number of the richest hypothesis that earns its place over the poorer ones.
+def kept(searcher: Searcher, levels: Sequence[Scored]) -> int:
+    """Return the number of the richest hypothesis that is told beside the poorer ones.
 
     0 where it gains less over the first than `worth_telling`.
     """
     best = 0
     for k, level in enumerate(levels[1:], start=1):
-        if earned(level, levels[best]):
+        if told_beside(searcher, level, levels[best], levels[0]):
             best = k
     alone, judged = levels[0].judged, levels[best].judged
     if (
@@ -249,6 +248,17 @@ def earned(richer: Scored, poorer: Scored) -> bool:
     if richer.judged is None or not poorer.fit.suspects:
         return gain > SEARCH.suspect
     return gain > needed(richer.judged)
+
+
+def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Scored) -> bool:
+    """Whether a richer hypothesis earns its place and is no rest of what the poorer one has.
+
+    An effect of another shape than those of the catalogue leaves a share of what it gains over the
+    known parameters `alone`, which one more of its nature beside it takes up.
+    """
+    beside = len(side_by_side(searcher, richer.fit)) > len(side_by_side(searcher, poorer.fit))
+    rest = SEARCH.rest * (poorer.score - alone.score) if beside else 0.0
+    return earned(richer, poorer) and richer.score - poorer.score > rest
 
 
 def by_such_a_test(judged: Judged) -> float:

@@ -235,9 +235,11 @@ def test_what_is_found_stands_in_the_middle_of_places_that_are_as_likely(monkeyp
 
 
 @pytest.mark.parametrize(("size", "kept"), [(1.0, 2), (100.0, 1)])
-def test_two_masses_side_by_side_have_to_gain_more(monkeypatch, size, kept):
+def test_the_second_of_two_masses_side_by_side_has_to_gain_a_share_of_what_the_first_does(
+    monkeypatch, size, kept
+):
     levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
-    evidence = {(): 0.0, (3,): 30.0, (3, 7): 55.0}
+    evidence = {(): 0.0, (3,): 130.0, (3, 7): 152.0}
     found = Found(levels, ((), (), ()))
     assert weighed(monkeypatch, found, evidence, size=size)[1] == kept
 
