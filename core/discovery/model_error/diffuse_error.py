@@ -20,6 +20,8 @@ from scipy.optimize import linear_sum_assignment
 from ...arrays import Floats, Ints
 from .model_error_numbers import MODEL_ERROR
 
+_TINY = float(np.finfo(float).tiny)
+
 
 @dataclass(frozen=True, eq=False)
 class Diffuse:
@@ -194,7 +196,7 @@ def _weight(seen: Seen) -> float:
 
 def _frequencies(seen: Seen, error: float) -> Floats:
     """Return ln of the likelihood of each frequency by each mode, (n_test, columns)."""
-    values = np.maximum(seen.eigenvalues[: seen.columns], np.finfo(float).tiny)
+    values = np.maximum(seen.eigenvalues[: seen.columns], _TINY)
     off = np.log(2.0 * np.pi * seen.hz)[:, None] - 0.5 * np.log(values)
     variance = 0.5 * error**2 + seen.scatter[:, None] ** 2
     return np.asarray(-0.5 * (off**2 / variance + np.log(2.0 * np.pi * variance)))
@@ -206,13 +208,13 @@ def _roots(seen: Seen, error: float, columns: Ints) -> Floats:
     Of shapes of unit length: (columns, n). A mode that the sensors hardly see has that length of
     rounding, and holds others as the least that counts.
     """
-    values = np.maximum(seen.eigenvalues, np.finfo(float).tiny)
+    values = np.maximum(seen.eigenvalues, _TINY)
     own = values[columns, None]
     z = error**2 * own * values
-    share = z / np.maximum((own - values) ** 2 + z, np.finfo(float).tiny)
+    share = z / np.maximum((own - values) ** 2 + z, _TINY)
     share[np.arange(len(columns)), columns] = 1.0
     lengths = np.diag(seen.gram)
-    least = max(MODEL_ERROR.unseen * lengths.max(), np.finfo(float).tiny)
+    least = max(MODEL_ERROR.unseen * lengths.max(), _TINY)
     return np.asarray(np.sqrt(share / np.maximum(lengths[columns], least)[:, None]))
 
 

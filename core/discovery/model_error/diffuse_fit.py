@@ -25,6 +25,8 @@ from .diffuse_error import Diffuse, Seen, diffuse, quadratic
 from .model_error_numbers import MODEL_ERROR
 from .smooth_fields import Fields
 
+_TINY = float(np.finfo(float).tiny)
+
 
 @dataclass(frozen=True)
 class Drift:
@@ -244,15 +246,15 @@ def _normal_equations(
     here = seen(problem, now)
     k = d.match
     count = np.arange(len(k))
-    lam, lk = np.maximum(now.eigenvalues, np.finfo(float).tiny), now.eigenvalues[k]
+    lam, lk = np.maximum(now.eigenvalues, _TINY), now.eigenvalues[k]
     a, b = products(problem, replace(now, match=k), active)
     F = a - b * lk
     gap = lk[None, :] - lam[:, None]
     z = d.error**2 * lk[None, :] * lam[:, None]
-    C = F * gap / np.maximum(gap**2 + z, np.finfo(float).tiny)
+    C = F * gap / np.maximum(gap**2 + z, _TINY)
     C[:, k, count] = -0.5 * b[:, k, count]
     t, own = here.shapes, here.modes[:, k]
-    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), np.finfo(float).tiny)
+    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), _TINY)
     J = np.matmul(here.modes, C) * c
     rest = t - own * c
     sure = 1.0 - d.stray
