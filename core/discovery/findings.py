@@ -24,6 +24,7 @@ class Where(Noun):
     elements: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     sensors: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     ends: tuple[tuple[int, ...], ...] | None = field(default=None, metadata=OPTIONAL)
+    arms: tuple[tuple[float, ...], ...] | None = field(default=None, metadata=OPTIONAL)
     shares: tuple[float, ...] | None = field(default=None, metadata=OPTIONAL)
     radius: float | None = field(default=None, metadata=OPTIONAL)
     components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)

@@ -190,7 +190,10 @@ def with_twins(single: Candidates, grids: Floats, size: float) -> tuple[Candidat
     A set has one magnitude, that of each place. The symmetry is that of the structure's `grids`
     (n, 3), held ones among them; `size` is its size.
     """
-    points = {tuple(sorted(w["grids"])): i for i, w in reversed(list(enumerate(single.where)))}
+    points = {
+        (*sorted(w["grids"]), *w.get("arms", ())): i
+        for i, w in reversed(list(enumerate(single.where)))
+    }
     once = np.sort(np.fromiter(points.values(), np.int64))
     xyz = single.xyz[once]
     if not len(xyz):

@@ -52,6 +52,7 @@ class EffectNumbers:
     patch_left: float = number(1e-5, "of the trace", "that a row of a patch's root is worth, at least")
     patch_rounding: float = number(1e-12, "of the largest eigenvalue", "below which one of an element is zero", ROUNDING)
 
+    bar_point: float = number(0.25, "of an element's length", "from its ends that a bar has points beside its middle", "as near to any place as a shell's are")
     bar_straight: float = number(0.98, "cosine", "between elements that continue a bar")
     bar_stretches: int = number(400, "stretches", "of all bars, at most", "time")
     bar_long: float = number(0.5, SIZE, "length of a bar whose stretches are scanned first")

@@ -60,7 +60,8 @@ class Stand:
     Parameters
     ----------
     xyz : (3,) float
-    grids : tuple of int
+    where : dict
+        ``grids`` and, of a place off its grid, ``arms``: see `structure_points`.
     motion : (6, n_free) sparse
         Its translations and rotations.
     turn : (3, 3) float
@@ -71,17 +72,17 @@ class Stand:
     """
 
     xyz: Floats
-    grids: tuple[int, ...]
+    where: Words
     motion: sp.csr_matrix
     turn: Floats
     axes: Floats
     sheet: bool
 
 
-def stand(structure: Structure, grids: Sequence[int], turn: Floats) -> Stand | None:
+def stand(structure: Structure, where: Words, turn: Floats) -> Stand | None:
     """Return the place of equipment on some grids, None where nothing there holds it upright."""
     g = structure.model.geometry
-    own = g.index_of(np.array(grids))
+    own = g.index_of(np.array(where["grids"]))
     wide = np.zeros(len(g.ids), bool)
     wide[own] = True
     for m in structure.members:
@@ -97,16 +98,18 @@ def stand(structure: Structure, grids: Sequence[int], turn: Floats) -> Stand | N
         turns = rotations(structure, points)
         if np.diff(turns.indptr).min() == 0:
             return None
-        return Stand(
-            xyz, (int(g.ids[rows[0]]),), sp.vstack([moves, turns]).tocsr(), turn, np.eye(3), False
-        )
+        arm = np.sum(where.get("arms", np.zeros((1, 3))), axis=0)
+        motion = sp.vstack([moves - sp.csr_matrix(_cross(arm)) @ turns, turns]).tocsr()
+        kept = {k: where[k] for k in ("grids", "arms") if k in where}
+        return Stand(xyz + arm, kept, motion, turn, np.eye(3), False)
     size = float(np.linalg.norm(g.xyz[rows] - xyz, axis=1).max())
     rigid = np.concatenate([np.hstack([np.eye(3), -_cross(x - xyz) / size]) for x in g.xyz[rows]])
     if np.linalg.matrix_rank(rigid) < rigid.shape[1]:
         return None
     fitted = np.linalg.pinv(rigid) / np.repeat([1.0, size], 3)[:, None]
     motion = sp.csr_matrix(fitted) @ moves
-    return Stand(xyz, tuple(g.ids[rows].tolist()), motion, turn, *_axes(g.xyz[rows] - xyz))
+    grids = {"grids": g.ids[rows].tolist()}
+    return Stand(xyz, grids, motion, turn, *_axes(g.xyz[rows] - xyz))
 
 
 def _axes(around: Floats) -> tuple[Floats, bool]:
@@ -134,7 +137,7 @@ def equipment(template: Candidates, stands: Sequence[Stand], bodies: Sequence[Bo
         trials=template.trials[:, :1],
         root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
         rows_each=6,
-        where=tuple({"grids": list(s.grids)} for s, _ in each),
+        where=tuple(s.where for s, _ in each),
         typical=template.typical[:1],
         spread=template.spread[:1],
         bodies=tuple(b for _, b in each),

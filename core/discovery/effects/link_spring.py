@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -73,14 +74,13 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
 
 
 def _grids(structure: Structure) -> Points:
-    """Return weights (n, n_grid), positions and numbers of the grids that move, in an order."""
     points = points_of(structure)
-    return points.of(np.flatnonzero([len(g) == 1 for g in points.grids]))
+    return points.of(points.at_grids)
 
 
 def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
     """Return the links between points a (n,) and b (n,), in all else like some candidates."""
-    xyz, grids = at.xyz, at.grids
+    xyz, where = at.xyz, at.where
     used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
     line = xyz[b] - xyz[a]
     n = line / np.linalg.norm(line, axis=1)[:, None]
@@ -101,14 +101,22 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         loads=sp.vstack([push, pull]).tocsr(),
         turns=sp.hstack([-one, one]).tocsr(),
         where=tuple(
-            {"grids": [*grids[i], *grids[j]], "ends": [grids[i], grids[j]], "components": [1]}
-            for i, j in zip(a.tolist(), b.tolist(), strict=True)
+            _joined(where[i], where[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)
         ),
         typical=like.typical,
         spread=like.spread,
         structure=structure,
         ends_xyz=np.hstack([xyz[a], xyz[b]]),
     )
+
+
+def _joined(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """Say where a link between two points is."""
+    ends = [one["grids"], other["grids"]]
+    said = {"grids": [*ends[0], *ends[1]], "ends": ends, "components": [1]}
+    if "arms" in one or "arms" in other:
+        said["arms"] = [w.get("arms", [(0.0, 0.0, 0.0)])[0] for w in (one, other)]
+    return said
 
 
 KIND = EffectKind(

@@ -30,11 +30,11 @@ class Mounted(Candidates):
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Masses at points, and masses on small patches of shells.
 
-    Points are grids and the middles of shells, their edges and bars. Equipment has a footprint,
+    Points are those of `points_of`. Equipment has a footprint,
     and a thin shell gives under a point far more than under a foot, so small patches count as well.
     What is heavier than the structure is no mass on it but what it stands on.
     """
-    moves, xyz, grids = points_of(structure)
+    moves, xyz, where = points_of(structure)
     typical, spread = np.array([np.log(EFFECTS.mass * scale.mass)]), np.array([EFFECTS.mass_spread])
     top, (middle, off, stiffest) = np.log(scale.band_hz[1]), EFFECTS.mount
     masses = scale.masses()
@@ -45,7 +45,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         trials=np.insert(masses, 1, top + np.log(middle), axis=1),
         root=moves,
         rows_each=3,
-        where=tuple({"grids": g} for g in grids),
+        where=tuple(where),
         typical=np.append(typical, top + np.log(middle)),
         spread=np.append(spread, off),
         steps=np.ones(2),

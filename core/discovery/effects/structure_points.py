@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from ..reduction.elements_and_supports import Structure
 from .bar_members import bare_bars
+from .effect_numbers import EFFECTS
 
 
 class Points(NamedTuple):
@@ -20,25 +21,34 @@ class Points(NamedTuple):
     moves : (3 n, n_free) sparse
         Their translations along the basic axes.
     xyz : (n, 3) float
-    grids : list of list of int
-        Whose motion each follows.
+    where : list of dict
+        ``grids`` whose motion each follows; of one that a single grid carries at a distance
+        ``arms``, a list of the one from it (3,).
     """
 
     moves: sp.csr_matrix
     xyz: Floats
-    grids: list[list[int]]
+    where: list[dict[str, Any]]
+
+    @property
+    def at_grids(self) -> Ints:
+        """Numbers of those that are grids."""
+        own = (len(w["grids"]) == 1 and "arms" not in w for w in self.where)
+        return np.flatnonzero(np.fromiter(own, bool, len(self.where)))
 
     def of(self, which: Ints) -> Points:
         """Return some of them."""
         rows = (3 * which[:, None] + np.arange(3)).ravel()
-        return Points(self.moves[rows], self.xyz[which], [self.grids[i] for i in which.tolist()])
+        return Points(self.moves[rows], self.xyz[which], [self.where[i] for i in which.tolist()])
 
 
 def points_of(structure: Structure) -> Points:
-    """Return grids, the middles of shells and of their edges, and those of bars off the shells.
+    """Return grids, the middles of shells and of their edges, and points along bars off the shells.
 
     Between its grids a shell moves as their rotations say (Hermite's cubic): a mode of four
     elements a wave moves twice as far at the middle of an element as its corners do on average.
+    Bars have a point at their middle and one at either quarter, which the grid next to it carries:
+    to the shortest waves of a test half the side of an element is far.
     """
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
@@ -74,23 +84,44 @@ def points_of(structure: Structure) -> Points:
         corners = corners[structure.in_order(g.xyz[corners].mean(axis=1))]
         weights.append(_means(corners, len(g.ids)))
         bent.append(np.tile(np.eye(3), (len(corners), 1, 1)))
+    between = sum(w.shape[0] for w in weights)
+    carrying, arms = _arms(structure, carries)
+    weights.append(_means(carrying[:, None], len(g.ids)))
+    bent.append(np.tile(2.0 * np.eye(3), (len(arms), 1, 1)))
     P = sp.vstack(weights).tocsr()
     xyz = np.asarray(P @ g.xyz)
+    xyz[between:] += arms
     bows = _bows(P, xyz, g.xyz, np.concatenate(bent))
     every = sp.identity(len(g.ids), format="csr")
     moves = (translations(structure, P) + bows @ rotations(structure, every)).tocsr()
-    grids = [g.ids[c].tolist() for c in np.split(P.indices, P.indptr[1:-1])]
-    return Points(moves, xyz, grids)
+    where: list[dict[str, Any]]
+    where = [{"grids": g.ids[c].tolist()} for c in np.split(P.indices, P.indptr[1:-1])]
+    where[between:] = [
+        {**w, "arms": [tuple(a)]} for w, a in zip(where[between:], arms.tolist(), strict=True)
+    ]
+    return Points(moves, xyz, where)
 
 
-def _bows(P: sp.csr_matrix, middle: Floats, xyz: Floats, bent: Floats) -> sp.csr_matrix:
+def _arms(structure: Structure, carries: Bools) -> tuple[Ints, Floats]:
+    """Return rows of the grids that carry the quarter points of bars, and how far off, (n, 3)."""
+    g = structure.model.geometry
+    bars = [structure.members[k].corners[rows, :2] for k, rows in bare_bars(structure)]
+    one = np.concatenate([np.zeros((0, 2), np.int64), *bars])
+    ends = np.concatenate([one, one[:, ::-1]])
+    ends = ends[carries[ends[:, 0]]]
+    arms = EFFECTS.bar_point * (g.xyz[ends[:, 1]] - g.xyz[ends[:, 0]])
+    order = structure.in_order(g.xyz[ends[:, 0]] + arms)
+    return ends[order, 0], arms[order]
+
+
+def _bows(P: sp.csr_matrix, points: Floats, xyz: Floats, bent: Floats) -> sp.csr_matrix:
     """Return how far the rotations of grids move points, (3 n, 3 n_grid).
 
-    Half the mean of what each grid alone, turning rigidly, would move the point by, `bent`
-    (n, 3, 3): across shells, not in their plane.
+    Half the mean of what each grid alone, turning rigidly, would move the point by, times `bent`
+    (n, 3, 3): across shells, not in their plane; twice that of one that a single grid carries.
     """
     W = P.tocoo()
-    lever = 0.5 * W.data[:, None] * (middle[W.row] - xyz[W.col])
+    lever = 0.5 * W.data[:, None] * (points[W.row] - xyz[W.col])
     turned = np.cross(np.eye(3), lever[:, None, :]).transpose(0, 2, 1)
     rows, columns = (3 * k[:, None] + np.arange(3) for k in (W.row, W.col))
     where = np.repeat(rows, 3, axis=1).ravel(), np.tile(columns, 3).ravel()
@@ -139,7 +170,7 @@ class Axes(NamedTuple):
     root : (n, n_free) sparse
         Row u of each: its motion.
     where : tuple of dict
-        ``grids`` and ``components`` of each.
+        ``grids``, ``components`` and ``arms`` of each, see `Points`.
     """
 
     xyz: Floats
@@ -149,10 +180,10 @@ class Axes(NamedTuple):
 
 def along_axes(points: Points) -> Axes:
     """Return the basic axes along which points move."""
-    root, xyz, grids = points
+    root, xyz, places = points
     live = np.flatnonzero(np.diff(root.indptr) > 0)
     at = live // 3
     where = tuple(
-        {"grids": grids[i], "components": [int(c)]} for i, c in zip(at, live % 3 + 1, strict=True)
+        {**places[i], "components": [int(c)]} for i, c in zip(at, live % 3 + 1, strict=True)
     )
     return Axes(xyz[at], root[live], where)

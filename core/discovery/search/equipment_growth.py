@@ -103,7 +103,7 @@ def _stands(structure: Structure, c: Candidates, row: int) -> list[Stand]:
     places = places_of(c, row)
     turns = np.eye(3)[None] if c.maps is None else c.maps
     both = zip(places, turns, strict=True)
-    found = [stand(structure, own.where[i]["grids"], turn) for (own, i), turn in both]
+    found = [stand(structure, own.where[i], turn) for (own, i), turn in both]
     kept = [s for s in found if s is not None]
     return kept if len(kept) == len(found) else []
 

@@ -45,7 +45,8 @@ def _every(c: Candidates, rows: Ints, size: float) -> Ints:
     """Return all grids where a mass may sit, of so many that they can be looked at."""
     if c.tunings > 1 or c.kind.directed or not c.kind.at_points or not c.rows_each:
         return rows if c.tunings == 1 else rows[:0]
-    own = np.array([i for i, w in enumerate(c.where) if len(w["grids"]) == 1], np.int64)
+    alone = (len(w["grids"]) == 1 and "arms" not in w for w in c.where)
+    own = np.flatnonzero(np.fromiter(alone, bool, len(c)))
     if len(own) <= SEARCH.every_most:
         return own
     return np.asarray(own[thinned(c.xyz[own], size / SEARCH.every_across)])

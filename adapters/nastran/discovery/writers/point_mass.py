@@ -22,6 +22,9 @@ def write(text: DeckText, site: Site) -> DeckText:
     if "mount_hz" in site.finding.magnitude:
         return sprung(text, site, (1, 2, 3), site.total("mount_hz"))
     grids = site.grids
+    if site.arms:
+        arm = map(plain, site.arms[0])
+        return site.added(text, [("CONM2", number, grids[0], 0, plain(site.total("mass")), *arm)])
     shares = site.finding.where.shares or (1.0 / len(grids),) * len(grids)
     parts = (plain(site.total("mass") * share) for share in shares)
     rows = [
@@ -40,7 +43,9 @@ def _equipment(text: DeckText, site: Site, number: int) -> list[list[Any]]:
             ["RBE3", number, None, host, "123456", 1.0, "123", *grids],
         ]
         number += 1
-    offset = [plain(v) for v in site.finding.magnitude.get("offset", (0.0, 0.0, 0.0))]
+    none = [(0.0, 0.0, 0.0)]
+    parts = (*(site.arms or none), site.finding.magnitude.get("offset", none[0]))
+    offset = [plain(sum(along)) for along in zip(*parts, strict=True)]
     j = plain(site.total("inertia"))
     mass = ["CONM2", number, host, 0, plain(site.total("mass")), *offset, None]
     return [*rows, [*mass, j, 0.0, j, 0.0, 0.0, j]]

@@ -45,6 +45,11 @@ class Site:
         """Directions of the effect."""
         return list(self.finding.magnitude["components"])
 
+    @property
+    def arms(self) -> list[tuple[float, ...]]:
+        """How far off its grid each place is, none where all are at theirs."""
+        return list(self.finding.where.arms or ())
+
     def total(self, word: str) -> float:
         """Return a magnitude by its word."""
         return float(self.finding.magnitude[word])
@@ -85,9 +90,12 @@ Writer = Callable[[DeckText, Site], DeckText]
 """Returns the text of a deck with an effect as cards; raises InputError where it cannot take it."""
 
 
-def basic_companion(site: Site, grid: int, new: int, number: int) -> list[list[Any]]:
-    """Return the cards of a grid `new` in basic axes that follows another rigidly."""
-    return [["GRID", new, 0, *site.middle([grid]), 0], ["RBE2", number, grid, "123456", new]]
+def companion(
+    site: Site, grid: int, new: int, number: int, arm: Sequence[float] = (0.0, 0.0, 0.0)
+) -> list[list[Any]]:
+    """Return the cards of a grid `new` in basic axes, an arm from another that it follows."""
+    at = [plain(x + d) for x, d in zip(site.middle([grid]), arm, strict=True)]
+    return [["GRID", new, 0, *at, 0], ["RBE2", number, grid, "123456", new]]
 
 
 def follower(site: Site, grids: Sequence[int], new: int, number: int) -> list[list[Any]]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
-from .site import Site, basic_companion, plain
+from .site import Site, companion, plain
 
 
 def write(text: DeckText, site: Site) -> DeckText:
@@ -33,9 +33,9 @@ def sprung(text: DeckText, site: Site, components: Sequence[int], hz: float) -> 
             ["GRID", host, 0, *site.middle(grids), 0, "456"],
             ["RBE3", number, None, host, "123", 1.0, moves, *grids],
         ]
-    elif site.system(host):
+    elif site.arms or site.system(host):
         host, new = new, new + 1
-        rows += basic_companion(site, grids[0], host, number)
+        rows += companion(site, grids[0], host, number, *site.arms)
     for k, c in enumerate(components):
         rows += [
             ["SPOINT", new + k],

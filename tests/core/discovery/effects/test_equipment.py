@@ -30,7 +30,7 @@ def test_a_rigid_motion_gives_the_kinetic_energy_of_a_rigid_body(tmp_path, deck,
     structure = build_structure(trueup.read_deck(path), ())
     model = structure.model
     (masses, *_) = KIND.places(structure, Scale(1.0, 1.0, 1.0, (1.0, 2.0)))
-    place = stand(structure, [grid], np.eye(3))
+    place = stand(structure, {"grids": [grid]}, np.eye(3))
     assert len(place.grids) == footprint
     body = Body((0.02, -0.01, 0.06), 0.03)
     made = equipment(masses, [place], [body])
@@ -53,7 +53,7 @@ def test_mirrored_places_have_mirrored_offsets(tmp_path):
     path.write_text(PLATE)
     structure = build_structure(trueup.read_deck(path), ())
     (masses, *_) = KIND.places(structure, Scale(1.0, 1.0, 1.0, (1.0, 2.0)))
-    both = [stand(structure, [6], np.eye(3)), stand(structure, [7], np.diag([-1.0, 1.0, 1.0]))]
+    both = [stand(structure, {"grids": [6]}, np.eye(3)), stand(structure, {"grids": [7]}, np.diag([-1.0, 1.0, 1.0]))]
     made = equipment(masses, both, [Body((0.02, 0.01, 0.0), 0.0)])
     assert made.copies == ((0, 1),)
     assert [b.offset for b in made.single.bodies] == [(0.02, 0.01, 0.0), (-0.02, 0.01, 0.0)]
@@ -69,7 +69,7 @@ def test_equipment_stands_up_from_a_sheet_and_on_a_bar_along_the_basic_axes(tmp_
             tilted = tilted.replace(flat, f"GRID,{grid},,{0.1 * i},{0.8 * y},{0.6 * y}\n")
     path.write_text(tilted)
     structure = build_structure(trueup.read_deck(path), ())
-    place = stand(structure, [6], np.eye(3))
+    place = stand(structure, {"grids": [6]}, np.eye(3))
     axes = place.axes
     assert place.sheet
     assert axes[0] == pytest.approx([0.0, -0.6, 0.8])
@@ -77,6 +77,6 @@ def test_equipment_stands_up_from_a_sheet_and_on_a_bar_along_the_basic_axes(tmp_
     assert axes @ axes.T == pytest.approx(np.eye(3))
     path.write_text(BEAM)
     structure = build_structure(trueup.read_deck(path), ())
-    place = stand(structure, [3], np.eye(3))
+    place = stand(structure, {"grids": [3]}, np.eye(3))
     assert not place.sheet
     assert place.axes == pytest.approx(np.eye(3))
