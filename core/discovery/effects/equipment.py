@@ -100,7 +100,7 @@ def stand(structure: Structure, where: Words, turn: Floats) -> Stand | None:
             return None
         arm = np.sum(where.get("arms", np.zeros((1, 3))), axis=0)
         motion = sp.vstack([moves - sp.csr_matrix(_cross(arm)) @ turns, turns]).tocsr()
-        kept = {k: where[k] for k in ("grids", "arms") if k in where}
+        kept: Words = {k: where[k] for k in ("grids", "arms") if k in where}
         return Stand(xyz + arm, kept, motion, turn, np.eye(3), False)
     size = float(np.linalg.norm(g.xyz[rows] - xyz, axis=1).max())
     rigid = np.concatenate([np.hstack([np.eye(3), -_cross(x - xyz) / size]) for x in g.xyz[rows]])

@@ -21,7 +21,9 @@ def dashpots(structure: Structure) -> Axes:
     """Return each basic axis along which a grid moves: D of a dashpot there changes by c·uuᵀ."""
     g = structure.model.geometry
     every = sp.identity(len(g.ids), format="csr")
-    return along_axes(Points(translations(structure, every), g.xyz, [{"grids": [n]} for n in g.ids.tolist()]))
+    return along_axes(
+        Points(translations(structure, every), g.xyz, [{"grids": [n]} for n in g.ids.tolist()])
+    )
 
 
 def sentence(

@@ -152,6 +152,79 @@ def test_a_spring_that_ends_between_two_grids_pulls_at_both(tmp_path):
     np.testing.assert_allclose(found, hz(np.linalg.eigvalsh(K), 0.01), rtol=1e-6)
 
 
+BEAM = """CEND
+BEGIN BULK
+GRID,1,,0.,0.,0.,,123456
+GRID,2,,100.,0.,0.,{cd},
+CORD2R,7,,0.,0.,0.,0.,1.,1.
+,1.,0.,0.
+CBAR,1,1,1,2,0.,0.,1.
+PBAR,1,1,1.+4,100.,200.,1.+6
+MAT1,1,2.+5,,.3
+CONM2,9,2,,1.-4
+ENDDATA
+"""
+
+
+def cantilever(root, m, k=0.0):
+    """Return frequencies [Hz] of a tip mass, m at the point that `root` (3, 6) moves, k on it."""
+    length, area, iy, iz, E, J = 100.0, 1e4, 100.0, 200.0, 2e5, 1e6
+    K = np.diag([E * area / length, 0.0, 0.0, E / 2.6 * J / length, 0.0, 0.0])
+    for (u, t), inertia, sign in (((1, 5), iz, -1.0), ((2, 4), iy, 1.0)):
+        K[np.ix_((u, t), (u, t))] = (
+            E * inertia / length**3
+            * np.array([[12.0, 6.0 * sign * length], [6.0 * sign * length, 4.0 * length**2]])
+        )  # fmt: skip
+    M = np.diag([1e-4] * 3 + [0.0] * 3) + m * root.T @ root
+    K = K + k * np.outer(root[2], root[2])
+    C = np.linalg.solve(K, M)
+    values = np.sort(np.linalg.eigvals(C).real)[::-1][:3]
+    return 1.0 / np.sqrt(values) / (2.0 * np.pi)
+
+
+BEYOND = np.array([[1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, -25.0], [0, 0, 1.0, 0, 25.0, 0]])
+
+
+@pytest.mark.parametrize("cd", ["", "7"])
+def test_a_mass_between_grids_of_a_bar_is_an_arm_off_the_grid_that_carries_it(tmp_path, cd):
+    """A mass that turns with a tip a quarter of the bar's length from it."""
+    what = finding("point_mass", {"mass": 3e-4}, grids=[2], arms=((-25.0, 0.0, 0.0),))
+    _, found = completed(tmp_path, BEAM.format(cd=cd), what)
+    np.testing.assert_allclose(found, cantilever(BEYOND, 3e-4), rtol=1e-6)
+
+
+@pytest.mark.parametrize("cd", ["", "7"])
+def test_a_spring_between_grids_of_a_bar_pulls_where_it_is(tmp_path, cd):
+    what = finding(
+        "ground_spring",
+        {"stiffness": 500.0, "components": [3]},
+        grids=[2],
+        arms=((-25.0, 0.0, 0.0),),
+    )
+    _, found = completed(tmp_path, BEAM.format(cd=cd), what)
+    np.testing.assert_allclose(found, cantilever(BEYOND, 0.0, 500.0), rtol=1e-6)
+
+
+def test_equipment_between_grids_is_off_by_its_arm_and_its_offset(tmp_path):
+    size = {"mass": 3e-4, "offset": [5.0, 0.0, 0.0], "inertia": 0.0}
+    what = finding("point_mass", size, grids=[2], arms=((-30.0, 0.0, 0.0),))
+    _, found = completed(tmp_path, BEAM.format(cd=""), what)
+    np.testing.assert_allclose(found, cantilever(BEYOND, 3e-4), rtol=1e-6)
+
+
+def test_a_link_that_ends_between_grids_pulls_there(tmp_path):
+    text = BEAM.format(cd="").replace("CONM2", "GRID,3,,75.,0.,50.,,123456\nCONM2")
+    what = finding(
+        "link_spring",
+        {"stiffness": 500.0, "components": [1]},
+        grids=[2, 3],
+        ends=((2,), (3,)),
+        arms=((-25.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    )
+    _, found = completed(tmp_path, text, what)
+    np.testing.assert_allclose(found, cantilever(BEYOND, 0.0, 500.0), rtol=1e-6)
+
+
 def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):
     what = finding("support_flexibility", {"stiffness": 5e5, "components": [4, 5, 6]}, grids=[1])
     _, found = completed(tmp_path, STIFF_ARMS, what)

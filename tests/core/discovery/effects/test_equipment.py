@@ -31,7 +31,7 @@ def test_a_rigid_motion_gives_the_kinetic_energy_of_a_rigid_body(tmp_path, deck,
     model = structure.model
     (masses, *_) = KIND.places(structure, Scale(1.0, 1.0, 1.0, (1.0, 2.0)))
     place = stand(structure, {"grids": [grid]}, np.eye(3))
-    assert len(place.grids) == footprint
+    assert len(place.where["grids"]) == footprint
     body = Body((0.02, -0.01, 0.06), 0.03)
     made = equipment(masses, [place], [body])
     rng = np.random.default_rng(3)
@@ -53,7 +53,10 @@ def test_mirrored_places_have_mirrored_offsets(tmp_path):
     path.write_text(PLATE)
     structure = build_structure(trueup.read_deck(path), ())
     (masses, *_) = KIND.places(structure, Scale(1.0, 1.0, 1.0, (1.0, 2.0)))
-    both = [stand(structure, {"grids": [6]}, np.eye(3)), stand(structure, {"grids": [7]}, np.diag([-1.0, 1.0, 1.0]))]
+    both = [
+        stand(structure, {"grids": [6]}, np.eye(3)),
+        stand(structure, {"grids": [7]}, np.diag([-1.0, 1.0, 1.0])),
+    ]
     made = equipment(masses, both, [Body((0.02, 0.01, 0.0), 0.0)])
     assert made.copies == ((0, 1),)
     assert [b.offset for b in made.single.bodies] == [(0.02, 0.01, 0.0), (-0.02, 0.01, 0.0)]

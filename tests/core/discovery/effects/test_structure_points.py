@@ -28,13 +28,13 @@ ENDDATA
 def test_a_bent_shell_lies_between_its_grids_where_their_rotations_say(tmp_path):
     """Bent to w = x² + 2xy + 3y², it is there at the middles of its elements and edges, too.
 
-    Points of a rigid rotation about any axis move with it, the bar's middle as well.
+    Points of a rigid rotation about any axis move with it, the bar's middle and quarters as well.
     """
     (tmp_path / "deck.bdf").write_text(DECK)
     structure = build_structure(read_deck(tmp_path / "deck.bdf"))
     g, dofs = structure.model.geometry, structure.model.dofs
     points = points_of(structure)
-    assert len(points.xyz) == 7 + 2 + 7 + 1
+    assert len(points.xyz) == 7 + 2 + 7 + 1 + 2
 
     def seen(moves, turns):
         every = np.hstack([moves, turns])[g.index_of(dofs.node), dofs.component - 1]
@@ -47,9 +47,33 @@ def test_a_bent_shell_lies_between_its_grids_where_their_rotations_say(tmp_path)
 
     x, y, _ = g.xyz.T
     turned = np.column_stack([2.0 * x + 6.0 * y, -2.0 * x - 2.0 * y, 0.0 * x])
-    on_shell = [7 not in own for own in points.grids]
+    on_shell = [7 not in w["grids"] and "arms" not in w for w in points.where]
     found, expected = seen(bent(g.xyz), turned), bent(points.xyz)
     np.testing.assert_allclose(found[on_shell], expected[on_shell], rtol=1e-9, atol=1e-6)
     axis = np.array([0.3, -0.5, 0.7])
     found = seen(np.cross(axis, g.xyz), np.tile(axis, (7, 1)))
     np.testing.assert_allclose(found, np.cross(axis, points.xyz), atol=1e-9)
+
+
+def test_the_quarters_of_a_bar_are_carried_by_the_grid_next_to_them(tmp_path):
+    (tmp_path / "deck.bdf").write_text(DECK)
+    structure = build_structure(read_deck(tmp_path / "deck.bdf"))
+    points = points_of(structure)
+    carried = {
+        w["grids"][0]: (w["arms"], x)
+        for w, x in zip(points.where, points.xyz, strict=True)
+        if "arms" in w
+    }
+    assert carried.keys() == {6, 7}
+    assert carried[6][0] == [(5.0, 0.0, 2.0)]
+    np.testing.assert_allclose(carried[6][1], [45.0, 25.0, 2.0])
+    assert carried[7][0] == [(-5.0, 0.0, -2.0)]
+    np.testing.assert_allclose(carried[7][1], [55.0, 25.0, 6.0])
+
+
+def test_no_point_hangs_on_a_grid_that_is_held(tmp_path):
+    (tmp_path / "deck.bdf").write_text(
+        DECK.replace("GRID,7,,60.,25.,8.", "GRID,7,,60.,25.,8.,,123456")
+    )
+    points = points_of(build_structure(read_deck(tmp_path / "deck.bdf")))
+    assert [w["grids"] for w in points.where if "arms" in w] == [[6]]
