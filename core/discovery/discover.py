@@ -51,7 +51,7 @@ from .search.refit_own_basis import (
 )
 from .search.robust_search import robust
 from .search.set_up import beside_reach
-from .search.strategy import bettered, evidence, on_stands, searched
+from .search.strategy import bettered, evidence, on_stands, searched, unlike
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
 
@@ -215,7 +215,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if trial.request.responses is not None:
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
-    found = searched(searcher, progress, trial.explained)
+    found = unlike(searcher, searched(searcher, progress, trial.explained))
     verdict = judge(searcher, found)
     best = found.levels[verdict.accepted]
     if verdict.scale > DISCOVERY.estimated and not adequate(searcher, best):

@@ -257,6 +257,18 @@ def places_of(c: Candidates, row: int) -> list[tuple[Candidates, int]]:
     return [(c.single, i) for i in c.copies[row]]
 
 
+def parted(catalogue: Catalogue, suspects: Sequence[Suspect]) -> list[tuple[Suspect, ...]]:
+    """Return suspects with each pair of twins in turn as two that need not be alike."""
+    single = {id(c): kind for kind, c in enumerate(catalogue)}
+    out = []
+    for q, s in enumerate(suspects):
+        c = catalogue[s.kind]
+        if c.many(s.row) == 2 and id(c.single) in single:
+            both = (replace(s, kind=single[id(c.single)], row=i) for i in c.copies[s.row])
+            out.append((*suspects[:q], *both, *suspects[q + 1 :]))
+    return out
+
+
 def lacking(
     c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
 ) -> Flexibility | SharedFlexibility | None:

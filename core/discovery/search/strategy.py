@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..effects.candidates import parted
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
 from .beam_search import Found, grown, objective_of
@@ -98,6 +99,21 @@ def bettered(
     for k in range(max(verdict.accepted - 1, 1), verdict.accepted + 1):
         searcher, levels[k] = better(searcher, levels[k], verdict.scale)
     return searcher, Found(tuple(levels), found.rivals)
+
+
+def unlike(searcher: Searcher, found: Found) -> Found:
+    """Part twins of what is chosen where two that are not alike earn their place.
+
+    Two masses at places that are nearly each other's images look like twins and a third.
+    """
+    number = judge(searcher, found).accepted
+    twins = found.levels[number]
+    for apart in parted(searcher.problem.catalogue, twins.suspects):
+        near = searcher.fitted(twins, apart, SEARCH.steps_new, soften=True)
+        two = searcher.settled(searcher.refined(near))
+        if earned(scored(searcher, two), scored(searcher, twins)):
+            return found.with_richer(two)
+    return found
 
 
 def on_stands(

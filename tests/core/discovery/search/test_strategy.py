@@ -7,9 +7,11 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect, factors_of, together
 from trueup.core.discovery.search import strategy
+from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.model_selection import judge
-from trueup.core.discovery.search.strategy import searched
+from trueup.core.discovery.search.strategy import searched, unlike
 
 
 def told(s):
@@ -55,6 +57,31 @@ def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
     kinds, best = told(s)
     assert sorted(kinds) == ["point_mass", "tuned_absorber"]
     assert {q.row for q in best.suspects} == {9, 22}
+
+
+@pytest.mark.parametrize(("second", "apart"), [(1.2, True), (2.0, False)])
+def test_twins_that_are_not_alike_are_parted(second, apart, monkeypatch):
+    s = searcher(hidden(masses=[(5, 2.0), (26, second)]))
+    gain = 3.0
+    monkeypatch.setattr(
+        strategy, "earned", lambda a, b: a.fit.objective < b.fit.objective - 2.0 * gain
+    )
+    single = s.problem.catalogue[0]
+    first = np.arange(12)
+    pairs = together(single, np.column_stack([first, len(single) - 1 - first]))
+    catalogue = (*s.problem.catalogue, pairs)
+    factors = factors_of(catalogue, s.problem.basis)
+    s = replace(
+        s,
+        problem=replace(s.problem, catalogue=catalogue, factors=factors),
+        coarse=(*s.coarse, first),
+    )
+    twins = s.fitted(s.null(), (Suspect(len(catalogue) - 1, 5, (0.5,)),))
+    found = unlike(s, Found((s.null(), twins), ((), ())))
+    assert len(found.levels) == 2 + apart
+    if apart:
+        masses = {q.row: np.exp(q.theta[0]) for q in found.levels[-1].suspects}
+        assert masses == {5: pytest.approx(2.0, rel=0.1), 26: pytest.approx(second, rel=0.1)}
 
 
 @pytest.mark.parametrize(
