@@ -14,7 +14,6 @@ from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
-from ..model_error.model_error_numbers import MODEL_ERROR
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
 from ..search.completeness import Completeness
@@ -59,7 +58,7 @@ def build_discovery(
         for place in range(len(outcome.places(best.suspects[k])))
     ]
     nodes = request.placed.observation.sensors.node
-    adequate = whole.adequacy > MODEL_ERROR.explained
+    adequate = whole.explains
     tested = tested if adequate and (whole.clear or not findings) else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
