@@ -118,7 +118,10 @@ def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
     shapes = _shapes(problem, values, vectors)
     cross = np.asarray(problem.evidence.shapes.T @ shapes)
     bad, match = matched(_costs_of(problem, values, shapes, cross))
-    vectors = turned_to_test(vectors, values, cross, match)
+    turned = turned_to_test(vectors, values, cross, match)
+    if turned is not vectors:
+        vectors, costs = turned, _costs(problem, values, turned)
+        bad = float(costs[np.arange(len(match)), match].sum())
     total, none = bad + surprise(problem, nuisance, suspects), np.zeros((0, 0))
     return Fit(total, bad, nuisance, tuple(suspects), match, values, vectors, none, ())
 
