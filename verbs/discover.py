@@ -135,10 +135,12 @@ def discover(
 
     found, done = upheld(written(found, "significant"), completed)
     pairs = before.correlation, done.after.compared.correlation
-    found = borne_out(found, *pairs, int(np.count_nonzero(elastic)))
-    if asked.adopt != "significant":
-        found = written(found, asked.adopt)
-        done = completed(found)
+    readings = len(done.after.compared.placed.observation)
+    borne = borne_out(found, *pairs, int(np.count_nonzero(elastic)), readings)
+    if asked.adopt != "significant" or borne.adopted != found.adopted:
+        borne = written(borne, asked.adopt)
+        done = completed(borne)
+    found = borne
     after = done.after.compared
     final = replace(compared(after), warnings=())
     own = SolvedModel(before, solution, structure.damping)

@@ -15,6 +15,7 @@ from .effects.element_patches import gives
 from .likelihood.hypothesis import Fit, Prior, Problem
 from .likelihood.map_fit import fit
 from .likelihood.mode_likelihood import Evidence, noise_of
+from .likelihood.repeated_modes import none_cut
 from .likelihood.request import Request
 from .reduction.discretisation_error import consistent_bars, lumping
 from .reduction.residual_flexibility import Compliance
@@ -51,7 +52,7 @@ def ground_of(request: Request, modes: Bools) -> Deck:
         replace(plain, mass=plain.mass.and_also(bars)),
         mesh,
         bars,
-        targets + DISCOVERY.band_more,
+        none_cut(request.solution.eigenvalues, targets + DISCOVERY.band_more),
         Compliance(request.structure.model, request.solution),
         _catalogue(request, request.placed.test.frequencies_hz[modes], targets),
     )
@@ -60,7 +61,7 @@ def ground_of(request: Request, modes: Bools) -> Deck:
 def _targets(eigenvalues: Floats, hz: Floats) -> int:
     """Return the number of modes that may match those at `hz` [Hz]: as many as these at least."""
     below = np.count_nonzero(eigenvalues < (2.0 * np.pi * DISCOVERY.band * hz.max()) ** 2)
-    return min(max(int(below), len(hz)), len(eigenvalues))
+    return none_cut(eigenvalues, min(max(int(below), len(hz)), len(eigenvalues)))
 
 
 def prepared(
@@ -91,7 +92,7 @@ def prepared(
     n = len(prior.spread)
     zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
     null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
-    columns = _targets(null.eigenvalues, hz) + DISCOVERY.band_more
+    columns = none_cut(null.eigenvalues, _targets(null.eigenvalues, hz) + DISCOVERY.band_more)
     return replace(problem, columns=columns), null, zero
 
 

@@ -41,9 +41,10 @@ class JudgementTable:
     others, foretells them better than the known parameters alone do. `error` is the diffuse error
     of the model, relative, completed by what was found, `error_alone` with the known parameters
     alone; `gain` is ln of how much likelier the test is by what was found, choices paid for;
-    `adequacy` is the probability that a right model would leave an error as large; `unexplained`
-    are test modes that no mode of the model explains. `proposal` says that the deck is completed by
-    what was found though more is left than right models leave, and the verdict ``undecided``.
+    `adequacy` is the probability that a right model would leave a misfit as large: an error as
+    large, and as many modes `unexplained`: test modes that no mode of the model explains.
+    `proposal` says that the deck is completed by what was found though more is left than right
+    models leave, and the verdict ``undecided``.
     """
 
     evidence: float

@@ -38,7 +38,8 @@ def _off(found: DiscoverTables) -> str:
     if j.gain:
         said += f" ({100.0 * j.error_alone:.2g} % with the known parameters alone)"
     share = f"{100.0 * j.adequacy:.2g}" if j.adequacy < 0.995 else "99"
-    return f"{said}; of models that lack nothing {share} % are off by as much."
+    as_many = " and leave as many modes unexplained" if j.unexplained else ""
+    return f"{said}; of models that lack nothing {share} % are off by as much{as_many}."
 
 
 def _cells(gap: Gap) -> list[Cell | str]:

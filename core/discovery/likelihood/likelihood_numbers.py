@@ -37,6 +37,7 @@ class LikelihoodNumbers:
     wide_steps: int = number(12, "steps", "in which the errors are estimated")
     unseen: float = number(1e-10, "of the largest squared length", "at the sensors, of a mode that they do not see", ROUNDING)
     pictured: int = number(800, "lines", "of responses that are kept for a picture, besides those of the modes", "what a screen shows")
+    repeated: float = number(1e-6, "of λ", "gap up to which modes are one, any vectors of their plane", ROUNDING)
     ridge: float = number(1e-6, "-", "on the diagonal of a Gram matrix of shapes that are alike", ROUNDING)
     least_eigenvalue: float = number(1e-6, "of a test mode's λ", "λ of a rigid-body mode that is matched to it")
 

@@ -13,6 +13,7 @@ from ..effects.candidates import Suspect, changed, magnitudes
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
 from .mode_likelihood import joint_macs, matched, mode_costs, targets
+from .repeated_modes import none_cut, turned_to_test
 
 _FIRST = np.zeros(1, np.int64)
 
@@ -47,7 +48,7 @@ def _matrices(
 def solve(
     problem: Problem, nuisance: Floats, suspects: Sequence[Suspect], modes: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Return the lowest eigenvalues and vectors on the basis.
+    """Return the lowest eigenvalues and vectors on the basis, of repeated ones none or all.
 
     Attached masses have rows of their own after those of the basis, in the order of the
     suspects, times √m.
@@ -55,9 +56,10 @@ def solve(
     K, M = _matrices(problem, nuisance, suspects)
     n = min(modes or problem.modes, len(K))
     if n < LIKELIHOOD.few_modes * len(K):
-        values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
-        return values, vectors
-    values, vectors = eigenpairs(K, M)
+        values, vectors = la.eigh(K, M, subset_by_index=(0, n), check_finite=False)
+    else:
+        values, vectors = eigenpairs(K, M)
+    n = none_cut(values, n)
     return values[:n], vectors[:, :n]
 
 
@@ -86,12 +88,20 @@ def off_and_apart(problem: Problem, state: Fit) -> tuple[Floats, Floats]:
     return 0.5 * np.log(floor[match] / targets(e)), 1.0 - macs[rows, match]
 
 
-def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
+def _shapes(problem: Problem, values: Floats, vectors: Floats) -> Floats:
+    """Return what the sensors read of the modes that may match, (n_sensor, n)."""
     n = min(problem.columns, len(values))
-    shapes = np.asarray(problem.sensors @ vectors[: problem.sensors.shape[1], :n])
-    cross = np.asarray(problem.evidence.shapes.T @ shapes)
+    return np.asarray(problem.sensors @ vectors[: problem.sensors.shape[1], :n])
+
+
+def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
+    shapes = _shapes(problem, values, vectors)
+    return _costs_of(problem, values, shapes, np.asarray(problem.evidence.shapes.T @ shapes))
+
+
+def _costs_of(problem: Problem, values: Floats, shapes: Floats, cross: Floats) -> Floats:
     gram = np.asarray(shapes.T @ shapes, dtype=float)
-    return mode_costs(problem.evidence, values[:n], cross, gram)
+    return mode_costs(problem.evidence, values[: shapes.shape[1]], cross, gram)
 
 
 def surprise(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> float:
@@ -105,7 +115,13 @@ def surprise(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
 def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, nuisance, suspects)
-    bad, match = misfit(problem, values, vectors)
+    shapes = _shapes(problem, values, vectors)
+    cross = np.asarray(problem.evidence.shapes.T @ shapes)
+    bad, match = matched(_costs_of(problem, values, shapes, cross))
+    turned = turned_to_test(vectors, values, cross, match)
+    if turned is not vectors:
+        vectors, costs = turned, _costs(problem, values, turned)
+        bad = float(costs[np.arange(len(match)), match].sum())
     total, none = bad + surprise(problem, nuisance, suspects), np.zeros((0, 0))
     return Fit(total, bad, nuisance, tuple(suspects), match, values, vectors, none, ())
 

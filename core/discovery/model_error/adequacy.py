@@ -1,7 +1,7 @@
-"""How usual the error is that a model leaves."""
+"""How usual the error is that a model leaves, and the modes that it does not explain."""
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import bdtrc, ndtr
 
 from .model_error_numbers import MODEL_ERROR
 
@@ -15,3 +15,11 @@ def adequacy(error: float, noise: float = 0.0) -> float:
     usual = np.hypot(MODEL_ERROR.usual, MODEL_ERROR.usual_noise * noise)
     off = np.log(error / usual) / MODEL_ERROR.usual_spread
     return float(ndtr(-off))
+
+
+def as_many_astray(number: int, modes: int) -> float:
+    """Return the probability that of so many test modes a right model explains no more.
+
+    Each is none of its modes by the same chance: binomial. `number` are not explained.
+    """
+    return float(bdtrc(number - 1, modes, MODEL_ERROR.stray)) if number else 1.0

@@ -175,12 +175,19 @@ def _at(seen: Seen, error: float, noise: float) -> Diffuse:
     logs = frequencies[:, near] + _shapes(seen, error, noise, near)
     L = np.full(frequencies.shape, astray)
     L[:, near] = np.logaddexp(np.log1p(-MODEL_ERROR.stray) + logs, astray)
-    match = L.argmax(axis=1)
+    likelier = L + _tie(seen)
+    match = likelier.argmax(axis=1)
     if len(set(match.tolist())) < len(match):
-        match = linear_sum_assignment(-L)[1]
+        match = linear_sum_assignment(-likelier)[1]
     each = L[np.arange(len(L)), match]
     chance, log = np.exp(astray - each), float(each.sum())
     return Diffuse(log, float(error), float(noise), each, match, chance, seen.mesh)
+
+
+def _tie(seen: Seen) -> Floats:
+    """Return what decides between repeated modes alone: how like each is, (n_test, columns)."""
+    lengths = np.maximum(np.diag(seen.gram)[: seen.columns], _TINY)
+    return np.asarray(MODEL_ERROR.tie * seen.cross[: seen.columns].T ** 2 / lengths)
 
 
 def _stray(seen: Seen) -> float:

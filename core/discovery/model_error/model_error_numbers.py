@@ -17,6 +17,7 @@ class ModelErrorNumbers:
     reach: float = number(0.5, "of ln f", "a mode that nobody explains may be anywhere within it")
     stray: float = number(0.03, "-", "chance that a test mode is none of the model's")
     nil: float = number(20.0, "ln L", "less than the likelihood of a stray mode, below which a pair is not looked at", "double precision")
+    tie: float = number(1e-6, "ln L", "by which the more alike of repeated modes is the partner", "decides ties alone")
     unseen: float = number(1e-6, "of the largest squared length", "of a mode at the sensors, at least: what they do not see is rounding", ROUNDING)
     independent: float = number(24.0, "readings", "of a shape that count as independent, at most")
     cells: int = number(8, "boxes", "along the longest side, in each of which a smooth field is one value")

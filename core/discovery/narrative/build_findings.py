@@ -14,7 +14,6 @@ from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
-from ..model_error.model_error_numbers import MODEL_ERROR
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.beam_search import Found
 from ..search.completeness import Completeness
@@ -30,6 +29,7 @@ from ..search.model_selection import (
 )
 from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
+from .held_places import held_said, is_held
 from .model_error_words import left_over
 from .narrative_numbers import NARRATIVE
 from .sensor_findings import accusations, remarks
@@ -53,23 +53,22 @@ def build_discovery(
     outcome = _Outcome(request, searcher, found, verdict, whole)
     best = outcome.best
     own = np.split(whole.deviations, np.cumsum([len(s.theta) for s in best.suspects])[:-1])
-    findings = [
-        _finding(outcome, k, place, off)
-        for k, off in enumerate(own[: len(best.suspects)])
-        for place in range(len(outcome.places(best.suspects[k])))
-    ]
+    suspects = [(k, p) for k, s in enumerate(best.suspects) for p in range(len(outcome.places(s)))]
+    held = [outcome.region(best.suspects[k], p) for k, p in suspects if outcome.held(k)]
+    findings = [_finding(outcome, k, p, own[k]) for k, p in suspects if not outcome.held(k)]
     nodes = request.placed.observation.sensors.node
-    adequate = whole.adequacy > MODEL_ERROR.explained
-    tested = tested if adequate and (whole.clear or not findings) else tested.beyond_doubt
+    adequate = whole.explains
+    tested = tested if adequate and (whole.clear or not suspects) else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
     word = "no_gap"
-    decide = frame_needed(request.placed.alignment) if findings else ()
-    clear = whole.clear and bool(findings) and not decide and not any(map(_says_nothing, findings))
+    decide = frame_needed(request.placed.alignment) if suspects else ()
+    clear = whole.clear and bool(findings) and not (decide or held)
+    clear = clear and not any(map(_says_nothing, findings))
     proposal = clear and not whole.true
     if clear and whole.true:
         word = "effect"
-    elif findings:
+    elif suspects:
         word = "undecided"
         decide = (*decide, *_would_decide(outcome, held_out[0]))
     elif not adequate:
@@ -82,9 +81,9 @@ def build_discovery(
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"
-    sure = whole.posterior * _share(word, bool(findings), proposal, whole)
+    sure = whole.posterior * _share(word, bool(suspects), proposal, whole)
     if word == "undecided" or not adequate:
-        decide = (*left_over(whole, request.numbers), *decide)
+        decide = (*held_said(held), *left_over(whole, request.numbers), *decide)
     return Discovery(
         word,
         (*(replace(f, confidence=sure) for f in findings), *accused),
@@ -163,6 +162,11 @@ class _Outcome:
     def places(self, s: Suspect) -> list[tuple[Candidates, int]]:
         """Return candidates and row of every place of a suspect, several of twins."""
         return places_of(self.of(s), s.row)
+
+    def held(self, number: int) -> bool:
+        """Whether a suspect says no more than that the test is held at its place."""
+        s = self.best.suspects[number]
+        return is_held(self.of(s), s, self.request.mass)
 
     def region(self, s: Suspect, place: int = 0) -> str:
         """Say where a suspect is, or one of its places."""

@@ -16,6 +16,8 @@ from ..effects import KINDS, local_damper
 from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
 from ..narrative.narrative_numbers import NARRATIVE
+from ..narrative.sentences import effects_said
+from ..search.search_numbers import SEARCH
 from .screening_numbers import SCREENING
 
 
@@ -52,23 +54,28 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
         return found, complete(found)
 
 
-def borne_out(found: Discovery, before: Correlation, after: Correlation, tests: int) -> Discovery:
-    """Return what was found, a claim as a proposal where its deck is hardly nearer to the test.
+def borne_out(
+    found: Discovery, before: Correlation, after: Correlation, tests: int, readings: int
+) -> Discovery:
+    """Return what was found as far as its completed deck and what was measured bear it out.
 
-    Nearer is: more modes pair, or as many, and those that pair both times deviate less in
-    frequency. Dashpots show in the damping. Nor is anything said to be complete of which most of
-    the `tests`, the modes that take part, pair with nothing.
+    A claim is a proposal where its deck is hardly nearer to the test. Nearer is: more modes pair,
+    or as many, and those that pair both times deviate less in frequency. What brings no mode more
+    to pair and no frequency nearer is nothing that was found. Dashpots show in the damping. Nor is
+    anything said to be complete of which most of the `tests`, the modes that take part, pair with
+    nothing, or of which too little was measured, by so many `readings` of each mode, to tell.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
     more = len(after.pairs) - len(before.pairs)
-    if found.verdict in ("no_gap", "parameters_only", "test_fault"):
-        return _seen_in_pairs(found, len(after.pairs), tests)
-    if found.verdict != "effect" or damped or more > 0:
+    left = _left(before, after)
+    helps = more > 0 or left < 1.0
+    if found.verdict != "effect" and not any(f.kind in KINDS for f in found.findings):
+        return _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
+    if not found.completes or damped or more > 0:
         return found
-    was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
-    both = was.keys() & now.keys()
-    less = sum(now[k] for k in both) < SCREENING.nearer * sum(was[k] for k in both)
-    if less and not more:
+    if not helps:
+        return _withdrawn(found)
+    if found.verdict != "effect" or (left < SCREENING.nearer and not more):
         return found
     why = (
         "what brings the completed deck nearer to the test: "
@@ -77,15 +84,52 @@ def borne_out(found: Discovery, before: Correlation, after: Correlation, tests: 
     return _in_doubt(found, why, proposal=True)
 
 
-def _seen_in_pairs(found: Discovery, pairs: int, tests: int) -> Discovery:
-    """Return what was found, in doubt where hardly a mode of the test pairs."""
-    if pairs >= SCREENING.pairs * tests:
-        return found
+def _left(before: Correlation, after: Correlation) -> float:
+    """Return what is left of the deviations in frequency of the modes that pair both times."""
+    was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
+    both = was.keys() & now.keys()
+    whole = sum(was[k] for k in both)
+    return sum(now[k] for k in both) / whole if whole else 1.0
+
+
+def _withdrawn(found: Discovery) -> Discovery:
+    """Return what was found without effects that explain nothing."""
+    effects = [f for f in found.findings if f.kind in KINDS]
+    said = effects_said([f.kind for f in effects], [f.where.region or "" for f in effects])
     why = (
-        f"a test of which more modes pair than {pairs} of {tests}: see whether its sensors lie on "
-        "the model where they were, in the directions they measured"
+        f"what brings a completed deck nearer to the test: with {said} "
+        "no mode more pairs and no frequency is less off"
     )
-    return _in_doubt(found, why, proposal=found.adopted)
+    rest = tuple(f for f in found.findings if f.kind not in KINDS)
+    return replace(_in_doubt(found, why, proposal=False), findings=rest)
+
+
+def _seen_in_pairs(
+    found: Discovery, pairs: int, tests: int, readings: int, helps: bool
+) -> Discovery:
+    """Return what was found, in doubt where hardly a mode of the test pairs, or hardly any is.
+
+    A mode that pairs tells its frequency and what its shape says, less that it has to be one of
+    the model's; known parameters that explain the test and one effect are fitted to as much.
+    """
+    moved = len(found.parameters) if found.verdict == "parameters_only" else 0
+    values = pairs * (int(min(readings, SEARCH.per_mode)) - 1)
+    if pairs < SCREENING.pairs * tests:
+        why = (
+            f"a test of which more modes pair than {pairs} of {tests}: see whether its sensors "
+            "lie on the model where they were, in the directions they measured"
+        )
+        return _in_doubt(found, why, proposal=found.adopted and helps)
+    if values <= SCREENING.effect + moved:
+        known = f", and {moved} known parameters move" if moved else ""
+        why = (
+            f"more modes or more sensors: those that pair ({pairs}, read in {readings} "
+            f"directions) tell {values} values beside which modes of the model they are; one effect"
+            f" has {SCREENING.effect} unknowns, where it is and how large{known}: what is missing "
+            "may not show in so little"
+        )
+        return _in_doubt(found, why, proposal=False)
+    return found
 
 
 def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:

@@ -29,6 +29,7 @@ from .last_look import looked_again
 from .model_selection import (
     Judgement,
     Scored,
+    adequacy_of,
     by_such_a_test,
     contenders,
     kept,
@@ -109,10 +110,8 @@ class Completeness:
         model may leave as much: the odds are then those of a model that has no error.
         """
         least = max(needed(self.best), worth_telling(self.alone, self.best.diffuse.error))
-        explains = self.adequacy > MODEL_ERROR.explained
-        return bool(
-            self.gain > least and self.ahead > (MODEL_ERROR.seen if explains else SEARCH.suspect)
-        )
+        ahead = MODEL_ERROR.seen if self.explains else SEARCH.suspect
+        return bool(self.gain > least and self.ahead > ahead)
 
     @property
     def true(self) -> bool:
@@ -121,8 +120,14 @@ class Completeness:
 
     @property
     def adequacy(self) -> float:
-        """Probability that a right model leaves an error as large, by a test like this."""
-        return by_such_a_test(self.best)
+        """Probability that a right model leaves a misfit as large, by a test like this."""
+        return adequacy_of(self.best)
+
+    @property
+    def explains(self) -> bool:
+        """Whether the error is as right models leave it, and hardly a mode unexplained."""
+        usual = by_such_a_test(self.best) > MODEL_ERROR.explained
+        return usual and self.adequacy > MODEL_ERROR.claimed
 
     @property
     def lacks_nothing(self) -> bool:

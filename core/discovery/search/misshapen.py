@@ -39,7 +39,7 @@ def beside_geometry(
         shape = likeliest(ground, modal(ground, searcher.problem, found.levels[0]))
         if shape and _worth_telling(shape, whole.alone):
             kept, whole = _beside(shape, kept, whole, best)
-    if kept and whole.shape is None and whole.adequacy < MODEL_ERROR.explained:
+    if kept and whole.shape is None and not whole.explains:
         shape = likeliest(ground, modal(ground, searcher.problem, found.levels[kept]))
         if shape and _worth_telling(shape, whole.best):
             whole = replace(whole, shape=shape)

@@ -12,7 +12,7 @@ from ..effects.equipment import stands_off
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
-from ..model_error.adequacy import adequacy
+from ..model_error.adequacy import adequacy, as_many_astray
 from ..model_error.diffuse_fit import Judged
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
@@ -119,7 +119,7 @@ def _settles(searcher: Searcher, found: Found, number: int) -> bool:
 
 
 def stands(alone: Judged, best: Judged) -> bool:
-    """Whether hardly a mode is left and an error usual enough for what was found to be claimed.
+    """Whether what is left, modes and error, is usual enough for what was found to be claimed.
 
     The larger a part of the error of the known parameters `alone` it is, the more usual it has to
     be: two causes that look alike take away much of the error, the right one nearly all of it. Of
@@ -128,8 +128,7 @@ def stands(alone: Judged, best: Judged) -> bool:
     before, after = (np.count_nonzero(j.diffuse.stray > 0.5) for j in (alone, best))
     left = best.diffuse.error / alone.diffuse.error
     least = SEARCH.usual_left * left if before <= after else 0.0
-    few = after <= SEARCH.strays * len(best.diffuse.each)
-    return bool(few and by_such_a_test(best) > max(MODEL_ERROR.claimed, least))
+    return bool(adequacy_of(best) > MODEL_ERROR.claimed and by_such_a_test(best) > least)
 
 
 def cost(searcher: Searcher, f: Fit, scale: float) -> float:
@@ -264,6 +263,13 @@ def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Score
 def by_such_a_test(judged: Judged) -> float:
     """Return the probability that a right model leaves an error as large, by a test like this."""
     return adequacy(judged.diffuse.error, judged.diffuse.noise)
+
+
+def adequacy_of(judged: Judged) -> float:
+    """Return the same of an error as large and of as many modes that nothing explains."""
+    stray = judged.diffuse.stray
+    astray = as_many_astray(int(np.count_nonzero(stray > 0.5)), len(stray))
+    return by_such_a_test(judged) * astray
 
 
 def complete(searcher: Searcher, f: Fit) -> bool:

@@ -18,6 +18,7 @@ from ..effects.candidates import Suspect, beside as stretches_beside
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
+from ..likelihood.repeated_modes import none_cut
 from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
 from .coarse_scan import Look, look
@@ -283,6 +284,7 @@ class Searcher:
 @lru_cache(maxsize=SEARCH.locals_kept)
 def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     values, T = solve(problem, state.nuisance, state.suspects, problem.basis.size)
+    n = none_cut(values, n)
     T, own = np.split(T, [problem.basis.size])
     rest = T[:, n:] / np.sqrt(np.maximum(values[n:], np.finfo(float).tiny))
     bare = replace(problem, basis=problem.basis.bare(), modes=n)

@@ -158,7 +158,7 @@ def complete_model(
     Raises
     ------
     CheckError
-        The completed model has a negative stiffness.
+        The completed model has a negative stiffness or mass.
     """
     deck = tuple((problem.catalogue[s.kind], s.row) for s in state.suspects)
     places = tuple(_at_state(ground.structure, c, row, state) for c, row in deck)
@@ -190,7 +190,10 @@ def complete_model(
         rest=None,
     )
     size = min(SEARCH.own_times * new.modes, len(new.mesh))
-    values, vectors = solve(new, state.nuisance, start, size)
+    try:
+        values, vectors = solve(new, state.nuisance, start, size)
+    except np.linalg.LinAlgError:
+        raise CheckError("the completed model has a negative mass") from None
     if values[0] < -SEARCH.rigid * values[new.modes - 1]:
         raise CheckError("the completed model has a negative stiffness")
     return CompletedModel(new, start, (ground.basis.vectors, own.added), give, values, vectors)

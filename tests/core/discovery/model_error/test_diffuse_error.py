@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from trueup.core.discovery.model_error.adequacy import adequacy
+from trueup.core.discovery.model_error.adequacy import adequacy, as_many_astray
 from trueup.core.discovery.model_error.diffuse_error import (
     Seen,
     diffuse,
@@ -112,6 +112,13 @@ def test_the_larger_the_error_the_less_adequate():
     assert said == sorted(said, reverse=True)
     assert said[0] > 0.9
     assert said[-1] < 0.03
+
+
+def test_a_mode_that_nothing_explains_is_rare_and_two_of_ten_are_no_chance():
+    assert as_many_astray(0, 10) == 1.0
+    assert as_many_astray(1, 10) == pytest.approx(1.0 - 0.97**10)
+    assert as_many_astray(2, 10) == pytest.approx(1.0 - 0.97**10 - 0.3 * 0.97**9)
+    assert as_many_astray(2, 40) > 0.3
 
 
 def test_a_mode_that_no_sensor_sees_changes_nothing():

@@ -1,10 +1,10 @@
 """A model completed by what was found: one that does not solve, what is written."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 
-from trueup.core.discovery.findings import Discovery, MovedParameter
+from trueup.core.discovery.findings import Discovery, MovedParameter, Where
 from trueup.core.discovery.screening.completed_model import borne_out, upheld, written
 from trueup.core.errors import CheckError
 
@@ -22,10 +22,14 @@ class Said:
     adopted = Discovery.adopted
 
 
+THERE = Where(xyz=(1.0, 0.0, 0.0), region="near grid 8")
+
+
 @dataclass(frozen=True)
 class Named:
     kind: str
     confidence: float = 0.9
+    where: Where = THERE
 
 
 @dataclass(frozen=True)
@@ -83,10 +87,31 @@ def test_a_deck_that_never_solved_is_not():
         pytest.param((Paired(1, -0.1),), id="a mode no longer pairs"),
     ],
 )
-def test_a_claim_whose_deck_is_no_nearer_to_the_test_is_a_proposal(after):
-    found = borne_out(MASS, BEFORE, Pairs(after), 4)
+def test_a_claim_whose_deck_is_hardly_nearer_to_the_test_is_a_proposal(after):
+    found = borne_out(MASS, BEFORE, Pairs(after), 4, 12)
     assert (found.verdict, found.proposal, found.posterior) == ("undecided", True, 0.4)
     assert "hardly less off" in found.would_decide[0]
+
+
+FARTHER = Pairs((Paired(0, 4.5), Paired(1, -2.0)))
+FEWER = Pairs((Paired(0, 4.1),))
+
+
+@pytest.mark.parametrize("before", [BEFORE, Pairs(())])
+@pytest.mark.parametrize("after", [BEFORE, FARTHER, FEWER])
+@pytest.mark.parametrize("verdict", ["effect", "undecided"])
+def test_what_brings_no_mode_and_no_frequency_nearer_is_not_written(verdict, before, after):
+    said = replace(MASS, verdict=verdict, proposal=verdict == "undecided")
+    found = borne_out(said, before, after if before.pairs else before, 4, 12)
+    assert (found.verdict, found.proposal, found.adopted) == ("undecided", False, False)
+    assert [f.kind for f in found.findings] == ["sensor_swap"]
+    assert "with an attached mass near grid 8 no mode more pairs" in found.would_decide[0]
+
+
+def test_a_proposal_that_helps_a_little_stays():
+    said = replace(MASS, verdict="undecided", proposal=True)
+    nearer = Pairs((Paired(0, 3.9), Paired(1, 2.0)))
+    assert borne_out(said, BEFORE, nearer, 4, 12) is said
 
 
 @pytest.mark.parametrize(
@@ -97,25 +122,60 @@ def test_a_claim_whose_deck_is_no_nearer_to_the_test_is_a_proposal(after):
     ],
 )
 def test_a_claim_whose_deck_is_nearer_stays(after):
-    assert borne_out(MASS, BEFORE, Pairs(after), 4) is MASS
+    assert borne_out(MASS, BEFORE, Pairs(after), 4, 12) is MASS
 
 
 def test_a_dashpot_shows_in_the_damping():
     dashpot = Said("effect", (Named("local_damper"),))
-    assert borne_out(dashpot, BEFORE, BEFORE, 4) is dashpot
+    assert borne_out(dashpot, BEFORE, BEFORE, 4, 12) is dashpot
+
+
+NEARER = Pairs((Paired(0, 1.0), Paired(1, 2.0)))
 
 
 @pytest.mark.parametrize(
-    ("verdict", "proposal"),
-    [("no_gap", False), ("test_fault", False), ("parameters_only", True)],
+    ("verdict", "after", "proposal"),
+    [
+        ("no_gap", BEFORE, False),
+        ("test_fault", BEFORE, False),
+        ("undecided", BEFORE, False),
+        ("parameters_only", NEARER, True),
+        ("parameters_only", FARTHER, False),
+    ],
 )
-def test_nothing_is_said_to_be_missing_where_hardly_a_mode_pairs(verdict, proposal):
+def test_nothing_is_said_to_be_missing_where_hardly_a_mode_pairs(verdict, after, proposal):
     """A node 50 m off, a test whose directions were exchanged: 0 of 10 pair, and no gap it was."""
     said = Said(verdict)
-    assert borne_out(said, BEFORE, BEFORE, 4) is said
-    found = borne_out(said, BEFORE, BEFORE, 5)
+    assert borne_out(said, BEFORE, after, 4, 12) is said
+    found = borne_out(said, BEFORE, after, 5, 12)
     assert (found.verdict, found.proposal, found.posterior) == ("undecided", proposal, 0.4)
     assert "than 2 of 5" in found.would_decide[0]
+
+
+def paired(modes):
+    return Pairs(tuple(Paired(k, 0.1) for k in range(modes)))
+
+
+@pytest.mark.parametrize(
+    ("modes", "readings", "moved", "tells"),
+    [
+        pytest.param(1, 30, 0, False, id="one mode"),
+        pytest.param(2, 30, 0, True, id="two modes"),
+        pytest.param(20, 1, 0, False, id="one sensor, whose shapes are all alike"),
+        pytest.param(4, 2, 0, False, id="two sensors and few modes"),
+        pytest.param(9, 2, 0, True, id="two sensors and many modes"),
+        pytest.param(4, 30, 12, False, id="as many parameters as values"),
+        pytest.param(5, 30, 12, True, id="more values than parameters and an effect"),
+    ],
+)
+def test_nothing_is_said_to_be_missing_by_less_than_tells_one_effect(modes, readings, moved, tells):
+    verdict = "parameters_only" if moved else "no_gap"
+    said = Said(verdict, parameters=(CLEAR,) * moved)
+    found = borne_out(said, paired(modes), paired(modes), modes, readings)
+    assert (found is said) == tells
+    if not tells:
+        assert (found.verdict, found.adopted, found.posterior) == ("undecided", False, 0.4)
+        assert found.would_decide[0].startswith("more modes or more sensors")
 
 
 CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)

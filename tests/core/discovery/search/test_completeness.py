@@ -114,6 +114,17 @@ def test_an_explanation_with_many_modes_left_is_proposed_not_claimed():
     assert not found(stray=(4, 5)).true
 
 
+def test_modes_that_nothing_explains_count_in_what_a_right_model_leaves():
+    usual = found(error=0.001)
+    assert usual.adequacy > 0.8
+    assert usual.explains
+    one, two = found(error=0.001, stray=(4,)), found(error=0.001, stray=(4, 5))
+    assert one.adequacy == pytest.approx(usual.adequacy * (1.0 - 0.97**10))
+    assert one.explains
+    assert two.adequacy < 0.04
+    assert not two.explains
+
+
 def gaining(evidence):
     return judged(np.full(10, evidence), error=0.0031, evidence=evidence)
 

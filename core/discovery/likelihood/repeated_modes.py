@@ -1,0 +1,45 @@
+"""Modes of one frequency: any vectors of their plane are modes, so those the test found are taken.
+
+Which ones a solver gives follows from rounding. What looks at single vectors, a slope or the length
+at the sensors, must not.
+"""
+
+import numpy as np
+
+from ...arrays import Floats, Ints
+from .likelihood_numbers import LIKELIHOOD
+
+
+def turned_to_test(vectors: Floats, values: Floats, cross: Floats, match: Ints) -> Floats:
+    """Return vectors (r, n) of repeated eigenvalues (n,) turned to the shapes that match them.
+
+    By the orthogonal matrix nearest to what the test's shapes are on them (Schönemann 1966), so
+    that they stay modes; `cross` (n_test, m) are products of test shapes with the first m at the
+    sensors, `match` (n_test,) the mode of each.
+    """
+    ends = np.flatnonzero(np.diff(values) > LIKELIHOOD.repeated * np.abs(values[1:])) + 1
+    if len(ends) + 1 == len(values):
+        return vectors
+    out = vectors
+    for group in np.split(np.arange(len(values)), ends):
+        tests = np.flatnonzero((match >= group[0]) & (match <= group[-1]))
+        if len(group) == 1 or not len(tests) or group[-1] >= cross.shape[1]:
+            continue
+        U, _, Vt = np.linalg.svd(cross[np.ix_(tests, group)].T)
+        R, n = np.empty_like(U), len(tests)
+        own = match[tests] - group[0]
+        R[:, own] = U[:, :n] @ Vt
+        R[:, np.setdiff1d(np.arange(len(group)), own)] = U[:, n:]
+        out = vectors.copy() if out is vectors else out
+        out[:, group] = vectors[:, group] @ R
+    return out
+
+
+def none_cut(values: Floats, number: int) -> int:
+    """Return so many of eigenvalues (n,), or as many more as are repeated ones of the last."""
+    while 0 < number < len(values):
+        gap = values[number] - values[number - 1]
+        if gap > LIKELIHOOD.repeated * abs(values[number]):
+            break
+        number += 1
+    return number

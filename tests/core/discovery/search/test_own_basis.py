@@ -1,0 +1,33 @@
+"""A hypothesis on a basis of its own: one whose mass is negative is none."""
+
+from types import SimpleNamespace as Some
+
+import numpy as np
+import pytest
+from tests.core.discovery.strings import hidden, searcher
+
+from trueup.core.discovery.likelihood.map_fit import evaluate
+from trueup.core.discovery.search import own_basis as room
+from trueup.core.errors import CheckError
+
+
+def completed(monkeypatch, mesh_error):
+    p = searcher(hidden()).problem
+    state = evaluate(p, np.append(np.zeros(len(p.prior.spread) - 1), 0.0), ())
+    seen, mesh = p.everywhere, np.eye(p.basis.size)
+    own = Some(plain=p.basis, better=p.basis, seen=seen, mesh=Some(whole=[mesh]), factors=())
+    own.added = np.zeros((len(p.basis.vectors), 0))
+    monkeypatch.setattr(room, "_known", lambda *_: own)
+    ground = Some(structure=Some(supports=None), at_supports=np.zeros((len(seen), 0)))
+    ground.seen, ground.basis = np.ones(len(seen), bool), p.basis
+    state.nuisance[-1] = mesh_error
+    return room.complete_model(ground, p, state)
+
+
+def test_a_completed_model_has_modes_of_its_own(monkeypatch):
+    assert completed(monkeypatch, 0.0).eigenvalues[0] > 0.0
+
+
+def test_a_completed_model_with_a_negative_mass_is_refused(monkeypatch):
+    with pytest.raises(CheckError, match="negative mass"):
+        completed(monkeypatch, 1.0e6)
