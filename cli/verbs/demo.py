@@ -5,11 +5,9 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.resources import files
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -84,6 +82,9 @@ def demo(
     console = stdout()
     rows = []
     steps = _DEMOS[name]
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         begun = {step: pool.submit(_ran, folder, step) for step in reversed(steps)}
         for step in steps:

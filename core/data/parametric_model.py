@@ -48,9 +48,8 @@ class Factor:
         return 2.0 * b / (self.upper - self.lower)
 
     def _unit(self, p: Floats) -> float:
-        return float(
-            (2.0 * p[self.parameter] - self.lower - self.upper) / (self.upper - self.lower)
-        )
+        own = float(p[self.parameter])
+        return (2.0 * own - self.lower - self.upper) / (self.upper - self.lower)
 
 
 @dataclass(frozen=True, eq=False)

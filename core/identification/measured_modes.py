@@ -9,7 +9,6 @@ import numpy as np
 
 from ..data.measurement import Measurement
 from ..errors import InputError
-from .identify import identify
 
 
 class IdentifyOptions(TypedDict, total=False):
@@ -41,6 +40,8 @@ def with_modes(measurement: Measurement, **options: Unpack[IdentifyOptions]) -> 
                 f"the test holds modes, so none are identified: {', '.join(options)} would say how"
             )
         return measurement
+    from .identify import identify
+
     found = identify(measurement.frfs, geometry=measurement.geometry, **options)
     poor = [
         f"identified mode {k + 1} ({f:.2f} Hz): {remark}"

@@ -68,10 +68,11 @@ def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) 
     a, da = part[..., None, :], error[..., None, :]
     mean = grid.levels + a
     v = (grid.spreads[:, None] * grid.levels) ** 2 + da**2
-    v = v / mean**2 + DAMPERS.measured**2
-    r2 = (np.log(measured) - np.log(mean)) ** 2
+    v /= mean**2
+    v += DAMPERS.measured**2
+    off = np.log(mean / measured)
     nu = DAMPERS.tails
-    return np.asarray(-0.5 * (nu + 1.0) * np.log1p(r2 / (nu * v)) - 0.5 * np.log(v))
+    return np.asarray(-0.5 * (nu + 1.0) * np.log(1.0 + off**2 / (nu * v)) - 0.5 * np.log(v))
 
 
 def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:

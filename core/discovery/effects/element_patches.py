@@ -181,9 +181,9 @@ class PatchRows:
 
 def root_of(A: Floats, least: float = EFFECTS.patch_left) -> Floats:
     """Return rows U (q, r) with UᵀU = A (r, r), positive semidefinite, up to a tiny trace."""
-    L, pivots, rank, _ = la.lapack.dpstrf(A, tol=least * float(np.trace(A)), lower=1)
+    R, pivots, rank, _ = la.lapack.dpstrf(A.T, tol=least * float(np.trace(A)))
     root = np.zeros((rank, len(A)))
-    root[:, pivots - 1] = np.tril(L)[:, :rank].T
+    root[:, pivots - 1] = np.triu(R[:rank])
     return root
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg as la
 
 from ...arrays import Floats, Ints
+from ...numerics.lapack import eigenpairs
 from ..effects.candidates import Suspect, changed, magnitudes
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
@@ -56,7 +57,7 @@ def solve(
     if n < LIKELIHOOD.few_modes * len(K):
         values, vectors = la.eigh(K, M, subset_by_index=(0, n - 1), check_finite=False)
         return values, vectors
-    values, vectors = la.eigh(K, M, driver="gvd", check_finite=False)
+    values, vectors = eigenpairs(K, M)
     return values[:n], vectors[:, :n]
 
 
@@ -151,14 +152,15 @@ def fit(
     for _ in range(iterations if len(reach) else 0):
         H, g = _normal_equations(problem, now, active)
         better = None
-        for _ in range(LIKELIHOOD.dampings):
+        for number in range(LIKELIHOOD.dampings):
             step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             with suppress(np.linalg.LinAlgError):
                 trial = stepped(problem, now, active, np.clip(step, -reach, reach))
                 if trial.objective < now.objective:
-                    better, damping = trial, LIKELIHOOD.damping_down * damping
+                    better = trial
+                    damping *= 1.0 if number else LIKELIHOOD.damping_down
                     break
             damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:

@@ -9,6 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...arrays import Bools, Floats, Ints
 from ...correlation.mode_errors import ModeErrors
+from ...numerics.lapack import lower_solved
 from .likelihood_numbers import LIKELIHOOD
 
 
@@ -130,7 +131,7 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
     G *= W
     G[..., np.arange(n), np.arange(n)] = 1.0 + LIKELIHOOD.ridge
     own = cross * scale[..., None, :]
-    c = np.linalg.solve(np.linalg.cholesky(G), np.swapaxes(own, -1, -2))
+    c = lower_solved(np.linalg.cholesky(G), np.swapaxes(own, -1, -2))
     return np.asarray(np.minimum(np.maximum(np.matmul(np.swapaxes(c**2, -1, -2), W), own**2), 1.0))
 
 

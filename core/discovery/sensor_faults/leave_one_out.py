@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
+from ...numerics.lapack import lower_solved
 from .sensor_numbers import SENSORS
 
 
@@ -150,11 +151,11 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
         used = root > 0.0
         B = span.rows[:, used] * root[used]
         known = B[sound] / variance[sound, j, None]
-        G = np.linalg.inv(np.eye(B.shape[1]) + known.T @ B[sound])
-        w = G @ (known.T @ y[sound, j])
+        L = np.linalg.cholesky(np.eye(B.shape[1]) + known.T @ B[sound])
         own, around = np.where(there[..., None], B[slots], 0.0), span.around[:, :, used]
         X = np.concatenate([own, around * root[used]], axis=1)
-        m, C = X @ w, (X @ G) @ X.transpose(0, 2, 1)
+        Z = lower_solved(L, X.reshape(-1, len(L)).T).T.reshape(X.shape)
+        m, C = Z @ lower_solved(L, known.T @ y[sound, j, None])[:, 0], Z @ Z.transpose(0, 2, 1)
         cross = C[:, :, :k]
         T = -C[:, :k, :k]
         T[:, np.arange(k), np.arange(k)] += noise[:, j]
