@@ -21,6 +21,7 @@ from .likelihood.hypothesis import Fit, Problem
 from .likelihood.map_fit import evaluate
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
+from .model_error.size_posterior import centred
 from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
@@ -296,8 +297,9 @@ def _completed(
 ) -> tuple[Searcher, Found, Judgement, Completeness]:
     """Keep the effects that are likelier than an error of the model without any place.
 
-    Their magnitudes are those at which the test is likeliest beside such an error; in a poor
-    model masses are blocks. Of what leaves a model that does not solve the next best is taken.
+    Their magnitudes are those at which the test is likeliest beside such an error, or the middle
+    of what is likely; in a poor model masses are blocks. Of what leaves a model that does not solve
+    the next best is taken.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
     old, careful = found.levels, verdict.accepted
@@ -313,6 +315,7 @@ def _completed(
             judged = trial.judged(searcher.problem, solid)
             if judged is not None:
                 best, whole = solid, replace(whole, best=judged, told=judged)
+        whole = replace(whole, told=centred(whole.told))
         if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)

@@ -58,6 +58,11 @@ class ModelErrorNumbers:
     step: float = number(0.5, "of ln p or θ", "by which an unknown moves in one, at most")
     tolerance: float = number(0.1, "ln L", "gain of such a step that counts, and that is looked for")
     dampings: int = number(6, "trials", "of Levenberg's damping a step")
+    told: float = number(0.15, "of θ", "standard deviation of a magnitude above which its posterior is followed to either side", "below it a normal one is near enough")
+    profile: tuple[float, float, float] = number((0.3, 0.6, 1.7), "of θ, of θ, times the step before", "first step to either side, at least and at most, and each further one")
+    profile_depth: float = number(4.0, "ln L", "below its highest, down to which a posterior is followed")
+    profile_fine: int = number(400, "magnitudes", "by which it is summed")
+    held: float = number(1e-3, "θ", "standard deviation of a magnitude that is to stay")
 
 
 MODEL_ERROR = ModelErrorNumbers()

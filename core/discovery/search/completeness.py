@@ -31,15 +31,16 @@ from .model_selection import (
     Scored,
     by_such_a_test,
     contenders,
-    earned,
     kept,
     needed,
     ranked,
     scored,
     stands,
+    told_beside,
     worth_telling,
 )
 from .moves import Searcher
+from .patch_reshaping import as_one
 from .search_numbers import SEARCH
 
 
@@ -181,7 +182,7 @@ def completeness(
         richer = fields[k + 1][:1] if k < most else []
         tried = ranked(searcher, (found.levels[k], *poorer), richer)
         tried = [s for s in tried if s not in richer]
-        if not richer or not earned(richer[0], tried[0]):
+        if not richer or not told_beside(searcher, richer[0], tried[0], levels[0]):
             tried = ranked(searcher, _nearest(found, k), tried)
             first = tried[0]
             if _unsettled(first):
@@ -191,12 +192,13 @@ def completeness(
         found = found.with_rivals(poorer)
         fields[k] = sorted(tried, key=lambda s: -s.score)
         found = _led(found, fields[k][0].fit)
-        poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
+        searcher, merged = as_one(searcher, fields[k][0].fit, verdict.scale)
+        poorer = [*_without_one(searcher, fields[k][0].fit), *merged] if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     levels[0] = _fitted_as(searcher, levels[0], max(levels, key=lambda s: s.score))
     alone = levels[0].judged
     assert alone is not None
-    number = kept(levels)
+    number = kept(searcher, levels)
     best, told, places = _centred(searcher, levels[number], fields[number], verdict.scale)
     found = _led(found, told.fit)
     others = contenders(searcher, found, number)

@@ -66,17 +66,21 @@ def burden(searcher: Searcher, f: Fit) -> float:
     Two suspects of one nature side by side are more likely one effect whose shape the catalogue
     does not have, so the second costs more.
     """
-    catalogue = searcher.problem.catalogue
     total = sum(price(searcher, s) for s in f.suspects)
-    total += _stands(searcher, f)
+    return total + _stands(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f))
+
+
+def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
+    """Return numbers of suspects that may be one effect: each with the first beside it before."""
+    catalogue = searcher.problem.catalogue
+    found = dict[int, int]()
     for i, s in enumerate(f.suspects):
-        for t in f.suspects[:i]:
+        for j, t in enumerate(f.suspects[:i]):
             a, b = catalogue[s.kind], catalogue[t.kind]
             apart = float(np.linalg.norm(a.xyz[s.row] - b.xyz[t.row]))
             if a.law.acts_on == b.law.acts_on and apart < SEARCH.beside * searcher.size:
-                total += SEARCH.same_effect
-                break
-    return total
+                found.setdefault(i, j)
+    return [(j, i) for i, j in found.items()]
 
 
 def _stands(searcher: Searcher, f: Fit) -> float:
@@ -100,7 +104,7 @@ def judge(searcher: Searcher, found: Found) -> Judgement:
     accepted = int(np.argmin([cost(searcher, f, scale) for f in found.levels]))
     if accepted + 1 < len(found.levels) and not _settles(searcher, found, accepted):
         levels = [scored(searcher, f) for f in found.levels]
-        richer = levels[kept(levels)]
+        richer = levels[kept(searcher, levels)]
         if richer.judged and richer.score - levels[0].score > needed(richer.judged):
             accepted = max(accepted, len(richer.fit.suspects))
     return Judgement(scale, accepted)
@@ -209,14 +213,14 @@ def needed(judged: Judged) -> float:
     return float(max(SEARCH.suspect, a_mode * len(judged.diffuse.each)))
 
 
-def kept(levels: Sequence[Scored]) -> int:
-    """Return the number of the richest hypothesis that earns its place over the poorer ones.
+def kept(searcher: Searcher, levels: Sequence[Scored]) -> int:
+    """Return the number of the richest hypothesis that is told beside the poorer ones.
 
     0 where it gains less over the first than `worth_telling`.
     """
     best = 0
     for k, level in enumerate(levels[1:], start=1):
-        if earned(level, levels[best]):
+        if told_beside(searcher, level, levels[best], levels[0]):
             best = k
     alone, judged = levels[0].judged, levels[best].judged
     if (
@@ -244,6 +248,17 @@ def earned(richer: Scored, poorer: Scored) -> bool:
     if richer.judged is None or not poorer.fit.suspects:
         return gain > SEARCH.suspect
     return gain > needed(richer.judged)
+
+
+def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Scored) -> bool:
+    """Whether a richer hypothesis earns its place and is no rest of what the poorer one has.
+
+    An effect of another shape than those of the catalogue leaves a share of what it gains over the
+    known parameters `alone`, which one more of its nature beside it takes up.
+    """
+    beside = len(side_by_side(searcher, richer.fit)) > len(side_by_side(searcher, poorer.fit))
+    rest = SEARCH.rest * (poorer.score - alone.score) if beside else 0.0
+    return earned(richer, poorer) and richer.score - poorer.score > rest
 
 
 def by_such_a_test(judged: Judged) -> float:

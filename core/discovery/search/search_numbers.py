@@ -83,6 +83,8 @@ class SearchNumbers:
     strays: float = number(0.1, "of the test modes", "that a clear explanation may leave unexplained")
     beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
     same_effect: float = number(40.0, LN, "what the second of them must gain more")
+    rest: float = number(0.2, "of the gain of the first", "that the second of them has to gain by the error of the model", "rests of two masses that were spread over parts of a wheel: 6 and 14 %")
+    one_tried: int = number(60, "patches", "nearest to the middle of masses side by side that are tried in their stead", "time")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")
     complete: float = number(2.0, "of the assumed variance", "what a hypothesis leaves at most whose masses need no stands, and of which it is asked whether it leaves any error", "time")
     most_noise: float = number(3.0, "of the assumed variance", "by which the end of the search is judged, at most, of hypotheses that are not adequate")

@@ -123,11 +123,16 @@ def hypothesis(objective, *rows):
     return Some(objective=objective, suspects=suspects, nuisance=None)
 
 
-def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
+def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0, merged=()):
     """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows.
 
-    Places `alike` explain as well as any of them.
+    Places `alike` explain as well as any of them; two masses spread as one are `merged`.
     """
+    monkeypatch.setattr(
+        room,
+        "as_one",
+        lambda s, f, _: (s, [hypothesis(99.0, *merged)] if merged and len(f.suspects) > 1 else []),
+    )
     monkeypatch.setattr(
         room,
         "credible_places",
@@ -142,6 +147,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
     kind = Some(
         kind=point_mass.KIND,
+        law=Some(acts_on="M"),
         tunings=1,
         xyz=xyz,
         spots=xyz,
@@ -152,7 +158,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False):
     searcher = Some(
         problem=Some(catalogue=[kind]),
         coarse=[np.arange(100)],
-        size=1.0,
+        size=size,
         effort=Some(apart=0.1),
         fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
@@ -226,3 +232,23 @@ def test_what_is_found_stands_in_the_middle_of_places_that_are_as_likely(monkeyp
     found, kept, said = weighed(monkeypatch, Found(levels, ((), ())), evidence, (3, 4, 5, 6, 7))
     assert [s.row for s in found.levels[kept].suspects] == [row]
     assert said.best.evidence == evidence[(row,)]
+
+
+@pytest.mark.parametrize(("size", "kept"), [(1.0, 2), (100.0, 1)])
+def test_the_second_of_two_masses_side_by_side_has_to_gain_a_share_of_what_the_first_does(
+    monkeypatch, size, kept
+):
+    levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
+    evidence = {(): 0.0, (3,): 130.0, (3, 7): 152.0}
+    found = Found(levels, ((), (), ()))
+    assert weighed(monkeypatch, found, evidence, size=size)[1] == kept
+
+
+def test_two_masses_as_one_that_is_spread_are_one_of_the_poorer(monkeypatch):
+    levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
+    evidence = {(): 0.0, (3,): 30.0, (3, 7): 90.0, (5,): 88.0}
+    found = Found(levels, ((), (), ()))
+    assert weighed(monkeypatch, found, evidence)[1] == 2
+    found, kept, _ = weighed(monkeypatch, found, evidence, merged=(5,))
+    assert kept == 1
+    assert [s.row for s in found.levels[1].suspects] == [5]

@@ -10,8 +10,8 @@ import scipy.sparse as sp
 
 from trueup.core.data.parametric_model import Term
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.effects.effect_laws import FactorLaw
+from trueup.core.discovery.effects.candidates import Candidates, Suspect
+from trueup.core.discovery.effects.effect_laws import FactorLaw, MassLaw
 from trueup.core.discovery.effects.element_patches import Patch, on_patches
 from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
@@ -24,12 +24,13 @@ from trueup.core.discovery.search.credible_places import Place, alike, middle
 from trueup.core.discovery.search.last_look import looked_again
 from trueup.core.discovery.search.model_selection import ranked, scored
 from trueup.core.discovery.search.moves import Searcher
-from trueup.core.discovery.search.patch_reshaping import reshaped, variants
+from trueup.core.discovery.search.patch_reshaping import as_one, reshaped, variants
 from trueup.core.elements.surfaces.quad4 import QUAD4
 from trueup.core.reduction.reduced_sum import ReducedSum
 
 NX, NY = 11, 8
 FACTOR = 0.4
+_MASS = np.tile([0.25, 0.25, 0.25, 0.0, 0.0, 0.0], 4)
 _ELEMENT = np.array([[4, -1, -2, -1], [-1, 4, -1, -2], [-2, -1, 4, -1], [-1, -2, -1, 4]]) / 6.0
 
 
@@ -68,7 +69,7 @@ def membrane(property_of=None):
         block=SimpleNamespace(
             width=6, depends_of=np.zeros(n, int) if property_of is None else property_of
         ),
-        matrices=lambda rows, p: (K[rows], None),
+        matrices=lambda rows, p: (K[rows], np.tile(np.diag(_MASS), (len(rows), 1, 1))),
         coordinates=lambda rows: at[rows],
     )
     geometry = SimpleNamespace(ids=np.arange(1, len(xyz) + 1), xyz=xyz)
@@ -88,9 +89,25 @@ def stiffness(structure, soft=()):
 
 def suspecting(structure, soft, start):
     """A search on the test of a soft membrane, with one patch in its catalogue, and its fit."""
+    middle = structure.centroids(structure.members[0])[start].mean(axis=0)
+    catalogue = on_patches(
+        KINDS["local_stiffness"],
+        structure,
+        [Patch(0, start, middle, True)],
+        FactorLaw(),
+        np.log([[0.3], [0.6]]),
+        (np.zeros(1), np.array([1.2])),
+    )
+    s = searching(structure, stiffness(structure, soft), 0.0, catalogue)
+    return s, fit(s.problem, np.zeros(1), (Suspect(0, 0, (np.log(0.5),)),), (0,), 10)
+
+
+def searching(structure, K, added, catalogue):
+    """A search on the test of a membrane with another stiffness and mass."""
     values, vectors = la.eigh(stiffness(structure))
-    found, shapes = la.eigh(stiffness(structure, soft))
-    n, seen, modes = len(values), np.arange(0, len(values), 2), 12
+    n, modes = len(values), 12
+    found, shapes = la.eigh(K, np.eye(n) + added)
+    seen = np.arange(0, n, 2)
     test = shapes[seen, :modes] / np.linalg.norm(shapes[seen, :modes], axis=0)
     e = Evidence(np.sqrt(found[:modes]) / (2.0 * np.pi), test, Noise(0.002, 0.03, 20.0, 40.0, 1e-4))
     basis = Basis(
@@ -99,23 +116,14 @@ def suspecting(structure, soft, start):
         ReducedSum((Term(sp.csr_matrix(stiffness(structure))),), np.diag(values)[None]),
         ReducedSum((Term(sp.identity(n, format="csr")),), np.eye(n)[None]),
     )
-    middle = structure.centroids(structure.members[0])[start].mean(axis=0)
-    (catalogue,) = on_patches(
-        KINDS["local_stiffness"],
-        structure,
-        [Patch(0, start, middle, True)],
-        FactorLaw(),
-        np.log([[0.3], [0.6]]),
-        (np.zeros(1), np.array([1.2])),
-    )
     prior = Prior(np.ones(1), -np.ones(1), np.ones(1))
-    none = np.zeros((n, n))
+    factors = tuple(c.factors(basis) for c in catalogue)
     problem = Problem(
-        e, e, basis, vectors[seen], vectors[seen], none, (catalogue,),
-        (catalogue.factors(basis),), prior, 40, 20,
+        e, e, basis, vectors[seen], vectors[seen], np.zeros((n, n)), catalogue, factors, prior,
+        40, 20,
     )  # fmt: skip
-    s = Searcher(problem, (np.arange(1),), (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
-    return s, fit(problem, np.zeros(1), (Suspect(0, 0, (np.log(0.5),)),), (0,), 10)
+    every = tuple(np.arange(len(c)) for c in catalogue)
+    return Searcher(problem, every, (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
 
 
 @pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])
@@ -210,3 +218,37 @@ def test_the_middle_of_shapes_as_likely_is_the_one_that_does_the_middling():
     sizes = {-2.0: 0.4, -1.1: 0.25, -1.0: 0.3, 0.3: 0.05}
     places = [Place(Suspect(0, state.suspects[0].row, (t,)), w) for t, w in sizes.items()]
     assert places[middle(patches, places)].suspect.theta == (-1.1,)
+
+
+@pytest.mark.parametrize(("first", "merged"), [((4, 4), 1), ((2, 4), 0)])
+def test_masses_side_by_side_are_tried_as_one_that_is_spread(first, merged):
+    structure, spread, mass = membrane(), box((3, 8), (3, 5)), 8.0
+    m = structure.members[0]
+    masses = MassLaw(), np.log([[1.0], [4.0]]), (np.log([4.0]), np.array([1.5]))
+    every = [box((i, i + 2), (j, j + 2)) for i in range(NX - 1) for j in range(NY - 1)]
+    xyz = structure.centroids(m)
+    patches = [Patch(0, own, xyz[own].mean(axis=0), False) for own in every]
+    (spread_out,) = on_patches(KINDS["distributed_mass"], structure, patches, *masses)
+    free = structure.model.geometry.xyz[structure.displacement.tocsc().indices // 6]
+    points = Candidates(
+        KINDS["point_mass"], free, masses[0], masses[1], sp.identity(len(free), format="csr"),
+        1, tuple({"grids": [k]} for k in range(len(free))), *masses[2],
+    )  # fmt: skip
+    (truth,) = on_patches(
+        KINDS["distributed_mass"], structure, [Patch(0, spread, np.zeros(3), False)], *masses
+    )
+    s = searching(
+        structure, stiffness(structure), mass * truth.full(0).toarray(), (points, spread_out)
+    )
+    rows = [int(np.argmin(np.linalg.norm(free - [*at, 0.0], axis=1))) for at in (first, (6, 4))]
+    two = tuple(Suspect(0, row, (np.log(mass / 2.0),)) for row in rows)
+    state = fit(s.problem, np.zeros(1), two, (0,), 10)
+    wide, tried = as_one(s, state, 1.0)
+    assert len(tried) == merged
+    for one in tried:
+        (suspect,) = one.suspects
+        c = wide.problem.catalogue[suspect.kind]
+        assert c.kind is KINDS["distributed_mass"]
+        assert c.where[suspect.row]["elements"] == (spread + 1).tolist()
+        assert np.exp(suspect.theta[0]) == pytest.approx(mass, rel=0.05)
+        assert one.objective < state.objective
