@@ -42,9 +42,10 @@ class Slope:
     def towards(self, seen: Seen, d: Diffuse) -> tuple[Floats, float]:
         """Return the step of ln of error and noise to where they are likeliest, and its gain.
 
-        Of a scale that is all there is to fit, 1 + 2δ by Fisher's step δ is its square.
+        Of a scale that is all there is to fit, 1 + 2δ by Fisher's step δ is its square. What no
+        mode tells, where all of them are none of the model's, stays.
         """
-        fisher = np.linalg.solve(self.information, -self.errors)
+        fisher = -np.linalg.pinv(self.information, hermitian=True) @ self.errors
         step = 0.5 * np.log(np.maximum(1.0 + 2.0 * fisher, MODEL_ERROR.shrinks))
         step = np.log(moved(seen, d, step)) - np.log([d.error, d.noise])
         return step, -float(self.errors @ step)

@@ -56,3 +56,9 @@ def test_of_errors_and_noises_the_likeliest_of_all_is_found():
         seen = made(error, noise, seed=k)
         grid = product(np.geomspace(*MODEL_ERROR.errors, 19), np.geomspace(*MODEL_ERROR.noises, 15))
         assert diffuse(seen).log > max(at(seen, *place).log for place in grid) - 0.1
+
+
+def test_a_test_of_another_structure_tells_no_error_and_no_noise():
+    seen = made(0.01)
+    found = diffuse(replace(seen, hz=1e3 * seen.hz))
+    assert np.all(found.stray > 0.99)
