@@ -226,3 +226,10 @@ def test_what_is_found_stands_in_the_middle_of_places_that_are_as_likely(monkeyp
     found, kept, said = weighed(monkeypatch, Found(levels, ((), ())), evidence, (3, 4, 5, 6, 7))
     assert [s.row for s in found.levels[kept].suspects] == [row]
     assert said.best.evidence == evidence[(row,)]
+
+
+def test_a_shape_that_was_come_to_twice_counts_once():
+    where = [{"elements": [1, 2]}, {"elements": [2, 3]}, {"elements": [1, 2]}]
+    searcher = Some(problem=Some(catalogue=[Some(where=where)]))
+    tried = [Some(fit=Some(suspects=[Some(kind=0, row=row)])) for row in range(3)]
+    assert room.distinct(searcher, tried) == tried[:2]
