@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import prod
 
 import numpy as np
 import scipy.sparse as sp
@@ -55,7 +56,8 @@ class ReducedSum:
         same = p.tobytes()
         if what not in self._last or self._last[what][0] != same:
             c, parts = weights(), self.matrices
-            found = (c @ parts.reshape(len(parts), -1)).reshape(c.shape[:-1] + parts.shape[1:])
+            one = parts.shape[1:]
+            found = (c @ parts.reshape(len(parts), prod(one))).reshape(c.shape[:-1] + one)
             found.flags.writeable = False
             self._last[what] = same, found
         return self._last[what][1]

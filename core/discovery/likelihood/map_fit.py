@@ -153,15 +153,14 @@ def fit(
     for _ in range(iterations if len(reach) else 0):
         H, g = _normal_equations(problem, now, active)
         better = None
-        for number in range(LIKELIHOOD.dampings):
+        for _ in range(LIKELIHOOD.dampings):
             step = _step(H, g, damping)
             if -float(g @ step) < tolerance:
                 break
             with suppress(np.linalg.LinAlgError):
                 trial = stepped(problem, now, active, np.clip(step, -reach, reach))
                 if trial.objective < now.objective:
-                    better = trial
-                    damping *= 1.0 if number else LIKELIHOOD.damping_down
+                    better, damping = trial, LIKELIHOOD.damping_down * damping
                     break
             damping = max(LIKELIHOOD.damping_up * damping, LIKELIHOOD.damping_first)
         if better is None:

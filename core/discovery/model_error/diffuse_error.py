@@ -19,6 +19,8 @@ from scipy.optimize import linear_sum_assignment
 from ...arrays import Floats, Ints
 from .model_error_numbers import MODEL_ERROR
 
+_TINY = float(np.finfo(float).tiny)
+
 
 @dataclass(frozen=True, eq=False)
 class Diffuse:
@@ -154,9 +156,9 @@ def shares(seen: Seen, error: float, columns: Ints) -> tuple[Floats, Floats]:
     x = seen.values / seen.values[columns, None]
     share = error**2 * x / ((1.0 - x) ** 2 + error**2 * x)
     lengths = np.diag(seen.gram)
-    least = max(MODEL_ERROR.unseen * lengths.max(), np.finfo(float).tiny)
+    least = max(MODEL_ERROR.unseen * lengths.max(), _TINY)
     squares = np.sum(share * (share @ seen.gram**2), axis=1)
-    length = squares / np.maximum(share @ lengths, np.finfo(float).tiny)
+    length = squares / np.maximum(share @ lengths, _TINY)
     return 1.0 / np.maximum(length, least), share
 
 

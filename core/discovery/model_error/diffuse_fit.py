@@ -23,6 +23,8 @@ from .diffuse_error import Diffuse, Seen, at
 from .diffuse_slope import Slope, diffuse, moved, slope
 from .model_error_numbers import MODEL_ERROR
 
+_TINY = float(np.finfo(float).tiny)
+
 
 @dataclass(frozen=True)
 class Drift:
@@ -202,7 +204,7 @@ def normal_equations(
     C = F * gap / (gap**2 + z)
     C[:, k, count] = -0.5 * b[:, k, count]
     t, own = here.shapes, here.modes[:, k]
-    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), np.finfo(float).tiny)
+    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), _TINY)
     C = (C * c).transpose(2, 0, 1)
     sure = 1.0 - d.stray
     variance = 0.5 * d.error**2 + here.scatter**2

@@ -45,7 +45,7 @@ def _centred(found: Judged, number: int, own: int, deviation: float) -> Judged:
     share = np.cumsum(np.exp(np.interp(fine, theta, log) - log.max()))
     low, middle, high = np.interp(_QUANTILES, share / share[-1], fine)
     H = found.information.copy()
-    H[own, own] += 4.0 / (high - low) ** 2 - 1.0 / np.linalg.pinv(H)[own, own]
+    H[own, own] += 1.0 / (0.5 * (high - low)) ** 2 - 1.0 / np.linalg.pinv(H)[own, own]
     fit, state = (
         replace(f, suspects=_at(f.suspects, number, middle)) for f in (found.fit, found.state)
     )

@@ -82,7 +82,7 @@ def build_discovery(
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"
-    sure = whole.posterior * _share(word, bool(findings), proposal)
+    sure = whole.posterior * _share(word, bool(findings), proposal, whole)
     if word == "undecided" or not adequate:
         decide = (*left_over(whole, request.numbers), *decide)
     return Discovery(
@@ -211,16 +211,18 @@ def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> 
     )
 
 
-def _share(word: str, findings: bool, proposal: bool) -> float:
+def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> float:
     """Return the share of frozen cases in which what is told so was right.
 
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
-    sure, the less so where the best one is not clear or leaves more than right models do.
+    sure, the less so where the best one is not clear, leaves more than right models do, or gains
+    little a mode.
     """
     if not findings:
         return NARRATIVE.nothing
     if word == "effect":
-        return NARRATIVE.claimed
+        little = whole.gain < NARRATIVE.little * len(whole.best.diffuse.each)
+        return NARRATIVE.claimed_by_little if little else NARRATIVE.claimed
     return NARRATIVE.proposed if proposal else NARRATIVE.doubted
 
 
