@@ -7,7 +7,7 @@ more than it could have been anywhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -256,17 +256,9 @@ def _centred(
     for q, c in enumerate(kinds):
         if gives(c):
             others = (s for s in tried if s is not told)
-            near, every[q] = alike(distinct(searcher, (told, *others)), told, q)
+            near, every[q] = alike((told, *others), told, q)
             told = near[middle(c, every[q])]
     return best, told, every
-
-
-def distinct(searcher: Searcher, tried: Iterable[Scored]) -> list[Scored]:
-    """Return the first of what was tried of each shape: one that was come to twice counts once."""
-    catalogue, out = searcher.problem.catalogue, dict[str, Scored]()
-    for s in tried:
-        out.setdefault(repr([(t.kind, catalogue[t.kind].where[t.row]) for t in s.fit.suspects]), s)
-    return list(out.values())
 
 
 def _fitted_as(searcher: Searcher, alone: Scored, best: Scored) -> Scored:

@@ -90,10 +90,11 @@ def middle(c: Candidates, places: Sequence[Place]) -> int:
     """Return the number of that place which is nearest to where a suspect may be, on average.
 
     Along a beam that hardly stretches a spring in its direction does the same anywhere. Patches
-    that give are near each other by how much they do, the larger one is the less.
+    that give are near each other by how much they do, the larger one is the less: it is a mean that
+    small and large ones, which are as likely, share.
     """
     at = c.spots[[p.suspect.row for p in places]]
     if gives(c):
         at = np.array([p.suspect.theta for p in places])
-    away = np.linalg.norm(at[:, None] - at, axis=2) @ [p.weight for p in places]
-    return int(np.argmin(away))
+    away = np.linalg.norm(at[:, None] - at, axis=2) ** (2 if gives(c) else 1)
+    return int(np.argmin(away @ [p.weight for p in places]))

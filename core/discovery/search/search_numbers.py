@@ -78,7 +78,7 @@ class SearchNumbers:
     look_beside_judged: int = number(2, "of these", "that are judged so", "time")
     look_sizes: tuple[float, ...] = number((-1.6, -0.8, -0.3, 0.0, 0.3, 0.8, 1.6), "θ", "tried there: stiffer where it moves less")
     look_moves: int = number(6, "moves", "of all suspects to these, at most")
-    look_gain: float = number(0.2, "ln L", "what such a move must gain for another to be tried", "evidences of alike hypotheses agree to 0.1")
+    look_gain: float = number(0.5, "ln L", "what such a move must gain for another to be tried")
     nothing: float = number(0.33, "of what lumping does to ln f", "error of a deck of shells that lacks nothing, at most", "nine of these: 0.18 to 0.33")
     strays: float = number(0.1, "of the test modes", "that a clear explanation may leave unexplained")
     beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
