@@ -1,6 +1,6 @@
 """Fit known parameters and the magnitudes of suspects together, on the small basis."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -9,7 +9,6 @@ import scipy.linalg as la
 
 from ...arrays import Floats, Ints
 from ...numerics.lapack import eigenpairs
-from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import Suspect, changed, magnitudes
 from .hypothesis import Fit, Problem, taken_apart
 from .likelihood_numbers import LIKELIHOOD
@@ -246,66 +245,34 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
 def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
     """Return Vᵀ ∂K V and Vᵀ ∂M V by each unknown, on the right only the modes that match."""
     V, k = now.vectors, now.match
-    S, p = V[: problem.basis.size], np.exp(now.log_p)
-    a = np.zeros((len(active) + len(magnitudes(now.suspects)), V.shape[1], len(k)))
-    b = np.zeros_like(a)
+    S, own, p = V[: problem.basis.size], problem.basis.size, np.exp(now.log_p)
+    first = len(active)
+    a = np.zeros((first + sum(len(s.theta) for s in now.suspects), V.shape[1], len(k)))
+    b, i = np.zeros_like(a), first
     for out, matrices in ((a, problem.basis.stiffness), (b, problem.basis.mass)):
-        moving, slopes = _slopes(matrices, p, active)
+        moving = np.flatnonzero([q in matrices.moved_by for q in active])
+        which = np.array(active, np.int64)[moving]
+        slopes = matrices.slopes(p, which.tolist()) * p[which, None, None]
         out[moving] = np.matmul(S.T, np.matmul(slopes, S[:, k]))
     if len(p) in active:
         b[active.index(len(p))] = -S.T @ (problem.mesh @ S[:, k])
-    for i, of_mass, rows, weights in _local(problem, now, active):
-        (b if of_mass else a)[i] += (rows.T * weights) @ rows[:, k]
-    return a, b
-
-
-def sums(
-    problem: Problem, now: Fit, active: Sequence[int], stiffness: Floats, mass: Floats
-) -> Floats:
-    """Return Σ X ∘ Vᵀ ∂K V + Y ∘ Vᵀ ∂M V by each unknown; X `stiffness`, Y `mass` (n, n)."""
-    S, p = now.vectors[: problem.basis.size], np.exp(now.log_p)
-    out = np.zeros(len(active) + len(magnitudes(now.suspects)))
-    on_basis = S @ stiffness @ S.T, S @ mass @ S.T
-    for X, matrices in zip(on_basis, (problem.basis.stiffness, problem.basis.mass), strict=True):
-        moving, slopes = _slopes(matrices, p, active)
-        out[moving] += np.tensordot(slopes, X, 2)
-    if len(p) in active:
-        out[active.index(len(p))] -= np.sum(problem.mesh * on_basis[1])
-    for i, of_mass, rows, weights in _local(problem, now, active):
-        X = mass if of_mass else stiffness
-        out[i] += np.sum(weights * np.sum((rows @ X) * rows, axis=1))
-    return out
-
-
-def _slopes(matrices: ReducedSum, p: Floats, active: Sequence[int]) -> tuple[Ints, Floats]:
-    """Return which of the parameters move a matrix on the basis, and its derivatives by ln p."""
-    moving = np.flatnonzero([q in matrices.moved_by for q in active])
-    which = np.array(active, np.int64)[moving]
-    return moving, matrices.slopes(p, which.tolist()) * p[which, None, None]
-
-
-def _local(
-    problem: Problem, now: Fit, active: Sequence[int]
-) -> Iterator[tuple[int, bool, Floats, Floats]]:
-    """Give what suspects change by each unknown: its number, whether of M, rows and weights."""
-    V, own, i = now.vectors, problem.basis.size, len(active)
     for s in now.suspects:
         rows, law = problem.part(s.kind, np.array([s.row]), now.nuisance)
         U, theta = rows[0], np.array([s.theta])
-        u, slopes = U @ V[: problem.basis.size], law.slope(theta, _FIRST)[0]
+        u, slopes = U @ S, law.slope(theta, _FIRST)[0]
         if law.on == "A":
             x = V[own : own + len(U)] / np.sqrt(law.value(theta, _FIRST)[0])[:, None]
             own += len(U)
-            soft = law.flexibility(theta, _FIRST)[0]
+            stretch, soft = u - x, law.flexibility(theta, _FIRST)[0]
             for df, dm in zip(law.flexibility_slope(theta)[0], slopes, strict=True):
-                yield i, False, u - x, -df / soft**2
-                yield i, True, x, dm
+                a[i], b[i] = (stretch.T * (-df / soft**2)) @ stretch[:, k], (x.T * dm) @ x[:, k]
                 i += 1
             continue
         for c in slopes:
-            yield i, law.on != "K", u, c
+            (a if law.on == "K" else b)[i] = (u.T * c) @ u[:, k]
             i += 1
         for j, q in enumerate(active):
-            change = law.by_parameter(theta, _FIRST, q) if q < len(now.log_p) else None
+            change = law.by_parameter(theta, _FIRST, q) if q < len(p) else None
             if change is not None:
-                yield j, False, u, change[0]
+                a[j] += (u.T * change[0]) @ u[:, k]
+    return a, b

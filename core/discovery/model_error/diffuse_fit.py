@@ -17,7 +17,7 @@ from ...arrays import Floats
 from ..effects.candidates import Suspect, changed, magnitudes
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.likelihood_numbers import LIKELIHOOD
-from ..likelihood.map_fit import products, solve, sums, surprise
+from ..likelihood.map_fit import products, solve, surprise
 from ..likelihood.mode_likelihood import targets
 from .diffuse_error import Diffuse, Seen, at
 from .diffuse_slope import Slope, diffuse, moved, slope
@@ -196,8 +196,9 @@ def normal_equations(
     k, lam = d.match, here.values
     lk, count = lam[k], np.arange(len(k))
     by = slope(here, d)
-    g = sums(problem, now, active, by.stiffness, by.mass)
-    a, b = products(problem, replace(now, match=k), active)
+    a, b = products(problem, replace(now, match=np.arange(len(lam))), active)
+    g = np.tensordot(a, by.stiffness, 2) + np.tensordot(b, by.mass, 2)
+    a, b = a[:, :, k], b[:, :, k]
     F = a - b * lk
     gap = lk[None, :] - lam[:, None]
     z = d.error**2 * lk[None, :] * lam[:, None]
