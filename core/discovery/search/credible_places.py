@@ -62,7 +62,8 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
 def alike(tried: Sequence[Scored], best: Scored, number: int) -> tuple[list[Scored], list[Place]]:
     """Return what was `tried` that is about as likely by the error of the model, and where.
 
-    One suspect elsewhere, on bases of their own: no other tells the size of a patch that gives.
+    One suspect elsewhere, on bases of their own: no other tells the size of a patch that gives. Of
+    each place the first.
     """
 
     def same(s: Scored) -> bool:
@@ -71,7 +72,8 @@ def alike(tried: Sequence[Scored], best: Scored, number: int) -> tuple[list[Scor
         kinds = [t.kind for t in s.fit.suspects] == [o.kind for o in best.fit.suspects]
         return kinds and others and 2.0 * (best.score - s.score) < SEARCH.credible
 
-    near = [s for s in tried if s.judged and same(s)]
+    rows = {s.fit.suspects[number].row: s for s in reversed(tried) if s.judged and same(s)}
+    near = list(rows.values())
     where = [s.judged.fit.suspects[number] for s in near if s.judged]
     weight = np.exp([s.score - best.score for s in near])
     share = (weight / weight.sum()).tolist()

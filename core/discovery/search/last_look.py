@@ -81,7 +81,7 @@ def _moved(
             searcher, fits = _beside(searcher, best, q)
             fits = [f for f in fits if _shape(searcher, f) not in seen]
             seen |= {_shape(searcher, f) for f in fits}
-            new = [s for s in ranked(searcher, fits, [best], gives(c)) if s is not best]
+            new = [s for s in ranked(searcher, fits, [best]) if s is not best]
             now = paid | {q: float(np.log1p(len(fits)))} if gives(c) else paid
             out += (replace(s, score=s.score - sum(now.values())) for s in new)
             first = max((best, *new), key=_score)

@@ -252,10 +252,3 @@ def test_two_masses_as_one_that_is_spread_are_one_of_the_poorer(monkeypatch):
     found, kept, _ = weighed(monkeypatch, found, evidence, merged=(5,))
     assert kept == 1
     assert [s.row for s in found.levels[1].suspects] == [5]
-
-
-def test_a_shape_that_was_come_to_twice_counts_once():
-    where = [{"elements": [1, 2]}, {"elements": [2, 3]}, {"elements": [1, 2]}]
-    searcher = Some(problem=Some(catalogue=[Some(where=where)]))
-    tried = [Some(fit=Some(suspects=[Some(kind=0, row=row)])) for row in range(3)]
-    assert room.distinct(searcher, tried) == tried[:2]
