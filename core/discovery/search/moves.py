@@ -178,12 +178,15 @@ class Searcher:
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
             return fit(whole, state.nuisance, suspects, self.active, steps)
 
-    def refined(self, state: Fit) -> Fit:
-        """Move every suspect to better neighbours until none is better."""
+    def refined(self, state: Fit, by: Callable[[Problem], Problem] = softened) -> Fit:
+        """Move every suspect to better neighbours until none is better.
+
+        ``by(problem)`` has the noise by which they promise: far from the truth a softened one.
+        """
         n = len(state.suspects)
         left, q = n, 0
         for _ in range(SEARCH.rounds * n):
-            better = self._neighbour(state, q)
+            better = self._neighbour(state, q, by)
             state, left = (state, left - 1) if better is None else (better, n)
             if not left:
                 break
@@ -200,7 +203,7 @@ class Searcher:
         again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
         return again if again.objective < state.objective else state
 
-    def _neighbour(self, state: Fit, q: int) -> Fit | None:
+    def _neighbour(self, state: Fit, q: int, by: Callable[[Problem], Problem]) -> Fit | None:
         suspect = state.suspects[q]
         others = state.suspects[:q] + state.suspects[q + 1 :]
         if stretches := stretches_beside(self.problem.catalogue, suspect):
@@ -214,12 +217,12 @@ class Searcher:
         if not len(rows):
             return None
         small, here = self.local(without)
-        alike = scan(softened(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
+        alike = scan(by(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
         rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
         trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
-        score = scan(softened(small), here, suspect.kind, rows, trials)
+        score = scan(by(small), here, suspect.kind, rows, trials)
         small = self.local(state)[0]
-        soft = softened(small)
+        soft = by(small)
         options: list[tuple[float, tuple[Suspect, ...]]] = []
         for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]:
             if rows[i] == suspect.row:

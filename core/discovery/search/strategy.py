@@ -104,13 +104,14 @@ def bettered(
 def unlike(searcher: Searcher, found: Found) -> Found:
     """Part twins of what is chosen where two that are not alike earn their place.
 
-    Two masses at places that are nearly each other's images look like twins and a third.
+    Two masses at places that are nearly each other's images look like twins and a third. Where the
+    second belongs shows by the noise as it is: a softened one holds it where the twins had it.
     """
     number = judge(searcher, found).accepted
     twins = found.levels[number]
     for apart in parted(searcher.problem.catalogue, twins.suspects):
         near = searcher.fitted(twins, apart, SEARCH.steps_new, soften=True)
-        two = searcher.settled(searcher.refined(near))
+        two = searcher.settled(searcher.refined(searcher.refined(near), lambda p: p))
         if earned(scored(searcher, two), scored(searcher, twins)):
             return found.with_richer(two)
     return found
