@@ -53,6 +53,7 @@ class EffectNumbers:
     patch_rounding: float = number(1e-12, "of the largest eigenvalue", "below which one of an element is zero", ROUNDING)
 
     bar_point: float = number(0.25, "of an element's length", "from its ends that a bar has points beside its middle", "as near to any place as a shell's are")
+    bar_coarse: float = number(0.05, SIZE, "length of an element above which it has these", "elements of a tower, 3 %, need none: a stretch of it was taken for a link with them")
     bar_straight: float = number(0.98, "cosine", "between elements that continue a bar")
     bar_stretches: int = number(400, "stretches", "of all bars, at most", "time")
     bar_long: float = number(0.5, SIZE, "length of a bar whose stretches are scanned first")

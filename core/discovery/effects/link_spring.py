@@ -33,9 +33,11 @@ class Links(Candidates):
     def near(self, row: int, count: int) -> Links:
         """Return the links between so many points nearest to either end of one of them.
 
-        What joins two places ends where it ends, at a grid of the mesh or between them.
+        What joins two places ends where it ends, at a grid of the mesh or between them; not at the
+        quarters of a bar: a link from one to the next along it would be a stiffer stretch of it.
         """
-        points = points_of(self.structure)
+        every = points_of(self.structure)
+        points = every.of(np.flatnonzero(["arms" not in w for w in every.where]))
         xyz = points.xyz
         first, last = (
             cKDTree(xyz).query(end, min(count, len(xyz)))[1]

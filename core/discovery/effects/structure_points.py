@@ -47,8 +47,8 @@ def points_of(structure: Structure) -> Points:
 
     Between its grids a shell moves as their rotations say (Hermite's cubic): a mode of four
     elements a wave moves twice as far at the middle of an element as its corners do on average.
-    Bars have a point at their middle and one at either quarter, which the grid next to it carries:
-    to the shortest waves of a test half the side of an element is far.
+    Bars have a point at their middle and, coarse ones, one at either quarter, which the grid next
+    to it carries: to the shortest waves of a test half the side of an element is far.
     """
     g = structure.model.geometry
     moving = np.asarray(abs(structure.model.expansion).sum(axis=1)).ravel() > 0.0
@@ -108,7 +108,8 @@ def _arms(structure: Structure, carries: Bools) -> tuple[Ints, Floats]:
     bars = [structure.members[k].corners[rows, :2] for k, rows in bare_bars(structure)]
     one = np.concatenate([np.zeros((0, 2), np.int64), *bars])
     ends = np.concatenate([one, one[:, ::-1]])
-    ends = ends[carries[ends[:, 0]]]
+    length = np.linalg.norm(g.xyz[ends[:, 1]] - g.xyz[ends[:, 0]], axis=1)
+    ends = ends[carries[ends[:, 0]] & (length > EFFECTS.bar_coarse * g.size)]
     arms = EFFECTS.bar_point * (g.xyz[ends[:, 1]] - g.xyz[ends[:, 0]])
     order = structure.in_order(g.xyz[ends[:, 0]] + arms)
     return ends[order, 0], arms[order]
