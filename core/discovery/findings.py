@@ -18,6 +18,7 @@ class Where(Noun):
     A place that explains the data about as well has the `kind` that would explain them there, and
     `weight`, its share of the probability. Of what joins two places `ends` are the grids that each
     of them follows, several where it is between grids.
+    Of a place that one grid carries at a distance `arms` holds how far off that grid it is, (3,).
     """
 
     grids: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -82,7 +81,7 @@ def _grids(structure: Structure) -> Points:
 
 def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
     """Return the links between points a (n,) and b (n,), in all else like some candidates."""
-    xyz, where = at.xyz, at.where
+    xyz, grids = at.xyz, [w["grids"] for w in at.where]
     used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
     line = xyz[b] - xyz[a]
     n = line / np.linalg.norm(line, axis=1)[:, None]
@@ -103,22 +102,14 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         loads=sp.vstack([push, pull]).tocsr(),
         turns=sp.hstack([-one, one]).tocsr(),
         where=tuple(
-            _joined(where[i], where[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)
+            {"grids": [*grids[i], *grids[j]], "ends": [grids[i], grids[j]], "components": [1]}
+            for i, j in zip(a.tolist(), b.tolist(), strict=True)
         ),
         typical=like.typical,
         spread=like.spread,
         structure=structure,
         ends_xyz=np.hstack([xyz[a], xyz[b]]),
     )
-
-
-def _joined(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
-    """Say where a link between two points is."""
-    ends = [one["grids"], other["grids"]]
-    said = {"grids": [*ends[0], *ends[1]], "ends": ends, "components": [1]}
-    if "arms" in one or "arms" in other:
-        said["arms"] = [w.get("arms", [(0.0, 0.0, 0.0)])[0] for w in (one, other)]
-    return said
 
 
 KIND = EffectKind(

@@ -1,27 +1,21 @@
 """CBUSH1D for a spring between two places."""
 
-from itertools import zip_longest
 from typing import Any
 
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
-from .site import Site, companion, follower, plain
+from .site import Site, follower, plain
 
 
 def write(text: DeckText, site: Site) -> DeckText:
     """Put a spring along the line between two places, each a grid or one that follows several."""
     number, new = free_id(text, "element"), free_id(text, "grid")
     ends, rows = list[int](), list[list[Any]]()
-    both = site.finding.where.ends or tuple((g,) for g in site.grids)
-    for grids, arm in zip_longest(both, site.arms):
+    for grids in site.finding.where.ends or tuple((g,) for g in site.grids):
         end = grids[0]
         if len(grids) > 1:
             end, new = new, new + 1
             rows += follower(site, grids, end, number)
-            number += 1
-        elif arm and any(arm):
-            end, new = new, new + 1
-            rows += companion(site, grids[0], end, number, arm)
             number += 1
         ends.append(end)
     own = free_id(text, "property")

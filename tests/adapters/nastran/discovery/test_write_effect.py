@@ -212,19 +212,6 @@ def test_equipment_between_grids_is_off_by_its_arm_and_its_offset(tmp_path):
     np.testing.assert_allclose(found, cantilever(BEYOND, 3e-4), rtol=1e-6)
 
 
-def test_a_link_that_ends_between_grids_pulls_there(tmp_path):
-    text = BEAM.format(cd="").replace("CONM2", "GRID,3,,75.,0.,50.,,123456\nCONM2")
-    what = finding(
-        "link_spring",
-        {"stiffness": 500.0, "components": [1]},
-        grids=[2, 3],
-        ends=((2,), (3,)),
-        arms=((-25.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-    )
-    _, found = completed(tmp_path, text, what)
-    np.testing.assert_allclose(found, cantilever(BEYOND, 0.0, 500.0), rtol=1e-6)
-
-
 def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):
     what = finding("support_flexibility", {"stiffness": 5e5, "components": [4, 5, 6]}, grids=[1])
     _, found = completed(tmp_path, STIFF_ARMS, what)
