@@ -29,7 +29,6 @@ from .reduction.elements_and_supports import Structure
 from .search.beam_search import Found
 from .search.coarse_scan import first_places
 from .search.completeness import Completeness, completeness
-from .search.equipment_growth import as_blocks
 from .search.footprints import footed, settled
 from .search.misshapen import beside_geometry
 from .search.model_selection import (
@@ -52,6 +51,7 @@ from .search.refit_own_basis import (
 from .search.robust_search import robust
 from .search.set_up import beside_reach
 from .search.strategy import bettered, evidence, on_stands, searched, unlike
+from .search.unknown_mounts import as_blocks_on_mounts
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
 
@@ -310,12 +310,16 @@ def _completed(
     best = found.levels[kept]
     if kept:
         structure, densest = trial.request.structure, trial.request.densest
+        blocks = None
         if densest and not adequate(searcher, best):
-            searcher, solid = as_blocks(structure, searcher, best, densest)
-            judged = trial.judged(searcher.problem, solid)
-            if judged is not None:
-                best, whole = solid, replace(whole, best=judged, told=judged)
-        whole = replace(whole, told=centred(whole.told))
+            starts = whole.told.fit.nuisance, whole.alone.fit.nuisance
+            blocks = as_blocks_on_mounts(structure, searcher, best, starts, densest)
+        if blocks is None:
+            whole = replace(whole, told=centred(whole.told))
+        else:
+            searcher, rigid, told = blocks
+            best = evaluate(searcher.problem, rigid.fit.nuisance, rigid.fit.suspects)
+            whole = replace(whole, best=rigid, told=told)
         if best is not old[kept] or kept > careful:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)

@@ -23,6 +23,8 @@ class EffectNumbers:
 
     mount: tuple[float, float, float] = number((2.0, 1.0, 100.0), "of the band's end, of ln f, of the band's end", "median and standard deviation of the frequency of a mass on its mount beforehand, and the highest: an octave above the band; in the band it is an absorber")
     mount_soft: float = number(0.25, "of ln f", "above an absorber: a soft mount that is tried at other places")
+    mount_held: float = number(1e-3, "of ln f", "standard deviation of that of a mount that is to stay")
+    mounts_unknown: tuple[float, ...] = number((0.1, 0.3, 0.5, 0.7, 0.9), "of what mounts may be beforehand", "at which masses are sized where a model errs by more than tells it")
     mount_known: float = number(5.0, "-", "ratio of the ends of its interval, beyond which the test does not tell it")
     mass_error: float = number(0.15, "of ln m", ERROR, MEASURED)
     stiffness_error: float = number(0.25, "of ln k", ERROR, MEASURED)

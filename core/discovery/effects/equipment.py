@@ -16,7 +16,7 @@ from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates, places_of, together
 from .effect_kind import Words
-from .effect_laws import MassLaw
+from .effect_laws import MassLaw, MountedLaw
 from .effect_numbers import EFFECTS
 from .structure_points import rotations, translations
 
@@ -127,19 +127,32 @@ def _axes(around: Floats) -> tuple[Floats, bool]:
     return np.array([normal, along, np.cross(normal, along)]), True
 
 
-def equipment(template: Candidates, stands: Sequence[Stand], bodies: Sequence[Body]) -> Candidates:
-    """Return candidates of masses with each of the bodies, at all the places together."""
+def equipment(
+    template: Candidates,
+    stands: Sequence[Stand],
+    bodies: Sequence[Body],
+    mount: float | None = None,
+) -> Candidates:
+    """Return candidates of masses with each of the bodies, at all the places together.
+
+    Rigidly, or each on a mount of a known ln f, alike in all directions and turns.
+    """
     each = [(s, _turned(s, b)) for b in bodies for s in stands]
+    held = np.array([] if mount is None else [mount])
+    anywhere = np.full(1, np.inf)
     single = Equipment(
         kind=template.kind,
         xyz=np.array([s.xyz for s, _ in each]),
-        law=MassLaw(),
-        trials=template.trials[:, :1],
+        law=MassLaw() if mount is None else MountedLaw(np.zeros((len(each), 1)), 0.0),
+        trials=np.hstack([template.trials[:, :1], np.tile(held, (len(template.trials), 1))]),
         root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
         rows_each=6,
         where=tuple(s.where for s, _ in each),
-        typical=template.typical[:1],
-        spread=template.spread[:1],
+        typical=np.append(template.typical[:1], held),
+        spread=np.append(template.spread[:1], np.full(len(held), EFFECTS.mount_held)),
+        steps=np.ones(1 + len(held)),
+        lower=np.append(-anywhere, held),
+        upper=np.append(anywhere, held),
         bodies=tuple(b for _, b in each),
     )
     if len(stands) == 1:

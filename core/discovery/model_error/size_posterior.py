@@ -7,12 +7,13 @@ magnitudes on either side, all else following, and the median of what is likely 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.special import ndtr
 
+from ...arrays import Floats
 from ..effects.candidates import Suspect
 from ..likelihood.map_fit import evaluate
 from .diffuse_fit import Judged, everything, judged
@@ -43,7 +44,35 @@ def _centred(found: Judged, number: int, own: int, deviation: float) -> Judged:
     log = np.array([known[t] for t in theta.tolist()])
     fine = np.linspace(theta[0], theta[-1], MODEL_ERROR.profile_fine)
     share = np.cumsum(np.exp(np.interp(fine, theta, log) - log.max()))
-    low, middle, high = np.interp(_QUANTILES, share / share[-1], fine)
+    return _put(found, number, own, np.interp(_QUANTILES, share / share[-1], fine))
+
+
+def amid(found: Judged, others: Sequence[Judged]) -> Judged:
+    """Return a hypothesis, first magnitudes in the middle of where several others have them.
+
+    These have as many suspects, and are as likely as each other, whatever the test says.
+    """
+    each = [len(s.theta) for s in found.state.suspects]
+    for k in range(len(each)):
+        theta, deviation = np.transpose([_first(other, k) for other in others])
+        ends = theta + np.outer([-1.0, 1.0], MODEL_ERROR.profile_depth * deviation)
+        fine = np.linspace(ends.min(), ends.max(), MODEL_ERROR.profile_fine)
+        share = ndtr((fine[:, None] - theta) / deviation).mean(axis=1)
+        own = len(found.information) - sum(each[k:])
+        found = _put(found, k, own, np.interp(_QUANTILES, share, fine))
+    return found
+
+
+def _first(found: Judged, number: int) -> tuple[float, float]:
+    """Return the first magnitude of a suspect and its standard deviation."""
+    suspects = found.state.suspects
+    own = len(found.information) - sum(len(s.theta) for s in suspects[number:])
+    return suspects[number].theta[0], float(np.sqrt(np.linalg.pinv(found.information)[own, own]))
+
+
+def _put(found: Judged, number: int, own: int, quantiles: Floats) -> Judged:
+    """Return a hypothesis with the first magnitude of a suspect, a row of the information, put."""
+    low, middle, high = quantiles
     H = found.information.copy()
     H[own, own] += 1.0 / (0.5 * (high - low)) ** 2 - 1.0 / np.linalg.pinv(H)[own, own]
     fit, state = (
@@ -83,6 +112,7 @@ def _log(found: Judged, number: int, theta: float) -> float:
 
 
 def _at(suspects: tuple[Suspect, ...], number: int, theta: float) -> tuple[Suspect, ...]:
-    """Return suspects, one of which has another magnitude."""
-    moved = suspects[number].moved(np.array([theta]))
+    """Return suspects, one of which has another first magnitude."""
+    own = suspects[number]
+    moved = own.moved(np.append(theta, own.theta[1:]))
     return (*suspects[:number], moved, *suspects[number + 1 :])

@@ -41,19 +41,30 @@ def equipped(structure: Structure, searcher: Searcher, state: Fit) -> tuple[Sear
 
 
 def as_blocks(
-    structure: Structure, searcher: Searcher, state: Fit, density: float
+    structure: Structure,
+    searcher: Searcher,
+    state: Fit,
+    density: float,
+    mount: float | None = None,
 ) -> tuple[Searcher, Fit]:
-    """Return a hypothesis whose masses at points are blocks, and a searcher that knows them."""
+    """Return a hypothesis whose masses at points are blocks, and a searcher that knows them.
+
+    Fitted; as they are where they stand on a `mount` of a known ln f.
+    """
     for q, s in enumerate(state.suspects):
         c = searcher.problem.catalogue[s.kind]
         own, _ = places_of(c, s.row)[0]
         stands = _stands(structure, c, s.row) if _at_point(own) else []
         if stands:
-            made = equipment(c, stands, [block(float(np.exp(s.theta[0])), density)])
+            body = block(float(np.exp(s.theta[0])), density)
+            made = equipment(c, stands, [body], mount)
             searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
-            new = Suspect(kind, 0, s.theta[:1])
+            new = Suspect(kind, 0, tuple(made.like(s.theta[:1]).tolist()))
             suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
-            state = searcher.fitted(state, suspects, SEARCH.steps_moved)
+            if mount is None:
+                state = searcher.fitted(state, suspects, SEARCH.steps_moved)
+            else:
+                state = replace(state, suspects=suspects)
     return searcher, state
 
 

@@ -10,7 +10,7 @@ from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.diffuse_fit import everything, judged
 from trueup.core.discovery.model_error.model_error_numbers import MODEL_ERROR
-from trueup.core.discovery.model_error.size_posterior import centred
+from trueup.core.discovery.model_error.size_posterior import amid, centred
 
 
 def test_what_the_test_tells_stays():
@@ -39,6 +39,25 @@ def test_a_magnitude_stays_within_its_bounds():
     bounded = tuple(replace(c, upper=np.full(len(c.typical), most)) for c in every)
     new = centred(replace(found, problem=replace(found.problem, catalogue=bounded)))
     assert new.fit.suspects[0].theta[0] < most
+
+
+def test_of_several_as_likely_the_middle_of_all_is_told():
+    found = fitted(4e5)
+    own = np.sqrt(np.linalg.inv(found.information)[-1, -1])
+    (at,) = found.fit.suspects[0].theta
+    alone = amid(found, [found])
+    assert alone.fit.suspects[0].theta[0] == pytest.approx(at, abs=0.02 * own)
+    assert np.sqrt(np.linalg.inv(alone.information)[-1, -1]) == pytest.approx(own, rel=0.02)
+    apart = [moved(found, by * own) for by in (-30.0, -20.0, 20.0)]
+    new = amid(found, apart)
+    assert new.state.suspects == new.fit.suspects
+    assert new.fit.suspects[0].theta[0] == pytest.approx(at - 20.0 * own, abs=own)
+    assert np.sqrt(np.linalg.inv(new.information)[-1, -1]) == pytest.approx(25.0 * own, rel=0.05)
+
+
+def moved(found, by):
+    (s,) = found.state.suspects
+    return replace(found, state=replace(found.state, suspects=(s.moved(np.array(s.theta) + by),)))
 
 
 def fitted(stiffness):
