@@ -6,7 +6,7 @@ at the sensors, must not.
 
 import numpy as np
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from .likelihood_numbers import LIKELIHOOD
 
 
@@ -17,10 +17,9 @@ def turned_to_test(vectors: Floats, values: Floats, cross: Floats, match: Ints) 
     that they stay modes; `cross` (n_test, m) are products of test shapes with the first m at the
     sensors, `match` (n_test,) the mode of each.
     """
-    ends = np.flatnonzero(np.diff(values) > LIKELIHOOD.repeated * np.abs(values[1:])) + 1
-    if len(ends) + 1 == len(values):
+    if not some_repeated(values):
         return vectors
-    out = vectors
+    ends, out = np.flatnonzero(_apart(values)) + 1, vectors
     for group in np.split(np.arange(len(values)), ends):
         tests = np.flatnonzero((match >= group[0]) & (match <= group[-1]))
         if len(group) == 1 or not len(tests) or group[-1] >= cross.shape[1]:
@@ -33,6 +32,15 @@ def turned_to_test(vectors: Floats, values: Floats, cross: Floats, match: Ints) 
         out = vectors.copy() if out is vectors else out
         out[:, group] = vectors[:, group] @ R
     return out
+
+
+def some_repeated(values: Floats) -> bool:
+    """Whether some of eigenvalues (n,) are one."""
+    return not bool(_apart(values).all())
+
+
+def _apart(values: Floats) -> Bools:
+    return np.asarray(np.diff(values) > LIKELIHOOD.repeated * np.abs(values[1:]))
 
 
 def none_cut(values: Floats, number: int) -> int:

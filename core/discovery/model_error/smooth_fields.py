@@ -50,6 +50,10 @@ class Fields:
         """Return the fields with amplitudes of another size beforehand."""
         return replace(self, spread=size * self.spread)
 
+    def none(self) -> Fields:
+        """Return no fields, on the same basis."""
+        return Fields((), *(getattr(self, k)[:0] for k in _EACH))
+
     def and_also(self, other: Fields) -> Fields:
         """Return these fields and more."""
         both = ((getattr(f, k) for f in (self, other)) for k in _EACH)

@@ -62,7 +62,8 @@ def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) ->
 def alike(tried: Sequence[Scored], best: Scored, number: int) -> tuple[list[Scored], list[Place]]:
     """Return what was `tried` that is about as likely by the error of the model, and where.
 
-    One suspect elsewhere, on bases of their own: no other tells the size of a patch that gives.
+    One suspect elsewhere, on bases of their own: no other tells the size of a patch that gives. Of
+    each place the first.
     """
 
     def same(s: Scored) -> bool:
@@ -71,7 +72,8 @@ def alike(tried: Sequence[Scored], best: Scored, number: int) -> tuple[list[Scor
         kinds = [t.kind for t in s.fit.suspects] == [o.kind for o in best.fit.suspects]
         return kinds and others and 2.0 * (best.score - s.score) < SEARCH.credible
 
-    near = [s for s in tried if s.judged and same(s)]
+    rows = {s.fit.suspects[number].row: s for s in reversed(tried) if s.judged and same(s)}
+    near = list(rows.values())
     where = [s.judged.fit.suspects[number] for s in near if s.judged]
     weight = np.exp([s.score - best.score for s in near])
     share = (weight / weight.sum()).tolist()
@@ -90,10 +92,11 @@ def middle(c: Candidates, places: Sequence[Place]) -> int:
     """Return the number of that place which is nearest to where a suspect may be, on average.
 
     Along a beam that hardly stretches a spring in its direction does the same anywhere. Patches
-    that give are near each other by how much they do, the larger one is the less.
+    that give are near each other by how much they do, the larger one is the less: it is a mean that
+    small and large ones, which are as likely, share.
     """
     at = c.spots[[p.suspect.row for p in places]]
     if gives(c):
         at = np.array([p.suspect.theta for p in places])
-    away = np.linalg.norm(at[:, None] - at, axis=2) @ [p.weight for p in places]
-    return int(np.argmin(away))
+    away = np.linalg.norm(at[:, None] - at, axis=2) ** (2 if gives(c) else 1)
+    return int(np.argmin(away @ [p.weight for p in places]))

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..effects.candidates import Suspect
-from ..effects.element_patches import gives
+from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from .model_selection import Scored, needed, ranked, says_else
@@ -33,14 +33,14 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
     tried = [first]
     for q in searcher.doubtful(first.fit):
         tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
-    searcher, moved = _moved(searcher, tried[0])
+    searcher, moved = _moved(searcher, tried[0], tried)
     tried += moved
     best = max(tried, key=_score)
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
     if others:
         rival = max(others, key=_score)
         if best.judged and best.score - rival.score < needed(best.judged):
-            searcher, moved = _moved(searcher, rival)
+            searcher, moved = _moved(searcher, rival, tried)
             tried += moved
     return searcher, sorted(tried, key=_score, reverse=True)
 
@@ -63,25 +63,38 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     return _best([f for f in tried if f.objective - state.objective < far], SEARCH.look_judged)
 
 
-def _moved(searcher: Searcher, best: Scored) -> tuple[Searcher, list[Scored]]:
+def _moved(
+    searcher: Searcher, best: Scored, known: Sequence[Scored]
+) -> tuple[Searcher, list[Scored]]:
     """Return the hypotheses that come of one whose suspects move to the next places and shapes.
 
-    A patch that gives pays for every other shape that it takes by the choice there was.
+    Each once. Where they move is told by the evidence alone; a patch that gives pays besides for
+    the choice of shapes that there was.
     """
-    tried: list[Scored] = []
+    out: list[Scored] = []
+    seen = {_shape(searcher, s.fit) for s in known}
+    paid = dict[int, float]()
     for _ in range(SEARCH.look_moves):
         before = best.score
         for q in range(len(best.fit.suspects)):
             c = searcher.problem.catalogue[best.fit.suspects[q].kind]
             searcher, fits = _beside(searcher, best, q)
-            paid = float(np.log1p(len(fits))) if gives(c) else 0.0
-            new = [s for s in ranked(searcher, fits, [best], gives(c)) if s is not best]
-            new = [replace(s, score=s.score - paid) for s in new]
-            tried += new
-            best = max((best, *new), key=_score)
+            fits = [f for f in fits if _shape(searcher, f) not in seen]
+            seen |= {_shape(searcher, f) for f in fits}
+            new = [s for s in ranked(searcher, fits, [best]) if s is not best]
+            now = paid | {q: float(np.log1p(len(fits)))} if gives(c) else paid
+            out += (replace(s, score=s.score - sum(now.values())) for s in new)
+            first = max((best, *new), key=_score)
+            best, paid = first, paid if first is best else now
         if best.score < before + SEARCH.look_gain:
             break
-    return searcher, tried
+    return searcher, out
+
+
+def _shape(searcher: Searcher, f: Fit) -> str:
+    """Return what tells hypotheses apart, magnitudes aside: kinds, places and shapes."""
+    catalogue = searcher.problem.catalogue
+    return repr([(s.kind, catalogue[s.kind].where[s.row]) for s in f.suspects])
 
 
 def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fit]]:
@@ -100,7 +113,7 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
     before, after = state.suspects[:q], state.suspects[q + 1 :]
     if gives(c) and best.judged:
         now = best.judged.fit
-        moved = (replace(o, theta=now.suspects[q].theta) for o in options)
+        moved = (_as_much(searcher, now.suspects[q], o) for o in options)
         tried = [evaluate(searcher.problem, now.nuisance, (*before, o, *after)) for o in moved]
         return searcher, tried
     options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
@@ -109,6 +122,16 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
         for option in options[: SEARCH.look_beside]
     ]
     return searcher, _best(tried, SEARCH.look_beside_judged)
+
+
+def _as_much(searcher: Searcher, suspect: Suspect, other: Suspect) -> Suspect:
+    """Return a patch of another shape that gives as much: the larger it is the less anywhere."""
+    had, has = (
+        area_of(c.structure, c.patches[s.row])
+        for s in (suspect, other)
+        if gives(c := searcher.problem.catalogue[s.kind])
+    )
+    return other.moved(had / has * np.array(suspect.theta))
 
 
 def _best(fits: Sequence[Fit], count: int) -> list[Fit]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import evaluate
-from ..model_error.diffuse_error import diffuse
-from ..model_error.diffuse_fit import Judged, everything, judged, seen, with_drift
+from ..model_error.beside_fields import with_drift
+from ..model_error.diffuse_error import at
+from ..model_error.diffuse_fit import Judged, everything, judged, seen
 from ..model_error.geometry_error import Deviation, Misshapen, Movable, misshapen, with_deviation
 from ..model_error.geometry_shapes import Shape, shapes_of
 from ..model_error.model_error_numbers import MODEL_ERROR
@@ -142,7 +143,8 @@ class _Look:
         with suppress(np.linalg.LinAlgError):
             x = np.insert(plain.fit.nuisance, -1, np.log1p(amplitude * MODEL_ERROR.shape_unit))
             f = evaluate(p, x, plain.fit.suspects)
-            yield diffuse(seen(p, f), plain.diffuse, np.inf).log - 0.5 * amplitude**2, f
+            d = at(seen(p, f), plain.diffuse.error, plain.diffuse.noise)
+            yield d.log - 0.5 * amplitude**2, f
 
     def between(self, tried: Sequence[_Tried]) -> Iterator[Shape]:
         """Give what the best shape and the others of its family amount to together."""

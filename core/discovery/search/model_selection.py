@@ -167,36 +167,25 @@ class Scored:
     score: float
 
 
-def scored(searcher: Searcher, f: Fit, best: Scored | None = None, alike: bool = False) -> Scored:
+def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
     """Return a hypothesis with its evidence, less ln of the number of choices it had.
 
-    Where the `best` is so far ahead that it does not matter, smooth fields are not tried. What is
-    `alike` the best, the same in another shape, they do not help more than that.
+    Where the `best` is so far ahead that it does not matter, smooth fields are not tried.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
     paid += 0.5 * _stands(searcher, f)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
-        if alike:
-            least = best.judged.bare + MODEL_ERROR.drift_gain - 0.5 * SEARCH.credible
     judged = searcher.judged(searcher.problem, f, least)
     return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
 
 
-def ranked(
-    searcher: Searcher, fits: Iterable[Fit], known: Sequence[Scored] = (), alike: bool = False
-) -> list[Scored]:
-    """Return what is `known` and more hypotheses, the likeliest first; `alike`: see `scored`.
-
-    Those come in the order of how likely they are without fields, so that few are tried with them.
-    """
+def ranked(searcher: Searcher, fits: Iterable[Fit], known: Sequence[Scored] = ()) -> list[Scored]:
+    """Return what is `known` and more hypotheses, the likeliest first."""
     out = list(known)
-    if alike:
-        bare = [(searcher.judged(searcher.problem, f, np.inf), f) for f in fits]
-        fits = [f for j, f in sorted(bare, key=lambda b: -b[0].bare if b[0] else np.inf)]
     for f in fits:
-        out.append(scored(searcher, f, max(out, key=lambda s: s.score, default=None), alike))
+        out.append(scored(searcher, f, max(out, key=lambda s: s.score, default=None)))
     return sorted(out, key=lambda s: -s.score)
 
 

@@ -15,7 +15,8 @@ from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.map_fit import evaluate, fit, on_whole_test
 from ..likelihood.mode_likelihood import targets
-from ..model_error.diffuse_fit import Judged, everything, with_drift, with_known
+from ..model_error.beside_fields import with_drift, with_known
+from ..model_error.diffuse_fit import Judged, everything
 from ..model_error.set_up_fields import suspension
 from ..model_error.smooth_fields import Fields
 from ..reduction.search_basis import structural
