@@ -92,7 +92,7 @@ class Seen:
     @cached_property
     def values(self) -> Floats:
         """The eigenvalues, those of rigid bodies no less than what matters, (n,)."""
-        least = MODEL_ERROR.rigid * self.eigenvalues.max()
+        least = MODEL_ERROR.rigid * np.abs(self.eigenvalues).max()
         return np.asarray(np.maximum(self.eigenvalues, least))
 
     @cached_property
