@@ -38,11 +38,21 @@ def _matrices(
         else:
             M = M + (U.T * c) @ U
     if own:
-        side = np.hstack([a for a, _ in own])
-        corner = np.diag(np.concatenate([b for _, b in own]))
-        K = np.block([[K, side], [side.T, corner]])
-        M = la.block_diag(M, np.eye(len(corner)))
+        K, M = _bordered(K, M, own)
     return K, M
+
+
+def _bordered(K: Floats, M: Floats, own: Sequence[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return matrices with rows of their own for coordinates of unit mass: side and diagonal."""
+    n, more = len(K), sum(len(diagonal) for _, diagonal in own)
+    stiffness, mass = np.zeros((2, n + more, n + more))
+    stiffness[:n, :n], mass[:n, :n] = K, M
+    stiffness[:n, n:] = np.hstack([side for side, _ in own])
+    stiffness[n:, :n] = stiffness[:n, n:].T
+    rows = np.arange(n, n + more)
+    stiffness[rows, rows] = np.concatenate([diagonal for _, diagonal in own])
+    mass[rows, rows] = 1.0
+    return stiffness, mass
 
 
 def solve(
