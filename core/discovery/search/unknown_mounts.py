@@ -46,13 +46,13 @@ def as_blocks_on_mounts(
         _likeliest(*as_blocks(structure, searcher, best, density, mount), sizes, starts)
         for mount in _mounts(searcher)
     )
-    return wide, rigid, amid(rigid, [t for t in tried if t is not None])
+    sized = [t for t in tried if t is not None]
+    return wide, rigid, amid(rigid, sized) if sized else rigid
 
 
 def _mounts(searcher: Searcher) -> Floats:
     """Return ln f of mounts that are as likely beforehand."""
-    mounted = (c for c in searcher.problem.catalogue if isinstance(c, Mounted))
-    c = next(mounted)
+    c = next(c for c in searcher.problem.catalogue if isinstance(c, Mounted))
     low, high = ndtr((np.array([c.lower[1], c.upper[1]]) - c.typical[1]) / c.spread[1])
     shares = low + (high - low) * np.array(EFFECTS.mounts_unknown)
     return np.asarray(c.typical[1] + c.spread[1] * ndtri(shares))
