@@ -45,12 +45,16 @@ def asked(tmp_path, monkeypatch):
     return requests[0]
 
 
+def searching(request):
+    """The search by all twelve modes and all sensors."""
+    modes, sensors = np.zeros(12, bool), np.zeros(len(request.placed.observation), bool)
+    ground = ground_of(request, ~modes)
+    return core._searcher(core._Trial(request, ground, sensors, 0.01, modes, sensors))
+
+
 def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch):
     request = asked(tmp_path, monkeypatch)
-    every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
-    nothing = ~every[1]
-    trial = core._Trial(request, ground_of(request, every[0]), nothing, 0.01, ~every[0], nothing)
-    s = core._searcher(trial)
+    s = searching(request)
     masses = s.problem.catalogue[0]
     row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
     point = s.fitted(
@@ -69,10 +73,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
 def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_path, monkeypatch):
     request = asked(tmp_path, monkeypatch)
     assert request.densest == pytest.approx(7850.0)
-    every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
-    nothing = ~every[1]
-    trial = core._Trial(request, ground_of(request, every[0]), nothing, 0.01, ~every[0], nothing)
-    s = core._searcher(trial)
+    s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     point = s.fitted(
         s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)

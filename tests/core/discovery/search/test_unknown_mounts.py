@@ -2,24 +2,19 @@
 
 import numpy as np
 import pytest
-from tests.core.discovery.search.test_equipment_growth import HALF, asked
+from tests.core.discovery.search.test_equipment_growth import HALF, asked, searching
 
-from trueup.core.discovery import discover as core
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.search.equipment_growth import as_blocks
 from trueup.core.discovery.search.unknown_mounts import as_blocks_on_mounts
-from trueup.core.discovery.starting_point import ground_of
 
 
 @pytest.fixture
 def on_a_frame(tmp_path, monkeypatch):
     """A search whose best hypothesis is a mass at a point of a frame."""
     request = asked(tmp_path, monkeypatch)
-    every = np.ones(12, bool), np.ones(len(request.placed.observation), bool)
-    nothing = ~every[1]
-    trial = core._Trial(request, ground_of(request, every[0]), nothing, 0.01, ~every[0], nothing)
-    s = core._searcher(trial)
+    s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     return request, s, s.fitted(s.null(), (Suspect(0, row, HALF),))
 
