@@ -208,7 +208,8 @@ def normal_equations(
     C = F * gap / (gap**2 + z)
     C[:, k, count] = -0.5 * b[:, k, count]
     t, own = here.shapes, here.modes[:, k]
-    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), _TINY)
+    least = max(MODEL_ERROR.unseen * float(np.diag(here.gram).max()), _TINY)
+    c = np.sum(t * own, axis=0) / np.maximum(np.sum(own**2, axis=0), least)
     C = (C * c).transpose(2, 0, 1)
     sure = 1.0 - d.stray
     variance = 0.5 * d.error**2 + here.scatter**2

@@ -1,5 +1,7 @@
 """A hypothesis is fitted to where the test is likeliest, however far the first step reaches."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.core.discovery.strings import hidden, searcher
@@ -7,7 +9,14 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error import diffuse_fit
-from trueup.core.discovery.model_error.diffuse_fit import everything, judged, step_within
+from trueup.core.discovery.model_error.diffuse_error import at
+from trueup.core.discovery.model_error.diffuse_fit import (
+    everything,
+    judged,
+    normal_equations,
+    seen,
+    step_within,
+)
 
 
 def test_a_step_to_where_no_model_is_counts_as_too_long(monkeypatch):
@@ -33,3 +42,19 @@ def test_what_a_bound_holds_does_not_hold_up_the_others():
     far = np.full(2, 9.0)
     assert step_within(H, g, (-far, far)) == pytest.approx(np.array([5.0, -1.0]) / 3.0)
     assert step_within(H, g, (-far, np.array([0.5, 9.0]))) == pytest.approx([0.5, 0.25])
+
+
+def test_a_partner_that_no_sensor_sees_says_nothing_of_the_unknowns():
+    """What is read of it is rounding, whose multiple the test's shape is not."""
+    problem = searcher(hidden(masses=[(7, 1.0)])).problem.entire()
+    start = evaluate(problem, np.zeros(len(problem.prior.spread)), (Suspect(0, 7, (0.0,)),))
+    here = seen(problem, start)
+    best = at(here, 0.005, 0.1)
+    H, _, _ = normal_equations(problem, start, here, best, everything(problem))
+    modes = here.modes.copy()
+    modes[:, best.match[0]] *= 1e-13
+    blind, _, _ = normal_equations(
+        problem, start, replace(here, modes=modes), best, everything(problem)
+    )
+    assert np.all(np.diag(blind) > 0.0)
+    assert np.all(np.diag(blind) < 1.01 * np.diag(H))
