@@ -73,9 +73,9 @@ def judge_sensors(survey: Survey, span: Span) -> Verdicts:
     if len(slots) < SENSORS.fewest or survey.shapes.shape[1] < SENSORS.fewest_modes:
         return Verdicts((), np.zeros(n, bool), SENSORS.noise)
     span = span.seen()
-    weighed = weigh(survey, span, suspects(survey, span))
+    weighed = weigh(survey, span, *suspects(survey, span))
     while np.any(weighed.aside & (weighed.guilt <= SENSORS.doubtful)):
-        weighed = weigh(survey, span, weighed.guilt > SENSORS.doubtful)
+        weighed = weigh(survey, span, weighed.guilt > SENSORS.doubtful, weighed.level)
     doubtful = np.zeros(n, bool)
     doubtful[slots[weighed.aside][slots[weighed.aside] >= 0]] = True
     return Verdicts(faults_of(weighed), doubtful, weighed.sigma)
@@ -114,6 +114,7 @@ def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     """Return the likeliest kind of fault of a node, if it is likely enough.
 
     Where an error of the model may look like it, that there is a fault at all has to be surer.
+    What hardly moves in any mode moves the other way where the model is wrong nearby.
     """
     share = weighed.shares(i)
     if sum(share.values()) < SENSORS.named:
@@ -123,6 +124,9 @@ def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     if FAULTS[kind].like_model and unsure:
         return []
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
+    read = weighed.survey.unit()[weighed.survey.rows(i)[list(best.rows)]]
+    if np.abs(read).max() < SENSORS.moves:
+        return []
     return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]
 
 

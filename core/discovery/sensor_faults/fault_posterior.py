@@ -23,8 +23,8 @@ class Weighed:
     ----------
     survey : Survey
     aside : (n_node,) bool
-    sigma : float
-        Noise of a sound sensor over the rms of its shape.
+    level : int
+        Number of the noise of a sound sensor in `LEVELS`.
     alone : dict of int to list of Alternative
         By node.
     swaps : list of Swap
@@ -33,9 +33,14 @@ class Weighed:
 
     survey: Survey
     aside: Bools
-    sigma: float
+    level: int
     alone: dict[int, list[Alternative]]
     swaps: list[Swap]
+
+    @property
+    def sigma(self) -> float:
+        """Noise of a sound sensor over the rms of its shape."""
+        return float(LEVELS[self.level])
 
     def shares(self, i: int) -> dict[str, float]:
         """Return how likely each kind of fault of a node is but for swaps with others."""
@@ -57,9 +62,12 @@ class Weighed:
         return out
 
 
-def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
-    """Weigh what nodes may be that were set `aside` (n_node,), all others taken as sound."""
-    level, width = level_of(survey, span.along_only(), aside)
+def weigh(survey: Survey, span: Span, aside: Bools, level: int) -> Weighed:
+    """Weigh what nodes may be that were set `aside` (n_node,), all others taken as sound.
+
+    The noise is about that of the number `level`.
+    """
+    level, width = level_of(survey, span.along_only(), aside, (level,))
     sigma = float(LEVELS[level])
     said = predict(survey, span, sigma, width, aside)
     count = (survey.slots >= 0).sum(axis=1)
@@ -73,13 +81,13 @@ def weigh(survey: Survey, span: Span, aside: Bools) -> Weighed:
     doubted = np.flatnonzero(aside).tolist()
     alone = {i: alternatives(nodes[i], _axes(survey, i), before) for i in doubted}
     crossed = _swaps(nodes, alone, before)
-    disturbed = _disturbed(survey, said, Weighed(survey, aside, sigma, alone, crossed))
+    disturbed = _disturbed(survey, said, Weighed(survey, aside, level, alone, crossed))
     near = _near(survey) & disturbed
     for i in np.flatnonzero(near.any(axis=1) & aside).tolist():
         alone[i] = alternatives(nodes[i], _axes(survey, i), _beside(before, off[near[i]]))
     if near[aside].any():
         crossed = _swaps(nodes, alone, before)
-    return Weighed(survey, aside, sigma, alone, crossed)
+    return Weighed(survey, aside, level, alone, crossed)
 
 
 def _swaps(

@@ -1,5 +1,7 @@
 """Which nodes contradict all the others, and how noisy the others are."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
@@ -8,13 +10,15 @@ from .sensor_numbers import SENSORS
 
 LEVELS = SENSORS.noise_least * SENSORS.noise_step ** np.arange(SENSORS.noise_levels)
 """Noise of a sound sensor over the rms of its shape that is thought possible."""
+_SPREAD = range(1, len(LEVELS), SENSORS.noise_strides)
 _WIDTHS = SENSORS.width_least * SENSORS.width_step ** np.arange(SENSORS.widths)
 
 
-def suspects(survey: Survey, span: Span) -> Bools:
+def suspects(survey: Survey, span: Span) -> tuple[Bools, int]:
     """Set nodes aside one by one, the worst first, the noise judged again each time.
 
     A few are set aside in any case: a fault that the others' predictions share in hides itself.
+    Return which, and the number of the noise in `LEVELS`.
     """
     near = span.along_only()
     count = (survey.slots >= 0).sum(axis=1)
@@ -30,7 +34,7 @@ def suspects(survey: Survey, span: Span) -> Bools:
             break
         masked[worst] = True
         level = _lowered(survey, near, masked, level, width)
-    return masked
+    return masked, level
 
 
 def distance(said: Prediction, count: Ints) -> Floats:
@@ -43,18 +47,20 @@ def distance(said: Prediction, count: Ints) -> Floats:
     return np.asarray(np.minimum(square / count[:, None], SENSORS.distance_most).mean(axis=1))
 
 
-def level_of(survey: Survey, span: Span, masked: Bools) -> tuple[int, Floats]:
+def level_of(
+    survey: Survey, span: Span, masked: Bools, first: Iterable[int] = _SPREAD
+) -> tuple[int, Floats]:
     """Noise, by its number in `LEVELS`, and width of every mode that make the nodes likeliest.
 
-    Looked for in steps of three, then beside the best.
+    Looked for at the `first` levels, then beside the best until none is likelier.
     """
-    some = range(1, len(LEVELS), SENSORS.noise_strides)
-    likely = {n: _likeliest(survey, span, masked, n) for n in some}
-    best = max(likely, key=lambda n: likely[n][0])
-    beside = (n for n in (best - 1, best + 1) if 0 <= n < len(LEVELS))
-    likely |= {n: _likeliest(survey, span, masked, n) for n in beside}
-    best = max(likely, key=lambda n: likely[n][0])
-    return best, likely[best][1]
+    likely = {n: _likeliest(survey, span, masked, n) for n in first}
+    while True:
+        best = max(likely, key=lambda n: likely[n][0])
+        beside = {best - 1, best + 1} & set(range(len(LEVELS))) - likely.keys()
+        if not beside:
+            return best, likely[best][1]
+        likely |= {n: _likeliest(survey, span, masked, n) for n in sorted(beside)}
 
 
 def _lowered(survey: Survey, span: Span, masked: Bools, level: int, width: Floats) -> int:

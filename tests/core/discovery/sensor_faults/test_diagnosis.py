@@ -156,6 +156,21 @@ def test_where_the_model_says_no_motion_a_gain_cannot_be_accused():
     assert judge_sensors(test, span).faults == ()
 
 
+@pytest.mark.parametrize(("share", "told"), [(0.04, False), (0.5, True)])
+def test_a_sensor_that_hardly_moves_is_not_called_reversed(share, told):
+    """A corner that goes the other way by a twentieth of a shape is the model's."""
+    motion = vibrating()
+    motion[11] *= share
+    y = read(motion, radial(), noise=0.004)
+    y[11] *= -1.0
+    test, span = survey(y, radial())
+    span.rows[11] *= share
+    span.around[11] *= share
+    found = judge_sensors(test, span)
+    assert named(found.faults) == ({("sensor_polarity", (11,))} if told else set())
+    assert found.doubtful[11]
+
+
 def test_the_noise_of_sound_sensors_is_estimated():
     assert 0.015 < judged(read(vibrating(), radial(), noise=0.03), radial()).noise < 0.05
 
