@@ -224,7 +224,7 @@ def _coarse(w: _Weighing) -> Levels:
     """Few levels for a first look: of middling spread, the course that suits no dashpot best."""
     away = np.abs(w.grid.spreads - DAMPERS.middling)
     some = w.grid.take(np.flatnonzero(away == away.min()))
-    alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own).sum(axis=-1)
+    alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own)
     best = some.course[int(np.argmax(alone + some.log_prior))]
     return some.take(np.flatnonzero(some.course == best)[::2])
 

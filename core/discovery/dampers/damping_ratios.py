@@ -61,28 +61,37 @@ def levels_for(measured: Floats, omega: Floats) -> Levels:
 
 
 def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
-    """Return ln p of every ratio `measured` (n_mode,) at every level, (..., n_grid, n_mode).
+    """Return ln p of all ratios `measured` (n_mode,) at every level, (..., n_grid).
 
-    `part` (..., n_mode) is what dashpots add to the ratios, `error` its standard deviation.
+    `part` (..., n_mode) is what dashpots add to the ratios, `error` its standard deviation. The
+    densities of a few modes at a time are multiplied before their log is taken.
     """
-    a, da = part[..., None, :], error[..., None, :]
-    mean = grid.levels + a
-    v = (grid.spreads[:, None] * grid.levels) ** 2 + da**2
+    alone = np.ascontiguousarray(grid.levels.T)
+    a, da = (np.ascontiguousarray(np.moveaxis(x, -1, 0))[..., None] for x in (part, error))
+    first = (len(alone), *(1,) * (part.ndim - 1), -1)
+    mean = alone.reshape(first) + a
+    v = ((grid.spreads * alone) ** 2).reshape(first) + da**2
     v /= mean**2
     v += DAMPERS.measured**2
-    off = np.log(mean / measured)
-    nu = DAMPERS.tails
-    return np.asarray(-0.5 * (nu + 1.0) * np.log(1.0 + off**2 / (nu * v)) - 0.5 * np.log(v))
+    mean /= measured.reshape(len(alone), *(1,) * part.ndim)
+    off = np.log(mean, out=mean)
+    off *= off
+    off += DAMPERS.tails * v
+    few = np.arange(0, len(alone), DAMPERS.multiplied)
+    near, far = (np.log(np.multiply.reduceat(x, few)).sum(axis=0) for x in (v, off))
+    above = DAMPERS.tails + 1.0
+    constant = above * np.log(DAMPERS.tails) * len(alone)
+    return np.asarray(0.5 * (DAMPERS.tails * near - above * far + constant))
 
 
 def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
     """Return ln of the likelihood of all ratios, levels integrated out, (...)."""
-    each = log_likelihood(measured, grid, part, error).sum(axis=-1)
+    each = log_likelihood(measured, grid, part, error)
     return np.asarray(logsumexp(each + grid.log_prior, axis=-1))
 
 
 def expected_level(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
     """Return the posterior mean level of each mode (of ln), (n_mode,), at one `part`."""
-    each = log_likelihood(measured, grid, part, error).sum(axis=-1) + grid.log_prior
+    each = log_likelihood(measured, grid, part, error) + grid.log_prior
     weight = np.exp(each - logsumexp(each))
     return np.asarray(np.exp(weight @ np.log(grid.levels)))

@@ -74,16 +74,26 @@ def _on_sheet(
         coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
         some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
         around = tree.query_ball_point(centres[some], within, return_sorted=True)
-        for c, reach in zip(some.tolist(), around, strict=True):
-            own = sheet[np.array(reach, np.int64)]
-            away = np.abs((every[own] - centres[c]) @ frames[nearest[c]].T) / (r * size)
-            inside = [np.linalg.norm(away, axis=1) <= 1.0]
-            inside += [np.all(away <= s, axis=1) for s in sides]
-            for shape, which in enumerate(inside):
-                rows = own[which]
+        of = np.repeat(np.arange(len(some)), [len(reach) for reach in around])
+        own, c = sheet[np.concatenate(around).astype(np.int64)], some[of]
+        away = np.einsum("nij,nj->ni", frames[nearest[c]], every[own] - centres[c])
+        away = np.abs(away) / (r * size)
+        inside = [np.linalg.norm(away, axis=1) <= 1.0]
+        inside += [np.all(away <= s, axis=1) for s in sides]
+        shapes = zip(*(_parts(own[i], of[i], len(some), every) for i in inside), strict=True)
+        for centre, each in zip(some.tolist(), shapes, strict=True):
+            for shape, (rows, middle) in enumerate(each):
                 if len(rows):
-                    first = shape == 0 and c in coarse
-                    yield Patch(number, rows, every[rows].mean(axis=0), first)
+                    first = shape == 0 and centre in coarse
+                    yield Patch(number, rows, middle, first)
+
+
+def _parts(rows: Ints, of: Ints, count: int, xyz: Floats) -> Iterator[tuple[Ints, Floats]]:
+    """Give rows by which of `count` sets they are `of`, in order, and the middle of their xyz."""
+    size = np.bincount(of, minlength=count)
+    total = np.stack([np.bincount(of, x, count) for x in xyz[rows].T], axis=1)
+    middles = total / np.maximum(size, 1)[:, None]
+    yield from zip(np.split(rows, np.cumsum(size)[:-1]), middles, strict=True)
 
 
 def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:

@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure
+from ..reduction.elements_and_supports import Structure
 from .model_error_numbers import MODEL_ERROR
 
 
@@ -87,9 +87,15 @@ def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Fl
     for m, xyz in zip(structure.members, centres, strict=True):
         own = cell[start : start + len(xyz)]
         start += len(xyz)
+        every = np.arange(len(xyz))
+        coordinates = m.coordinates(every)
+        matrices = m.matrices(every, np.ones(len(structure.model.parameters)))
         for c in np.unique(own):
             rows = np.flatnonzero(own == c)
-            k, mass = _reduced(structure, m, rows, motion)
+            k, mass = (
+                _reduced(A, coordinates[rows], motion)
+                for A in (None if X is None else X[rows] for X in matrices)
+            )
             K[c] += k
             M[c] += mass
             w = max(float(np.trace(mass)), np.finfo(float).tiny)
@@ -98,19 +104,18 @@ def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Fl
     return at / weights[:, None], weights, K, M
 
 
-def _reduced(structure: Structure, m: Members, rows: Ints, motion: Floats) -> tuple[Floats, Floats]:
-    p = np.ones(len(structure.model.parameters))
-    at = m.coordinates(rows)
+def _reduced(A: Floats | None, at: Ints, motion: Floats) -> Floats:
+    """Return the sum of the matrices of elements (n, m, m) on a basis: at rows (n, m) of `motion`.
+
+    Nothing where they have none.
+    """
+    if A is None:
+        return np.zeros((motion.shape[1],) * 2)
     own, places = np.unique(at, return_inverse=True)
-    u, places = motion[own], places.reshape(at.shape)
+    places = places.reshape(at.shape)
     where = np.repeat(places, at.shape[1], axis=1).ravel(), np.tile(places, at.shape[1]).ravel()
-    out = []
-    for A in m.matrices(rows, p):
-        if A is None:
-            out.append(np.zeros((u.shape[1],) * 2))
-            continue
-        out.append(u.T @ (sp.csr_matrix((A.ravel(), where), (len(own),) * 2) @ u))
-    return out[0], out[1]
+    u = motion[own]
+    return np.asarray(u.T @ (sp.csr_matrix((A.ravel(), where), (len(own),) * 2) @ u))
 
 
 def _cells(xyz: Floats) -> tuple[Ints, int]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from trueup.core.discovery.dampers.damper_numbers import DAMPERS
 from trueup.core.discovery.dampers.damper_search import DampingEvidence, find_damper
 from trueup.core.discovery.dampers.damping_ratios import levels_for, log_likelihood, marginal
 from trueup.core.discovery.effects.local_damper import PEAKS
@@ -144,8 +145,21 @@ def test_levels_are_integrated_out():
     assert np.exp(grid.log_prior).sum() == pytest.approx(1.0)
     none = np.zeros(5)
     each = log_likelihood(z, grid, none, none)
-    plain = np.sum(np.exp(grid.log_prior) * np.exp(each.sum(axis=-1)))
+    plain = np.sum(np.exp(grid.log_prior) * np.exp(each))
     assert marginal(z, grid, none, none) == pytest.approx(np.log(plain))
     batch = marginal(z, grid, np.zeros((3, 2, 5)), np.zeros((3, 2, 5)))
     assert batch.shape == (3, 2)
     np.testing.assert_allclose(batch, np.log(plain))
+
+
+def test_densities_of_many_modes_are_multiplied_within_what_a_float_holds():
+    z = np.geomspace(1e-4, 0.5, 300)
+    grid = levels_for(z, np.linspace(1.0, 50.0, 300))
+    part = 0.1 * z
+    v = ((grid.spreads[:, None] * grid.levels) ** 2 + (0.2 * part) ** 2) / (grid.levels + part) ** 2
+    v += DAMPERS.measured**2
+    t = np.log((grid.levels + part) / z)
+    one_by_one = -0.5 * (DAMPERS.tails + 1.0) * np.log(1.0 + t**2 / (DAMPERS.tails * v))
+    one_by_one -= 0.5 * np.log(v)
+    together = log_likelihood(z, grid, part, 0.2 * part)
+    np.testing.assert_allclose(together, one_by_one.sum(axis=-1), rtol=1e-10)
