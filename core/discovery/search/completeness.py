@@ -41,7 +41,6 @@ from .model_selection import (
     worth_telling,
 )
 from .moves import Searcher
-from .patch_reshaping import as_one
 from .search_numbers import SEARCH
 
 
@@ -197,8 +196,7 @@ def completeness(
         found = found.with_rivals(poorer)
         fields[k] = sorted(tried, key=lambda s: -s.score)
         found = _led(found, fields[k][0].fit)
-        searcher, merged = as_one(searcher, fields[k][0].fit, verdict.scale)
-        poorer = [*_without_one(searcher, fields[k][0].fit), *merged] if k > 1 else []
+        poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     levels[0] = _fitted_as(searcher, levels[0], max(levels, key=lambda s: s.score))
     alone = levels[0].judged

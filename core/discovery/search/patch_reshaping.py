@@ -2,10 +2,9 @@
 
 The catalogue has round and elongated patches of a few sizes. What is really there ends where a
 bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
-second effect beside the first. So the patches of a hypothesis that earned its place take in the
-next row of elements on one side or all round, or give one up, or stop at the property they are on,
-as long as each step gains more than trying so many shapes is worth. So do links: the catalogue has
-those between some grids.
+second effect beside the first. So a patch may take in the next row of elements on one side or all
+round, or give one up, or stop at the property it is on, as long as each step gains more than trying
+so many shapes is worth. So do links: the catalogue has those between some grids.
 """
 
 from collections.abc import Sequence
@@ -22,7 +21,6 @@ from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
 from .footprints import with_kind
-from .model_selection import side_by_side
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -39,33 +37,6 @@ def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fi
                 break
             searcher, state = better
     return searcher, state
-
-
-def as_one(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, list[Fit]]:
-    """Return a hypothesis with masses that lie side by side spread over one patch, pair by pair.
-
-    That a mass is spread shows as a second one beside it before a patch of its shape is tried.
-    """
-    catalogue, tried = searcher.problem.catalogue, list[Fit]()
-    for i, j in side_by_side(searcher, state):
-        pair = state.suspects[i], state.suspects[j]
-        (a, b), rest = (catalogue[s.kind] for s in pair), _but(state.suspects, i, j)
-        kinds = [k for k, d in _patched(searcher, a) if d.kind.spread_out and d.kind.joins(b.kind)]
-        if kinds and a.many(pair[0].row) == b.many(pair[1].row) == 1:
-            m = np.exp([s.theta[0] for s in pair])
-            middle = m @ [c.xyz[s.row] for c, s in zip((a, b), pair, strict=True)] / m.sum()
-            away = np.linalg.norm(catalogue[kinds[0]].xyz - middle, axis=1)
-            rows = np.argsort(away, kind="stable")[: SEARCH.one_tried].tolist()
-            options = [Suspect(kinds[0], r, (float(np.log(m.sum())),)) for r in rows]
-            start = replace(state, suspects=(options[0], *rest))
-            first = promising(searcher, start, 0, options)[0]
-            searcher, one = reshaped(searcher, _with(searcher, start, 0, first), scale)
-            tried.append(one)
-    return searcher, tried
-
-
-def _but(suspects: Sequence[Suspect], *numbers: int) -> tuple[Suspect, ...]:
-    return tuple(s for k, s in enumerate(suspects) if k not in numbers)
 
 
 def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:

@@ -134,16 +134,11 @@ def hypothesis(objective, *rows):
     return Some(objective=objective, suspects=suspects, nuisance=None)
 
 
-def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0, merged=()):
+def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
     """Return what is kept, masses at a hundred places a unit apart, `evidence` by their rows.
 
-    Places `alike` explain as well as any of them; two masses spread as one are `merged`.
+    Places `alike` explain as well as any of them.
     """
-    monkeypatch.setattr(
-        room,
-        "as_one",
-        lambda s, f, _: (s, [hypothesis(99.0, *merged)] if merged and len(f.suspects) > 1 else []),
-    )
     monkeypatch.setattr(
         room,
         "credible_places",
@@ -253,13 +248,3 @@ def test_the_second_of_two_masses_side_by_side_has_to_gain_a_share_of_what_the_f
     evidence = {(): 0.0, (3,): 130.0, (3, 7): 152.0}
     found = Found(levels, ((), (), ()))
     assert weighed(monkeypatch, found, evidence, size=size)[1] == kept
-
-
-def test_two_masses_as_one_that_is_spread_are_one_of_the_poorer(monkeypatch):
-    levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
-    evidence = {(): 0.0, (3,): 30.0, (3, 7): 90.0, (5,): 88.0}
-    found = Found(levels, ((), (), ()))
-    assert weighed(monkeypatch, found, evidence)[1] == 2
-    found, kept, _ = weighed(monkeypatch, found, evidence, merged=(5,))
-    assert kept == 1
-    assert [s.row for s in found.levels[1].suspects] == [5]
