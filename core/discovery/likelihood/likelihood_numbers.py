@@ -11,12 +11,13 @@ SIZE = "of the structure's size"
 class Effort:
     beam: int = number(3, "hypotheses", "that are grown at once")
     branches: int = number(4, "suspects", "that are fitted beside each of them")
-    looked_at: int = number(6, "places", "of the first scan around which neighbours are scanned")
-    around: int = number(22, "places", "scanned around each of them, at most")
-    neighbours: int = number(160, "places", "that a suspect may move to at once, at most")
+    looked_at: int = number(4, "places", "of the first scan around which neighbours are scanned")
+    around: int = number(16, "places", "scanned around each of them, at most")
+    neighbours: int = number(96, "places", "that a suspect may move to at once, at most")
     of_each_kind: int = number(1, "suspects", "of a kind that are fitted, whatever the others gain")
     most: int = number(4, "suspects", "of a hypothesis, at most")
-    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
+    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned, at most", "time")
+    search_above: int = number(10, "modes", "of these above those that may match", "time")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
     near: float = number(0.12, SIZE, "how far a suspect moves at once")
 

@@ -166,3 +166,12 @@ def matched(costs: Floats) -> tuple[float, Ints]:
     """Return the smallest sum of `costs` (n_test, n) over one-to-one matches, and the match."""
     rows, columns = linear_sum_assignment(costs)
     return float(costs[rows, columns].sum()), columns
+
+
+def least_sums(costs: Floats) -> Floats:
+    """Return the smallest sums of `costs` (n, n_test, m) over one-to-one matches, (n,)."""
+    own = costs.argmin(axis=-1)
+    out = np.take_along_axis(costs, own[..., None], axis=-1)[..., 0].sum(axis=-1)
+    shared = np.any(np.diff(np.sort(own, axis=-1), axis=-1) == 0, axis=-1)
+    out[shared] = [matched(x)[0] for x in costs[shared]]
+    return np.asarray(out)

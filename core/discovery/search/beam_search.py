@@ -74,12 +74,13 @@ def grown(
             break
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
+        among = searcher.coarse
         for state in beam:
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
-            for branch in _varied(
-                searcher, searcher.branches(state, searcher.effort.branches), soft
-            ):
+            scanned = searcher.scanned(state, searcher.effort.branches, among)
+            among = scanned.live if depth > 1 and state is beam[0] else among
+            for branch in _varied(searcher, scanned.best, soft):
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
             best = min(found, key=objective_of)

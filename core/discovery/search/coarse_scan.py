@@ -29,6 +29,10 @@ class Look:
     cost: Floats
     theta: Floats
 
+    def best(self) -> Ints:
+        """Return the rows that cost least: a part of them."""
+        return np.asarray(self.rows[_best(self.cost)])
+
 
 def look(problem: Problem, state: Fit, kind: int, rows: Ints, worth: float = np.inf) -> Look:
     """Evaluate the places `rows` of a kind, see `scan`; some that promise nothing are left out.
@@ -48,12 +52,17 @@ def look(problem: Problem, state: Fit, kind: int, rows: Ints, worth: float = np.
     cost = np.full((len(rows), len(c.trials)), np.inf)
     cost[:, first] = scan(problem, state, kind, rows, c.trials[first])
     cost += c.surprise(c.trials)
-    best = np.argsort(cost.min(axis=1), kind="stable")
-    kept = best[: max(SEARCH.every_size_least, int(SEARCH.every_size * len(rows)))]
+    kept = _best(cost.min(axis=1))
     kept = kept[cost[kept].min(axis=1) <= worth]
     between = scan(problem, state, kind, rows[kept], c.trials[~first])
     cost[np.ix_(kept, np.flatnonzero(~first))] = between + c.surprise(c.trials[~first])
     return Look(rows, cost.min(axis=1), c.trials[cost.argmin(axis=1)])
+
+
+def _best(cost: Floats) -> Ints:
+    """Return which places cost least, those first: a part of them."""
+    number = max(SEARCH.every_size_least, int(SEARCH.every_size * len(cost)))
+    return np.argsort(cost, kind="stable")[:number]
 
 
 def first_places(c: Candidates, factors: Rows, columns: int, size: float) -> Ints:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.mode_likelihood import matched, mode_costs
+from ..likelihood.mode_likelihood import least_sums, mode_costs
 from .search_numbers import SEARCH
 
 
@@ -42,7 +42,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
             values, Z = values[:, :n], Z[:, :, :n]
             gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
             costs = mode_costs(problem.evidence, values, cross @ Z, gram)
-            out[part, j] = [matched(x)[0] for x in costs]
+            out[part, j] = least_sums(costs)
     return out
 
 

@@ -5,6 +5,8 @@ of its own eigenvectors; suspects are fitted together, moved to better neighbour
 one is taken out and looked for anew.
 """
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -26,6 +28,14 @@ from .exact_scan import best_apart, scan
 from .search_numbers import SEARCH
 
 _NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
+
+
+@dataclass(frozen=True, eq=False)
+class Scanned:
+    """The best further suspects with what each would leave; of every kind rows that gain most."""
+
+    best: list[tuple[float, Suspect]]
+    live: tuple[Ints, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +61,8 @@ class Searcher:
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
+        most = min(self.effort.search_modes, self.problem.columns + self.effort.search_above)
+        return _local(self.problem, state, min(most, self.problem.basis.size))
 
     def tuned(self, s: Suspect) -> bool:
         """Whether a suspect is of a kind with a magnitude that tunes it."""
@@ -60,17 +71,28 @@ class Searcher:
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
     ) -> list[tuple[float, Suspect]]:
+        """Return the most promising further suspects of every kind, see `scanned`."""
+        return self.scanned(state, count, self.coarse, by).best
+
+    def scanned(
+        self,
+        state: Fit,
+        count: int,
+        among: tuple[Ints, ...],
+        by: Callable[[Problem], Problem] = softened,
+    ) -> Scanned:
         """Return the most promising further suspects of every kind, `count` of each.
 
-        By exact evaluation with all else as it stands, and of the best of these by what a step of
-        all unknowns would leave; ``by(problem)`` has the noise by which they promise.
+        Of the places `among` the rows of each kind and those next to the best of them, by exact
+        evaluation with all else as it stands, and of the best of these by what a step of all
+        unknowns would leave; ``by(problem)`` has the noise by which they promise.
         """
         small, here = self.local(state)
         small = by(small)
         here = evaluate(small, here.nuisance, here.suspects)
         seen: dict[int, Look] = {}
         worth = np.inf
-        for kind, rows in enumerate(self.coarse):
+        for kind, rows in enumerate(among):
             rows = rows[~self._taken(state, kind, rows)]
             if not len(rows):
                 continue
@@ -84,7 +106,8 @@ class Searcher:
             for i in best_apart(spots, tried.cost, apart, SEARCH.hoped_each):
                 suspect = Suspect(kind, int(tried.rows[i]), tuple(tried.theta[i]))
                 out.append((float(tried.cost[i]), suspect))
-        return self._followed(small, here, sorted(out, key=lambda b: b[0]), count)
+        live = tuple(seen[k].best() if k in seen else _NONE for k in range(len(among)))
+        return Scanned(self._followed(small, here, sorted(out, key=lambda b: b[0]), count), live)
 
     def _followed(
         self, small: Problem, here: Fit, scanned: list[tuple[float, Suspect]], count: int

@@ -10,6 +10,7 @@ from trueup.core.discovery.likelihood.mode_likelihood import (
     Evidence,
     Noise,
     joint_macs,
+    least_sums,
     matched,
     mixing,
     mode_costs,
@@ -103,3 +104,12 @@ def bare_problem(e):
     none = np.zeros((0, 0))
     prior = Prior(np.ones(1), -np.ones(1), np.ones(1))
     return Problem(e, e, None, none, none, none, (), (), prior, 4, 4)
+
+
+def test_sums_of_many_matches_are_those_of_each():
+    """Where two test modes want one analysis mode as well."""
+    costs = np.random.default_rng(3).integers(0, 6, (200, 4, 6)).astype(float)
+    own = costs.argmin(axis=-1)
+    shared = [len(set(row)) < 4 for row in own.tolist()]
+    assert 0 < sum(shared) < 200
+    np.testing.assert_array_equal(least_sums(costs), [matched(each)[0] for each in costs])

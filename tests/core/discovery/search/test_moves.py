@@ -9,6 +9,8 @@ from tests.core.discovery.strings import hidden, searcher
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
+from trueup.core.discovery.search import coarse_scan, moves
+from trueup.core.discovery.search.search_numbers import SEARCH
 
 MASS, SPRING, ABSORBER = range(3)
 
@@ -89,3 +91,22 @@ def test_branches_are_ranked_by_what_is_left_once_the_known_parameters_follow():
         assert score < evaluate(small, here.nuisance, (b,)).objective
     assert (found[0][1].kind, found[0][1].row) == (MASS, 9)
     assert max(np.bincount([b.kind for _, b in found])) == 3
+
+
+def test_beside_another_hypothesis_only_what_gains_most_beside_the_best_is_looked_at(monkeypatch):
+    s = searcher(hidden(tension=1.3, masses=[(9, 2.0)]))
+    monkeypatch.setattr(coarse_scan, "SEARCH", replace(SEARCH, every_size_least=5))
+    looked = []
+
+    def seen(problem, state, kind, rows, worth):
+        looked.append(len(rows))
+        return coarse_scan.look(problem, state, kind, rows, worth)
+
+    monkeypatch.setattr(moves, "look", seen)
+    state = evaluate(s.problem, np.zeros(2), ())
+    whole = s.scanned(state, 3, s.coarse)
+    assert 9 in whole.live[MASS]
+    every, looked[:] = sum(looked), []
+    again = s.scanned(evaluate(s.problem, np.array([0.02, 0.0]), ()), 3, whole.live)
+    assert sum(looked) < 0.5 * every
+    assert (again.best[0][1].kind, again.best[0][1].row) == (MASS, 9)
