@@ -16,8 +16,7 @@ class Effort:
     neighbours: int = number(96, "places", "that a suspect may move to at once, at most")
     of_each_kind: int = number(1, "suspects", "of a kind that are fitted, whatever the others gain")
     most: int = number(4, "suspects", "of a hypothesis, at most")
-    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned, at most", "time")
-    search_above: int = number(10, "modes", "of these above those that may match", "time")
+    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
     apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
     near: float = number(0.12, SIZE, "how far a suspect moves at once")
 

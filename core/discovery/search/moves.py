@@ -61,8 +61,7 @@ class Searcher:
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        most = min(self.effort.search_modes, self.problem.columns + self.effort.search_above)
-        return _local(self.problem, state, min(most, self.problem.basis.size))
+        return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
 
     def tuned(self, s: Suspect) -> bool:
         """Whether a suspect is of a kind with a magnitude that tunes it."""

@@ -14,7 +14,7 @@ class SensorNumbers:
     fewest_modes: int = number(3, "modes", "likewise")
     noise: float = number(0.03, RMS, "noise of a sound sensor where they cannot")
     named: float = number(0.8, "-", "chance from which on a fault is told")
-    moves: float = number(0.2, RMS, "that a sensor reads of some mode at least for a fault of it to be told", "true faults of twelve cases read 1.4 and more, a false one in a corner of a tower 0.12")
+    moves: float = number(0.2, RMS, "that a sensor reads of some mode at least for a fault of it to be told", "true faults of seven cases read 1.4 and more, a false one in a corner of a tower 0.12")
     turned_most: int = number(2, "sensors", "that a test has turned by mistake; more are a structure of another shape", "what a crew gets wrong")
     doubtful: float = number(0.05, "-", "chance of a fault above which a node is no evidence about the model")
     known: float = number(0.97, "-", "chance that what is wrong with a faulty sensor is in the list")

@@ -122,8 +122,7 @@ def searching(structure, K, added, catalogue):
         40, 20,
     )  # fmt: skip
     every = tuple(np.arange(len(c)) for c in catalogue)
-    effort = Effort(search_above=40)
-    return Searcher(problem, every, (0,), np.zeros(1), float(np.hypot(NX, NY)), effort)
+    return Searcher(problem, every, (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
 
 
 @pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])
