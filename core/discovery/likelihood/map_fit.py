@@ -241,8 +241,9 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     floor = np.maximum(lk, LIKELIHOOD.least_eigenvalue * aim)
     off = 0.5 * np.log(floor / aim) / noise.frequency
     doff = 0.5 * dlam / floor / noise.frequency
-    a = shapes[:, k]
-    length = np.maximum(np.linalg.norm(a, axis=0), np.finfo(float).tiny)
+    a, lengths = shapes[:, k], np.linalg.norm(shapes, axis=0)
+    length = np.maximum(lengths[k], np.finfo(float).tiny)
+    seen = length > np.sqrt(LIKELIHOOD.unseen) * lengths.max()
     a = a / length
     t = e.shapes
     m = min(problem.columns, shapes.shape[1])
@@ -253,7 +254,7 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     counts = np.sqrt((1.0 - joint) / np.maximum(1.0 - own, LIKELIHOOD.apart_least))
     scale = np.sqrt(noise.independent) / noise.shape * np.minimum(counts, 1.0)
     rest = (a - t * np.sum(t * a, axis=0)) * scale
-    d = dshape / length
+    d = np.where(seen, dshape, 0.0) / length
     d = d - a * np.einsum("sj,psj->pj", a, d)[:, None]
     d = (d - t * np.einsum("sj,psj->pj", t, d)[:, None]) * scale
     w = np.sqrt(1.0 / (1.0 + (off**2 + np.sum(rest**2, axis=0)) / noise.robust))
