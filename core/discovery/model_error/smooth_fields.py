@@ -16,6 +16,7 @@ import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Structure
+from ..reduction.reduction_numbers import REDUCTION
 from .model_error_numbers import MODEL_ERROR
 
 
@@ -83,25 +84,32 @@ def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Fl
     r = vectors.shape[1]
     K, M = np.zeros((count, r, r)), np.zeros((count, r, r))
     at, weights = np.zeros((count, 3)), np.zeros(count)
-    start = 0
+    start, everywhere = 0, np.ones(len(structure.model.parameters))
     for m, xyz in zip(structure.members, centres, strict=True):
         own = cell[start : start + len(xyz)]
         start += len(xyz)
-        every = np.arange(len(xyz))
-        coordinates = m.coordinates(every)
-        matrices = m.matrices(every, np.ones(len(structure.model.parameters)))
-        for c in np.unique(own):
-            rows = np.flatnonzero(own == c)
-            k, mass = (
-                _reduced(A, coordinates[rows], motion)
-                for A in (None if X is None else X[rows] for X in matrices)
-            )
-            K[c] += k
-            M[c] += mass
-            w = max(float(np.trace(mass)), np.finfo(float).tiny)
-            at[c] += w * xyz[rows].mean(axis=0)
-            weights[c] += w
+        for few in _together(own):
+            some = np.flatnonzero(np.isin(own, few))
+            matrices, coordinates = m.matrices(some, everywhere), m.coordinates(some)
+            for c in few:
+                here = own[some] == c
+                k, mass = (
+                    _reduced(A, coordinates[here], motion)
+                    for A in (None if X is None else X[here] for X in matrices)
+                )
+                K[c] += k
+                M[c] += mass
+                w = max(float(np.trace(mass)), np.finfo(float).tiny)
+                at[c] += w * xyz[some[here]].mean(axis=0)
+                weights[c] += w
     return at / weights[:, None], weights, K, M
+
+
+def _together(cell: Ints) -> list[Ints]:
+    """Return the cells of elements (n,), so many at a time as have about so many elements."""
+    cells, sizes = np.unique(cell, return_counts=True)
+    ends = np.flatnonzero(np.diff(np.cumsum(sizes) // REDUCTION.elements_at_once)) + 1
+    return np.split(cells, ends) if len(cells) else []
 
 
 def _reduced(A: Floats | None, at: Ints, motion: Floats) -> Floats:

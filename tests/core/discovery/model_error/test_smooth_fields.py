@@ -1,8 +1,13 @@
 """Polynomials that stiffness and mass drift by."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+from tests.core.discovery.search.test_patch_reshaping import membrane
+
+from trueup.core.discovery.model_error import smooth_fields
 from trueup.core.discovery.model_error.smooth_fields import _cells, _polynomials
+from trueup.core.discovery.reduction.reduction_numbers import REDUCTION
 
 
 def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
@@ -28,3 +33,15 @@ def test_one_place_is_one_cell_and_has_no_field():
     with np.errstate(all="raise"):
         assert _cells(np.ones((1, 3)))[1] == 1
         assert _polynomials(np.ones((1, 3)), np.ones(1))[0].size == 0
+
+
+def test_fields_are_the_same_however_many_elements_are_made_at_once(monkeypatch):
+    structure = membrane()
+    vectors = np.random.default_rng(2).normal(size=(structure.displacement.shape[1], 6))
+    whole = smooth_fields.smooth_fields(structure, vectors)
+    monkeypatch.setattr(smooth_fields, "REDUCTION", replace(REDUCTION, elements_at_once=7))
+    parts = smooth_fields.smooth_fields(structure, vectors)
+    assert parts.names == whole.names
+    np.testing.assert_allclose(parts.stiffness, whole.stiffness, atol=1e-9)
+    np.testing.assert_allclose(parts.mass, whole.mass, atol=1e-9)
+    assert np.abs(whole.stiffness).max() > 1e-3
