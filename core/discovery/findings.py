@@ -19,6 +19,8 @@ class Where(Noun):
     `weight`, its share of the probability. Of what joins two places `ends` are the grids that each
     of them follows, several where it is between grids.
     Of a place that one grid carries at a distance `arms` holds how far off that grid it is, (3,).
+    Of equipment on one grid of a sheet, the first of `grids`, `normal` is that of the sheet, about
+    which it turns as all the grids do.
     """
 
     grids: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
@@ -26,6 +28,7 @@ class Where(Noun):
     sensors: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)
     ends: tuple[tuple[int, ...], ...] | None = field(default=None, metadata=OPTIONAL)
     arms: tuple[tuple[float, ...], ...] | None = field(default=None, metadata=OPTIONAL)
+    normal: tuple[float, ...] | None = field(default=None, metadata=OPTIONAL)
     shares: tuple[float, ...] | None = field(default=None, metadata=OPTIONAL)
     radius: float | None = field(default=None, metadata=OPTIONAL)
     components: tuple[int, ...] | None = field(default=None, metadata=OPTIONAL)

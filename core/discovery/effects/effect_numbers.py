@@ -31,6 +31,7 @@ class EffectNumbers:
     factor_error: float = number(0.25, "of ln factor", ERROR, MEASURED)
     damper_error: float = number(0.12, "of ln c", ERROR, MEASURED)
     absorber_error: tuple[float, float] = number((0.08, 0.02), "of ln m, ln f", ERROR, MEASURED)
+    body: float = number(0.05, SIZE, "standard deviation beforehand of how far the centre of equipment is off its foot along each axis, and of how far it extends")
     masses_across: float = number(18.0, "places", "across the structure, each way, that a first scan looks at, of masses")
     springs_across: float = number(13.0, "places", "likewise, of springs and absorbers")
     links_across: float = number(9.0, "places", "likewise, of both ends of springs between two places")

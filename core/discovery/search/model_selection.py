@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Bools
 from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
-from ..effects.equipment import stands_off
+from ..effects.equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
@@ -67,7 +67,7 @@ def burden(searcher: Searcher, f: Fit) -> float:
     does not have, so the second costs more.
     """
     total = sum(price(searcher, s) for s in f.suspects)
-    return total + _stands(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f))
+    return total + 2.0 * _bodies(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f))
 
 
 def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
@@ -83,11 +83,11 @@ def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
     return [(j, i) for i, j in found.items()]
 
 
-def _stands(searcher: Searcher, f: Fit) -> float:
-    """Return what the unknowns of equipment on stands must lower the objective by."""
+def _bodies(searcher: Searcher, f: Fit) -> float:
+    """Return what the choice of the bodies of equipment cost, ln of a probability."""
     catalogue = searcher.problem.catalogue
-    off = sum(stands_off(catalogue[s.kind], s.row) for s in f.suspects)
-    return SEARCH.equipment_gain * off
+    known = (grown(catalogue[s.kind], s.row) for s in f.suspects)
+    return sum(c.paid for c in known if c)
 
 
 def judge(searcher: Searcher, found: Found) -> Judgement:
@@ -173,7 +173,7 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
     Where the `best` is so far ahead that it does not matter, smooth fields are not tried.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    paid += 0.5 * _stands(searcher, f)
+    paid += _bodies(searcher, f)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid

@@ -123,7 +123,7 @@ def on_stands(
     found: Found,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Searcher, Found]:
-    """Put masses on stands; where one gains as much as an effect more, search on from it.
+    """Put masses on stands; where one does, search on from it.
 
     What was found beside a mass on no stand made up for its stand. Not where little is left.
     """
@@ -133,12 +133,7 @@ def on_stands(
 
     searcher, new = bettered(searcher, found, standing)
     pairs = enumerate(zip(new.levels, found.levels, strict=True))
-    gained = (
-        k
-        for k, (f, old) in pairs
-        if f is not old and earned(scored(searcher, f), scored(searcher, old))
-    )
-    first = next(gained, None)
+    first = next((k for k, (f, old) in pairs if f is not old), None)
     chosen = new.levels[judge(searcher, new).accepted]
     if first is None or adequate(searcher, chosen):
         return searcher, new

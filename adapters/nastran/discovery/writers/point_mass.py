@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ...editing.find_cards import free_id
 from ...text.deck_text import DeckText
 from .site import Site, plain
@@ -34,18 +36,36 @@ def write(text: DeckText, site: Site) -> DeckText:
 
 
 def _equipment(text: DeckText, site: Site, number: int) -> list[list[Any]]:
-    grids, host, rows = site.grids, site.grids[0], list[list[Any]]()
-    if len(grids) > 1:
+    grids, where, rows = site.grids, site.finding.where, list[list[Any]]()
+    host = grids[0]
+    if where.normal is not None:
+        host, cd = free_id(text, "grid"), free_id(text, "coordinate")
+        rows += _foot(site, host, cd, number)
+        number += 2
+    elif len(grids) > 1:
         host = free_id(text, "grid")
-        at = [float(v) for v in site.finding.where.xyz]
         rows += [
-            ["GRID", host, 0, *map(plain, at), 0],
+            ["GRID", host, 0, *map(plain, where.xyz), 0],
             ["RBE3", number, None, host, "123456", 1.0, "123", *grids],
         ]
         number += 1
     none = [(0.0, 0.0, 0.0)]
     parts = (*(site.arms or none), site.finding.magnitude.get("offset", none[0]))
     offset = [plain(sum(along)) for along in zip(*parts, strict=True)]
-    j = plain(site.total("inertia"))
+    j = site.total("inertia")
+    inertias = map(plain, site.finding.magnitude.get("inertias", (j, 0.0, j, 0.0, 0.0, j)))
     mass = ["CONM2", number, host, 0, plain(site.total("mass")), *offset, None]
-    return [*rows, [*mass, j, 0.0, j, 0.0, 0.0, j]]
+    return [*rows, [*mass, *inertias]]
+
+
+def _foot(site: Site, host: int, cd: int, number: int) -> list[list[Any]]:
+    """Return a grid that follows the first one, but about the normal of their sheet all of them."""
+    first, *_ = grids = site.grids
+    at, normal = np.array(site.middle([first])), np.array(site.finding.where.normal)
+    along = np.eye(3)[np.argmin(np.abs(normal))]
+    return [
+        ["CORD2R", cd, 0, *map(plain, (*at, *(at + normal), *(at + along)))],
+        ["GRID", host, 0, *map(plain, at), cd],
+        ["RBE2", number, first, "12345", host],
+        ["RBE3", number + 1, None, host, "6", 1.0, "123", *grids],
+    ]

@@ -182,6 +182,17 @@ def cantilever(root, m, k=0.0):
     return 1.0 / np.sqrt(values) / (2.0 * np.pi)
 
 
+SHEET = (
+    "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nCORD2R,7,,0.,0.,0.,0.,1.,1.\n,1.,0.,0.\nPARAM,K6ROT,1.-6\n"
+    + "".join(
+        f"GRID,{1 + i + 3 * j},,{20.0 * i},{20.0 * j},0.,{{cd}}\n"
+        for j in range(3)
+        for i in range(3)
+    )
+    + "".join(f"CQUAD4,{g},1,{g},{g + 1},{g + 4},{g + 3}\n" for g in (1, 2, 4, 5))
+    + "SPC1,1,123456,1,2,3\nPSHELL,1,1,1.,1,,1\nMAT1,1,7.+4,,.3,2.7-9\nENDDATA\n"
+)
+
 BEYOND = np.array([[1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, -25.0], [0, 0, 1.0, 0, 25.0, 0]])
 
 
@@ -210,6 +221,48 @@ def test_equipment_between_grids_is_off_by_its_arm_and_its_offset(tmp_path):
     what = finding("point_mass", size, grids=[2], arms=((-30.0, 0.0, 0.0),))
     _, found = completed(tmp_path, BEAM.format(cd=""), what)
     np.testing.assert_allclose(found, cantilever(BEYOND, 3e-4), rtol=1e-6)
+
+
+def carrying(folder, text, cards):
+    """Return the lowest frequencies [Hz] of a deck with cards more."""
+    (folder / "carrying.bdf").write_text(text.replace("ENDDATA", cards + "ENDDATA"))
+    found = normal_modes.solve(build_model(read_deck(folder / "carrying.bdf")), n_modes=3)
+    return np.sqrt(found.eigenvalues) / (2.0 * np.pi)
+
+
+def test_equipment_has_moments_and_products_of_inertia_about_its_centre(tmp_path):
+    """A rod from corner to corner in x and y, as heavy halves at its ends are."""
+    half = np.array([6.0, 8.0, 0.0])
+    J = 3e-4 * (half @ half * np.eye(3) - np.outer(half, half))
+    told = [J[0, 0], -J[1, 0], J[1, 1], -J[2, 0], -J[2, 1], J[2, 2]]
+    size = {"mass": 3e-4, "inertia": np.trace(J) / 3.0, "inertias": told}
+    beam = BEAM.format(cd="")
+    _, found = completed(tmp_path, beam, finding("point_mass", size, grids=[2]))
+    ends = "CONM2,10,2,,1.5-4,6.,8.,0.\nCONM2,11,2,,1.5-4,-6.,-8.,0.\n"
+    np.testing.assert_allclose(found, carrying(tmp_path, beam, ends), rtol=1e-5)
+
+
+FOOT = {"grids": [5, 1, 2, 3, 4, 6, 7, 8, 9], "normal": (0.0, 0.0, 1.0)}
+UPRIGHT = {"mass": 3e-5, "inertia": 2e-3, "inertias": (3e-3, 0.0, 3e-3, 0.0, 0.0, 0.0)}
+CARD = "CONM2,90,5,0,3.-5,{off}\n,3.-3,,3.-3\n"
+"""A rod that stands up from a sheet: about itself it resists nothing."""
+
+
+@pytest.mark.parametrize("cd", ["", "7"])
+def test_equipment_on_one_grid_of_a_sheet_tilts_with_it(tmp_path, cd):
+    sheet = SHEET.format(cd=cd)
+    above = {**UPRIGHT, "offset": [0.0, 0.0, 12.0]}
+    _, found = completed(tmp_path, sheet, finding("point_mass", above, **FOOT))
+    expected = carrying(tmp_path, sheet, CARD.format(off="0.,0.,12."))
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
+def test_equipment_beside_one_grid_of_a_sheet_does_not_swing_on_its_drilling_rotation(tmp_path):
+    """Which has next to no stiffness where it is none of the grid's own axes that AUTOSPC holds."""
+    sheet = SHEET.format(cd="7")
+    beside = {**UPRIGHT, "offset": [12.0, 0.0, 0.0]}
+    _, found = completed(tmp_path, sheet, finding("point_mass", beside, **FOOT))
+    assert found[0] > 5.0 * carrying(tmp_path, sheet, CARD.format(off="12.,0.,0."))[0]
 
 
 def test_a_foot_that_turns_swings_the_whole_arm(tmp_path):

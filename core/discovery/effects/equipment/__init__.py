@@ -1,0 +1,1 @@
+"""Equipment: where it stands, its body, and how a fit finds that."""
