@@ -30,13 +30,14 @@ LARGER = (
     "panel_stiffness",
     "wheel_mass",
 )
-SIZE = {"wheel": 760.0, "panel": 900.0, "tower": 2500.0, "frame": 1000.0}
+SIZE = {"wheel": 760.0, "panel": 900.0, "plate": 900.0, "tower": 2500.0, "frame": 1000.0}
 THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 SETTINGS = {"threads": dict.fromkeys(THREADS, "4"), "kernel": {"OPENBLAS_CORETYPE": "Haswell"}}
 """Ways that leave the case: four threads, the linear algebra of another processor."""
 EVERY = [way for way in WAYS if way != "as_it_is"] + list(SETTINGS)
 TOLD = [(name, way) for name in SMALL for way in EVERY]
 TOLD += [(name, way) for name in LARGER for way in ("renumbered", "kernel")]
+TOLD += [("9737_plate_point_mass", way) for way in ("shuffled", "turned")]
 
 
 @cache

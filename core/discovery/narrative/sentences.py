@@ -113,7 +113,17 @@ def sentence_of(
     text += ")" if known or "size" in values else ", the test hardly tells)"
     if "inertia_assumed" in values:
         text += ". The test does not tell its inertia: taken as that of a solid block"
+    elif "inertia" in values:
+        text += f". {_stance(magnitude)}"
     return text + "."
+
+
+def _stance(magnitude: dict[str, Any]) -> str:
+    """Say how equipment stands."""
+    radius = np.sqrt(magnitude["inertia"] / magnitude["mass"])
+    off = np.linalg.norm(magnitude.get("offset", 0.0))
+    text = f"It resists being turned (radius of gyration about {radius:.2g})"
+    return text + (f", its centre about {off:.2g} from its foot" if off > 0.0 else "")
 
 
 def spot_of(geometry: Geometry, c: Candidates, row: int) -> str:

@@ -107,16 +107,20 @@ def _score(s: _Standing) -> float:
 def _places(structure: Structure, searcher: Searcher, s: Suspect) -> list[Place]:
     """Return where equipment may stand in place of a mass: there, and on the grids next to it.
 
-    Places alike stay where they are.
+    In place of masses at places alike there and, where these are beside each other, one alone next
+    to each: what turns about one axis more than about another moves as a pair does.
     """
     own = searcher.problem.catalogue[s.kind]
     rows = [(own, s.row)] if own.kind is point_mass.KIND and own.rows_each else []
-    if own.single is None:
-        c = next(c for c in searcher.problem.catalogue if c.kind is point_mass.KIND and c.rows_each)
-        away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
-        away[[len(w["grids"]) > 1 for w in c.where]] = np.inf
-        near = np.argsort(away, kind="stable")[: SEARCH.equipment_places]
-        rows += [(c, int(row)) for row in near if not (c is own and row == s.row)]
+    c = next(c for c in searcher.problem.catalogue if c.kind is point_mass.KIND and c.rows_each)
+    between = np.array([len(w["grids"]) > 1 for w in c.where])
+    spots = np.array([alone.xyz[row] for alone, row in places_of(own, s.row)])
+    near = set[int]()
+    if np.linalg.norm(np.ptp(spots, axis=0)) < SEARCH.beside * searcher.size:
+        for spot in spots:
+            away = np.where(between, np.inf, np.linalg.norm(c.xyz - spot, axis=1))
+            near.update(np.argsort(away, kind="stable")[: SEARCH.equipment_places].tolist())
+    rows += [(c, row) for row in sorted(near) if not (c is own and row == s.row)]
     return [(c, feet) for c, row in rows for feet in _feet(structure, c, row)]
 
 

@@ -46,10 +46,11 @@ class LooseLaw(Law):
 _PAIRS = np.array([(i, j) for i, j in combinations(range(6), 2) if j > 2 and j != i + 3])
 _SIDES = tuple(-cross(e) for e in np.eye(3))
 _EXTENTS = tuple(
-    np.outer(a, b) + (i != j) * np.outer(b, a)
+    (np.outer(a, b) + np.outer(b, a)) / (2.0 if i == j else np.sqrt(2.0))
     for i, a in enumerate(np.eye(3))
     for j, b in enumerate(np.eye(3)[: i + 1])
 )
+"""Extents of which any is a sum, its parts squared the same in axes turned as one likes."""
 
 
 def _counts(A: Floats) -> Floats:
@@ -127,8 +128,8 @@ def loose(template: Candidates, alike: Sequence[Stand], size: float) -> Candidat
 def theta_of(ln_mass: float, body: Body, size: float) -> tuple[float, ...]:
     """Return the θ of a loose body."""
     unit = EFFECTS.body * size
-    extent = body.extent[np.tril_indices(3)] / unit
-    return (ln_mass, *(body.offset / unit).tolist(), *extent.tolist())
+    extent = [float(np.sum(E * body.extent)) / unit for E in _EXTENTS]
+    return (ln_mass, *(body.offset / unit).tolist(), *extent)
 
 
 def body_of(theta: Sequence[float], size: float) -> Body:

@@ -73,6 +73,11 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     off = c.bodies[found.row].offset - np.array([0.08, 0.0, 0.0])
     assert np.linalg.norm(off) < 0.03
     assert earned(scored(wide, grown), scored(s, point))
+    said = magnitude_of(c, found.row, np.exp(found.theta), np.ones((1, 2)), MassUnit())
+    sentence = sentence_of(c.kind, said, "there", (0.1, 0.3), [1], MassUnit())
+    assert "It resists being turned (radius of gyration about 0.0" in sentence
+    off = np.linalg.norm(c.bodies[found.row].offset)
+    assert sentence.endswith(f"its centre about {off:.2g} from its foot.")
 
 
 def test_what_looks_like_an_absorber_is_a_mass_that_resists_being_turned(tmp_path, monkeypatch):

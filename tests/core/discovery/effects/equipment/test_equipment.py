@@ -117,6 +117,14 @@ def test_a_loose_body_is_that_of_its_unknowns_and_moves_by_their_slopes(tmp_path
         assert (rows.T * slope) @ rows == pytest.approx(by_steps, abs=1e-8)
 
 
+def test_a_body_is_as_likely_beforehand_however_it_is_turned():
+    body = Body(ROD.offset, np.array([[3.0, 1.0, 0.5], [1.0, 2.0, -0.7], [0.5, -0.7, 1.0]]))
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    turned = Body(turn @ body.offset, turn @ body.extent @ turn.T)
+    one, other = (np.linalg.norm(theta_of(0.0, b, SIZE)) for b in (body, turned))
+    assert one == pytest.approx(other)
+
+
 def test_mirrored_places_have_mirrored_bodies(tmp_path):
     structure = structure_of(tmp_path, PLATE)
     both = [
