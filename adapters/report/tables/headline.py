@@ -19,7 +19,7 @@ VERDICTS = {
     "undecided": "undecided",
 }
 _VERDICT_SENTENCES = {
-    "no_gap": "Nothing is missing: model and test agree within the scatter of the test.",
+    "no_gap": "Nothing is missing.",
     "undecided": "The data do not decide what is missing.",
     "parameters_only": "Known parameters alone explain the gap; nothing is missing.",
     "test_fault": "The gap comes from the test, not from the model.",
@@ -84,7 +84,8 @@ def _discover(answer: DiscoverTables) -> list[str]:
     best = _found(found)
     told = [_VERDICT_SENTENCES.get(verdict, f"{verdict}.")]
     if verdict in ("no_gap", "parameters_only"):
-        told = [told[0][:-1] + _but_for(answer.judgement.unexplained) + "."]
+        usual = _usual(answer.gap.before) if verdict == "no_gap" else ""
+        told = [told[0][:-1] + usual + _but_for(answer.judgement.unexplained) + "."]
     if best and verdict == "undecided":
         told.append(_sentence(f"the best explanation so far: {best}"))
     elif best:
@@ -119,6 +120,14 @@ def _found(findings: Sequence[Finding]) -> str:
     if at_fault:
         said.append(f"the test is at fault: {listed(at_fault)}")
     return ", and ".join(said)
+
+
+def _usual(gap: Gap) -> str:
+    """Say by how much frequencies are off where nothing is missing, on average."""
+    if not gap.pairs:
+        return ""
+    off = f"{fixed(gap.mean_abs_deviation_percent, 1)} % that frequencies are off"
+    return f": mesh and usual errors explain the {off}"
 
 
 def _but_for(unexplained: Sequence[int]) -> str:

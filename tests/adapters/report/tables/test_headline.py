@@ -83,6 +83,18 @@ def test_every_verdict_has_a_sentence(discovery: dict[str, Any], verdict: str, s
     assert said in story(answer_of(discovery))[0]
 
 
+def test_where_nothing_is_missing_it_is_said_how_far_off_frequencies_are_all_the_same(
+    discovery: dict[str, Any],
+) -> None:
+    discovery |= {"verdict": "no_gap", "findings": []}
+    mean = discovery["gap"]["before"]["mean_abs_deviation_percent"]
+    first = story(answer_of(discovery))[0]
+    said = f"mesh and usual errors explain the {mean:.1f} % that frequencies are off."
+    assert first == f"Nothing is missing: {said}"
+    discovery["gap"]["before"] |= {"pairs": 0, "mean_abs_deviation_percent": None}
+    assert story(answer_of(discovery))[0] == "Nothing is missing."
+
+
 @pytest.mark.parametrize("verdict", ["no_gap", "parameters_only"])
 def test_modes_that_nothing_explains_are_named_where_nothing_is_missing(
     discovery: dict[str, Any], verdict: str
