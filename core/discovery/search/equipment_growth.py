@@ -94,10 +94,16 @@ def _at_point(c: Candidates) -> bool:
 
 
 def _best(structure: Structure, r: _Replaced) -> _Standing | None:
-    """Return the best equipment in place of a mass, None where none can stand there."""
+    """Return the best equipment in place of a mass, None where none can stand there.
+
+    Of those that have climbed once the likeliest climb on.
+    """
     s = r.state.suspects[r.number]
-    found = (_standing(r, p) for p in _places(structure, r.searcher, s))
-    return max((f for f in found if f is not None), key=_score, default=None)
+    places = _places(structure, r.searcher, s)
+    first = [(place, j) for place in places for j in [_climbed(r, place)] if j is not None]
+    first.sort(key=lambda one: one[1].evidence, reverse=True)
+    found = (_standing(r, *one) for one in first[: SEARCH.equipment_tried])
+    return max(found, key=_score, default=None)
 
 
 def _score(s: _Standing) -> float:
@@ -152,39 +158,39 @@ def _start(r: _Replaced, place: Place) -> tuple[float, Body]:
     return float(trials[size][0]), bodies[row]
 
 
-def _standing(r: _Replaced, place: Place) -> _Standing | None:
-    """Return equipment at a place as the test is likeliest, None where no model with it solves."""
-    (template, feet), q = place, r.number
-    best = _climbed(r, place)
-    if best is None:
-        return None
-    suspects = best.fit.suspects
-    body = body_of(suspects[q].theta, r.searcher.size)
-    made = equipment(template, feet, [body], paid=_paid(best, q))
-    new = Suspect(suspects[q].kind, 0, tuple(made.like(suspects[q].theta[:1]).tolist()))
-    both = (*suspects[:q], new, *suspects[q + 1 :])
-    wide = _with(r.searcher, made)
-    return _Standing(wide, scored(wide, evaluate(wide.problem, best.fit.nuisance, both)))
-
-
 def _climbed(r: _Replaced, place: Place) -> Judged | None:
     """Return a hypothesis whose mass at a place is a loose body, moved to where it is likeliest.
 
-    On the modes of a start a body is moved only so far: so again from there.
+    None where no model with it solves.
     """
     mass, body = _start(r, place)
     size, suspects, q = r.searcher.size, r.state.suspects, r.number
     wide, kind = _with(r.searcher, loose(*place, size)), len(r.searcher.problem.catalogue)
     new = Suspect(kind, 0, theta_of(mass, body, size))
-    state = evaluate(wide.problem, r.state.nuisance, (*suspects[:q], new, *suspects[q + 1 :]))
-    best: Judged | None = None
+    both = (*suspects[:q], new, *suspects[q + 1 :])
+    state = evaluate(wide.problem, r.state.nuisance, both)
+    return wide.judged(wide.problem, state, np.inf)
+
+
+def _standing(r: _Replaced, place: Place, best: Judged) -> _Standing:
+    """Return equipment at a place as the test is likeliest, climbed on from where it is.
+
+    On the modes of a start a body is moved only so far: so again from there.
+    """
+    (template, feet), q, size = place, r.number, r.searcher.size
+    wide = _with(r.searcher, loose(template, feet, size))
     for _ in range(SEARCH.equipment_rounds):
+        state = evaluate(wide.problem, best.fit.nuisance, best.fit.suspects)
         found = wide.judged(wide.problem, state, np.inf)
-        if found is None or (best and found.evidence < best.evidence + SEARCH.better):
+        if found is None or found.evidence < best.evidence + SEARCH.better:
             break
         best = found
-        state = evaluate(wide.problem, found.fit.nuisance, found.fit.suspects)
-    return best
+    suspects = best.fit.suspects
+    made = equipment(template, feet, [body_of(suspects[q].theta, size)], paid=_paid(best, q))
+    new = Suspect(suspects[q].kind, 0, tuple(made.like(suspects[q].theta[:1]).tolist()))
+    both = (*suspects[:q], new, *suspects[q + 1 :])
+    wide = _with(r.searcher, made)
+    return _Standing(wide, scored(wide, evaluate(wide.problem, best.fit.nuisance, both)))
 
 
 def _paid(best: Judged, q: int) -> float:

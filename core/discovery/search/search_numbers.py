@@ -111,7 +111,8 @@ class SearchNumbers:
 
     equipment_heights: tuple[float, ...] = number((0.04, 0.02), SIZE, "above and below a sheet at which the fit of a body starts")
     equipment_radius: float = number(0.01, SIZE, "radius of gyration with which it starts")
-    equipment_rounds: int = number(4, "fits", "of a body on a basis of its own, at most")
+    equipment_tried: int = number(3, "places", "where a body that climbed once climbs on")
+    equipment_rounds: int = number(3, "fits", "of such a body on a basis of its own, at most")
     equipment_places: int = number(5, "grids", "next to a mass on which equipment is tried")
     equipment_sizes: tuple[float, ...] = number((-0.35, -0.15, 0.0, 0.15), "θ", "with which it starts: what resists being turned is less heavy")
 
