@@ -72,7 +72,7 @@ class Ground:
     loaded : (n_sensor, n_free) sparse
         A root of the mass of all sensors, together as heavy as the structure.
     known : dict
-        Bases that were made.
+        Bases that were made last.
     """
 
     structure: Structure
@@ -219,7 +219,10 @@ def _at_state(structure: Structure, c: Candidates, row: int, state: Fit) -> tupl
 
 def _known(ground: Ground, places: Places, columns: int) -> Own:
     if places not in ground.known:
-        ground.known[places] = _own(ground, places, columns)
+        made = _own(ground, places, columns)
+        while len(ground.known) >= SEARCH.bases_kept:
+            del ground.known[next(iter(ground.known))]
+        ground.known[places] = made
     return ground.known[places]
 
 
@@ -234,6 +237,8 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
         sums = before.plain.stiffness, before.plain.mass, before.mesh, before.bars
         if c.rows_each:
             loads = _root(c, row).T.toarray()
+            if c.rows_each > 6 * c.many(row):
+                loads = independent(loads)
         else:
             loads = independent(c.full(row) @ V[:, :columns])
         released = any(c.law.shared for c, _ in places)

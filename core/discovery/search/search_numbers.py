@@ -122,6 +122,7 @@ class SearchNumbers:
     foot_share: float = number(0.01, "of a mass", "at a grid, below which it is left out")
     foot_near: int = number(5, "grids", "the last of which is a side of an element away")
     foot_reach: float = number(2.6, "sides of an element", "around a place that footprints may lie")
+    bases_kept: int = number(64, "bases", "of hypotheses that are kept, the last ones", "memory")
     own_above: float = number(1.4, "of the test's highest eigenvalue", "up to which a hypothesis gets modes of its own")
     own_more: int = number(4, "modes", "more than these")
     own_times: int = number(2, "times", "as many make the basis on which a hypothesis is weighed", "time")

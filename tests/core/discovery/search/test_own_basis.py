@@ -31,3 +31,17 @@ def test_a_completed_model_has_modes_of_its_own(monkeypatch):
 def test_a_completed_model_with_a_negative_mass_is_refused(monkeypatch):
     with pytest.raises(CheckError, match="negative mass"):
         completed(monkeypatch, 1.0e6)
+
+
+def test_no_more_bases_are_kept_than_memory_is_for(monkeypatch):
+    """The oldest goes, and is made again where it is asked for."""
+    made = []
+    monkeypatch.setattr(room, "_own", lambda _, places, __: made.append(places) or places)
+    ground, kept = Some(known={}), room.SEARCH.bases_kept
+    for k in range(kept + 1):
+        room._known(ground, (k,), 1)
+    room._known(ground, (kept,), 1)
+    assert len(ground.known) == kept
+    assert len(made) == kept + 1
+    assert room._known(ground, (0,), 1) == (0,)
+    assert len(made) == kept + 2
