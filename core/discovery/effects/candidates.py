@@ -17,7 +17,7 @@ from ..reduction.residual_flexibility import Compliance, Flexibility, SharedFlex
 from ..reduction.search_basis import Basis
 from ..symmetry.equivalent_places import images_of, symmetries
 from ..symmetry.symmetry_numbers import SYMMETRY
-from .effect_kind import EffectKind
+from .effect_kind import EffectKind, Words
 from .effect_laws import Law, Rows
 
 Ends = tuple[int, int, int]
@@ -118,6 +118,10 @@ class Candidates:
         """Return the rows of `root` on the basis, (n, q, r)."""
         U = np.asarray(self.root @ basis.vectors)
         return U.reshape(len(self), self.rows_each, basis.size)
+
+    def told(self, row: int, words: Words) -> Words:
+        """Return what is told of one place beside its magnitudes, by their `words`."""
+        return self.kind.further(self, row, words)
 
     def many(self, row: int) -> int:
         """Return the number of places that one of the candidates takes."""

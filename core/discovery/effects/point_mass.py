@@ -12,7 +12,6 @@ from .effect_kind import MASS, EffectKind, Magnitude, Scale
 from .effect_laws import MassLaw, MountedLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
-from .equipment.bodies import further
 from .structure_points import points_of
 
 
@@ -76,5 +75,4 @@ KIND = EffectKind(
     places=_places,
     across=EFFECTS.masses_across,
     nature="mass",
-    further=further,
 )

@@ -72,7 +72,7 @@ def magnitude_of(
             said[f"{m.word}_interval"] = (interval * unit).tolist()
     where = c.where[row]
     said |= {k: where[k] for k in ("components", "free_components") if k in where}
-    return said | c.kind.further(c, row, said)
+    return said | c.told(row, said)
 
 
 def sentence_of(

@@ -16,9 +16,9 @@ import numpy as np
 
 from ..effects import point_mass, tuned_absorber
 from ..effects.candidates import Candidates, Suspect, places_of
-from ..effects.equipment.bodies import Body, Equipment, ball, block, equipment, grown
-from ..effects.equipment.loose_body import body_of, loose, theta_of
-from ..effects.equipment.stands import Stand, stands
+from ..equipment.bodies import Body, Equipment, ball, block, equipment, grown
+from ..equipment.loose_body import body_of, loose, theta_of
+from ..equipment.stands import Stand, stands
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from ..model_error.diffuse_fit import Judged, everything, spread_of

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Bools
 from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
-from ..effects.equipment.bodies import grown
+from ..equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, Problem, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve

@@ -9,10 +9,10 @@ from itertools import combinations
 import numpy as np
 import scipy.sparse as sp
 
-from ....arrays import Floats, Ints
-from ..candidates import Candidates
-from ..effect_laws import Law
-from ..effect_numbers import EFFECTS
+from ...arrays import Floats, Ints
+from ..effects.candidates import Candidates
+from ..effects.effect_laws import Law
+from ..effects.effect_numbers import EFFECTS
 from .bodies import Body
 from .stands import Stand, cross
 

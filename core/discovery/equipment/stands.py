@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ....arrays import Floats, Ints
-from ...reduction.elements_and_supports import Structure
-from ..effect_kind import Words
-from ..effect_numbers import EFFECTS
-from ..structure_points import rotations, translations
+from ...arrays import Floats, Ints
+from ..effects.effect_kind import Words
+from ..effects.effect_numbers import EFFECTS
+from ..effects.structure_points import rotations, translations
+from ..reduction.elements_and_supports import Structure
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,10 @@ import pytest
 import trueup
 from trueup.adapters.nastran.discovery.build_structure import build_structure
 from trueup.core.discovery.effects.effect_kind import Scale
-from trueup.core.discovery.effects.equipment.bodies import Body, ball, equipment, further
-from trueup.core.discovery.effects.equipment.loose_body import body_of, loose, theta_of
-from trueup.core.discovery.effects.equipment.stands import stands
 from trueup.core.discovery.effects.point_mass import KIND
+from trueup.core.discovery.equipment.bodies import Body, ball, equipment
+from trueup.core.discovery.equipment.loose_body import body_of, loose, theta_of
+from trueup.core.discovery.equipment.stands import stands
 
 BEAM = (
     "CEND\nBEGIN BULK\n"
@@ -71,9 +71,9 @@ def test_what_is_the_same_about_any_axis_has_one_moment_of_inertia_else_those_of
     places = stands(structure, {"grids": [3]}, np.eye(3))
     made = equipment(masses_of(structure), places, BODIES)
     told = {"offset": [0.02, -0.01, 0.06], "inertia": pytest.approx(2.0 * 0.03**2)}
-    assert further(made, 0, {"mass": 2.0}) == told
+    assert made.told(0, {"mass": 2.0}) == told
     x, y = 0.03 * 0.6, 0.03 * 0.8
-    said = further(made, 1, {"mass": 2.0})
+    said = made.told(1, {"mass": 2.0})
     expected = 2.0 * np.array([y * y, x * y, x * x, 0.0, 0.0, x * x + y * y])
     assert said["inertias"] == pytest.approx(expected.tolist())
     assert said["inertia"] == pytest.approx(2.0 * 2.0 / 3.0 * 0.03**2)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ....arrays import Floats
-from ..candidates import Candidates, places_of, together
-from ..effect_kind import Words
-from ..effect_laws import MassLaw, MountedLaw
-from ..effect_numbers import EFFECTS
+from ...arrays import Floats
+from ..effects.candidates import Candidates, places_of, together
+from ..effects.effect_kind import Words
+from ..effects.effect_laws import MassLaw, MountedLaw
+from ..effects.effect_numbers import EFFECTS
 from .stands import Stand, cross
 
 _PRODUCTS = 2.0 * np.eye(3) - 1.0
@@ -66,6 +66,18 @@ class Equipment(Candidates):
     bodies: tuple[Body, ...] = ()
     paid: float = 0.0
 
+    def told(self, row: int, words: Words) -> Words:
+        """Return offset and moments of inertia, where they are not alike those of a CONM2."""
+        body = self.bodies[row]
+        about = words["mass"] * body.inertia
+        said: Words = {"offset": body.offset.tolist()} if body.offset.any() else {}
+        said["inertia"] = float(np.trace(about)) / 3.0
+        if not np.allclose(body.extent, body.extent[0, 0] * np.eye(3)):
+            said["inertias"] = (about * _PRODUCTS)[np.tril_indices(3)].tolist()
+        if body.assumed:
+            said["inertia_assumed"] = True
+        return said
+
 
 def equipment(
     template: Candidates,
@@ -100,20 +112,6 @@ def equipment(
     if len(alike) == 1:
         return single
     return together(single, np.arange(len(each)).reshape(len(bodies), len(alike)))
-
-
-def further(c: Candidates, row: int, words: Words) -> Words:
-    """Return offset and moment of inertia of a mass that has them."""
-    if not isinstance(c, Equipment):
-        return {}
-    body = c.bodies[row]
-    about = words["mass"] * body.inertia
-    said: Words = {"inertia": float(np.trace(about)) / 3.0}
-    if not np.allclose(body.extent, body.extent[0, 0] * np.eye(3)):
-        said["inertias"] = (about * _PRODUCTS)[np.tril_indices(3)].tolist()
-    if body.assumed:
-        said["inertia_assumed"] = True
-    return {**({"offset": body.offset.tolist()} if body.offset.any() else {}), **said}
 
 
 def grown(c: Candidates, row: int) -> Equipment | None:
