@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ....core.discovery.effects import KINDS as EFFECTS
 from ....core.discovery.faults import FAULTS
-from ....core.discovery.findings import Finding
+from ....core.discovery.findings import Finding, Where
 from ....core.results.discovery import DiscoverTables
 from ....core.results.plain import Json
 from ..html.html_table import html_table
@@ -59,10 +59,16 @@ def _places(finding: Finding) -> str:
     """Return how many places explain the data as well, and of how many grids or elements."""
     places = finding.credible_set
     named = {"elements": {e for p in places for e in p.elements or ()},
-             "grids": {g for p in places for g in p.grids or ()}}  # fmt: skip
+             "grids": {g for p in places for g in _carrying(p)}}  # fmt: skip
     word, members = max(named.items(), key=lambda one: len(one[1]))
     more = f" ({len(members)} {word})" if len(members) > len(places) else ""
     return f"{len(places)}{more}" if places else MISSING
+
+
+def _carrying(place: Where) -> tuple[int, ...]:
+    """Return the grids that carry what is at a place: of a foot on one grid that alone."""
+    grids = place.grids or ()
+    return grids[:1] if place.normal else grids
 
 
 def _magnitude(finding: Finding) -> str:

@@ -108,6 +108,10 @@ def test_findings_give_size_with_interval_and_count_the_places(
         {"elements": [1, 2, 3], "xyz": [0.0, 0.0, 0.0]}, {"elements": [2, 3, 4], "xyz": [1.0, 0, 0]}
     ]  # fmt: skip
     assert texts(table_of(FINDINGS, discovery))[0][-1] == "2 (4 elements)"
+    discovery["findings"][0]["credible_set"] = [
+        {"grids": [5, 1, 2, 3], "normal": [0.0, 0.0, 1.0], "xyz": [0.0, 0.0, 0.0]}
+    ]
+    assert texts(table_of(FINDINGS, discovery))[0][-1] == "1"
 
 
 def test_alternatives_say_what_where_and_how_likely(discovery: dict[str, Any]) -> None:
