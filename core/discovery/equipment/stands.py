@@ -63,7 +63,10 @@ def stands(structure: Structure, where: Words, turn: Floats) -> list[Stand]:
     foot, around = _on_grid(structure, where, turn), None
     if wide.sum() > 1 and "arms" not in where:
         around = _around(structure, own, np.flatnonzero(wide), turn)
-    if foot is not None and around is not None and around.sheet:
+    sheet = around is not None and around.sheet
+    if foot is not None and not _turns(foot, around.axes[1:] if around and sheet else np.eye(3)):
+        foot = None
+    if foot is not None and around is not None and sheet:
         n = around.axes[0]
         straight = sp.block_diag([np.eye(3), np.eye(3) - np.outer(n, n)])
         swung = sp.csr_matrix(np.outer(n, np.append(np.zeros(3), n)))
@@ -76,19 +79,22 @@ def stands(structure: Structure, where: Words, turn: Floats) -> list[Stand]:
 
 
 def _on_grid(structure: Structure, where: Words, turn: Floats) -> Stand | None:
-    """Return the place on one grid that has rotations, or an arm off it."""
+    """Return the place on one grid, or an arm off it."""
     g = structure.model.geometry
     if len(where["grids"]) > 1:
         return None
     (own,) = g.index_of(np.array(where["grids"]))
     points = sp.csr_matrix((np.ones(1), ([0], [own])), (1, len(g.ids)))
     turns = rotations(structure, points)
-    if np.diff(turns.indptr).min() == 0:
-        return None
     arm = np.sum(where.get("arms", np.zeros((1, 3))), axis=0)
     moves = translations(structure, points) - sp.csr_matrix(cross(arm)) @ turns
     kept: Words = {k: where[k] for k in ("grids", "arms") if k in where}
     return Stand(g.xyz[own] + arm, kept, sp.vstack([moves, turns]).tocsr(), turn, np.eye(3), False)
+
+
+def _turns(s: Stand, ways: Floats) -> bool:
+    """Whether a place turns about each of some ways (n, 3)."""
+    return bool(np.diff((sp.csr_matrix(ways) @ s.motion[3:]).indptr).min() > 0)
 
 
 def _around(structure: Structure, own: Ints, rows: Ints, turn: Floats) -> Stand | None:

@@ -91,6 +91,14 @@ def test_one_grid_of_a_sheet_tilts_as_it_turns_and_spins_as_those_around_it_do(t
     assert foot.motion @ q == pytest.approx([*(own[c] for c in range(1, 6)), (wide.motion @ q)[5]])
 
 
+def test_a_foot_needs_no_drilling_rotation(tmp_path):
+    """AUTOSPC holds that of a flat sheet whose shells have none."""
+    structure = structure_of(tmp_path, PLATE.replace("ENDDATA", "PARAM,K6ROT,0.\nENDDATA"))
+    assert 6 not in structure.model.dofs.component[structure.model.expansion.getnnz(axis=1) > 0]
+    _, foot = stands(structure, {"grids": [6]}, np.eye(3))
+    assert foot.where["normal"] == pytest.approx([0.0, 0.0, 1.0])
+
+
 def test_a_loose_body_is_that_of_its_unknowns_and_moves_by_their_slopes(tmp_path):
     structure = structure_of(tmp_path, PLATE)
     template = masses_of(structure)
