@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
@@ -107,8 +108,8 @@ def loose(template: Candidates, alike: Sequence[Stand], size: float) -> Candidat
     unit, free, roots = EFFECTS.body * size, np.inf * _UNKNOWN, []
     for s in alike:
         turns = unit * np.linalg.det(s.turn) * s.turn.T
-        own = sp.block_diag([s.turn.T, turns]) @ s.motion
-        roots.append(sp.csr_matrix(_ROWS) @ own)
+        own = _ROWS @ la.block_diag(s.turn.T, turns)
+        roots.append(sp.csr_matrix(own) @ s.motion)
     return Candidates(
         kind=template.kind,
         xyz=alike[0].xyz[None],

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg as la
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
@@ -68,9 +69,9 @@ def stands(structure: Structure, where: Words, turn: Floats) -> list[Stand]:
         foot = None
     if foot is not None and around is not None and sheet:
         n = around.axes[0]
-        straight = sp.block_diag([np.eye(3), np.eye(3) - np.outer(n, n)])
-        swung = sp.csr_matrix(np.outer(n, np.append(np.zeros(3), n)))
-        motion = straight @ foot.motion + sp.vstack([0.0 * swung, swung]) @ around.motion
+        swung = la.block_diag(np.zeros((3, 3)), np.outer(n, n))
+        straight = sp.csr_matrix(np.eye(6) - swung)
+        motion = straight @ foot.motion + sp.csr_matrix(swung) @ around.motion
         first = where["grids"][0]
         grids = [first, *(k for k in around.where["grids"] if k != first)]
         named: Words = {"grids": grids, "normal": n.tolist()}
