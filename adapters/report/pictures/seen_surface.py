@@ -108,19 +108,19 @@ def depth_buffer(projected: Floats, faces: Ints, cells: int = 320) -> tuple[Dept
     if not len(faces):
         return buffer, np.zeros(0, bool)
     corners = projected[faces]
-    longest = np.linalg.norm(np.diff(corners[:, [0, 1, 2, 3, 0], :2], axis=1), axis=2).max()
+    sides = np.linalg.norm(np.diff(corners[:, [0, 1, 2, 3, 0], :2], axis=1), axis=2).max(axis=0)
     most = max(3, int(np.sqrt(2.5e6 / len(faces))))
-    samples = int(np.clip(np.ceil(1.5 * longest / pitch), 3, most))
-    s = (np.arange(samples) + 0.5) / samples
-    u, v = (g.ravel() for g in np.meshgrid(s, s))
+    samples = np.clip(np.ceil(1.5 * np.maximum(sides[:2], sides[2:]) / pitch), 3, most)
+    along, across = ((np.arange(n) + 0.5) / n for n in samples.astype(int))
+    u, v = (g.ravel() for g in np.meshgrid(along, across))
     weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
     points = np.matmul(weights.T, corners)
     flat = points.reshape(-1, 3)
-    index = buffer._cells(flat)
-    np.minimum.at(buffer.depth, (index[:, 0], index[:, 1]), flat[:, 2])
-    slack = 3.0 * pitch
-    seen = buffer.sees(flat, slack).reshape(len(faces), -1).any(axis=1)
-    return buffer, np.asarray(seen)
+    cell = np.ravel_multi_index(tuple(buffer._cells(flat).T), buffer.depth.shape)
+    nearest = buffer.depth.ravel()
+    np.minimum.at(nearest, cell, flat[:, 2])
+    seen = flat[:, 2] <= nearest[cell] + 3.0 * pitch
+    return buffer, np.asarray(seen.reshape(len(faces), -1).any(axis=1))
 
 
 def with_neighbours(chosen: Bools, mesh: DrawnMesh) -> Bools:

@@ -104,7 +104,7 @@ def find_damper(
     live = np.flatnonzero(peak > DAMPERS.still * peak.max())
     if not len(live):
         return None
-    first = w.scores(live, _coarse(w)).max(axis=1)
+    first = w.scores(live, _coarse(w), slice(None, None, 2)).max(axis=1)
     best = np.argsort(-first, kind="stable")[: DAMPERS.screened]
     kept = first[best] > first.max() - DAMPERS.behind
     kept[: DAMPERS.exact] = True
@@ -163,16 +163,21 @@ class _Weighing:
     shapes: Gain
     null: float
 
-    def scores(self, rows: Ints, grid: Levels) -> Floats:
-        """Return ln of how much likelier each size makes the data, (n, n_trial)."""
-        out = np.empty((len(rows), self.sizes.shape[1]))
+    def scores(self, rows: Ints, grid: Levels, some: slice = slice(None)) -> Floats:
+        """Return ln of how much likelier each size, or some of them, makes the data, (n, n_trial).
+
+        Marginal likelihoods, see `marginal`.
+        """
+        sizes = self.sizes[rows, some]
+        each = np.empty((*sizes.shape, len(grid.log_prior)))
         for start in range(0, len(rows), DAMPERS.at_once):
-            some = rows[start : start + DAMPERS.at_once]
-            c = self.sizes[some][:, :, None]
-            part = self.own + c * self.gives[some][:, None, :]
-            error = c * self.wrong[some][:, None, :]
-            out[start : start + DAMPERS.at_once] = marginal(self.measured, grid, part, error)
-        return out - self.null + self.shapes(rows, self.sizes[rows])
+            few = slice(start, start + DAMPERS.at_once)
+            c = sizes[few, :, None]
+            part = self.own + c * self.gives[rows[few], None]
+            error = c * self.wrong[rows[few], None]
+            each[few] = log_likelihood(self.measured, grid, part, error)
+        out = logsumexp(each + grid.log_prior, axis=-1)
+        return np.asarray(out - self.null + self.shapes(rows, sizes))
 
     def level(self, row: int | None, c: float) -> Floats:
         """Return the ratios that the modes have by themselves beside one dashpot, (n_mode,)."""

@@ -77,11 +77,16 @@ def log_likelihood(measured: Floats, grid: Levels, part: Floats, error: Floats) 
     off = np.log(mean, out=mean)
     off *= off
     off += DAMPERS.tails * v
-    few = np.arange(0, len(alone), DAMPERS.multiplied)
-    near, far = (np.log(np.multiply.reduceat(x, few)).sum(axis=0) for x in (v, off))
+    near, far = (_log_of_product(x) for x in (v, off))
     above = DAMPERS.tails + 1.0
     constant = above * np.log(DAMPERS.tails) * len(alone)
     return np.asarray(0.5 * (DAMPERS.tails * near - above * far + constant))
+
+
+def _log_of_product(x: Floats) -> Floats:
+    """Return ln of the product over the first axis."""
+    parts = np.array_split(x, range(DAMPERS.multiplied, len(x), DAMPERS.multiplied))
+    return np.asarray(sum(np.log(np.multiply.reduce(part, axis=0)) for part in parts))
 
 
 def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:

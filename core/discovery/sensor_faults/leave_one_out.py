@@ -143,7 +143,7 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
     sound = np.zeros(len(y), bool)
     sound[slots[~masked][there[~masked]]] = True
     modes = y.shape[1]
-    mean, covariance = np.zeros((n, modes, q)), np.zeros((n, modes, q, q))
+    m, C = np.zeros((n, modes, q)), np.zeros((n, modes, q, q))
     reading = np.where(there[:, None, :], y[slots].transpose(0, 2, 1), 0.0)
     noise = np.where(there[:, None, :], variance[slots].transpose(0, 2, 1), SENSORS.absent)
     for j in range(modes):
@@ -155,13 +155,13 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
         own, around = np.where(there[..., None], B[slots], 0.0), span.around[:, :, used]
         X = np.concatenate([own, around * root[used]], axis=1)
         Z = lower_solved(L, X.reshape(-1, len(L)).T).T.reshape(X.shape)
-        m, C = Z @ lower_solved(L, known.T @ y[sound, j, None])[:, 0], Z @ Z.transpose(0, 2, 1)
-        cross = C[:, :, :k]
-        T = -C[:, :k, :k]
-        T[:, np.arange(k), np.arange(k)] += noise[:, j]
-        lever = np.linalg.solve(T, cross.transpose(0, 2, 1)).transpose(0, 2, 1)
-        lever = np.where(masked[:, None, None], 0.0, lever)
-        off = (reading[:, j] - m[:, :k])[..., None]
-        mean[:, j] = m - (lever @ off)[..., 0]
-        covariance[:, j] = C + lever @ cross.transpose(0, 2, 1)
+        m[:, j] = Z @ lower_solved(L, known.T @ y[sound, j, None])[:, 0]
+        C[:, j] = Z @ Z.transpose(0, 2, 1)
+    cross = np.swapaxes(C[..., :k], 2, 3)
+    T = -C[..., :k, :k]
+    T[..., np.arange(k), np.arange(k)] += noise
+    lever = np.swapaxes(np.linalg.solve(T, cross), 2, 3)
+    lever = np.where(masked[:, None, None, None], 0.0, lever)
+    mean = m - np.matmul(lever, (reading - m[..., :k])[..., None])[..., 0]
+    covariance = C + lever @ cross
     return Prediction(mean, covariance, reading, noise)
