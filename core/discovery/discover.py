@@ -27,7 +27,7 @@ from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.elements_and_supports import Structure
 from .search.beam_search import Found
-from .search.coarse_scan import first_places
+from .search.coarse_scan import first_places, neighbourhoods
 from .search.completeness import Completeness, completeness
 from .search.footprints import footed, settled
 from .search.misshapen import beside_geometry
@@ -348,5 +348,6 @@ def _searcher(trial: _Trial) -> Searcher:
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
-    active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, request.effort, trial.judged)
+    beside = tuple(neighbourhoods(c, rows, size) for c, rows in zip(made, coarse, strict=True))
+    active, effort = tuple(range(len(problem.prior.spread))), request.effort
+    return Searcher(small, coarse, active, null.nuisance, size, effort, trial.judged, beside)

@@ -118,12 +118,14 @@ class FootLaw(Law):
 def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
     """Return a hypothesis with its masses on discs to be fitted, and one who knows them."""
     suspects = []
+    point = next((c for c in searcher.problem.catalogue if c.kind is point_mass.KIND), None)
     for s in state.suspects:
         c = searcher.problem.catalogue[s.kind]
-        around = surroundings_of_each(structure, c, s.row) if c.kind is point_mass.KIND else ()
-        if around:
+        own = c if c.kind is point_mass.KIND else point if c.kind.joins(point_mass.KIND) else None
+        around = surroundings_of_each(structure, c, s.row) if own else ()
+        if own and around:
             s = Suspect(len(searcher.problem.catalogue), 0, (s.theta[0], *SEARCH.foot[0]))
-            searcher = with_kind(searcher, s.kind, _free(structure, c, around))
+            searcher = with_kind(searcher, s.kind, _free(structure, own, around))
         suspects.append(s)
     return searcher, replace(state, suspects=tuple(suspects))
 

@@ -8,22 +8,23 @@ one is taken out and looked for anew.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import chain
 
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ..effects.candidates import Suspect, beside as stretches_beside
+from ..effects.candidates import Suspect, beside as stretches_beside, places_of
 from ..likelihood.hypothesis import Fit, Problem, softened
 from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
 from ..likelihood.repeated_modes import none_cut
 from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
-from .coarse_scan import Look, look
+from .coarse_scan import Look, Neighbourhoods, look
 from .exact_scan import best_apart, scan
 from .search_numbers import SEARCH
 
@@ -42,9 +43,10 @@ class Scanned:
 class Searcher:
     """The search with what it needs at every step.
 
-    `coarse` holds for every kind the rows that a first scan looks at; ``judged(problem, fit,
-    least)`` is a hypothesis as the error of the model judges it, None where its model does not
-    solve, in full where it may have the evidence `least`.
+    `coarse` holds for every kind the rows that a first scan looks at, `beside` what lies around
+    them where it takes the most promising there; ``judged(problem, fit, least)`` is a hypothesis as
+    the error of the model judges it, None where its model does not solve, in full where it may have
+    the evidence `least`.
     """
 
     problem: Problem
@@ -54,6 +56,7 @@ class Searcher:
     size: float
     effort: Effort
     judged: Callable[..., Judged | None] = lambda *_: None
+    beside: tuple[Neighbourhoods | None, ...] = ()
 
     def null(self) -> Fit:
         """Fit the known parameters alone."""
@@ -92,12 +95,13 @@ class Searcher:
         seen: dict[int, Look] = {}
         worth = np.inf
         for kind, rows in enumerate(among):
+            beside = self.beside[kind] if kind < len(self.beside) else None
+            rows = rows if beside is None else beside.around(rows)
             rows = rows[~self._taken(state, kind, rows)]
-            if not len(rows):
-                continue
-            seen[kind] = look(small, here, kind, rows, worth)
-            gain = here.objective - min(float(s.cost.min()) for s in seen.values())
-            worth = here.objective - SEARCH.worth_refining * gain
+            if len(rows):
+                seen[kind] = look(small, here, kind, rows, beside, worth)
+                gain = here.objective - min(float(s.cost.min()) for s in seen.values())
+                worth = here.objective - SEARCH.worth_refining * gain
         apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
         for kind, coarse in seen.items():
             tried = self._finer(small, here, kind, coarse, worth)
@@ -230,27 +234,15 @@ class Searcher:
         others = state.suspects[:q] + state.suspects[q + 1 :]
         if stretches := stretches_beside(self.problem.catalogue, suspect):
             return self._best_of(state, q, stretches)
-        c = self.problem.catalogue[suspect.kind]
-        distance = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
-        rows = np.flatnonzero(distance <= self.effort.near * self.size)
-        rows = _some(rows[np.argsort(distance[rows], kind="stable")], self.effort.neighbours)
         without = evaluate(self.problem, state.nuisance, others)
-        rows = rows[~self._taken(without, suspect.kind, rows)]
-        if not len(rows):
-            return None
         small, here = self.local(without)
-        alike = scan(by(small), here, suspect.kind, rows, np.array([suspect.theta]))[:, 0]
-        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
-        trials = c.around(suspect.theta, np.array(SEARCH.neighbouring))
-        score = scan(by(small), here, suspect.kind, rows, trials)
+        every = chain.from_iterable(self._near(by(small), here, suspect))
+        near = sorted(every, key=lambda moved: moved[0])[: SEARCH.promising]
         small = self.local(state)[0]
         soft = by(small)
         options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]:
-            if rows[i] == suspect.row:
-                continue
-            moved = replace(suspect, row=int(rows[i])).moved(trials[score[i].argmin()])
-            beside = (*state.suspects[:q], moved, *state.suspects[q + 1 :])
+        for _, moved in near:
+            beside = (*others[:q], moved, *others[q:])
             options.append((promised(soft, state.nuisance, beside, self.active), beside))
         stays = promised(soft, state.nuisance, state.suspects, self.active)
         for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
@@ -260,6 +252,52 @@ class Searcher:
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
+
+    def _forms(self, suspect: Suspect) -> Iterator[tuple[int, Floats, float]]:
+        """Give kinds, place and ln of the size of what a suspect may be as well: one of its nature.
+
+        A mass at a point is one on a patch, twins beside each other are one between them.
+        """
+        own = self.problem.catalogue[suspect.kind]
+        spots = np.array([c.xyz[row] for c, row in places_of(own, suspect.row)])
+        if np.linalg.norm(np.ptp(spots, axis=0)) < SEARCH.beside * self.size:
+            for kind, c in enumerate(self.problem.catalogue):
+                if kind != suspect.kind and c.kind.joins(own.kind) and not c.copies:
+                    yield kind, spots.mean(axis=0), suspect.theta[0] + float(np.log(len(spots)))
+
+    def _near(
+        self, small: Problem, here: Fit, suspect: Suspect
+    ) -> Iterator[list[tuple[float, Suspect]]]:
+        """Give the best places near a suspect, in every form, beside all others `here`."""
+        c = self.problem.catalogue[suspect.kind]
+        away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
+        theta, count = np.array(suspect.theta), self.effort.neighbours
+        near = self._promising(small, here, suspect.kind, away, theta, count)
+        yield [(cost, s) for cost, s in near if s.row != suspect.row]
+        for kind, spot, size in self._forms(suspect):
+            c = self.problem.catalogue[kind]
+            away = np.linalg.norm(c.xyz - spot, axis=1)
+            theta = c.like([size])
+            yield self._promising(small, here, kind, away, theta, self.effort.around)
+
+    def _promising(
+        self, small: Problem, here: Fit, kind: int, away: Floats, theta: Floats, count: int
+    ) -> list[tuple[float, Suspect]]:
+        """Return what is best of a kind at `count` places near by, from so far `away` (n,)."""
+        c = self.problem.catalogue[kind]
+        rows = np.flatnonzero(away <= self.effort.near * self.size)
+        rows = _some(rows[np.argsort(away[rows], kind="stable")], count)
+        rows = rows[~self._taken(here, kind, rows)]
+        if not len(rows):
+            return []
+        alike = scan(small, here, kind, rows, theta[None])[:, 0]
+        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
+        trials = c.around(theta.tolist(), np.array(SEARCH.neighbouring))
+        score = scan(small, here, kind, rows, trials)
+        return [
+            (float(score[i].min()), _at(kind, rows[i], trials[score[i].argmin()]))
+            for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]
+        ]
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
@@ -315,6 +353,10 @@ def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     bare = replace(problem, basis=problem.basis.bare(), modes=n)
     small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
     return small, evaluate(small, state.nuisance, state.suspects)
+
+
+def _at(kind: int, row: int, theta: Floats) -> Suspect:
+    return Suspect(kind, int(row), tuple(theta.tolist()))
 
 
 def _some(rows: Ints, count: int) -> Ints:

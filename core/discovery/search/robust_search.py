@@ -28,7 +28,8 @@ def robust(
     """Return what a search finds that estimates the errors as it goes, and a searcher by these."""
     kinds = zip(searcher.problem.catalogue, searcher.coarse, strict=True)
     coarse = tuple(_every(c, rows, searcher.size) for c, rows in kinds)
-    searcher = replace(searcher, coarse=coarse, problem=by_noise(searcher.problem, WIDE))
+    problem = by_noise(searcher.problem, WIDE)
+    searcher = replace(searcher, coarse=coarse, beside=(), problem=problem)
     first: list[Fit] = []
     for _ in range(SEARCH.estimates):
         found = grown(searcher, enough(searcher), progress, first)

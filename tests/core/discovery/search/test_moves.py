@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.core.discovery.strings import hidden, searcher
+import scipy.sparse as sp
+from tests.core.discovery.strings import N, hidden, searcher
 
-from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.effects.candidates import Suspect, together
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
 from trueup.core.discovery.search import coarse_scan, moves
@@ -47,6 +49,62 @@ def test_two_masses_side_by_side_are_one_between_them_on_points_and_patches_alik
     spots = p.catalogue[MASS].spots
     assert beside
     assert min(np.linalg.norm(spots[b.row] - spots[9]) for b in beside) >= s.effort.apart * s.size
+
+
+def spread_over(s, count):
+    """Return a search that also knows masses of several beads side by side, and their number."""
+    p, beads = s.problem, np.arange(0, N, count)
+    c, each = p.catalogue[MASS], np.arange(N)
+    wide = replace(
+        c,
+        kind=KINDS["distributed_mass"],
+        xyz=np.add.reduceat(c.xyz, beads) / count,
+        root=sp.csr_matrix((np.full(N, count**-0.5), (each, each)), (N, N)),
+        rows_each=count,
+        where=tuple({"elements": [k + 1]} for k in range(len(beads))),
+    )
+    catalogue, factors = (*p.catalogue, wide), (*p.factors, wide.factors(p.basis))
+    problem = replace(p, catalogue=catalogue, factors=factors)
+    return replace(s, problem=problem, coarse=(*s.coarse, np.arange(len(beads)))), len(p.catalogue)
+
+
+def test_a_mass_on_a_patch_becomes_one_at_a_point_where_that_is_better():
+    s, wide = spread_over(searcher(hidden(masses=[(9, 2.0)])), 4)
+    state = fit(s.problem, np.zeros(2), (Suspect(wide, 2, (np.log(2.0),)),), s.active, 20)
+    (moved,) = s.refined(state).suspects
+    assert (moved.kind, moved.row) == (MASS, 9)
+    assert np.exp(moved.theta[0]) == pytest.approx(2.0, rel=0.02)
+
+
+def test_a_mass_at_a_point_becomes_one_on_a_patch_where_that_is_better():
+    s, wide = spread_over(searcher(hidden(masses=[(k, 0.5) for k in range(8, 12)])), 4)
+    state = fit(s.problem, np.zeros(2), (Suspect(MASS, 9, (np.log(2.0),)),), s.active, 20)
+    (moved,) = s.refined(state).suspects
+    assert (moved.kind, moved.row) == (wide, 2)
+    assert np.exp(moved.theta[0]) == pytest.approx(2.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("apart", "forms"), [(4, [MASS]), (30, [])])
+def test_twins_beside_each_other_are_one_mass_between_them(apart, forms):
+    s = searcher(hidden(masses=[(15, 2.0)]))
+    p = s.problem
+    rows = np.array([[15 - apart // 2, 15 + apart // 2]])
+    twins = together(p.catalogue[MASS], rows % N)
+    problem = replace(
+        p, catalogue=(*p.catalogue, twins), factors=(*p.factors, twins.factors(p.basis))
+    )
+    s = replace(s, problem=problem, coarse=(*s.coarse, np.zeros(1, int)))
+    both = Suspect(len(p.catalogue), 0, (0.0,))
+    assert [kind for kind, *_ in s._forms(both)] == forms
+    state = fit(problem, np.zeros(2), (both,), s.active, 20)
+    (moved,) = s.refined(state).suspects
+    assert ((moved.kind, moved.row) == (MASS, 15)) == bool(forms)
+
+
+def test_a_spring_has_no_other_form():
+    s, _ = spread_over(searcher(hidden(springs=[(14, 150.0)])), 4)
+    state = fit(s.problem, np.zeros(2), (Suspect(SPRING, 13, (np.log(150.0),)),), s.active, 20)
+    assert [(q.kind, q.row) for q in s.refined(state).suspects] == [(SPRING, 14)]
 
 
 def test_a_step_of_all_unknowns_promises_what_the_fit_then_finds():
@@ -95,12 +153,12 @@ def test_branches_are_ranked_by_what_is_left_once_the_known_parameters_follow():
 
 def test_beside_another_hypothesis_only_what_gains_most_beside_the_best_is_looked_at(monkeypatch):
     s = searcher(hidden(tension=1.3, masses=[(9, 2.0)]))
-    monkeypatch.setattr(coarse_scan, "SEARCH", replace(SEARCH, every_size_least=5))
+    monkeypatch.setattr(coarse_scan, "SEARCH", replace(SEARCH, hopeful=8, every_size_least=5))
     looked = []
 
-    def seen(problem, state, kind, rows, worth):
+    def seen(problem, state, kind, rows, around, worth):
         looked.append(len(rows))
-        return coarse_scan.look(problem, state, kind, rows, worth)
+        return coarse_scan.look(problem, state, kind, rows, around, worth)
 
     monkeypatch.setattr(moves, "look", seen)
     state = evaluate(s.problem, np.zeros(2), ())
