@@ -68,7 +68,7 @@ def grown(
     """
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]
-    beam = [*levels[-1:], *([] if first else [_as_the_deck(searcher, levels[0])])]
+    beam = [*levels[-1:], *([] if first else _as_the_deck(searcher, levels[0]))]
     for depth in range(len(levels), searcher.effort.most + 1):
         if explains(levels[-1]):
             break
@@ -110,14 +110,17 @@ def grown(
     return Found(tuple(levels), tuple(rivals))
 
 
-def _as_the_deck(searcher: Searcher, null: Fit) -> Fit:
+def _as_the_deck(searcher: Searcher, null: Fit) -> list[Fit]:
     """Return the known parameters as the deck has them, the error of the mesh as fitted.
 
     Where something large is missing the known parameters have gone far to make up for it; what
-    is right then fits to modes that they have spoilt.
+    is right then fits to modes that they have spoilt. Nothing where they have not moved.
     """
     mesh = np.arange(len(null.nuisance)) == len(null.nuisance) - 1
-    return evaluate(searcher.problem, null.nuisance * mesh, ())
+    as_it_is = null.nuisance * mesh
+    if np.array_equal(as_it_is, null.nuisance):
+        return []
+    return [evaluate(searcher.problem, as_it_is, ())]
 
 
 def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:

@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import evaluate
-from trueup.core.discovery.search.beam_search import _near
+from trueup.core.discovery.search.beam_search import _as_the_deck, _near
 
 MASS, SPRING = 0, 1
 
@@ -34,3 +35,11 @@ def test_where_the_best_change_both_no_third_is_grown():
     s = searcher(hidden(masses=[(9, 2.0)]))
     fits = hypotheses(s, (SPRING, 3, 50.0), (MASS, 9, 51.0), (MASS, 15, 52.0))
     assert _near(s, fits, 100.0) == fits[:2]
+
+
+@pytest.mark.parametrize("moved", [0.0, 0.05])
+def test_a_beam_starts_from_the_deck_too_where_the_known_parameters_have_moved(moved):
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    null = evaluate(s.problem, np.array([moved, 0.3]), ())
+    begun = _as_the_deck(s, null)
+    assert [f.nuisance.tolist() for f in begun] == ([[0.0, 0.3]] if moved else [])
