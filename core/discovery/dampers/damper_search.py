@@ -164,20 +164,16 @@ class _Weighing:
     null: float
 
     def scores(self, rows: Ints, grid: Levels, some: slice = slice(None)) -> Floats:
-        """Return ln of how much likelier each size, or some of them, makes the data, (n, n_trial).
-
-        Marginal likelihoods, see `marginal`.
-        """
+        """Return ln of how much likelier each size, or some, makes the data, (n, n_trial)."""
         sizes = self.sizes[rows, some]
-        each = np.empty((*sizes.shape, len(grid.log_prior)))
+        out = np.empty(sizes.shape)
         for start in range(0, len(rows), DAMPERS.at_once):
             few = slice(start, start + DAMPERS.at_once)
             c = sizes[few, :, None]
             part = self.own + c * self.gives[rows[few], None]
             error = c * self.wrong[rows[few], None]
-            each[few] = log_likelihood(self.measured, grid, part, error)
-        out = logsumexp(each + grid.log_prior, axis=-1)
-        return np.asarray(out - self.null + self.shapes(rows, sizes))
+            out[few] = marginal(self.measured, grid, part, error)
+        return out - self.null + self.shapes(rows, sizes)
 
     def level(self, row: int | None, c: float) -> Floats:
         """Return the ratios that the modes have by themselves beside one dashpot, (n_mode,)."""

@@ -92,7 +92,7 @@ def _log_of_product(x: Floats) -> Floats:
 def marginal(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
     """Return ln of the likelihood of all ratios, levels integrated out, (...)."""
     each = log_likelihood(measured, grid, part, error)
-    return np.asarray(logsumexp(each + grid.log_prior, axis=-1))
+    return np.asarray(np.logaddexp.reduce(each + grid.log_prior, axis=-1))
 
 
 def expected_level(measured: Floats, grid: Levels, part: Floats, error: Floats) -> Floats:
