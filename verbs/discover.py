@@ -27,6 +27,8 @@ from ..core.discovery.screening.mode_selection import (
     matchable,
     reference_modes,
     said_of_others,
+    said_of_unfounded,
+    unfounded,
     vibrating,
 )
 from ..core.eigen.normal_modes import Eigensolution, modes_of
@@ -113,7 +115,8 @@ def discover(
     before = _compared(deck, structure, solution, side, asked)
     elastic = vibrating(before.placed, solution, structure.model)
     part = asked.criteria.test_modes(before.test.frequencies_hz)
-    moving, elastic = elastic, elastic & part
+    moving, unused = elastic, unfounded(before, elastic & part)
+    elastic = elastic & part & ~unused
     if not elastic.any():
         raise InputError("no mode that takes part is elastic; exclude fewer")
     matchable(int(elastic.sum()), solution)
@@ -179,6 +182,7 @@ def discover(
             *doubts(before, None),
             *found.warnings,
             *said_of_others(np.flatnonzero(part & ~moving) + 1),
+            *said_of_unfounded(before, unused),
             *unplaced,
             *done.refused,
         ),

@@ -109,13 +109,15 @@ def _dofs(group: h5py.Group) -> Dofs:
 
 
 def _modes(group: h5py.Group) -> Modes:
+    hz = group["frequencies_hz"][()]
     return Modes(
-        group["frequencies_hz"][()],
+        hz,
         group["shapes"][()],
         _dofs(group["dofs"]),
         group["damping"][()],
         group["generalized_mass"][()],
         group.attrs["source"],
+        group["doubted"][()] if "doubted" in group else np.zeros(len(hz), bool),
     )
 
 

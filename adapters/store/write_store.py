@@ -155,6 +155,7 @@ def _modes(group: h5py.Group, noun: Modes) -> None:
     _put(group, "shapes", noun.shapes, "length unit of the geometry", "rows: dofs, columns: modes")
     _put(group, "damping", noun.damping, "fraction of critical")
     _put(group, "generalized_mass", noun.generalized_mass, "mass unit of the source")
+    _put(group, "doubted", noun.doubted, meaning="whether its identification doubts each")
     _dofs(_group(group, "dofs", "dofs"), noun.dofs)
 
 

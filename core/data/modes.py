@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers, hold, require_finite
+from ..arrays import Bools, Floats, Numbers, hold, require_finite
 from ..errors import require_kind
 from ..noun import Noun
 from .dofs import Dofs
@@ -31,6 +31,8 @@ class Modes(Noun):
         Modal mass for the scaling of `shapes`; NaN where unknown.
     source : str
         Where they came from, for messages and reports.
+    doubted : (n_mode,) bool, optional
+        Those of a test that their own identification doubts to be modes; none where not given.
 
     Raises
     ------
@@ -44,6 +46,7 @@ class Modes(Noun):
     damping: Floats = None  # type: ignore[assignment]
     generalized_mass: Floats = None  # type: ignore[assignment]
     source: str = ""
+    doubted: Bools = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         require_kind(self.dofs, Dofs, "dofs of Modes")
@@ -57,6 +60,9 @@ class Modes(Noun):
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.full(n, np.nan))
             hold(self, name, np.float64, (n,))
+        if self.doubted is None:
+            object.__setattr__(self, "doubted", np.zeros(n, bool))
+        hold(self, "doubted", np.bool_, (n,))
 
     def __len__(self) -> int:
         return len(self.frequencies_hz)
@@ -70,4 +76,4 @@ class Modes(Noun):
         """Return the modes of the given columns (indices or mask)."""
         by_mode = self.frequencies_hz[modes], self.shapes[:, modes]
         known = self.damping[modes], self.generalized_mass[modes]
-        return Modes(*by_mode, self.dofs, *known, self.source)
+        return Modes(*by_mode, self.dofs, *known, self.source, self.doubted[modes])

@@ -75,14 +75,17 @@ def assemble(
 
     hz = np.abs(poles) / (2.0 * np.pi)
 
-    def modes(shapes: Numbers, size: Floats) -> Modes:
-        mass = scaling.modal_mass / size**2
-        return Modes(hz, shapes / size, survey.outputs, damping, mass, survey.source)
-
     indicator = _indicator_at(survey, t.hz)
     mass = scaling.modal_mass / p.real_size**2
     reciprocal = reciprocity_of_modes(p.shapes, p.participation, points)
     judged = Judged(quality, mpc, indicator, mass, reciprocal)
+
+    def modes(shapes: Numbers, size: Floats) -> Modes:
+        known = damping, scaling.modal_mass / size**2
+        return Modes(
+            hz, shapes / size, survey.outputs, *known, survey.source, doubted=judged.doubted
+        )
+
     measured = _measured(survey)
     indicators = cmif(np.where(survey.measured[:, :, None], measured.values, 0.0))
     warnings += of_peaks(survey, fits, indicators[:, 0], np.array([*t.hz, *unwanted]))

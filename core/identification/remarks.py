@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Floats, Numbers
+from ..arrays import Bools, Floats, Numbers
 from ..errors import InputError
 from .identification_numbers import IDENTIFICATION
 from .mode_table import ModeTable, Physical
@@ -95,6 +95,12 @@ class Judged:
     indicator: Floats
     mass: Floats
     reciprocity: Floats
+
+    @property
+    def doubted(self) -> Bools:
+        """Which may be no modes: no resonance of all responses, or a shape with no one phase."""
+        complex_shape = self.mpc < IDENTIFICATION.poor_mpc
+        return np.asarray(complex_shape | (self.indicator < IDENTIFICATION.poor_indicator))
 
 
 def of_modes(survey: Survey, t: ModeTable, p: Physical, judged: Judged) -> tuple[str, ...]:

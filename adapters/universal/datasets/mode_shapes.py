@@ -32,6 +32,7 @@ _ANALYSES = {
 }
 _COMPLEX_MODES = (3, 7)
 _HEADER = 16  # more lines than any header has
+_DOUBTED = "its identification doubts that it is a mode"
 _HUGE = 1e300  # some programs print the largest number there is where they know none
 
 
@@ -50,6 +51,11 @@ class Shape:
     ids: tuple[str, ...]
     line: int
     path: str
+
+    @property
+    def doubted(self) -> bool:
+        """Whether the program that identified it doubts that it is a mode."""
+        return _DOUBTED in self.ids
 
 
 @dataclass(frozen=True)
@@ -231,8 +237,8 @@ def _write(out: Outgoing) -> Iterator[bytes]:
         if modes.is_complex:
             values = values.view(np.float64)
         kind, head = _modal_lines(modes, k)
-        ids = (modes.source or "NONE", "NONE", "NONE", f"mode {k + 1}",
-               f"{modes.frequencies_hz[k]:.6f} Hz")  # fmt: skip
+        ids = (modes.source or "NONE", "NONE", _DOUBTED if modes.doubted[k] else "NONE",
+               f"mode {k + 1}", f"{modes.frequencies_hz[k]:.6f} Hz")  # fmt: skip
         yield dataset(
             55,
             *(text_line(said) for said in ids),

@@ -60,6 +60,7 @@ def join_modes(shapes: list[Shape], frames: NodeFrames, warnings: list[str]) -> 
         np.array([s.damping for s in shapes]),
         np.array([s.generalized_mass for s in shapes]),
         ", ".join(dict.fromkeys(s.path for s in shapes)),
+        np.array([s.doubted for s in shapes]),
     )
 
 

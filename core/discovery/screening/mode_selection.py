@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ...correlation.comparison import Placed
+from ...correlation.comparison import Comparison, Placed
 from ...correlation.mac import realised
 from ...data.parametric_model import Model
 from ...eigen import normal_modes
@@ -46,6 +46,30 @@ def vibrating(placed: Placed, solution: Eigensolution, model: Model) -> Bools:
             "no mode of the test is elastic: all are at 0 Hz or motions of the structure as a whole"
         )
     return found
+
+
+def unfounded(before: Comparison, among: Bools) -> Bools:
+    """Return which test modes among some may be none, (n_test,).
+
+    Their own identification doubts them, and no mode of the deck pairs with them. Where that is
+    all there is, none.
+    """
+    alone = among & before.test.doubted
+    alone[[p.test for p in before.correlation.pairs]] = False
+    return np.asarray(alone if np.any(among & ~alone) else np.zeros_like(alone))
+
+
+def said_of_unfounded(before: Comparison, unused: Bools) -> tuple[str, ...]:
+    """Say which modes of the test are left out as `unfounded`; nothing without any."""
+    hz = before.test.frequencies_hz
+    named = ", ".join(f"{k + 1} ({hz[k]:.2f} Hz)" for k in np.flatnonzero(unused).tolist())
+    if not named:
+        return ()
+    return (
+        f"test mode(s) {named} are left out: their identification doubts that they are modes "
+        "(no clear resonance of all responses, or a complex shape), and none of the deck's pairs "
+        "with them",
+    )
 
 
 def said_of_others(numbers: Ints) -> tuple[str, ...]:

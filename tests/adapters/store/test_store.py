@@ -69,6 +69,7 @@ def modes(draw: st.DrawFn) -> Modes:
         draw(hnp.arrays(float, n, elements=maybe)),
         draw(hnp.arrays(float, n, elements=maybe)),
         draw(texts),
+        draw(hnp.arrays(bool, n)),
     )
 
 

@@ -91,6 +91,7 @@ def modes_of_sensors(draw):
         Dofs(node, component, np.array(axis)),
         np.full(m, np.nan) if unknown else rng.uniform(1e-4, 0.2, m),
         np.full(m, np.nan) if draw(st.booleans()) else rng.uniform(1e-6, 1e6, m),
+        doubted=rng.random(m) < 0.5,
     )
 
 
@@ -103,6 +104,7 @@ def test_modes_come_back_equal_to_the_digits_of_the_format(tmp_path_factory, mod
     np.testing.assert_allclose(again.frequencies_hz, modes.frequencies_hz, rtol=1e-7)
     np.testing.assert_allclose(again.damping, modes.damping, rtol=1e-5)
     np.testing.assert_allclose(again.generalized_mass, modes.generalized_mass, rtol=1e-6)
+    np.testing.assert_array_equal(again.doubted, modes.doubted)
     expected, found = vectors(modes.dofs, modes.shapes), vectors(again.dofs, again.shapes)
     assert list(found) == list(expected)
     for node in expected:

@@ -43,6 +43,7 @@ def test_garteur_all_nine_roots(garteur):
     assert len(found) == 10  # and the small one near 9 Hz that the functions do hold
     assert garteur.close_pair_possible.all()
     assert garteur.quality.min() > 0.999
+    np.testing.assert_array_equal(garteur.real_modes.doubted, np.abs(found - 9.0) < 0.1)
 
 
 @needs(GARTEUR)
@@ -110,6 +111,7 @@ def test_a_roving_hammer_survey_gives_each_mode_once(aeroplane):
     assert len(more) <= 2
     assert all(more)
     assert aeroplane.mpc[nearest].min() > 0.9
+    assert not aeroplane.modes.doubted[nearest].any()
 
 
 @needs(AEROPLANE)

@@ -9,7 +9,13 @@ from tests.core.discovery import strings
 
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.parametric_model import Dofs, Model, Term
-from trueup.core.discovery.screening.mode_selection import elastic, matchable, reference_modes
+from trueup.core.discovery.screening.mode_selection import (
+    elastic,
+    matchable,
+    reference_modes,
+    said_of_unfounded,
+    unfounded,
+)
 from trueup.core.errors import InputError
 
 X = np.linspace(-1.0, 1.0, 9)
@@ -35,6 +41,28 @@ MOTION = np.hstack([RIGID, BENDING])
 def test_bounce_and_pitch_are_left_out_and_bending_is_not():
     test = placed([2.0, 9.0, 41.0], [RIGID[:, 0], RIGID[:, 1] + 0.1 * RIGID[:, 0], BENDING[:, 0]])
     assert elastic(test, solved(), MOTION).tolist() == [False, False, True]
+
+
+def compared(hz, doubted, paired):
+    return Of(
+        test=Of(frequencies_hz=np.array(hz), doubted=np.array(doubted)),
+        correlation=Of(pairs=[Of(test=k) for k in paired]),
+    )
+
+
+def test_what_its_identification_doubts_is_left_out_unless_the_deck_has_it():
+    before = compared([10.0, 20.0, 30.0, 40.0], [False, True, True, True], [2])
+    among = np.array([True, True, True, False])
+    unused = unfounded(before, among)
+    assert unused.tolist() == [False, True, False, False]
+    (said,) = said_of_unfounded(before, unused)
+    assert "2 (20.00 Hz)" in said
+    assert said_of_unfounded(before, np.zeros(4, bool)) == ()
+
+
+def test_a_test_of_doubted_modes_alone_keeps_them():
+    before = compared([10.0, 20.0], [True, True], [])
+    assert not unfounded(before, np.ones(2, bool)).any()
 
 
 def test_a_mode_at_zero_is_left_out_even_of_a_held_structure():
