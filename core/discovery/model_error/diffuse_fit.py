@@ -21,7 +21,7 @@ from ..likelihood.map_fit import evaluate, products, solve, surprise
 from ..likelihood.mode_likelihood import targets
 from ..likelihood.repeated_modes import some_repeated
 from .diffuse_error import Diffuse, Seen, at
-from .diffuse_slope import Slope, diffuse, moved, slope
+from .diffuse_slope import Slope, diffuse, moved, ranges, slope
 from .model_error_numbers import MODEL_ERROR
 
 _TINY = float(np.finfo(float).tiny)
@@ -101,12 +101,29 @@ def judged(
 
     The entries of ``state.nuisance``, of which the `active` move, are ln p of the parameters, then
     of the fields, then the mesh; the error is looked for from that of `near` on, if there is one. A
-    step to where a mass is negative is too long.
+    step to where a mass is negative is too long. An error that gets small too soon leaves modes
+    out of the model, which then pull no more: where a larger one has more of them in it, the climb
+    goes on from there (graduated non-convexity: Blake and Zisserman 1987, chapter 3).
     """
     state = _at(problem, state, state.nuisance, state.suspects)
     here = seen(problem, state)
     best = at(here, near.error, near.noise) if near else diffuse(here)
-    return climbed(problem, state, active, best)
+    found = climbed(problem, state, active, best)
+    wide = _with_more_modes(seen(problem, found.state), found.diffuse)
+    if wide is None:
+        return found
+    again = climbed(problem, found.state, active, wide)
+    return max(found, again, key=lambda j: j.evidence)
+
+
+def _with_more_modes(here: Seen, found: Diffuse) -> Diffuse | None:
+    """Return the likelihood at the least error at which fewer modes are none of the model's."""
+    left = np.count_nonzero(found.stray > 0.5)
+    if not left:
+        return None
+    errors = np.geomspace(*ranges(here)[0], MODEL_ERROR.starts)
+    wider = (at(here, error, found.noise) for error in errors.tolist() if error > found.error)
+    return next((d for d in wider if np.count_nonzero(d.stray > 0.5) < left), None)
 
 
 def _at(problem: Problem, state: Fit, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:

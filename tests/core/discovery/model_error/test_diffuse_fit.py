@@ -58,3 +58,15 @@ def test_a_partner_that_no_sensor_sees_says_nothing_of_the_unknowns():
     )
     assert np.all(np.diag(blind) > 0.0)
     assert np.all(np.diag(blind) < 1.01 * np.diag(H))
+
+
+def test_modes_that_a_small_error_left_out_are_taken_in_again():
+    """By an error far below what a mass of 0.6 of the true one leaves hardly a mode is its."""
+    problem = searcher(hidden(masses=[(11, 8.0)])).problem.entire()
+    suspect = Suspect(0, 11, (np.log(8.0) - 0.5,))
+    start = evaluate(problem, np.zeros(len(problem.prior.spread)), (suspect,))
+    near = at(seen(problem, start), 3e-4, 0.02)
+    assert np.mean(near.stray > 0.5) > 0.9
+    found = judged(problem, start, everything(problem), near)
+    assert not np.any(found.diffuse.stray > 0.5)
+    assert np.exp(found.fit.suspects[0].theta[0]) == pytest.approx(8.0, rel=0.02)
