@@ -48,9 +48,8 @@ from .search.refit_own_basis import (
     polished,
     solves,
 )
-from .search.robust_search import robust
 from .search.set_up import beside_reach
-from .search.strategy import bettered, evidence, on_stands, searched, unlike
+from .search.strategy import bettered, on_stands, searched, unlike
 from .search.unknown_mounts import as_blocks_on_mounts
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
@@ -216,12 +215,6 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
     found = unlike(searcher, searched(searcher, progress, trial.explained))
-    verdict = judge(searcher, found)
-    best = found.levels[verdict.accepted]
-    if verdict.scale > DISCOVERY.estimated and not adequate(searcher, best):
-        progress("estimating how far off the model is everywhere")
-        ways = [(searcher, found), robust(searcher, progress)]
-        searcher, found = max(ways, key=lambda way: evidence(*way))
     progress("weighing the best hypotheses on bases of their own")
     searcher, found, explained = _footed(trial, searcher, found)
     searcher, found = bettered(searcher, found, reshaped)

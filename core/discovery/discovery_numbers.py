@@ -16,7 +16,6 @@ class DiscoveryNumbers:
     steps_deck: int = number(10, "steps", "for the error of the mesh alone")
     steps_null: int = number(30, "steps", "for the known parameters")
     dashpot_turns: int = number(3, "turns", "of a heavy dashpot and the known parameters, at most", "time")
-    estimated: float = number(6.0, "of the assumed variance", "what a best hypothesis leaves that asks for errors estimated by the test")
     modes_held: tuple[int, int] = number((4, 6), "modes", "first that is held out, and every how many after it")
     modes_enough: int = number(10, "modes", "from so many on")
     sensors_held: tuple[int, int] = number((5, 10), "sensors", "first that is held out, and every how many after it")

@@ -165,8 +165,6 @@ def softened(problem: Problem) -> Problem:
     """
     e = problem.evidence
     n, s, m = e.noise, LIKELIHOOD.soft, LIKELIHOOD.soft_mixing
-    if n.robust < LIKELIHOOD.robust:
-        return problem
     wide = replace(n, frequency=s * n.frequency, shape=s * n.shape, mixing=m * n.mixing)
     return replace(problem, evidence=replace(e, noise=wide))
 

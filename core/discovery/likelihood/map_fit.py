@@ -84,20 +84,6 @@ def mode_misfits(problem: Problem, values: Floats, vectors: Floats) -> Floats:
     return np.asarray(costs[np.arange(len(costs)), matched(costs)[1]])
 
 
-def off_and_apart(problem: Problem, state: Fit) -> tuple[Floats, Floats]:
-    """Return by how much each test mode is off in ln f, and 1 - MAC, of its match, (n_test,)."""
-    e = problem.evidence
-    n = min(problem.columns, len(state.eigenvalues))
-    shapes = np.asarray(problem.sensors @ state.vectors[: problem.sensors.shape[1], :n])
-    cross, gram = e.shapes.T @ shapes, shapes.T @ shapes
-    values = state.eigenvalues[:n]
-    _, match = matched(mode_costs(e, values, cross, gram))
-    floor = np.maximum(values, LIKELIHOOD.least_eigenvalue * targets(e).min())
-    macs = joint_macs(floor, cross, gram, e.noise.mixing)
-    rows = np.arange(len(match))
-    return 0.5 * np.log(floor[match] / targets(e)), 1.0 - macs[rows, match]
-
-
 def _shapes(problem: Problem, values: Floats, vectors: Floats) -> Floats:
     """Return what the sensors read of the modes that may match, (n_sensor, n)."""
     n = min(problem.columns, len(values))

@@ -20,7 +20,6 @@ class SearchNumbers:
     steps_new: int = number(5, "steps", "for a suspect more, or another in place of one")
     steps_moved: int = number(4, "steps", "for a suspect that moved to a neighbour, changed its stretch, or was taken out")
     steps_whole: int = number(2, "steps", "on the whole basis after those on a small one")
-    steps_guided: int = number(15, "steps", "by errors that were estimated anew")
     steps_polished: int = number(20, "steps", "on a basis made for one hypothesis")
     rounds: int = number(6, "moves", "of each suspect to a neighbour, at most")
     locals_kept: int = number(4, "states", "whose modes are kept, among which suspects move", "memory")
@@ -54,11 +53,6 @@ class SearchNumbers:
     nearest: int = number(3, "modes", "tried for each test mode in the secular equation, the best counts")
     resonance: float = number(1e-9, "of the eigenvalue", "least gap to a mode in the secular equation", ROUNDING)
     secular_least: float = number(1e-3, "of the eigenvalue", "least eigenvalue that the secular equation foretells")
-
-    estimates: int = number(4, "times", "the errors of the model are estimated, at most")
-    shrinks: float = number(0.9, "of the error before", "that an estimate has to be less to be searched by")
-    every_across: float = number(40.0, "places", "across the structure, each way, that a search by estimated errors looks at, where there are many")
-    every_most: int = number(3000, "grids", "that it looks at one by one, at most", "time")
 
     late_tried: int = number(6, "places", "of an absorber or a link that are tried beside what was found")
     late_moved: int = number(4, "of these", "that are moved to better neighbours", "time")

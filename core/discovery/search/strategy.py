@@ -141,11 +141,11 @@ def on_stands(
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
     other = grown(simple, enough(simple), progress, new.levels[: first + 1])
     searcher, other = bettered(searcher, other, standing)
-    ways = sorted((new, other), key=lambda way: evidence(searcher, way))
+    ways = sorted((new, other), key=lambda way: _evidence(searcher, way))
     return searcher, _beside_others(ways[1], ways[0])
 
 
-def evidence(searcher: Searcher, found: Found) -> float:
+def _evidence(searcher: Searcher, found: Found) -> float:
     """Return ln of the evidence for what is chosen of an outcome, by the error of the model."""
     return scored(searcher, found.levels[judge(searcher, found).accepted]).score
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.core.discovery.strings import hidden, searcher
+from tests.core.discovery.strings import K, N, hidden, searcher
 
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.effects.candidates import Suspect, factors_of, together
+from trueup.core.discovery.effects.candidates import Suspect, factors_of, together, with_twins
 from trueup.core.discovery.search import strategy
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.model_selection import judge
@@ -50,6 +50,32 @@ def test_late_kinds_are_looked_for_where_the_others_leave_more_than_is_usual(usu
     monkeypatch.setattr(strategy, "usual", lambda *_: usual)
     searched(s, said.append)
     assert any("two places" in line for line in said) != usual
+
+
+def off_everywhere(truth, size, seed):
+    """K with a random error of relative `size` in modal coordinates, M as it is."""
+    k, m = truth
+    values, vectors = np.linalg.eigh(K)
+    E = np.random.default_rng(seed).normal(size=(N, N))
+    root = vectors * np.sqrt(values)
+    return k + size * root @ (0.5 * (E + E.T)) @ root.T, m
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_twin_masses_are_found_though_every_mode_is_off(seed):
+    s = searcher(off_everywhere(hidden(masses=[(5, 4.0), (26, 4.0)]), 0.04, seed))
+    singles = s.problem.catalogue[0]
+    twins = with_twins(singles, singles.xyz, s.size)[1]
+    catalogue = (*s.problem.catalogue, twins)
+    problem = replace(
+        s.problem, catalogue=catalogue, factors=factors_of(catalogue, s.problem.basis)
+    )
+    s = replace(s, problem=problem, coarse=(*s.coarse, np.arange(len(twins))))
+    _, best = told(s)
+    (pair,) = best.suspects
+    places = twins.copies[pair.row]
+    assert max(abs(a - b) for a, b in zip(sorted(places), (5, 26), strict=True)) <= 1
+    assert np.exp(pair.theta[0]) == pytest.approx(4.0, rel=0.3)
 
 
 def test_a_mass_and_an_absorber_that_hide_each_other_are_both_found():
