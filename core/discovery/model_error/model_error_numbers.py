@@ -12,6 +12,7 @@ BY_HAND = "set by hand from the errors left where what was hidden is known, not 
 class ModelErrorNumbers:
     errors: tuple[float, float] = number((3e-4, 1.0), "of K", "least and largest diffuse error")
     noises: tuple[float, float] = number((0.005, 0.5), NOISE, "least and largest noise of a reading")
+    legible: float = number(0.3, "of the rms of a shape", "noise of the readings from which on shapes bear no model out", "0.12 on a measured aeroplane, 0.34 where one of six sensors reads what another should")
     frequency: float = number(0.001, "of f", "standard deviation of a measured frequency, at least")
     starts: int = number(5, "errors", "and noises, from the best of which they are looked for uphill")
     settling: int = number(12, "steps", "of these uphill, at most")

@@ -84,14 +84,19 @@ def judge_sensors(survey: Survey, span: Span) -> Verdicts:
 def faults_of(weighed: Weighed) -> tuple[Fault, ...]:
     """Return the faults that are likely enough.
 
-    Many sensors that read as if turned are a structure that leans or is out of round there.
+    Many sensors that read as if turned are a structure that leans or is out of round there. Of
+    three or more that are mixed up two do not read each other's values, whatever one gains by it:
+    which of them is where is not told.
     """
     out: list[Fault] = []
     used: set[int] = set()
-    for s in weighed.swaps:
-        if s.odds > _ODDS and not used & set(s.nodes):
-            used |= set(s.nodes)
-            out.append(_swapped(weighed, s))
+    likely = [s for s in weighed.swaps if s.odds > _ODDS]
+    for s in likely:
+        if not used & set(s.nodes):
+            more = {i for t in likely if set(s.nodes) & set(t.nodes) for i in t.nodes}
+            mutual = s.worse > SENSORS.mutual or len(more) == len(s.nodes)
+            used |= set(s.nodes) if mutual else more
+            out += [_swapped(weighed, s)] if mutual else []
     for i in weighed.alone:
         if i not in used:
             out += _likeliest(weighed, i)

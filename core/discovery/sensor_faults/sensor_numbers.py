@@ -61,6 +61,7 @@ class SensorNumbers:
     lonely_axis: float = number(0.05, SHARE, "that are turned, where it has one")
     exchanged: float = number(0.05, SHARE, "two of whose directions are exchanged")
     swapped: float = number(0.25, SHARE, "that are swapped with another")
+    mutual: float = number(10.0, "ln", "by which either of two readings fits the place of the other better than all it may be alone, where a third may be mixed up with them", "three mixed up in a tower, a panel, an aeroplane: 6 at most; two exchanged: 34 at least")
     whole: float = number(0.6, "of the faults", "that concern all directions of a node")
     about_each: float = number(5.0, "turned sets", "of three sensors, of which one is turned about a given axis of them")
     about_any: float = number(0.4, "of the turned sets", "of three, anyhow")

@@ -22,13 +22,15 @@ class Swap:
     """Rows of two nodes exchanged.
 
     `odds` is the log of how much more likely this is than all that the two nodes may be alone;
-    `sign` is -1 where both read the opposite of what the other should.
+    `sign` is -1 where both read the opposite of what the other should; `worse` is the same log for
+    that of the two which is the less so, the chance of a swap left out.
     """
 
     nodes: tuple[int, int]
     rows: tuple[tuple[int, ...], tuple[int, ...]]
     sign: float
     odds: float
+    worse: float
 
 
 def swaps(
@@ -44,11 +46,12 @@ def swaps(
     out = []
     for i, j in combinations(among, 2):
         ways = _ways(nodes[i].reading.shape[1], nodes[j].reading.shape[1])
-        log = _crossed(nodes[i], nodes[j], [w[:3] for w in ways], before.shares)
-        log += _crossed(nodes[j], nodes[i], [(b, a, s) for a, b, s, _ in ways], before.shares)
-        for (a, b, sign, share), value in zip(ways, log, strict=True):
-            odds = float(value) + prior + float(np.log(share)) - total[i] - total[j]
-            out.append(Swap((i, j), (a, b), sign, odds))
+        one = _crossed(nodes[i], nodes[j], [w[:3] for w in ways], before.shares) - total[i]
+        back = [(b, a, s) for a, b, s, _ in ways]
+        other = _crossed(nodes[j], nodes[i], back, before.shares) - total[j]
+        for (a, b, sign, share), *each in zip(ways, one, other, strict=True):
+            odds = float(sum(each)) + prior + float(np.log(share))
+            out.append(Swap((i, j), (a, b), sign, odds, float(min(each))))
     return sorted(out, key=lambda s: -s.odds)
 
 

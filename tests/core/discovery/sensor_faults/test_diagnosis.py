@@ -61,6 +61,16 @@ def test_lone_sensors_that_look_opposite_ways_may_be_swapped_too():
     np.testing.assert_allclose(corrected(y.reshape(40, -1), found), sound.reshape(40, -1))
 
 
+@pytest.mark.parametrize("mixed", [(5, 18, 31), (5, 18, 31, 12)])
+def test_of_three_or_more_that_are_mixed_up_no_two_are_called_exchanged(mixed):
+    """Which of them is where is not told, but none of them is evidence."""
+    y = read(vibrating(), radial())
+    y[list(mixed)] = y[list(np.roll(mixed, 1))]
+    found = judged(y, radial())
+    assert found.faults == ()
+    assert set(np.flatnonzero(found.doubtful)) == set(mixed)
+
+
 @pytest.mark.parametrize("factor", [2.0, 2.1])
 def test_a_reading_twice_as_large_is_a_gain_as_any_other(factor):
     y = read(vibrating(), radial())
