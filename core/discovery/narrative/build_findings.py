@@ -65,6 +65,7 @@ def build_discovery(
     decide = frame_needed(request.placed.alignment) if suspects else ()
     clear = whole.clear and bool(findings) and not (decide or held)
     clear = clear and not any(map(_says_nothing, findings))
+    clear = clear and not (_gains_little(whole) and any(map(_hardly_told, findings)))
     proposal = clear and not whole.true
     if clear and whole.true:
         word = "effect"
@@ -82,8 +83,9 @@ def build_discovery(
     elif not whole.lacks_nothing:
         word = "undecided"
     sure = whole.posterior * _share(word, bool(suspects), proposal, whole)
-    if word == "undecided" or not adequate:
-        decide = (*held_said(held), *left_over(whole, request.numbers), *decide)
+    if not adequate or whole.shape is not None or (word == "undecided" and not decide):
+        decide = (*left_over(whole, request.numbers), *decide)
+    decide = (*held_said(held), *decide)
     return Discovery(
         word,
         (*(replace(f, confidence=sure) for f in findings), *accused),
@@ -112,6 +114,16 @@ def _says_nothing(f: Finding) -> bool:
     return (
         "factor" in f.magnitude and f.interval is not None and f.interval[0] < 1.0 < f.interval[1]
     )
+
+
+def _hardly_told(f: Finding) -> bool:
+    """Whether the test hardly tells how large what was found is."""
+    return f.interval is not None and f.interval[1] > NARRATIVE.hardly * f.interval[0]
+
+
+def _gains_little(whole: Completeness) -> bool:
+    """Whether what was found gains little a mode."""
+    return whole.gain < NARRATIVE.little * len(whole.best.diffuse.each)
 
 
 def frame_needed(alignment: Alignment) -> tuple[str, ...]:
@@ -225,8 +237,7 @@ def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> fl
     if not findings:
         return NARRATIVE.nothing
     if word == "effect":
-        little = whole.gain < NARRATIVE.little * len(whole.best.diffuse.each)
-        return NARRATIVE.claimed_by_little if little else NARRATIVE.claimed
+        return NARRATIVE.claimed_by_little if _gains_little(whole) else NARRATIVE.claimed
     return NARRATIVE.proposed if proposal else NARRATIVE.doubted
 
 

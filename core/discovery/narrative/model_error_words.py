@@ -18,6 +18,8 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
     """
     best = whole.best
     said = [f"the best explanation is off by {100.0 * best.diffuse.error:.2g} % of the stiffness"]
+    if not whole.legible:
+        said.append(f"sensors read {100.0 * best.diffuse.noise:.2g} % of a shape's rms beside it")
     if whole.unexplained:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")

@@ -54,10 +54,12 @@ def further_sensors(
             continue
         chosen.append(xyz)
         axis = "XYZ"[int(model.dofs.component[rows[d]]) - 1]
+        by = apart[rival, d, mode]
+        much = f"{100.0 * by:.0f} % of its rms" if by < 1.0 else "more than its rms"
         out.append(
             f"a sensor at grid {int(model.dofs.node[rows[d]])} in direction {axis}: there mode "
-            f"{int(modes[mode])} differs by {100.0 * apart[rival, d, mode]:.0f} % "
-            f"of its rms between the best explanation and {rivals[rival][0]}"
+            f"{int(modes[mode])} differs by {much} between the best explanation and "
+            f"{rivals[rival][0]}"
         )
     return tuple(out)
 

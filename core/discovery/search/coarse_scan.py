@@ -284,7 +284,7 @@ def _misfit(
             - 2.0 * s * (u @ (away * gram[i]).T)[:, None]
             + s**2 * np.einsum("ntr,ntr->nt", rest @ gram, rest)[:, None]
         )
-        mac = across**2 / np.maximum(square, np.finfo(float).tiny)
+        mac = np.minimum(across**2 / np.maximum(square, np.finfo(float).tiny), 1.0)
         noise = e.noise
         d = (off / noise.frequency) ** 2 + noise.independent * (1.0 - mac) / noise.shape**2
         best = np.minimum(best, d)

@@ -35,6 +35,7 @@ from .model_selection import (
     kept,
     needed,
     ranked,
+    says_else,
     scored,
     stands,
     told_beside,
@@ -106,10 +107,11 @@ class Completeness:
 
         It has to gain enough, the more where it leaves more than a small part of the error (what is
         not there hardly lessens it), and to be ahead of what else was found, by less where a right
-        model may leave as much: the odds are then those of a model that has no error.
+        model may leave as much: the odds are then those of a model that has no error. What the
+        set-up may do has no such odds.
         """
         least = max(needed(self.best), worth_telling(self.alone, self.best.diffuse.error))
-        ahead = MODEL_ERROR.seen if self.explains else SEARCH.suspect
+        ahead = MODEL_ERROR.seen if self.explains and self.reach is None else SEARCH.suspect
         return bool(self.gain > least and self.ahead > ahead)
 
     @property
@@ -124,9 +126,17 @@ class Completeness:
 
     @property
     def explains(self) -> bool:
-        """Whether the error is as right models leave it, and hardly a mode unexplained."""
+        """Whether the error is as right models leave it, and hardly a mode unexplained.
+
+        Shapes that are off everywhere by more than sensors are bear no model out.
+        """
         usual = by_such_a_test(self.best) > MODEL_ERROR.explained
-        return usual and self.adequacy > MODEL_ERROR.claimed
+        return usual and self.legible and self.adequacy > MODEL_ERROR.claimed
+
+    @property
+    def legible(self) -> bool:
+        """Whether sensors read what the best explanation says within what sensors are off by."""
+        return self.best.diffuse.noise < MODEL_ERROR.legible
 
     @property
     def lacks_nothing(self) -> bool:
@@ -194,7 +204,8 @@ def completeness(
                 tried += (s for s in again if s is not first)
                 found = found.with_rivals(s.fit for s in again if s is not first)
         found = found.with_rivals(poorer)
-        fields[k] = sorted(tried, key=lambda s: -s.score)
+        fields[k] = _from_there(searcher, tried)
+        found = found.with_rivals(s.fit for s in fields[k] if s not in tried)
         found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
@@ -270,6 +281,34 @@ def _fitted_as(searcher: Searcher, alone: Scored, best: Scored) -> Scored:
         return alone
     there = evaluate(searcher.problem, best.judged.fit.nuisance, ())
     return max(alone, scored(searcher, there), key=lambda s: s.score)
+
+
+def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
+    """Return hypotheses, the likeliest rivals fitted from where the best has the parameters too.
+
+    By the error of a model the likelihood has several maxima: which of them a hypothesis climbs to
+    hangs on where its search left the known parameters. Of rivals that say the same one.
+    """
+    out = sorted(tried, key=_score, reverse=True)
+    best = None
+    while best is not out[0]:
+        best, others = out[0], list[Scored]()
+        for s in out[1:]:
+            if all(says_else(searcher, o.fit, s.fit) for o in (best, *others)) and s.judged:
+                others.append(s)
+        for s in others[: SEARCH.look_judged]:
+            assert best.judged is not None
+            assert s.judged is not None
+            there = best.judged.fit.nuisance, s.judged.fit.suspects
+            new = scored(searcher, evaluate(searcher.problem, *there), best)
+            if new.score > s.score + SEARCH.look_gain:
+                out[out.index(s)] = new
+        out.sort(key=_score, reverse=True)
+    return out
+
+
+def _score(s: Scored) -> float:
+    return s.score
 
 
 def _nearest(found: Found, k: int) -> list[Fit]:

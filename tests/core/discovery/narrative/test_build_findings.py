@@ -8,7 +8,12 @@ import pytest
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.mass_unit import MassUnit
 from trueup.core.discovery.effects import KINDS
-from trueup.core.discovery.narrative.build_findings import _share, frame_needed
+from trueup.core.discovery.narrative.build_findings import (
+    _gains_little,
+    _hardly_told,
+    _share,
+    frame_needed,
+)
 from trueup.core.discovery.narrative.sentences import sentence_of, spot_of
 from trueup.core.registration.alignment import Alignment
 
@@ -70,3 +75,18 @@ def test_a_factor_that_is_clearly_not_one_is_not_told_as_one():
         "The stiffness is 1.03 times the deck's near grid 3: a local change of stiffness explains "
         "the test better as a whole (95 %: 1.02 to 1.05)."
     )
+
+
+@pytest.mark.parametrize(
+    ("interval", "hardly"), [((1.0, 19.0), False), ((1.0, 21.0), True), (None, False)]
+)
+def test_what_spans_more_than_a_factor_of_twenty_is_hardly_told(interval, hardly):
+    assert _hardly_told(SimpleNamespace(interval=interval)) is hardly
+
+
+@pytest.mark.parametrize(("gain", "little"), [(24.0, True), (26.0, False)])
+def test_less_than_two_and_a_half_nats_a_mode_are_little(gain, little):
+    whole = SimpleNamespace(
+        gain=gain, best=SimpleNamespace(diffuse=SimpleNamespace(each=np.zeros(10)))
+    )
+    assert _gains_little(whole) is little

@@ -1,5 +1,6 @@
 """What is clear, and what an error of the model imitates."""
 
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace as Some
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from trueup.core.discovery.effects import point_mass
+from trueup.core.discovery.model_error.support_reach import Reach
 from trueup.core.discovery.search import completeness as room
 from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness, completeness
@@ -18,7 +20,7 @@ def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0, scat
     chance = np.isin(np.arange(10), stray).astype(float)
     each = np.asarray(each, float)
     shared = Some(each=each, error=error, noise=noise, stray=chance, mesh=mesh)
-    here = Some(nuisance=np.zeros(2))
+    here = Some(nuisance=np.zeros(2), suspects=())
     test = Some(evidence=Some(scatter=scatter))
     return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here, problem=test)
 
@@ -52,6 +54,12 @@ def test_the_odds_count_as_they_are_where_a_right_model_may_leave_as_much():
     assert not found(ahead=2.5).clear
     assert not found(ahead=3.5, error=0.02, gain=50.0).clear
     assert found(ahead=5.5, error=0.02, gain=50.0).clear
+
+
+def test_beside_what_the_set_up_may_do_they_do_not():
+    near = Reach(25.0, 0.0)
+    assert not replace(found(ahead=4.5), reach=near).clear
+    assert replace(found(ahead=5.5), reach=near).clear
 
 
 def test_what_takes_only_a_part_of_the_error_away_has_to_leave_what_is_usual():
@@ -209,6 +217,36 @@ def test_the_known_parameters_are_fitted_from_where_the_best_has_them_too(monkey
         refitted = room._fitted_as(Some(problem=None), alone, best)
         assert refitted.score == pytest.approx(expected)
         assert (refitted.fit is there) == (score > 0.0)
+
+
+@pytest.mark.parametrize(("anew", "first"), [(25.0, 9), (15.0, 3)])
+def test_a_rival_is_fitted_from_where_the_best_has_the_parameters_too(monkeypatch, anew, first):
+    """Likelier from there it takes the lead, else it stays what it was."""
+
+    def of(row, score, nuisance):
+        return Scored(
+            hypothesis(40.0, row),
+            Some(fit=Some(nuisance=nuisance, suspects=(Some(kind=0, row=row),))),
+            score,
+        )
+
+    best, rival = of(3, 20.0, "there"), of(9, 10.0, "here")
+    monkeypatch.setattr(room, "says_else", lambda s, f, g: f.suspects[0].row != g.suspects[0].row)
+    monkeypatch.setattr(room, "evaluate", lambda problem, nuisance, s: (nuisance, s[0].row))
+
+    def scored(searcher, fit, best):
+        nuisance, row = fit
+        return of(row, anew if (nuisance, row) == ("there", 9) else 0.0, nuisance)
+
+    monkeypatch.setattr(room, "scored", scored)
+    out = room._from_there(Some(problem=None), [rival, best])
+    assert [s.fit.suspects[0].row for s in out] == [first, 12 - first]
+    assert out[0].score == max(anew, 20.0)
+
+
+def test_shapes_that_are_off_everywhere_bear_no_model_out():
+    assert found(error=0.0003, noise=0.29).explains
+    assert not found(error=0.0003, noise=0.34).explains
 
 
 @pytest.mark.parametrize("objective", [50.0, 90.0])
