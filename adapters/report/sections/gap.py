@@ -8,7 +8,9 @@ from ..tables.number_formats import fixed, percent
 from ..tables.table import Cell, Table, left
 from .section import Section
 
-_LEFT = "The deck was left as it was; what differs comes of sensors corrected for the comparison."
+_LEFT = "The deck was left as it was"
+_LEAST = 0.1
+_CORRECTED = "what differs comes of sensors corrected for the comparison"
 
 
 def _tables(found: DiscoverTables) -> Sequence[Table]:
@@ -25,7 +27,8 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
     if held.before is None:
         note = "No modes were held out from the search: the test has fewer than ten that count."
     if not found.adopted:
-        note += f" {_LEFT}"
+        same = gap.before == gap.after and held.before == held.after
+        note += f" {_LEFT}." if same else f" {_LEFT}; {_CORRECTED}."
     return [Table.of("The gap", columns, rows, f"{note} {_off(found)}".strip())]
 
 
@@ -37,9 +40,16 @@ def _off(found: DiscoverTables) -> str:
     said = f"The completed model is off by {100.0 * j.error:.2g} % of its stiffness everywhere"
     if j.gain:
         said += f" ({100.0 * j.error_alone:.2g} % with the known parameters alone)"
-    share = f"{100.0 * j.adequacy:.2g}" if j.adequacy < 0.995 else "99"
+    share = _share(100.0 * j.adequacy)
     as_many = " and leave as many modes unexplained" if j.unexplained else ""
     return f"{said}; of models that lack nothing {share} % are off by as much{as_many}."
+
+
+def _share(percent: float) -> str:
+    """Return a share as far as it is known: at most 99, at least 0.1."""
+    if percent < _LEAST:
+        return f"fewer than {_LEAST}"
+    return f"{percent:.2g}" if percent < 99.5 else "99"
 
 
 def _cells(gap: Gap) -> list[Cell | str]:

@@ -92,6 +92,8 @@ def _discover(answer: DiscoverTables) -> list[str]:
         told = [_sentence(best)]
     elif verdict == "parameters_only":
         told += _moved(answer)
+    if not answer.adopted and verdict in ("undecided", "test_fault"):
+        told += [f"Not written, but by this test off: {off}" for off in _moved(answer)]
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after

@@ -145,6 +145,22 @@ def test_an_undecided_run_says_that_the_deck_was_left(
             assert ("deck was left as it was" in table_of(section, result).note) is left
 
 
+def test_what_differs_though_nothing_was_written_comes_of_corrected_sensors(
+    discovery: dict[str, Any],
+) -> None:
+    same = {"before": discovery["gap"]["before"], "after": discovery["gap"]["before"]}
+    for held, said in ((same, False), (discovery["gap"]["held_out"], True)):
+        gap = discovery["gap"] | same | {"held_out": discovery["gap"]["held_out"] | held}
+        note = table_of(GAP, discovery | {"verdict": "undecided", "gap": gap}).note
+        assert ("corrected for the comparison" in note) is said
+
+
+def test_a_share_is_told_as_far_as_it_is_known(discovery: dict[str, Any]) -> None:
+    for adequacy, said in ((1e-20, "fewer than 0.1 %"), (0.123, "12 %"), (0.9999, "99 %")):
+        judgement = discovery["judgement"] | {"adequacy": adequacy, "error": 0.01}
+        assert said in table_of(GAP, discovery | {"judgement": judgement}).note
+
+
 def test_gap_on_searched_and_held_out_data(discovery: dict[str, Any]) -> None:
     assert [r[:3] for r in texts(table_of(GAP, discovery))] == [
         ["searched", "before", "2"],
