@@ -83,7 +83,8 @@ def build_discovery(
     elif not whole.lacks_nothing:
         word = "undecided"
     sure = whole.posterior * _share(word, bool(suspects), proposal, whole)
-    if not adequate or whole.shape is not None or (word == "undecided" and not decide):
+    told = whole.shape is not None or whole.reach is not None or whole.unexplained
+    if not adequate or (word == "undecided" and (told or not decide)):
         decide = (*left_over(whole, request.numbers), *decide)
     decide = (*held_said(held), *decide)
     return Discovery(

@@ -289,7 +289,7 @@ def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
     By the error of a model the likelihood has several maxima: which of them a hypothesis climbs to
     hangs on where its search left the known parameters. Of rivals that say the same one.
     """
-    out = sorted(tried, key=_score, reverse=True)
+    out = ranked(searcher, (), tried)
     best = None
     while best is not out[0]:
         best, others = out[0], list[Scored]()
@@ -303,12 +303,8 @@ def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
             new = scored(searcher, evaluate(searcher.problem, *there), best)
             if new.score > s.score + SEARCH.look_gain:
                 out[out.index(s)] = new
-        out.sort(key=_score, reverse=True)
+        out = ranked(searcher, (), out)
     return out
-
-
-def _score(s: Scored) -> float:
-    return s.score
 
 
 def _nearest(found: Found, k: int) -> list[Fit]:
