@@ -93,7 +93,7 @@ def _discover(answer: DiscoverTables) -> list[str]:
     elif verdict == "parameters_only":
         told += _moved(answer)
     if not answer.adopted and verdict in ("undecided", "test_fault"):
-        told += [f"Not written, but by this test off: {off}" for off in _moved(answer)]
+        told += [f"What fits best, not written: {off}" for off in _moved(answer)]
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after

@@ -63,10 +63,11 @@ def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(
         )
     ]  # fmt: skip
     discovery |= {"verdict": "parameters_only", "findings": [], "parameters": moved}
-    told = story(answer_of(discovery))
-    assert told[1] == (
-        "CONM2 7 M is 0.5 times the deck's value; PSHELL 1 T is 1.1 times the deck's value."
-    )
+    said = "CONM2 7 M is 0.5 times the deck's value; PSHELL 1 T is 1.1 times the deck's value."
+    assert story(answer_of(discovery))[1] == said
+    for verdict in ("undecided", "test_fault"):
+        told = story(answer_of(discovery | {"verdict": verdict}))
+        assert told[1] == f"What fits best, not written: {said}"
 
 
 @pytest.mark.parametrize(
