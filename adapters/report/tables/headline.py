@@ -19,7 +19,6 @@ VERDICTS = {
     "undecided": "undecided",
 }
 _VERDICT_SENTENCES = {
-    "no_gap": "Nothing is missing.",
     "undecided": "The data do not decide what is missing.",
     "parameters_only": "Known parameters alone explain the gap; nothing is missing.",
     "test_fault": "The gap comes from the test, not from the model.",
@@ -83,17 +82,19 @@ def _discover(answer: DiscoverTables) -> list[str]:
     verdict, found = answer.verdict, answer.findings
     best = _found(found)
     told = [_VERDICT_SENTENCES.get(verdict, f"{verdict}.")]
+    moved = _moved(answer)
+    if verdict == "no_gap" or (verdict == "parameters_only" and not moved):
+        told = [_nothing_missing(verdict, answer.gap.before)]
     if verdict in ("no_gap", "parameters_only"):
-        usual = _usual(answer.gap.before) if verdict == "no_gap" else ""
-        told = [told[0][:-1] + usual + _but_for(answer.judgement.unexplained) + "."]
+        told = [told[0][:-1] + _but_for(answer.judgement.unexplained) + "."]
     if best and verdict == "undecided":
         told.append(_sentence(f"the best explanation so far: {best}"))
     elif best:
         told = [_sentence(best)]
     elif verdict == "parameters_only":
-        told += _moved(answer)
+        told += moved
     if not answer.adopted and verdict in ("undecided", "test_fault"):
-        told += [f"What fits best, not written: {off}" for off in _moved(answer)]
+        told += [f"What fits best, not written: {off}" for off in moved]
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after
@@ -124,12 +125,13 @@ def _found(findings: Sequence[Finding]) -> str:
     return ", and ".join(said)
 
 
-def _usual(gap: Gap) -> str:
-    """Say by how much frequencies are off where nothing is missing, on average."""
+def _nothing_missing(verdict: str, gap: Gap) -> str:
+    """Say by how much frequencies are off where nothing is missing, on average, and why."""
     if not gap.pairs:
-        return ""
+        return "Nothing is missing."
     off = f"{fixed(gap.mean_abs_deviation_percent, 1)} % that frequencies are off"
-    return f": mesh and usual errors explain the {off}"
+    why = "mesh and usual errors" if verdict == "no_gap" else "known parameters or the mesh"
+    return f"Nothing is missing: {why} explain the {off}."
 
 
 def _but_for(unexplained: Sequence[int]) -> str:

@@ -63,14 +63,16 @@ def borne_out(
     or as many, and those that pair both times deviate less in frequency. What brings no mode more
     to pair and no frequency nearer is nothing that was found. Dashpots show in the damping. Nor is
     anything said to be complete of which most of the `tests`, the modes that take part, pair with
-    nothing, or of which too little was measured, by so many `readings` of each mode, to tell.
+    nothing, or of which too little was measured, by so many `readings` of each mode, to tell. What
+    is as far off as its mesh may be has a gap, which known parameters explain as well.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
     more = len(after.pairs) - len(before.pairs)
     left = _left(before, after)
     helps = more > 0 or left < 1.0
     if found.verdict != "effect" and not any(f.kind in KINDS for f in found.findings):
-        return _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
+        found = _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
+        return _as_far_off_as_a_mesh(found, before)
     if not found.completes or damped or more > 0:
         return found
     if not helps:
@@ -130,6 +132,28 @@ def _seen_in_pairs(
         )
         return _in_doubt(found, why, proposal=False)
     return found
+
+
+def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
+    """Return what was found, with a gap where frequencies are off by more than tests repeat by.
+
+    That nothing is missing was said since the mesh explains them. So do known parameters: none of
+    these is known to be off.
+    """
+    off = [abs(p.deviation_percent) / 100.0 for p in before.pairs]
+    if found.verdict != "no_gap" or np.mean(off) <= SCREENING.repeats:
+        return found
+    unsure = (replace(m, factor=m.together, significant=False) for m in found.parameters)
+    why = (
+        f"a finer mesh: this one may well leave the {100.0 * np.mean(off):.1f} % that frequencies "
+        "are off, and known parameters may; the test alone does not tell which"
+    )
+    return replace(
+        found,
+        verdict="parameters_only",
+        parameters=tuple(unsure),
+        would_decide=(why, *found.would_decide),
+    )
 
 
 def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:

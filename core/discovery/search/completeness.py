@@ -200,7 +200,7 @@ def completeness(
             tried = ranked(searcher, _nearest(found, k), tried)
             first = tried[0]
             if _unsettled(first):
-                searcher, again = looked_again(searcher, first)
+                searcher, again = looked_again(searcher, first, levels[0].score)
                 tried += (s for s in again if s is not first)
                 found = found.with_rivals(s.fit for s in again if s is not first)
         found = found.with_rivals(poorer)

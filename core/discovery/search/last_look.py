@@ -18,17 +18,18 @@ from ..effects.candidates import Suspect
 from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
-from .model_selection import Scored, needed, ranked, says_else
+from .model_selection import Scored, ranked, says_else
 from .moves import Searcher
 from .patch_reshaping import options_beside, promising
 from .search_numbers import SEARCH
 
 
-def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scored]]:
+def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searcher, list[Scored]]:
     """Return all that was tried instead of a hypothesis, itself among it, the likeliest first.
 
-    What comes next elsewhere is moved as far as the best, if it may get ahead. The searcher that
-    comes with it knows the shapes that were tried.
+    What comes next elsewhere is moved as far as the best, if it gains nearly as much over the known
+    parameters alone, whose score is `alone`: the places next to it were not tried. The searcher
+    that comes with it knows the shapes that were tried.
     """
     tried = [first]
     for q in searcher.doubtful(first.fit):
@@ -39,7 +40,7 @@ def looked_again(searcher: Searcher, first: Scored) -> tuple[Searcher, list[Scor
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
     if others:
         rival = max(others, key=_score)
-        if best.judged and best.score - rival.score < needed(best.judged):
+        if best.score - rival.score < SEARCH.rival_gain * (best.score - alone):
             searcher, moved = _moved(searcher, rival, tried)
             tried += moved
     return searcher, sorted(tried, key=_score, reverse=True)

@@ -152,7 +152,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
         "credible_places",
         lambda s, f, q, _: [Place(Some(kind=0, row=r), 1.0) for r in alike or [f.suspects[q].row]],
     )
-    monkeypatch.setattr(room, "looked_again", lambda searcher, first: (searcher, [first]))
+    monkeypatch.setattr(room, "looked_again", lambda searcher, first, _: (searcher, [first]))
     monkeypatch.setattr(room, "lacks_nothing", lambda *_: nothing)
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
     monkeypatch.setattr(

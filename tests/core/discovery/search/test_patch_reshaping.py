@@ -175,7 +175,7 @@ def test_the_shape_of_what_gives_is_told_by_the_error_of_the_model_not_by_the_mi
         return SimpleNamespace(evidence=likely, bare=likely, diffuse=left, fit=f)
 
     s = replace(s, judged=judged)
-    wide, tried = looked_again(s, scored(s, state))
+    wide, tried = looked_again(s, scored(s, state), 0.0)
     best = max(tried, key=lambda t: t.judged.evidence).fit
     assert wide.problem.catalogue[0].where[best.suspects[0].row]["elements"] == (told + 1).tolist()
     assert best.objective > state.objective
@@ -196,7 +196,7 @@ def test_a_larger_shape_starts_from_a_lesser_change():
         return SimpleNamespace(evidence=0.0, bare=0.0, diffuse=left, fit=f)
 
     s = replace(s, judged=judged)
-    wide, tried = looked_again(s, scored(s, state))
+    wide, tried = looked_again(s, scored(s, state), 0.0)
     where = wide.problem.catalogue[0].where
     does = [len(where[t.row]["elements"]) * t.theta[0] for f in tried for t in f.fit.suspects]
     assert does == pytest.approx(len(does) * [does[0]])
