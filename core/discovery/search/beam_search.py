@@ -17,7 +17,7 @@ import numpy as np
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit, distinct, softened
 from ..likelihood.map_fit import evaluate
-from .moves import Searcher
+from .moves import Searcher, noise_scale
 from .search_numbers import SEARCH
 
 
@@ -114,8 +114,11 @@ def _as_the_deck(searcher: Searcher, null: Fit) -> list[Fit]:
     """Return the known parameters as the deck has them, the error of the mesh as fitted.
 
     Where something large is missing the known parameters have gone far to make up for it; what
-    is right then fits to modes that they have spoilt. Nothing where they have not moved.
+    is right then fits to modes that they have spoilt. Nothing where they have not moved, or hardly
+    leave more than scatter.
     """
+    if noise_scale(searcher.problem, null) <= SEARCH.complete:
+        return []
     mesh = np.arange(len(null.nuisance)) == len(null.nuisance) - 1
     as_it_is = null.nuisance * mesh
     if np.array_equal(as_it_is, null.nuisance):

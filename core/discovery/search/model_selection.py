@@ -10,13 +10,13 @@ from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
-from ..likelihood.hypothesis import Fit, Problem, unmatched
+from ..likelihood.hypothesis import Fit, unmatched
 from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
 from ..model_error.adequacy import adequacy, as_many_astray
 from ..model_error.diffuse_fit import Judged
 from ..model_error.model_error_numbers import MODEL_ERROR
 from .beam_search import Found
-from .moves import Searcher
+from .moves import Searcher, noise_scale
 from .search_numbers import SEARCH
 
 
@@ -30,17 +30,6 @@ class Judgement:
 
     scale: float
     accepted: int
-
-
-def noise_scale(problem: Problem, best: Fit) -> float:
-    """Return how many times the assumed variance the best fit leaves, at least 1.
-
-    What was held out from the fit counts as well, where its misfit is known.
-    """
-    e = problem.evidence if best.unseen is None else problem.whole
-    found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
-    freedom = SEARCH.per_mode * len(e.frequencies_hz) - len(best.active) - found
-    return max(1.0, (best.misfit + (best.unseen or 0.0)) / max(freedom, 1.0))
 
 
 def price(searcher: Searcher, suspect: Suspect) -> float:

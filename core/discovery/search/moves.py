@@ -363,3 +363,14 @@ def _some(rows: Ints, count: int) -> Ints:
     """Return so many of rows in order of distance: half are the nearest, half spread over all."""
     near, far = np.split(rows, [count // 2])
     return np.concatenate([near, far[:: max(1, -(-2 * len(far) // count))]])
+
+
+def noise_scale(problem: Problem, best: Fit) -> float:
+    """Return how many times the assumed variance the best fit leaves, at least 1.
+
+    What was held out from the fit counts as well, where its misfit is known.
+    """
+    e = problem.evidence if best.unseen is None else problem.whole
+    found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
+    freedom = SEARCH.per_mode * len(e.frequencies_hz) - len(best.active) - found
+    return max(1.0, (best.misfit + (best.unseen or 0.0)) / max(freedom, 1.0))

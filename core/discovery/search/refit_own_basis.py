@@ -20,7 +20,7 @@ from ..model_error.diffuse_fit import Judged, everything
 from ..model_error.set_up_fields import suspension
 from ..model_error.smooth_fields import Fields
 from ..reduction.search_basis import structural
-from .model_selection import noise_scale
+from .moves import noise_scale
 from .own_basis import Ground, complete_model
 from .search_numbers import SEARCH
 

@@ -23,12 +23,11 @@ from .model_selection import (
     earned,
     enough,
     judge,
-    noise_scale,
     scored,
     usual,
     with_unseen,
 )
-from .moves import Searcher
+from .moves import Searcher, noise_scale
 from .search_numbers import SEARCH
 
 
