@@ -8,7 +8,6 @@ from itertools import islice
 import numpy as np
 
 from ...arrays import Bools, Floats
-from ...registration.alignment import Alignment
 from ..effects.candidates import Candidates, Suspect, places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import in_deck
@@ -32,6 +31,7 @@ from ..sensor_faults.diagnosis import Verdicts
 from .held_places import held_said, is_held
 from .model_error_words import left_over
 from .narrative_numbers import NARRATIVE
+from .open_frame import frame_needed, images
 from .sensor_findings import accusations, remarks
 from .sentences import alternative, effects_said, magnitude_of, sentence_of, spot_of
 
@@ -62,7 +62,9 @@ def build_discovery(
     accused = accusations(request.placed.observation, tested)
     moved = _moved(best, verdict.scale)
     word = "no_gap"
-    decide = frame_needed(request.placed.alignment) if suspects else ()
+    spots = [np.asarray(f.where.xyz) for f in findings]
+    placed, geometry = request.placed, request.structure.model.geometry
+    decide = frame_needed(placed.alignment, geometry, spots) if suspects else ()
     clear = whole.clear and bool(findings) and not (decide or held)
     clear = clear and not any(map(_says_nothing, findings))
     clear = clear and not (_gains_little(whole) and any(map(_hardly_told, findings)))
@@ -125,16 +127,6 @@ def _hardly_told(f: Finding) -> bool:
 def _gains_little(whole: Completeness) -> bool:
     """Whether what was found gains little a mode."""
     return whole.gain < NARRATIVE.little * len(whole.best.diffuse.each)
-
-
-def frame_needed(alignment: Alignment) -> tuple[str, ...]:
-    """Say that a place means nothing where the test may stand on the model in several ways."""
-    if alignment.decided:
-        return ()
-    return (
-        f"how the test lies on the model: {alignment.ambiguity}; with the test in the frame of "
-        "the deck the place is known, now it is known but for such a turn or slide",
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,15 +209,23 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
 
 
 def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> tuple[Where, ...]:
-    """Places, and effects of other kinds, that explain the data about as well as one finding."""
+    """Places, and effects of other kinds, that explain the data about as well as one finding.
+
+    By every position of the test that is as good.
+    """
     others = instead(o.searcher, o.found, o.verdict, number)
     every = [*((p.suspect, p.weight) for p in places), *others]
-    total = sum(w for _, w in every)
+    at = [(w, *o.places(s)[min(place, len(o.places(s)) - 1)]) for s, w in every]
+    alignment = o.request.placed.alignment
+    at += [(w, c, _nearest(c, x)) for w, c, row in at for x in images(alignment, c.xyz[row])]
+    total = sum(w for w, _, _ in at)
     return tuple(
-        Where.of(c.where[row], c.xyz[row], weight=w / total, kind=c.kind.name)
-        for s, w in every
-        for c, row in [o.places(s)[min(place, len(o.places(s)) - 1)]]
+        Where.of(c.where[row], c.xyz[row], weight=w / total, kind=c.kind.name) for w, c, row in at
     )
+
+
+def _nearest(c: Candidates, xyz: Floats) -> int:
+    return int(np.argmin(np.linalg.norm(c.xyz - xyz, axis=1)))
 
 
 def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> float:

@@ -12,29 +12,14 @@ from trueup.core.discovery.narrative.build_findings import (
     _gains_little,
     _hardly_told,
     _share,
-    frame_needed,
 )
 from trueup.core.discovery.narrative.sentences import sentence_of, spot_of
-from trueup.core.registration.alignment import Alignment
-
-
-def placed(decided):
-    return Alignment(np.eye(3), np.zeros(3), 1.0, ambiguity="a turn about z", decided=decided)
 
 
 @pytest.mark.parametrize(("gain", "said"), [(20.0, 0.6), (60.0, 0.9)])
 def test_a_claim_that_gains_little_a_mode_is_less_sure(gain, said):
     best = SimpleNamespace(diffuse=SimpleNamespace(each=np.zeros(10)))
     assert _share("effect", True, False, SimpleNamespace(gain=gain, best=best)) == said
-
-
-def test_a_round_test_in_a_frame_of_its_own_leaves_the_place_open():
-    (said,) = frame_needed(placed(decided=False))
-    assert "a turn about z" in said
-
-
-def test_a_test_that_lies_on_the_model_needs_nothing():
-    assert frame_needed(placed(decided=True)) == ()
 
 
 @pytest.mark.parametrize(
