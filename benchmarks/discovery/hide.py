@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .calculix import Modes
+from .calculix import CalculixError, Modes
 from .mesh import Floats, Ints, Mesh, Structure
 from .truth import Absorber, Patchwork, Soft, Stand, Truth
 
@@ -90,22 +90,32 @@ def point_mass(scene: Scene) -> tuple[Truth, Entry]:
 def twins(scene: Scene) -> list[tuple[Truth, Entry]]:
     """Hide two like masses at lively places that mirror each other across one of two axes."""
     m, rng = scene.mesh, scene.rng
-    low, high = m.xyz.min(axis=0), m.xyz.max(axis=0)
-    axis = int(rng.choice(np.argsort(-(high - low))[:2]))
+    longest = np.argsort(-np.ptp(m.xyz, axis=0))[:2]
+    axis = int(rng.choice(longest))
     mass = scene.mass * float(rng.uniform(0.015, 0.06))
-    lively = scene.lively()
+    other = int(longest[longest != axis][0])
+    pair = _mirrored(scene, axis) or _mirrored(scene, other)
+    if pair is None:
+        raise CalculixError("no two lively places mirror each other")
+    return [
+        (Truth(masses=((n, mass),)), {"kind": "point_mass", **_xyz(scene, n), "mass": mass})
+        for n in pair
+    ]
+
+
+def _mirrored(scene: Scene, axis: int) -> tuple[int, int] | None:
+    """Return two lively nodes far apart that mirror each other across an axis."""
+    m, lively = scene.mesh, scene.lively()
+    ends = m.xyz[:, axis].min() + m.xyz[:, axis].max()
     for _ in range(200):
         node = _node(scene)
         place = m.xyz[node].copy()
-        place[axis] = low[axis] + high[axis] - place[axis]
+        place[axis] = ends - place[axis]
         twin = int(np.argmin(np.linalg.norm(m.xyz - place, axis=1)))
         apart = np.linalg.norm(m.xyz[twin] - m.xyz[node]) > 0.25 * scene.structure.size
         if apart and np.isin(twin, lively):
-            break
-    return [
-        (Truth(masses=((n, mass),)), {"kind": "point_mass", **_xyz(scene, n), "mass": mass})
-        for n in (node, twin)
-    ]
+            return node, twin
+    return None
 
 
 def link_spring(scene: Scene) -> tuple[Truth, Entry]:
