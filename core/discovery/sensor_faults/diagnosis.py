@@ -119,7 +119,8 @@ def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     """Return the likeliest kind of fault of a node, if it is likely enough.
 
     Where an error of the model may look like it, that there is a fault at all has to be surer.
-    What hardly moves in any mode moves the other way where the model is wrong nearby.
+    What hardly moves in any mode moves the other way where the model is wrong nearby: of a turn
+    that is what moves across its axis.
     """
     share = weighed.shares(i)
     if sum(share.values()) < SENSORS.named:
@@ -129,10 +130,20 @@ def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     if FAULTS[kind].like_model and unsure:
         return []
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
-    read = weighed.survey.unit()[weighed.survey.rows(i)[list(best.rows)]]
-    if np.abs(read).max() < SENSORS.moves:
+    if np.abs(_turned_over(weighed.survey, i, best)).max() < SENSORS.moves:
         return []
     return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]
+
+
+def _turned_over(survey: Survey, i: int, a: Alternative) -> Floats:
+    """Return the readings that a fault changes: of a turn those across its axis, (n, n_mode)."""
+    rows = survey.rows(i)[list(a.rows)]
+    read: Floats = survey.unit()[rows]
+    if a.kind != AXIS.name:
+        return read
+    axis = np.array(a.vector) / np.linalg.norm(a.vector)
+    motion = survey.axis[rows].T @ read
+    return np.asarray(motion - np.outer(axis, axis @ motion))
 
 
 def _told(survey: Survey, i: int, a: Alternative, confidence: float) -> Fault:

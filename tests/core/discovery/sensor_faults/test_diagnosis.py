@@ -2,10 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.core.discovery.rings import judged, planar, radial, read, survey, vibrating
+from tests.core.discovery.rings import HZ, judged, planar, radial, read, ring, survey, vibrating
 
 from trueup.core.discovery.faults import corrected, lost
 from trueup.core.discovery.sensor_faults.diagnosis import judge_sensors
+from trueup.core.discovery.sensor_faults.leave_one_out import Span
 from trueup.core.discovery.sensor_faults.misalignment import rotation
 
 
@@ -179,6 +180,22 @@ def test_a_sensor_that_hardly_moves_is_not_called_reversed(share, told):
     found = judge_sensors(test, span)
     assert named(found.faults) == ({("sensor_polarity", (11,))} if told else set())
     assert found.doubtful[11]
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.06, False), (1.0, True)])
+def test_a_turn_is_told_of_what_moves_across_its_axis(share, told):
+    """At the leading edge of a wing, which hardly moves in its plane, 79 degrees were told."""
+    triads, turned = np.tile(np.eye(3), (40, 1, 1)), np.tile(np.eye(3), (40, 1, 1))
+    turned[9] = turned[9] @ rotation(np.radians([0.0, 0.0, 79.0])).T
+    motion, model = vibrating(), ring()
+    for moves in (motion, model):
+        moves[:, 2] = 2.0 * moves[:, 0] + moves[:, 1]
+        moves[9, :2] *= share
+    test, _ = survey(read(motion, turned, noise=0.002), triads)
+    span = Span(model.reshape(120, -1), model, HZ)
+    found = judge_sensors(test, span)
+    assert named(found.faults) == ({("sensor_axis", (27, 28, 29))} if told else set())
+    assert found.doubtful[27]
 
 
 def test_the_noise_of_sound_sensors_is_estimated():
