@@ -18,7 +18,7 @@ from ..effects.candidates import Suspect
 from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
-from .model_selection import Scored, ranked, says_else
+from .model_selection import Scored, needed, ranked, says_else
 from .moves import Searcher
 from .patch_reshaping import options_beside, promising
 from .search_numbers import SEARCH
@@ -27,9 +27,10 @@ from .search_numbers import SEARCH
 def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searcher, list[Scored]]:
     """Return all that was tried instead of a hypothesis, itself among it, the likeliest first.
 
-    What comes next elsewhere is moved as far as the best, if it gains nearly as much over the known
-    parameters alone, whose score is `alone`: the places next to it were not tried. The searcher
-    that comes with it knows the shapes that were tried.
+    What comes next elsewhere is moved as far as the best, if it may get ahead; what comes next of
+    other kinds if it gains nearly as much over the known parameters alone, whose score is `alone`:
+    between the places of a scan a tuned one gains far less. The searcher that comes with it knows
+    the shapes that were tried.
     """
     tried = [first]
     for q in searcher.doubtful(first.fit):
@@ -38,9 +39,11 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
     tried += moved
     best = max(tried, key=_score)
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
-    if others:
-        rival = max(others, key=_score)
-        if best.score - rival.score < SEARCH.rival_gain * (best.score - alone):
+    apart = [s for s in others if _kinds(searcher, s.fit) != _kinds(searcher, best.fit)]
+    near = needed(best.judged) if best.judged else 0.0
+    for field, within in ((others, near), (apart, SEARCH.rival_gain * (best.score - alone))):
+        rival = max(field, key=_score, default=best)
+        if rival is not best and best.score - rival.score < within:
             searcher, moved = _moved(searcher, rival, tried)
             tried += moved
     return searcher, sorted(tried, key=_score, reverse=True)
@@ -48,6 +51,10 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
 
 def _score(s: Scored) -> float:
     return s.score
+
+
+def _kinds(searcher: Searcher, f: Fit) -> list[str]:
+    return sorted(searcher.problem.catalogue[s.kind].kind.name for s in f.suspects)
 
 
 def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
