@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Bools
+from ...arrays import Bools, Floats, Ints
 from ..effects.candidates import Candidates, Suspect
 from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
@@ -364,10 +364,14 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
     return tuple(int(j) for j in np.flatnonzero(clear))
 
 
-def held_out(n: int, start: int, every: int, enough: int) -> Bools:
-    """Return a mask of what is kept out of the search: of `enough`, every so many from `start`."""
-    mask = np.zeros(n, bool)
-    mask[start::every] = n >= enough
+def held_out(start: int, every: int, enough: int, *keys: Floats | Ints) -> Bools:
+    """Return a mask of what is kept out of the search: of `enough`, every so many from `start`.
+
+    In the order of `keys`, the last of which counts first (`numpy.lexsort`), not that of a file.
+    """
+    order = np.lexsort(keys)
+    mask = np.zeros(len(order), bool)
+    mask[order[start::every]] = len(order) >= enough
     return mask
 
 

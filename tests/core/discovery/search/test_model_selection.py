@@ -19,6 +19,7 @@ from trueup.core.discovery.search.model_selection import (
     contenders,
     cost,
     enough,
+    held_out,
     instead,
     judge,
     says_else,
@@ -250,3 +251,14 @@ def test_the_same_spring_in_another_direction_says_else():
     assert says_else(s, at(1, 7), at(1, 25))
     assert says_else(s, at(1, 7), at(0, 7))
     assert not says_else(s, at(1, 7), at(1, 7))
+
+
+def test_what_is_held_out_does_not_hang_on_the_order_of_a_file():
+    """A patch was sized at 0.21 or 0.32 by the order in which the modes were listed."""
+    hz, node = np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), np.repeat([3, 7, 9], 2)
+    component, mixed = np.tile([1, 2], 3), np.array([4, 0, 5, 2, 1, 3])
+    assert held_out(1, 2, 6, hz).tolist() == [False, True] * 3
+    assert not held_out(1, 2, 7, hz).any()
+    for keys in ((hz,), (component, node)):
+        told = held_out(1, 3, 6, *keys)
+        assert held_out(1, 3, 6, *(k[mixed] for k in keys)).tolist() == told[mixed].tolist()
