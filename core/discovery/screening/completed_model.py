@@ -138,12 +138,20 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
     """Return what was found, with a gap where frequencies are off by more than tests repeat by.
 
     That nothing is missing was said since the mesh explains them. So do known parameters: none of
-    these is known to be off.
+    these is known to be off, each may as well be as in the deck.
     """
     off = [abs(p.deviation_percent) / 100.0 for p in before.pairs]
     if found.verdict != "no_gap" or np.mean(off) <= SCREENING.repeats:
         return found
-    unsure = (replace(m, factor=m.together, significant=False) for m in found.parameters)
+    unsure = (
+        replace(
+            m,
+            factor=m.together,
+            standard_error=max(m.standard_error, abs(m.together - 1.0)),
+            significant=False,
+        )
+        for m in found.parameters
+    )
     why = (
         f"a finer mesh: this one may well leave the {100.0 * np.mean(off):.1f} % that frequencies "
         "are off, and known parameters may; the test alone does not tell which"
