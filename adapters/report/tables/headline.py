@@ -13,7 +13,7 @@ from .number_formats import counted, fixed, general, listed
 
 VERDICTS = {
     "effect": "the model lacks something",
-    "parameters_only": "only known parameters are off",
+    "parameters_only": "known parameters explain it",
     "test_fault": "the test is at fault",
     "no_gap": "nothing is missing",
     "undecided": "undecided",
@@ -98,7 +98,7 @@ def _discover(answer: DiscoverTables) -> list[str]:
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
     old, new = answer.gap.before, answer.gap.after
-    if not answer.adopted or old == new:
+    if old == new or not _written(answer):
         told.append(_sentence(_of(new) + " with the model"))
     else:
         adopted = (
@@ -110,6 +110,13 @@ def _discover(answer: DiscoverTables) -> list[str]:
     if best and rivals:
         told.append(f"Next best: {rivals[0].where}; {rivals[0].odds}.")
     return told
+
+
+def _written(answer: DiscoverTables) -> bool:
+    """Whether the deck is another than it came: with effects, or with other values."""
+    effects = any(f.side == "model" for f in answer.findings)
+    moved = any(p.updated != p.initial for p in answer.parameters)
+    return answer.adopted and (effects or moved)
 
 
 def _found(findings: Sequence[Finding]) -> str:

@@ -141,7 +141,7 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
     these is known to be off, each may as well be as in the deck.
     """
     off = [abs(p.deviation_percent) / 100.0 for p in before.pairs]
-    if found.verdict != "no_gap" or np.mean(off) <= SCREENING.repeats:
+    if found.verdict != "no_gap" or not off or np.mean(off) <= SCREENING.repeats:
         return found
     unsure = (
         replace(
@@ -153,8 +153,8 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
         for m in found.parameters
     )
     why = (
-        f"a finer mesh: this one may well leave the {100.0 * np.mean(off):.1f} % that frequencies "
-        "are off, and known parameters may; the test alone does not tell which"
+        "a finer mesh: this one may well leave what frequencies are off by, and known parameters "
+        "may; the test alone does not tell which"
     )
     return replace(
         found,
