@@ -130,12 +130,12 @@ def _likeliest(weighed: Weighed, i: int) -> list[Fault]:
     if FAULTS[kind].like_model and unsure:
         return []
     best = max((a for a in weighed.alone[i] if a.kind == kind), key=lambda a: a.log)
-    if np.abs(_turned_over(weighed.survey, i, best)).max() < SENSORS.moves:
+    if np.abs(_readings_changed(weighed.survey, i, best)).max() < SENSORS.moves:
         return []
     return [_told(weighed.survey, i, best, SENSORS.known * share[kind])]
 
 
-def _turned_over(survey: Survey, i: int, a: Alternative) -> Floats:
+def _readings_changed(survey: Survey, i: int, a: Alternative) -> Floats:
     """Return the readings that a fault changes: of a turn those across its axis, (n, n_mode)."""
     rows = survey.rows(i)[list(a.rows)]
     read: Floats = survey.unit()[rows]
