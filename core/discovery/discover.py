@@ -64,9 +64,11 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     """
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)
-    d, test = DISCOVERY, bench.survey
-    modes_out = held_out(*d.modes_held, d.modes_enough, test.frequencies_hz)
-    sensors_out = held_out(*d.sensors_held, d.sensors_enough, test.component, test.node)
+    test = bench.survey
+    modes_out = held_out(*DISCOVERY.modes_held, DISCOVERY.modes_enough, test.frequencies_hz)
+    sensors_out = held_out(
+        *DISCOVERY.sensors_held, DISCOVERY.sensors_enough, test.component, test.node
+    )
     progress("making the catalogue of effects")
     ground = ground_of(request, ~modes_out)
     progress("fitting the known parameters")
