@@ -16,6 +16,7 @@ from ..core.discovery import discover as core
 from ..core.discovery.effects import KINDS
 from ..core.discovery.findings import Discovery
 from ..core.discovery.likelihood.frf_evidence import place_responses
+from ..core.discovery.reduction.discretisation_error import lowered
 from ..core.discovery.reduction.elements_and_supports import Structure
 from ..core.discovery.screening.completed_model import (
     SolvedModel,
@@ -139,7 +140,8 @@ def discover(
     found, done = upheld(written(found, "significant"), completed)
     pairs = before.correlation, done.after.compared.correlation
     readings = len(done.after.compared.placed.observation)
-    borne = borne_out(found, *pairs, int(np.count_nonzero(elastic)), readings)
+    coarse = lowered(structure, solution.vectors)
+    borne = borne_out(found, *pairs, coarse, int(np.count_nonzero(elastic)), readings)
     if asked.adopt != "significant" or borne.adopted != found.adopted:
         borne = written(borne, asked.adopt)
         done = completed(borne)

@@ -9,6 +9,8 @@ from ..noun import BESIDE, OPTIONAL, Noun
 from .faults import Fault
 
 VERDICTS = ("effect", "parameters_only", "test_fault", "no_gap", "undecided")
+ADOPTED = ("effect", "parameters_only", "test_fault")
+"""Verdicts by which the deck takes what was found, parameters that are significant included."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,8 +142,9 @@ class Discovery:
     parameters alone; `posterior` its probability among the hypotheses compared, times the share of
     frozen cases in which an answer like it was right; `foretold` by how many standard deviations
     modes held out agree that it foretells them better than these.
-    `proposal` says that the effects explain much and foretell, but leave more than right models
-    do: the verdict is ``undecided``, and the deck is completed by them all the same.
+    By `mesh`, relative, the deck's mesh makes frequencies too low on average, which no parameter
+    makes up for. `proposal` says that the effects explain much and foretell, but leave more than
+    right models do: the verdict is ``undecided``, and the deck is completed by them all the same.
     """
 
     verdict: str
@@ -163,6 +166,7 @@ class Discovery:
     adequacy: float = 1.0
     unexplained: tuple[int, ...] = ()
     proposal: bool = False
+    mesh: float = 0.0
     damping: ModalDamping | None = None
     responses: ResponseGap | None = None
 
@@ -174,4 +178,4 @@ class Discovery:
     @property
     def adopted(self) -> bool:
         """Whether the deck is changed at all."""
-        return self.completes or self.verdict == "parameters_only"
+        return self.completes or self.verdict in ADOPTED

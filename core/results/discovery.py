@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from ..correlation.comparison import Comparison
-from ..discovery.findings import Alternative, Discovery, Finding
+from ..discovery.findings import ADOPTED, Alternative, Discovery, Finding
 from ..noun import OPTIONAL, Noun
 from .correlation import Gap, PairRow, gap
 from .evidence import DampingTable, MisfitTable, ResponseTable
@@ -43,8 +43,9 @@ class JudgementTable:
     alone; `gain` is ln of how much likelier the test is by what was found, choices paid for;
     `adequacy` is the probability that a right model would leave a misfit as large: an error as
     large, and as many modes `unexplained`: test modes that no mode of the model explains.
-    `proposal` says that the deck is completed by what was found though more is left than right
-    models leave, and the verdict ``undecided``.
+    By `mesh`, relative, the deck's mesh makes frequencies too low on average: no parameter makes
+    up for that. `proposal` says that the deck is completed by what was found though more is left
+    than right models leave, and the verdict ``undecided``.
     """
 
     evidence: float
@@ -56,6 +57,7 @@ class JudgementTable:
     adequacy: float = 1.0
     unexplained: tuple[int, ...] = ()
     proposal: bool = False
+    mesh: float = 0.0
 
     @classmethod
     def of(cls, found: Discovery) -> Self:
@@ -70,6 +72,7 @@ class JudgementTable:
             found.adequacy,
             found.unexplained,
             found.proposal,
+            found.mesh,
         )
 
 
@@ -93,7 +96,7 @@ class DiscoverTables(ChangingTables):
     @property
     def adopted(self) -> bool:
         """Whether what was found changed the deck."""
-        return self.verdict in ("effect", "parameters_only") or self.judgement.proposal
+        return self.verdict in ADOPTED or self.judgement.proposal
 
 
 def gap_table(found: Discovery, before: Comparison, after: Comparison) -> GapTable:

@@ -26,6 +26,8 @@ _VERDICT_SENTENCES = {
 }
 _FAR = 3.0
 """Deviation in % from which on a correlation points to discover."""
+_COARSE = 0.3
+"""What the mesh does to frequencies is told from here on, in %."""
 _MOVED = 3
 """So many parameters are named where they explain the gap."""
 
@@ -91,9 +93,9 @@ def _discover(answer: DiscoverTables) -> list[str]:
         told.append(_sentence(f"the best explanation so far: {best}"))
     elif best:
         told = [_sentence(best)]
-    elif verdict == "parameters_only":
+    if verdict in ("parameters_only", "test_fault"):
         told += moved
-    if not answer.adopted and verdict in ("undecided", "test_fault"):
+    if not answer.adopted and verdict == "undecided":
         told += [f"What fits best, not written: {off}" for off in moved]
     if len(found) == 1:
         told.append(_sentence(found[0].sentence))
@@ -105,11 +107,20 @@ def _discover(answer: DiscoverTables) -> list[str]:
             "with that adopted, " if verdict != "undecided" else "with that put into the deck, "
         )
         told.append(_sentence(adopted + _change(old, new, "completed model")))
-        told += _lost(answer)
+        told += [*_lost(answer), *_by_mesh(answer.judgement.mesh)]
     rivals = [a for a in answer.alternatives if a.kinds]
     if best and rivals:
         told.append(f"Next best: {rivals[0].where}; {rivals[0].odds}.")
     return told
+
+
+def _by_mesh(mesh: float) -> list[str]:
+    """Say what frequencies stay off by since the mesh is too coarse, where one would ask."""
+    percent = abs(100.0 * mesh)
+    if percent < _COARSE:
+        return []
+    way = "low" if mesh > 0.0 else "high"
+    return [f"The deck's mesh makes them about {fixed(percent, 1)} % too {way}."]
 
 
 def _written(answer: DiscoverTables) -> bool:

@@ -21,6 +21,7 @@ class InDeck:
     alone: Floats
     deviation: Floats
     clear: Bools
+    mesh: float = 0.0
 
 
 def in_deck(x: Floats, information: Floats, scale: float) -> InDeck:

@@ -130,8 +130,7 @@ class Fit:
     (n_unknown, n_unknown) is the Gauss-Newton Hessian of half the objective, prior included, active
     nuisance parameters first; `unseen` is the misfit of what was held out from the fit, `surplus`
     the number of modes in the measured band that the test does not have, `in_deck` what the known
-    parameters are in a deck with these effects, where no correction of its mesh helps; all where
-    they were asked for.
+    parameters are beside these effects and the error of the mesh; all where they were asked for.
     """
 
     objective: float

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Bools, Floats
 from ..effects.candidates import Candidates, Suspect, places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
-from ..likelihood.elimination import in_deck
+from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.test_design import further_modes, further_sensors
@@ -60,7 +60,7 @@ def build_discovery(
     adequate = whole.explains
     tested = tested if adequate and (whole.clear or not suspects) else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
-    moved = _moved(best, verdict.scale)
+    known = best.in_deck or in_deck(best.log_p, best.information, verdict.scale)
     word = "no_gap"
     spots = [np.asarray(f.where.xyz) for f in findings]
     placed, geometry = request.placed, request.structure.model.geometry
@@ -93,7 +93,7 @@ def build_discovery(
         word,
         (*(replace(f, confidence=sure) for f in findings), *accused),
         _alternatives(outcome),
-        moved,
+        _moved(known),
         verdict.scale,
         2.0 * whole.gain,
         sure,
@@ -109,6 +109,7 @@ def build_discovery(
         adequacy=whole.adequacy,
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
         proposal=proposal,
+        mesh=known.mesh,
     )
 
 
@@ -242,9 +243,8 @@ def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> fl
     return NARRATIVE.proposed if proposal else NARRATIVE.doubted
 
 
-def _moved(best: Fit, scale: float) -> tuple[MovedParameter, ...]:
+def _moved(known: InDeck) -> tuple[MovedParameter, ...]:
     """Known parameters as the completed deck takes them."""
-    known = best.in_deck or in_deck(best.log_p, best.information, scale)
     factor = np.exp(np.where(known.clear, known.alone, known.together))
     return tuple(
         MovedParameter(k, float(f), float(f * d), bool(c), float(np.exp(together)))

@@ -7,11 +7,13 @@ from typing import Protocol, TypeVar
 import numpy as np
 import scipy.sparse as sp
 
+from ...arrays import Floats
 from ...correlation.comparison import Comparison, Placed
 from ...correlation.mode_pairing import Correlation
 from ...data.dofs import Dofs
 from ...eigen.normal_modes import Eigensolution
 from ...errors import TrueupError
+from ..discovery_numbers import DISCOVERY
 from ..effects import KINDS, local_damper
 from ..faults import corrected, lost
 from ..findings import Discovery, MovedParameter
@@ -55,20 +57,27 @@ def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discov
 
 
 def borne_out(
-    found: Discovery, before: Correlation, after: Correlation, tests: int, readings: int
+    found: Discovery,
+    before: Correlation,
+    after: Correlation,
+    lowered: Floats,
+    tests: int,
+    readings: int,
 ) -> Discovery:
     """Return what was found as far as its completed deck and what was measured bear it out.
 
     A claim is a proposal where its deck is hardly nearer to the test. Nearer is: more modes pair,
-    or as many, and those that pair both times deviate less in frequency. What brings no mode more
-    to pair and no frequency nearer is nothing that was found. Dashpots show in the damping. Nor is
-    anything said to be complete of which most of the `tests`, the modes that take part, pair with
-    nothing, or of which too little was measured, by so many `readings` of each mode, to tell. What
-    is as far off as its mesh may be has a gap, which known parameters explain as well.
+    or as many, and those that pair both times deviate less in frequency, a share of what lumping
+    does to each apart: the mesh stays. By so much, `lowered` (n_mode,), are ln f of the modes of
+    the model as it came too low. What brings no mode more to pair and no frequency nearer is
+    nothing that was found. Dashpots show in the damping. Nor is anything said to be complete of
+    which most of the `tests`, the modes that take part, pair with nothing, or of which too little
+    was measured, by so many `readings` of each mode, to tell. What is as far off as its mesh may
+    be has a gap, which known parameters explain as well.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
     more = len(after.pairs) - len(before.pairs)
-    left = _left(before, after)
+    left = _left(before, after, lowered)
     helps = more > 0 or left < 1.0
     if found.verdict != "effect" and not any(f.kind in KINDS for f in found.findings):
         found = _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
@@ -86,12 +95,21 @@ def borne_out(
     return _in_doubt(found, why, proposal=True)
 
 
-def _left(before: Correlation, after: Correlation) -> float:
+def _left(before: Correlation, after: Correlation, lowered: Floats) -> float:
     """Return what is left of the deviations in frequency of the modes that pair both times."""
-    was, now = ({p.test: abs(p.deviation_percent) for p in c.pairs} for c in (before, after))
-    both = was.keys() & now.keys()
-    whole = sum(was[k] for k in both)
-    return sum(now[k] for k in both) / whole if whole else 1.0
+    was, now = ({p.test: p.deviation_percent / 100.0 for p in c.pairs} for c in (before, after))
+    mesh = {p.test: lowered[p.analysis] for p in before.pairs if p.test in now}
+    by_mesh = np.array(list(mesh.values()))
+    whole = _beside_mesh(np.array([was[k] for k in mesh]), by_mesh)
+    return _beside_mesh(np.array([now[k] for k in mesh]), by_mesh) / whole if whole else 1.0
+
+
+def _beside_mesh(deviations: Floats, by_mesh: Floats) -> float:
+    """Return the sum of deviations beside the share of what lumping does that lessens it most."""
+    low, high = DISCOVERY.mesh_bounds
+    best = -deviations[by_mesh > 0.0] / by_mesh[by_mesh > 0.0]
+    shares = np.clip(np.append(best, 0.0), low, high)
+    return float(np.abs(deviations + shares[:, None] * by_mesh).sum(axis=1).min())
 
 
 def _withdrawn(found: Discovery) -> Discovery:
@@ -114,7 +132,7 @@ def _seen_in_pairs(
     A mode that pairs tells its frequency and what its shape says, less that it has to be one of
     the model's; known parameters that explain the test and one effect are fitted to as much.
     """
-    moved = len(found.parameters) if found.verdict == "parameters_only" else 0
+    moved = len(found.parameters) if found.adopted else 0
     values = pairs * (int(min(readings, SEARCH.per_mode)) - 1)
     if pairs < SCREENING.pairs * tests:
         why = (
@@ -143,25 +161,11 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
     off = [abs(p.deviation_percent) / 100.0 for p in before.pairs]
     if found.verdict != "no_gap" or not off or np.mean(off) <= SCREENING.repeats:
         return found
-    unsure = (
-        replace(
-            m,
-            factor=m.together,
-            standard_error=max(m.standard_error, abs(m.together - 1.0)),
-            significant=False,
-        )
-        for m in found.parameters
-    )
     why = (
         "a finer mesh: this one may well leave what frequencies are off by, and known parameters "
         "may; the test alone does not tell which"
     )
-    return replace(
-        found,
-        verdict="parameters_only",
-        parameters=tuple(unsure),
-        would_decide=(why, *found.would_decide),
-    )
+    return replace(found, verdict="parameters_only", would_decide=(why, *found.would_decide))
 
 
 def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:

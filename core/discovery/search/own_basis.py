@@ -38,19 +38,25 @@ Places = tuple[tuple[Candidates, int], ...]
 
 @dataclass(frozen=True, eq=False)
 class Own:
-    """A basis for effects at some places: with the deck's masses, with better ones.
+    """A basis for effects at some places: the deck's matrices, and what is better than its masses.
 
     `added` (n_free, s) stands beside the modes of the ground, `seen` (n_sensor, r + s) is what
     sensors read, `mesh` and `bars` see `Ground`, `factors` rows of the effects.
     """
 
-    plain: Basis
-    better: Basis
-    added: Floats
-    seen: Floats
+    stiffness: ReducedSum
+    mass: ReducedSum
     mesh: ReducedSum
     bars: ReducedSum
+    added: Floats
+    seen: Floats
     factors: tuple[Floats, ...]
+
+    @cached_property
+    def better(self) -> Basis:
+        """The basis with masses better than the deck's."""
+        none = np.zeros((0, self.seen.shape[1]))
+        return Basis(none, none, self.stiffness, self.mass.and_also(self.bars))
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,10 +153,8 @@ class CompletedModel:
         return tuple(zip(self.bases, each, strict=True))
 
 
-def complete_model(
-    ground: Ground, problem: Problem, state: Fit, as_deck: bool = False
-) -> CompletedModel:
-    """Return the model that a fit completes, masses better than a deck's or as the deck has them.
+def complete_model(ground: Ground, problem: Problem, state: Fit) -> CompletedModel:
+    """Return the model that a fit completes, with masses better than a deck's.
 
     Supports that give have a mass, and sensors on them read, as the fit has it. The laws of the
     problem's catalogue are not yet fitted to any basis.
@@ -168,7 +172,7 @@ def complete_model(
     modes = int(np.count_nonzero(state.eigenvalues < top)) + SEARCH.own_more
     catalogue = tuple(_alone(c, row, state) for c, row in places)
     start = tuple(Suspect(k, 0, s.theta) for k, s in enumerate(state.suspects))
-    basis, seen = own.plain if as_deck else own.better, own.seen
+    basis, seen = own.better, own.seen
     give, supports = _given(ground, catalogue, start, own), ground.structure.supports
     if supports is not None and give.any():
         seen = seen + ground.at_supports @ give
@@ -234,7 +238,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     added, seen = V[:, :0], ground.readings
     if places:
         before, (c, row) = _known(ground, places[:-1], columns), places[-1]
-        sums = before.plain.stiffness, before.plain.mass, before.mesh, before.bars
+        sums = before.stiffness, before.mass, before.mesh, before.bars
         if c.rows_each:
             loads = _root(c, row).T.toarray()
             if c.rows_each > 6 * c.many(row):
@@ -249,16 +253,8 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
         added = np.hstack([before.added, W])
         seen = np.hstack([before.seen, ground.observation @ W])
     stiffness, mass, mesh, bars = sums
-    none = np.zeros((0, seen.shape[1]))
-    return Own(
-        Basis(none, none, stiffness, mass),
-        Basis(none, none, stiffness, mass.and_also(bars)),
-        added,
-        seen,
-        mesh,
-        bars,
-        tuple(_factor(c, row, V, added)[None] for c, row in places),
-    )
+    factors = tuple(_factor(c, row, V, added)[None] for c, row in places)
+    return Own(stiffness, mass, mesh, bars, added, seen, factors)
 
 
 def _root(c: Candidates, row: int) -> sp.csr_matrix:

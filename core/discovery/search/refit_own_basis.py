@@ -12,11 +12,12 @@ from ...errors import CheckError
 from ..effects import support_flexibility
 from ..effects.candidates import Suspect
 from ..likelihood.elimination import InDeck, in_deck
-from ..likelihood.hypothesis import Fit, Problem, softened
+from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import evaluate, fit, on_whole_test
-from ..likelihood.mode_likelihood import targets
+from ..likelihood.mode_likelihood import Evidence, targets
 from ..model_error.beside_fields import with_drift, with_known
 from ..model_error.diffuse_fit import Judged, everything
+from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.set_up_fields import suspension
 from ..model_error.smooth_fields import Fields
 from ..reduction.search_basis import structural
@@ -69,11 +70,13 @@ def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Float
 def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """Return a fit that knows its known parameters for a deck, the effects as found.
 
-    A deck has neither the trend for the error of the mesh nor masses better than its elements':
-    moduli, thicknesses and inertias have to absorb both.
+    A mesh is off in each frequency by about what lumping does to it: a share of that is alike in
+    all modes and moves along, and as much again in each of them is no evidence of a modulus or a
+    thickness.
     """
-    own = complete_model(ground, problem, state, as_deck=True)
-    return replace(state, in_deck=_in_deck(own.problem, replace(state, suspects=own.start)))
+    own = complete_model(ground, problem, state)
+    own_state = replace(state, suspects=own.start)
+    return replace(state, in_deck=_in_deck(_beside_mesh(own.problem, own_state), own_state))
 
 
 def by_model_error(
@@ -139,20 +142,36 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
     return tuple(replace(s, theta=t.theta) for s, t in both)
 
 
+def _lowered(problem: Problem, f: Fit) -> Floats:
+    """Return by how much lumping lowers ln f of the modes that match the test, (n_test,)."""
+    V = f.vectors[: problem.basis.size, f.match]
+    return np.asarray(0.5 * np.sum(V * (problem.mesh @ V), axis=0))
+
+
+def _beside_mesh(problem: Problem, state: Fit) -> Problem:
+    """Return a problem that expects of each frequency to be off by what lumping does to it."""
+
+    def unsure(p: Problem) -> Evidence:
+        lowered = _lowered(p, evaluate(p, state.nuisance, state.suspects))
+        noise = p.evidence.noise
+        wide = np.hypot(noise.frequency, MODEL_ERROR.mesh * lowered)
+        return replace(p.evidence, noise=replace(noise, frequency=wide))
+
+    return replace(problem, evidence=unsure(problem), whole=unsure(problem.entire()))
+
+
 def _in_deck(own: Problem, found: Fit) -> InDeck:
     """Return the known parameters of a fit for a deck, its effects held as they are."""
+    free = fit(own, found.nuisance, found.suspects, everything(own), SEARCH.steps_polished)
+    scale = noise_scale(own, on_whole_test(own, free))
+    known = in_deck(free.log_p, free.information, scale)
     held = tuple(
         replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), SEARCH.held))
         for c, s in zip(own.catalogue, found.suspects, strict=True)
     )
-    own = replace(own, catalogue=held)
     n = len(found.log_p)
-    start = np.append(found.log_p, 0.0)
-    near = fit(softened(own), start, found.suspects, tuple(range(n)), SEARCH.steps_polished)
-    all_of_them = fit(own, near.nuisance, found.suspects, tuple(range(n)), SEARCH.steps_polished)
-    scale = noise_scale(own, on_whole_test(own, all_of_them))
-    known = in_deck(all_of_them.log_p, all_of_them.information, scale)
-    clear = tuple(np.flatnonzero(known.clear).tolist())
-    start = np.append(known.alone, 0.0)
-    alone = fit(own, start, found.suspects, clear, SEARCH.steps_polished)
-    return replace(known, alone=alone.log_p)
+    moving = (*np.flatnonzero(known.clear).tolist(), n)
+    start = np.append(known.alone, free.nuisance[n])
+    alone = fit(replace(own, catalogue=held), start, found.suspects, moving, SEARCH.steps_polished)
+    mesh = float(np.mean(alone.nuisance[n] * _lowered(own, alone)))
+    return replace(known, alone=alone.log_p, mesh=mesh)

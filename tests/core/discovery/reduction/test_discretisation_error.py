@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from trueup.core.discovery.reduction.discretisation_error import (
     consistent_bars,
+    lowered,
     lumping,
     lumping_along,
 )
@@ -62,6 +63,14 @@ def test_it_falls_with_the_square_of_the_elements_in_a_wave():
 
     assert share(10) / share(20) == pytest.approx(4.0, rel=0.05)
     assert share(20) == pytest.approx((np.pi / 20) ** 2 / 6.0, rel=0.05)
+
+
+def test_by_how_much_frequencies_are_too_low_is_known_of_each_mode():
+    """By half of the share of its mass by which lumping makes a wave's too large."""
+    wave = np.tile(np.cos(np.pi * np.arange(21) / 20), 2)[:, None]
+    mass = 20 * 0.5
+    off = lowered(membrane(20), np.hstack([wave, np.ones_like(wave)]) / np.sqrt(mass))
+    assert off == pytest.approx([0.5 * (np.pi / 20) ** 2 / 6.0, 0.0], rel=0.1, abs=1e-12)
 
 
 def test_along_a_wave_it_is_all_there_is_and_across_it_none():

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 
+import numpy as np
 import pytest
 
 from trueup.core.discovery.findings import Discovery, MovedParameter, Where
@@ -37,12 +38,18 @@ class Paired:
     test: int
     deviation_percent: float
 
+    @property
+    def analysis(self):
+        return self.test
+
 
 @dataclass(frozen=True)
 class Pairs:
     pairs: tuple
 
 
+EXACT = np.zeros(20)
+"""What lumping does to modes of a mesh that has no error."""
 MASS = Said("effect", (Named("point_mass"), Named("sensor_swap")))
 BEFORE = Pairs((Paired(0, -4.0), Paired(1, 2.0)))
 CLEAR = MovedParameter(0, 1.5, 0.1, True, 1.4)
@@ -91,7 +98,7 @@ def test_a_deck_that_never_solved_is_not():
     ],
 )
 def test_a_claim_whose_deck_is_hardly_nearer_to_the_test_is_a_proposal(after):
-    found = borne_out(MASS, BEFORE, Pairs(after), 4, 12)
+    found = borne_out(MASS, BEFORE, Pairs(after), EXACT, 4, 12)
     assert (found.verdict, found.proposal, found.posterior) == ("undecided", True, 0.4)
     assert "hardly less off" in found.would_decide[0]
 
@@ -105,7 +112,7 @@ FEWER = Pairs((Paired(0, 4.1),))
 @pytest.mark.parametrize("verdict", ["effect", "undecided"])
 def test_what_brings_no_mode_and_no_frequency_nearer_is_not_written(verdict, before, after):
     said = replace(MASS, verdict=verdict, proposal=verdict == "undecided")
-    found = borne_out(said, before, after if before.pairs else before, 4, 12)
+    found = borne_out(said, before, after if before.pairs else before, EXACT, 4, 12)
     assert (found.verdict, found.proposal, found.adopted) == ("undecided", False, False)
     assert [f.kind for f in found.findings] == ["sensor_swap"]
     assert "with an attached mass near grid 8 no mode more pairs" in found.would_decide[0]
@@ -114,7 +121,7 @@ def test_what_brings_no_mode_and_no_frequency_nearer_is_not_written(verdict, bef
 def test_a_proposal_that_helps_a_little_stays():
     said = replace(MASS, verdict="undecided", proposal=True)
     nearer = Pairs((Paired(0, 3.9), Paired(1, 2.0)))
-    assert borne_out(said, BEFORE, nearer, 4, 12) is said
+    assert borne_out(said, BEFORE, nearer, EXACT, 4, 12) is said
 
 
 @pytest.mark.parametrize(
@@ -125,12 +132,33 @@ def test_a_proposal_that_helps_a_little_stays():
     ],
 )
 def test_a_claim_whose_deck_is_nearer_stays(after):
-    assert borne_out(MASS, BEFORE, Pairs(after), 4, 12) is MASS
+    assert borne_out(MASS, BEFORE, Pairs(after), EXACT, 4, 12) is MASS
+
+
+COARSE = np.array([0.02, 0.04])
+"""A mesh whose lumped mass makes two modes 2 and 4 % too low."""
+
+
+def test_what_the_mesh_leaves_is_not_held_against_a_claim():
+    """A soft patch had hidden that frequencies are too low; they still are, and by the mesh."""
+    before, after = (
+        Pairs((Paired(0, 0.5), Paired(1, -0.5))),
+        Pairs((Paired(0, -1.0), Paired(1, -2.0))),
+    )
+    assert borne_out(MASS, before, after, COARSE, 2, 12) is MASS
+    assert borne_out(MASS, before, after, EXACT, 2, 12).verdict == "undecided"
+
+
+def test_a_mesh_explains_no_more_than_it_may_be_off_by():
+    before = Pairs((Paired(0, -5.0), Paired(1, -10.0)))
+    after = Pairs((Paired(0, -4.5), Paired(1, -9.0)))
+    assert borne_out(MASS, before, after, COARSE, 2, 12).verdict == "undecided"
+    assert borne_out(MASS, before, Pairs((Paired(0, -2.0), Paired(1, -4.0))), COARSE, 2, 12) is MASS
 
 
 def test_a_dashpot_shows_in_the_damping():
     dashpot = Said("effect", (Named("local_damper"),))
-    assert borne_out(dashpot, BEFORE, BEFORE, 4, 12) is dashpot
+    assert borne_out(dashpot, BEFORE, BEFORE, EXACT, 4, 12) is dashpot
 
 
 NEARER = Pairs((Paired(0, 1.0), Paired(1, 2.0)))
@@ -148,26 +176,23 @@ NEARER = Pairs((Paired(0, 1.0), Paired(1, 2.0)))
 def test_nothing_is_said_to_be_missing_where_hardly_a_mode_pairs(verdict, after, proposal):
     """A node 50 m off, a test whose directions were exchanged: 0 of 10 pair, and no gap it was."""
     said = Said(verdict)
-    assert borne_out(said, BEFORE, after, 4, 12) is said
-    found = borne_out(said, BEFORE, after, 5, 12)
+    assert borne_out(said, BEFORE, after, EXACT, 4, 12) is said
+    found = borne_out(said, BEFORE, after, EXACT, 5, 12)
     assert (found.verdict, found.proposal, found.posterior) == ("undecided", proposal, 0.4)
     assert "than 2 of 5" in found.would_decide[0]
 
 
 def test_there_is_no_gap_where_frequencies_agree_as_tests_repeat():
     said, agrees = Said("no_gap"), Pairs((Paired(0, -0.5), Paired(1, 0.4)))
-    assert borne_out(said, agrees, agrees, 2, 12) is said
+    assert borne_out(said, agrees, agrees, EXACT, 2, 12) is said
 
 
 def test_a_gap_that_a_mesh_explains_is_one_that_known_parameters_may_explain():
     """A cowl whose frequencies are 3.2 % off on average, 5.8 % at worst, was said to have none."""
-    said = Said("no_gap", parameters=(CLEAR,))
-    found = borne_out(said, BEFORE, BEFORE, 2, 12)
+    said = Said("no_gap", parameters=(VAGUE,))
+    found = borne_out(said, BEFORE, BEFORE, EXACT, 2, 12)
     assert (found.verdict, found.posterior) == ("parameters_only", said.posterior)
     assert "finer mesh" in found.would_decide[0]
-    (m,) = written(found, "significant").parameters
-    assert (m.significant, m.factor, m.written) == (False, CLEAR.together, 1.0)
-    assert m.standard_error == pytest.approx(CLEAR.together - 1.0)
 
 
 def paired(modes):
@@ -189,7 +214,7 @@ def paired(modes):
 def test_nothing_is_said_to_be_missing_by_less_than_tells_one_effect(modes, readings, moved, tells):
     verdict = "parameters_only" if moved else "no_gap"
     said = Said(verdict, parameters=(CLEAR,) * moved)
-    found = borne_out(said, paired(modes), paired(modes), modes, readings)
+    found = borne_out(said, paired(modes), paired(modes), EXACT, modes, readings)
     assert (found is said) == tells
     if not tells:
         assert (found.verdict, found.adopted, found.posterior) == ("undecided", False, 0.4)
