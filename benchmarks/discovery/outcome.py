@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from .known import Written, written
 from .score import Named, Score, score
 
 Json = dict[str, Any]
@@ -17,7 +18,8 @@ class Outcome:
     """A case and what became of it; `score` is missing where something failed (`note`).
 
     `seconds` are of one core, `gap` the mean deviations [%] before and after; `cause` is what is
-    hidden from outside the list, `shift` the largest change of a frequency by all hidden [%].
+    hidden from outside the list, `shift` the largest change of a frequency by all hidden [%],
+    `known` what the answer makes of every known property.
     """
 
     name: str
@@ -30,6 +32,7 @@ class Outcome:
     dofs: int = 0
     cause: str = ""
     shift: float = 0.0
+    known: tuple[Written, ...] = ()
 
     def to_line(self) -> str:
         """Return the outcome as a line of JSON."""
@@ -43,7 +46,8 @@ class Outcome:
             named = tuple(Named(**n) for n in told["score"].pop("named"))
             false = tuple((str(k), float(p)) for k, p in told["score"].pop("false_alarms"))
             told["score"] = Score(named=named, false_alarms=false, **told["score"])
-        return cls(**{**told, "gap": tuple(told["gap"])})
+        known = tuple(Written(**w) for w in told.pop("known", ()))
+        return cls(**{**told, "gap": tuple(told["gap"]), "known": known})
 
 
 def keep(place: Path, seconds: float, note: str, result: Json | None) -> None:
@@ -66,7 +70,8 @@ def read(place: Path) -> Outcome:
     before, after = (
         (gap.get(k) or {}).get("mean_abs_deviation_percent") for k in ("before", "after")
     )
-    return Outcome(*told, score(truth, result), "", (before, after), _dofs(place), cause, shift)
+    rest = "", (before, after), _dofs(place), cause, shift, written(truth, result)
+    return Outcome(*told, score(truth, result), *rest)
 
 
 def _dofs(place: Path) -> int:

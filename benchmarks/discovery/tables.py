@@ -125,6 +125,22 @@ def calibration(done: list[Score]) -> str:
     return "\n".join(out) + "\n"
 
 
+def properties(outcomes: list[Outcome]) -> str:
+    """Return a Markdown table of what was written of known properties, and what was changed."""
+    rows = {"all hidden is on the list": False, "a cause outside the list, or off everywhere": True}
+    head = "properties", "written", "changed as well", "within two errors", "changed", "written"
+    out = [f"| | {' | '.join(head)} |", "|---" + "|---:" * len(head) + "|"]
+    for name, beyond in rows.items():
+        of = (o for o in outcomes if beyond == (bool(o.cause) or "real" in o.scenario))
+        every = [w for o in of for w in o.known]
+        told = [w for w in every if w.deviation]
+        changed = [w for w in every if w.truth != 1.0]
+        right = sum(w.truth != 1.0 for w in told)
+        counts = len(every), len(told), right, sum(w.off < 2.0 for w in told), len(changed), right
+        out.append(f"| {name} | " + " | ".join(map(str, counts)) + " |")
+    return "\n".join(out) + "\n"
+
+
 def summary(outcomes: list[Outcome]) -> dict[str, Any]:
     """Return the figures of a run, plain for JSON."""
     done = [o.score for o in outcomes if o.score is not None]
@@ -220,6 +236,7 @@ def report(outcomes: list[Outcome]) -> None:
     outside = [(o, s) for o, s in scored if o.cause and not listed(o)]
     say(confusion(((o.cause, claimed(s)) for o, s in outside), "cause outside the list, told"))
     say(confusion(((_gross(o.shift), claimed(s)) for o, s in outside), "it moves a frequency by"))
+    say(properties(outcomes))
     say(calibration(done))
     say(json.dumps(summary(outcomes)))
 

@@ -66,9 +66,19 @@ def test_known_parameters_that_explain_the_gap_are_named_the_farthest_first(
     said = "CONM2 7 M is 0.5 times the deck's value; PSHELL 1 T is 1.1 times the deck's value."
     first, second = story(answer_of(discovery))[:2]
     assert (first, second) == ("Known parameters alone explain the gap; nothing is missing.", said)
-    for verdict in ("undecided", "test_fault"):
-        told = story(answer_of(discovery | {"verdict": verdict}))
-        assert told[1] == f"What fits best, not written: {said}"
+    told = story(answer_of(discovery | {"verdict": "undecided"}))
+    assert told[1] == f"What fits best, not written: {said}"
+    assert story(answer_of(discovery | {"verdict": "test_fault"}))[1] == said
+
+
+@pytest.mark.parametrize(("mesh", "said"), [(0.009, "0.9 % too low"), (-0.006, "0.6 % too high")])
+def test_what_the_mesh_leaves_is_said_where_the_deck_was_changed(
+    discovery: dict[str, Any], mesh: float, said: str
+) -> None:
+    discovery["judgement"] |= {"mesh": mesh}
+    assert any(f"mesh makes them about {said}" in told for told in story(answer_of(discovery)))
+    discovery["judgement"] |= {"mesh": mesh / 10.0}
+    assert not any("mesh" in told for told in story(answer_of(discovery)))
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ def completed(monkeypatch, mesh_error):
     p = searcher(hidden()).problem
     state = evaluate(p, np.append(np.zeros(len(p.prior.spread) - 1), 0.0), ())
     seen, mesh = p.everywhere, np.eye(p.basis.size)
-    own = Some(plain=p.basis, better=p.basis, seen=seen, mesh=Some(whole=[mesh]), factors=())
+    own = Some(better=p.basis, seen=seen, mesh=Some(whole=[mesh]), factors=())
     own.added = np.zeros((len(p.basis.vectors), 0))
     monkeypatch.setattr(room, "_known", lambda *_: own)
     ground = Some(structure=Some(supports=None), at_supports=np.zeros((len(seen), 0)))
