@@ -107,7 +107,8 @@ def _discover(answer: DiscoverTables) -> list[str]:
             "with that adopted, " if verdict != "undecided" else "with that put into the deck, "
         )
         told.append(_sentence(adopted + _change(old, new, "completed model")))
-        told += [*_lost(answer), *_by_mesh(answer.judgement.mesh)]
+        told += _lost(answer)
+        told += _by_mesh(answer.judgement.mesh) if verdict != "undecided" else []
     rivals = [a for a in answer.alternatives if a.kinds]
     if best and rivals:
         told.append(f"Next best: {rivals[0].where}; {rivals[0].odds}.")

@@ -77,6 +77,8 @@ def test_what_the_mesh_leaves_is_said_where_the_deck_was_changed(
 ) -> None:
     discovery["judgement"] |= {"mesh": mesh}
     assert any(f"mesh makes them about {said}" in told for told in story(answer_of(discovery)))
+    doubted = answer_of(discovery | {"verdict": "undecided"})
+    assert not any("mesh" in told for told in story(doubted))
     discovery["judgement"] |= {"mesh": mesh / 10.0}
     assert not any("mesh" in told for told in story(answer_of(discovery)))
 
