@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from trueup.verbs import discover
+import trueup
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT.parent / "shared" / "data" / "cases"
@@ -47,7 +47,7 @@ def test_only_what_is_off_is_written_and_as_far_as_it_is(name):
         card: scatter[group] for group, cards in CARDS[deck].items() if group in scatter
         for card in cards
     }  # fmt: skip
-    found = discover(case / f"{deck}.bdf", test, deck_length_unit="mm")
+    found = trueup.discover(case / f"{deck}.bdf", test, deck_length_unit="mm")
     written = [p for p in found.parameters if p.updated != p.initial]
     cards = {" ".join(p.name.split()[:2]): p for p in written}
     large = {card for card, factor in truth.items() if abs(factor - 1.0) > OFF}

@@ -11,7 +11,6 @@ from ...arrays import Floats, Ints
 from ..effects.candidates import Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
-from .elimination import InDeck
 from .frf_likelihood import Heard
 from .likelihood_numbers import LIKELIHOOD
 from .mode_likelihood import Evidence
@@ -129,8 +128,8 @@ class Fit:
     and, last and no logarithm, the mesh error (see `discretisation_error`); `information`
     (n_unknown, n_unknown) is the Gauss-Newton Hessian of half the objective, prior included, active
     nuisance parameters first; `unseen` is the misfit of what was held out from the fit, `surplus`
-    the number of modes in the measured band that the test does not have, `in_deck` what the known
-    parameters are beside these effects and the error of the mesh; all where they were asked for.
+    the number of modes in the measured band that the test does not have; both where they were asked
+    for.
     """
 
     objective: float
@@ -144,7 +143,6 @@ class Fit:
     active: tuple[int, ...]
     unseen: float | None = None
     surplus: float | None = None
-    in_deck: InDeck | None = None
 
     @property
     def log_p(self) -> Floats:

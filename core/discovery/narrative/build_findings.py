@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Bools, Floats
 from ..effects.candidates import Candidates, Suspect, places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
-from ..likelihood.elimination import InDeck, in_deck
+from ..likelihood.elimination import InDeck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.test_design import further_modes, further_sensors
@@ -42,13 +42,15 @@ def build_discovery(
     found: Found,
     verdict: Judgement,
     whole: Completeness,
+    known: InDeck,
     tested: Verdicts,
     held_out: tuple[Bools, Bools],
 ) -> Discovery:
     """Say what the search amounts to: verdict, findings, alternatives, what would decide.
 
-    `whole` is how well it explains the test beside the error of a model; `held_out` are the test
-    modes and the sensors that were kept out of the search.
+    `whole` is how well it explains the test beside the error of a model, `known` what the known
+    parameters are then; `held_out` are the test modes and the sensors that were kept out of the
+    search.
     """
     outcome = _Outcome(request, searcher, found, verdict, whole)
     best = outcome.best
@@ -60,7 +62,6 @@ def build_discovery(
     adequate = whole.explains
     tested = tested if adequate and (whole.clear or not suspects) else tested.beyond_doubt
     accused = accusations(request.placed.observation, tested)
-    known = best.in_deck or in_deck(best.log_p, best.information, verdict.scale)
     word = "no_gap"
     spots = [np.asarray(f.where.xyz) for f in findings]
     placed, geometry = request.placed, request.structure.model.geometry

@@ -67,8 +67,8 @@ def completed_modes(ground: Ground, problem: Problem, state: Fit) -> tuple[Float
     return out, own.eigenvalues
 
 
-def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
-    """Return a fit that knows its known parameters for a deck, the effects as found.
+def for_deck(ground: Ground, problem: Problem, state: Fit) -> InDeck:
+    """Return the known parameters of a fit for a deck, the effects as found.
 
     A mesh is off in each frequency by about what lumping does to it: a share of that is alike in
     all modes and moves along, and as much again in each of them is no evidence of a modulus or a
@@ -76,7 +76,7 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """
     own = complete_model(ground, problem, state)
     own_state = replace(state, suspects=own.start)
-    return replace(state, in_deck=_in_deck(_beside_mesh(own.problem, own_state), own_state))
+    return _in_deck(_beside_mesh(own.problem, own_state), own_state)
 
 
 def by_model_error(
@@ -164,12 +164,12 @@ def _in_deck(own: Problem, found: Fit) -> InDeck:
     """Return the known parameters of a fit for a deck, its effects held as they are."""
     free = fit(own, found.nuisance, found.suspects, everything(own), SEARCH.steps_polished)
     scale = noise_scale(own, on_whole_test(own, free))
-    known = in_deck(free.log_p, free.information, scale)
+    n = len(found.log_p)
+    known = in_deck(free.log_p, free.information, scale, own.prior.spread[:n])
     held = tuple(
         replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), SEARCH.held))
         for c, s in zip(own.catalogue, found.suspects, strict=True)
     )
-    n = len(found.log_p)
     moving = (*np.flatnonzero(known.clear).tolist(), n)
     start = np.append(known.alone, free.nuisance[n])
     alone = fit(replace(own, catalogue=held), start, found.suspects, moving, SEARCH.steps_polished)

@@ -24,7 +24,7 @@ def known(monkeypatch, tension, told=True):
     p = replace(p, mesh=mesh, catalogue=(), factors=())
     state = evaluate(p, np.zeros(len(p.prior.spread)), ())
     monkeypatch.setattr(room, "complete_model", lambda *_: Some(problem=p, start=()))
-    return room.for_deck(None, p, state).in_deck
+    return room.for_deck(None, p, state)
 
 
 def test_what_the_mesh_leaves_is_no_tension(monkeypatch):
