@@ -131,6 +131,8 @@ class CompletedModel:
         The ground's vectors and what stands beside them: together the basis.
     give : (n_support, r + s) float
         What supports that give move by in its vectors.
+    bars : (r + s, r + s) float
+        What bars have of mass beside what the deck's lumped ones have.
     eigenvalues, modes : (n,), (≥ r + s, n) float
         Lowest first; coordinates that effects have of their own last.
     """
@@ -139,6 +141,7 @@ class CompletedModel:
     start: tuple[Suspect, ...]
     bases: tuple[Floats, Floats]
     give: Floats
+    bars: Floats
     eigenvalues: Floats
     modes: Floats
 
@@ -200,7 +203,8 @@ def complete_model(ground: Ground, problem: Problem, state: Fit) -> CompletedMod
         raise CheckError("the completed model has a negative mass") from None
     if values[0] < -SEARCH.rigid * values[new.modes - 1]:
         raise CheckError("the completed model has a negative stiffness")
-    return CompletedModel(new, start, (ground.basis.vectors, own.added), give, values, vectors)
+    bases, bars = (ground.basis.vectors, own.added), np.sum(own.bars.matrices, axis=0)
+    return CompletedModel(new, start, bases, give, bars, values, vectors)
 
 
 def _given(

@@ -76,7 +76,10 @@ def for_deck(ground: Ground, problem: Problem, state: Fit) -> InDeck:
     """
     own = complete_model(ground, problem, state)
     own_state = replace(state, suspects=own.start)
-    return _in_deck(_beside_mesh(own.problem, own_state), own_state)
+    known, found = _in_deck(_beside_mesh(own.problem, own_state), own_state)
+    share = found.nuisance[-1]
+    lumped = _lowered(share * own.problem.mesh - own.bars, found)
+    return replace(known, mesh=float(np.mean(lumped)))
 
 
 def by_model_error(
@@ -142,17 +145,17 @@ def _back(state: Fit, own: Fit) -> tuple[Suspect, ...]:
     return tuple(replace(s, theta=t.theta) for s, t in both)
 
 
-def _lowered(problem: Problem, f: Fit) -> Floats:
-    """Return by how much lumping lowers ln f of the modes that match the test, (n_test,)."""
-    V = f.vectors[: problem.basis.size, f.match]
-    return np.asarray(0.5 * np.sum(V * (problem.mesh @ V), axis=0))
+def _lowered(M: Floats, f: Fit) -> Floats:
+    """Return by how much a mass (r, r) more lowers ln f of modes that match the test, (n_test,)."""
+    V = f.vectors[: len(M), f.match]
+    return np.asarray(0.5 * np.sum(V * (M @ V), axis=0))
 
 
 def _beside_mesh(problem: Problem, state: Fit) -> Problem:
     """Return a problem that expects of each frequency to be off by what lumping does to it."""
 
     def unsure(p: Problem) -> Evidence:
-        lowered = _lowered(p, evaluate(p, state.nuisance, state.suspects))
+        lowered = _lowered(p.mesh, evaluate(p, state.nuisance, state.suspects))
         noise = p.evidence.noise
         wide = np.hypot(noise.frequency, MODEL_ERROR.mesh * lowered)
         return replace(p.evidence, noise=replace(noise, frequency=wide))
@@ -160,8 +163,8 @@ def _beside_mesh(problem: Problem, state: Fit) -> Problem:
     return replace(problem, evidence=unsure(problem), whole=unsure(problem.entire()))
 
 
-def _in_deck(own: Problem, found: Fit) -> InDeck:
-    """Return the known parameters of a fit for a deck, its effects held as they are."""
+def _in_deck(own: Problem, found: Fit) -> tuple[InDeck, Fit]:
+    """Return the known parameters of a fit for a deck, its effects held as they are; the fit."""
     free = fit(own, found.nuisance, found.suspects, everything(own), SEARCH.steps_polished)
     scale = noise_scale(own, on_whole_test(own, free))
     n = len(found.log_p)
@@ -173,5 +176,4 @@ def _in_deck(own: Problem, found: Fit) -> InDeck:
     moving = (*np.flatnonzero(known.clear).tolist(), n)
     start = np.append(known.alone, free.nuisance[n])
     alone = fit(replace(own, catalogue=held), start, found.suspects, moving, SEARCH.steps_polished)
-    mesh = float(np.mean(alone.nuisance[n] * _lowered(own, alone)))
-    return replace(known, alone=alone.log_p, mesh=mesh)
+    return replace(known, alone=alone.log_p), alone

@@ -16,6 +16,7 @@ def completed(monkeypatch, mesh_error):
     state = evaluate(p, np.append(np.zeros(len(p.prior.spread) - 1), 0.0), ())
     seen, mesh = p.everywhere, np.eye(p.basis.size)
     own = Some(better=p.basis, seen=seen, mesh=Some(whole=[mesh]), factors=())
+    own.bars = Some(matrices=np.zeros((0, p.basis.size, p.basis.size)))
     own.added = np.zeros((len(p.basis.vectors), 0))
     monkeypatch.setattr(room, "_known", lambda *_: own)
     ground = Some(structure=Some(supports=None), at_supports=np.zeros((len(seen), 0)))
