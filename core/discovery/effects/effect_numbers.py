@@ -77,6 +77,7 @@ class EffectNumbers:
     support_softer: float = number(2.5, "of ln k", "how much softer a support that turns is beforehand than what it holds")
     support_least: float = number(1e-9, "of the stiffest", "direction of a group that is not free", ROUNDING)
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
+    support_slope: float = number(1e-4, "of ln p", "by which parameters move for the slopes of what a support holds", ROUNDING)
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
     link_spacing: float = number(0.02, SIZE, "between the ends of links, at least")

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Structure, Supports, thinned
+from ..reduction.elements_and_supports import Members, Structure, Supports, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -111,20 +111,36 @@ def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
     """Return the supports of a structure with other parameters."""
     n, grids = structure.displacement.shape[0], structure.model.geometry.index_of(s.grid)
     held = 6 * grids + s.component - 1
-    root, coupling = s.root, s.coupling
+    deck = structure.model.deck_point
+    root, coupling, slopes = s.root, s.coupling, list(s.slopes)
     for m in structure.members:
         rows = np.flatnonzero(np.isin(m.coordinates(np.arange(len(m.ids))), held).any(axis=1))
         if not len(rows):
             continue
-        (K, _), (deck, _) = (m.matrices(rows, x) for x in (p, structure.model.deck_point))
-        if K is None or deck is None:
+        here, there = (m.matrices(rows, x)[0] for x in (p, deck))
+        if here is None or there is None:
             continue
         at = m.coordinates(rows)
-        i = np.broadcast_to(at[:, :, None], K.shape).ravel()
-        j = np.broadcast_to(at[:, None, :], K.shape).ravel()
-        change = sp.csr_matrix(((K - deck).ravel(), (i, j)), (n, n))[held]
+        i, j = (np.broadcast_to(k, here.shape).ravel() for k in (at[:, :, None], at[:, None, :]))
+
+        def among(K: Floats, i: Ints = i, j: Ints = j) -> sp.csr_matrix:
+            return sp.csr_matrix((K.ravel(), (i, j)), (n, n))[held]
+
+        change = among(here - there)
         root, coupling = root + change @ structure.displacement, coupling + change[:, held]
-    return replace(s, root=root.tocsr(), coupling=coupling.tocsr())
+        for k in range(len(slopes)):
+            other = _slope(m, rows, p, k) - _slope(m, rows, deck, k)
+            slopes[k] = slopes[k] + among(other)[:, held]
+    return replace(s, root=root.tocsr(), coupling=coupling.tocsr(), slopes=tuple(slopes))
+
+
+def _slope(m: Members, rows: Ints, p: Floats, parameter: int) -> Floats:
+    """Return the derivative of the stiffness of elements by ln p of a parameter, (n, m, m)."""
+    step = EFFECTS.support_slope * (np.arange(len(p)) == parameter)
+    more, less = (m.matrices(rows, p * np.exp(x))[0] for x in (step, -step))
+    assert more is not None
+    assert less is not None
+    return np.asarray((more - less) / (2.0 * EFFECTS.support_slope))
 
 
 def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[_Place]:

@@ -36,12 +36,17 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
         own = complete_model(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
         new = fit(own.problem, state.nuisance, own.start, active, SEARCH.steps_polished)
-        moved = float(np.max(np.abs(new.log_p - state.log_p), initial=0.0))
-        state = replace(on_whole_test(own.problem, new), suspects=_back(state, new))
-        kinds = (problem.catalogue[s.kind].kind for s in state.suspects)
-        if moved < SEARCH.followed or support_flexibility.KIND not in kinds:
+        before, state = state, replace(on_whole_test(own.problem, new), suspects=_back(state, new))
+        if _follows(problem, before, state):
             break
     return state
+
+
+def _follows(problem: Problem, before: Fit, after: Fit) -> bool:
+    """Whether what gives has followed the known parameters from one fit to another."""
+    moved = float(np.max(np.abs(after.log_p - before.log_p), initial=0.0))
+    kinds = (problem.catalogue[s.kind].kind for s in after.suspects)
+    return moved < SEARCH.followed or support_flexibility.KIND not in kinds
 
 
 def solves(ground: Ground, problem: Problem, state: Fit) -> bool:
@@ -89,13 +94,24 @@ def by_model_error(
 
     Parameters, what set-up and mesh do and smooth fields of stiffness and mass move along; no
     fields where they could not bring it to the evidence `least`; where nothing is `moving`, the
-    error of the mesh alone.
+    error of the mesh alone. Supports that give are made anew where the parameters came to stand.
     """
-    m = modal(ground, problem, state)
-    if moving:
-        found = with_drift(m.problem, m.state, m.known, m.smooth, least)
-    else:
+    if not moving:
+        m = modal(ground, problem, state)
         found = with_known(m.problem, m.state, everything(m.problem)[-1:], m.coarse)
+        return _on_problem(state, found)
+    for _ in range(SEARCH.made_anew):
+        m = modal(ground, problem, state)
+        found = _on_problem(state, with_drift(m.problem, m.state, m.known, m.smooth, least))
+        moved = found.fit.nuisance, found.fit.suspects
+        before, state = state, replace(state, nuisance=moved[0], suspects=moved[1])
+        if _follows(problem, before, state):
+            break
+    return found
+
+
+def _on_problem(state: Fit, found: Judged) -> Judged:
+    """Return what was found on a basis of its own with suspects where a fit has them."""
     return replace(found, fit=replace(found.fit, suspects=_back(state, found.fit)))
 
 

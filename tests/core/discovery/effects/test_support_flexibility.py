@@ -69,6 +69,20 @@ def test_a_support_at_other_parameters_is_that_of_a_deck_which_has_them(held, th
         )
 
 
+@pytest.mark.parametrize("further", [-0.03, 0.03])
+def test_from_there_what_a_support_holds_follows_the_parameters(held, further):
+    """A release leaves a thousandth of it; slopes of the deck as it is are off by 2 %."""
+    thickness = 3.6 * np.exp(further)
+    (structure, here), (_, there) = held(3.0), held(thickness)
+    for c, d in zip(here, there, strict=True):
+        row, last = len(c) - 1, np.zeros(1, int)
+        moved = at_parameters(structure, c, row, np.log([1.2]))
+        law = moved.law.on_basis(last, None, np.log([thickness / 3.0]), 0.0)
+        other = d.law.on_basis(np.array([row]), None, np.zeros(1), 0.0)
+        held_there = other.own[other.own != 1.0]
+        assert (law.factor(last) * law.own)[0] == pytest.approx(held_there, rel=2e-3)
+
+
 ROD = """CEND
 SPC=1
 BEGIN BULK
