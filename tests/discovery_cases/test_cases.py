@@ -3,7 +3,8 @@
 Kept as files, so that they run where CalculiX is absent: a soft joint, a soft foot, a mass beside
 a soft member, a spring to ground beside a soft foot, an absorber and a damper on a tower; a frame
 that lacks nothing, one with a wrong property, one with two faults of sensors, one with a mass and
-a sensor of wrong gain, a plate with equipment on a stand.
+a sensor of wrong gain, one whose foot sinks while two moduli look off, one with a soft patch and a
+link that hide each other, a plate with equipment on a stand.
 """
 
 from __future__ import annotations

@@ -281,7 +281,8 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
 
     What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
     the assumed one here, unless the poorer one is adequate and the richer one no likelier by the
-    error of the model; `judge` weighs again with what the best hypothesis leaves.
+    error of the model. By that, too, one may be worth it that hardly fits better: modes that are
+    far off count alike, however far. `judge` weighs again with what the best hypothesis leaves.
     """
 
     def rule(previous: Fit, best: Fit, share: float) -> bool:
@@ -289,10 +290,13 @@ def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
         added = burden(searcher, best) - burden(searcher, previous)
         added = max(added, *(price(searcher, s) for s in best.suspects))
         gain = (previous.objective - best.objective) / (share * added)
-        if gain >= scale or gain < min(scale, SEARCH.most_noise):
-            return gain < scale
-        if not previous.suspects or not adequate(searcher, previous):
+        if gain >= scale:
             return False
+        pays = gain >= SEARCH.most_noise
+        if pays and not (previous.suspects and adequate(searcher, previous)):
+            return False
+        if not pays and (share < 1.0 or scale <= SEARCH.most_noise):
+            return True
         before = scored(searcher, previous)
         return not earned(scored(searcher, best, before), before)
 

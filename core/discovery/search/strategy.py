@@ -23,6 +23,7 @@ from .model_selection import (
     earned,
     enough,
     judge,
+    price,
     scored,
     usual,
     with_unseen,
@@ -40,7 +41,9 @@ def searched(
 
     ``explained(searcher, best, scale)`` says where not, `scale` being that of the noise.
     A tuned one is not looked for where an adequate explanation was found: it would imitate what
-    that leaves.
+    that leaves. Where not even one suspect pays, what two that hide each other leave is taken for
+    noise, so late kinds are tried beside that one as well, and the search goes on from what fits
+    far better than all else, whether or not it pays.
     """
     kinds = [c.kind.late for c in searcher.problem.catalogue]
     simple = _with(searcher, [not late for late in kinds])
@@ -63,14 +66,23 @@ def searched(
         kinds = [late and not t for late, t in zip(kinds, tuned, strict=True)]
     progress("looking for absorbers and for springs between two places")
     alone = _with(searcher, kinds)
-    poorer = best - 1 if stands else 0
-    beside = [f for level in found.levels[poorer : best + 1] for f in _beside(alone, level)]
+    first = best - 1 if stands else 0
+    beside = [f for level in found.levels[first : best + 1] for f in _beside(alone, level)]
+    if not best:
+        beside += [f for level in found.levels[1:2] for f in _beside(alone, level, 1)]
     tried = [(cost(searcher, f, scale), f) for f in beside]
-    price, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
-    if top is None or price > costs[best]:
-        return found.with_rivals(f for _, f in tried if len(f.suspects) <= best)
+    least, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
+    if top is None or (least > costs[best] and not _leads(searcher, found, top)):
+        return found.with_rivals(f for f in beside if len(f.suspects) <= best)
     levels = [*found.levels[: len(top.suspects)], top]
     return _better(searcher, found, grown(simple, enough(searcher), progress, levels))
+
+
+def _leads(searcher: Searcher, found: Found, f: Fit) -> bool:
+    """Whether a hypothesis is better than all of as many suspects and the search not at its end."""
+    number = len(f.suspects)
+    worse = number == len(found.levels) or f.objective < found.levels[number].objective
+    return worse and not enough(searcher)(found.levels[number - 1], f, 1.0)
 
 
 def _better(searcher: Searcher, found: Found, other: Found) -> Found:
@@ -173,15 +185,17 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
     return replace(searcher, coarse=coarse)
 
 
-def _beside(searcher: Searcher, state: Fit) -> list[Fit]:
+def _beside(searcher: Searcher, state: Fit, few: int = SEARCH.late_moved) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind.
 
-    Of the best few, each moved to better neighbours: the first scan sees but few of the links, and
-    one that is right but for its ends gains no more there than others.
+    Of the best `few`, each moved to better neighbours: the first scan sees but few of the links,
+    and one that is right but for its ends gains no more there than others. None of a kind that
+    gains next to nothing.
     """
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
-        fits.setdefault(branch.kind, []).append(new)
-    first = (sorted(own, key=objective_of)[: SEARCH.late_moved] for own in fits.values())
+        if state.objective - new.objective > SEARCH.hopeless * price(searcher, branch):
+            fits.setdefault(branch.kind, []).append(new)
+    first = (sorted(own, key=objective_of)[:few] for own in fits.values())
     return [min(map(searcher.refined, own), key=objective_of) for own in first]

@@ -26,6 +26,8 @@ from trueup.core.discovery.search.model_selection import (
     usual,
     with_unseen,
 )
+from trueup.core.discovery.search.moves import noise_scale
+from trueup.core.discovery.search.search_numbers import SEARCH
 
 
 def found_in(s):
@@ -169,6 +171,24 @@ def test_what_an_adequate_hypothesis_leaves_is_noise():
     assert enough(replace(s, judged=leaving(0.002)))(worse, one, 1.0)
     likelier = leaving(0.002, evidence=lambda f: 100.0 * (f.objective == one.objective))
     assert not enough(replace(s, judged=likelier))(worse, one, 1.0)
+
+
+def test_one_that_hardly_fits_better_may_be_worth_it_by_the_error_of_the_model():
+    """Where two effects hide each other all modes are far off with one of them, too.
+
+    Not before it has been moved to better neighbours, nor where little is left.
+    """
+    s = searcher(hidden(masses=[(7, 2.0), (20, 8.0)]))
+    null = s.null()
+    one = fit(s.problem, null.nuisance, (Suspect(0, 7, (0.7,)),), (0,), 20)
+    before = replace(null, objective=one.objective + 1.0)
+    likelier = leaving(0.1, evidence=lambda f: 1000.0 * bool(f.suspects))
+    assert noise_scale(s.problem, one) > SEARCH.most_noise
+    assert enough(replace(s, judged=leaving(0.1)))(before, one, 1.0)
+    assert not enough(replace(s, judged=likelier))(before, one, 1.0)
+    assert enough(replace(s, judged=likelier))(before, one, SEARCH.hopeless)
+    quiet = replace(one, misfit=1.0, unseen=None)
+    assert enough(replace(s, judged=likelier))(before, quiet, 1.0)
 
 
 @pytest.mark.parametrize(("error", "first", "gain", "accepted"), [

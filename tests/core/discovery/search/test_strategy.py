@@ -52,6 +52,38 @@ def test_late_kinds_are_looked_for_where_the_others_leave_more_than_is_usual(usu
     assert any("two places" in line for line in said) != usual
 
 
+@pytest.mark.parametrize(("left", "followed"), [(None, False), (1e4, False), (-1e4, True)])
+def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(left, followed, monkeypatch):
+    """Two that hide each other: neither pays while what both leave is taken for noise.
+
+    On goes the search with what is far better than all else of as many suspects.
+    """
+    s = searcher(hidden(masses=[(5, 2.0)], absorbers=[(20, 0.8, 1.7)]), modes_out=(4, 10))
+    null = s.null()
+    one = s.fitted(null, (Suspect(0, 5, (0.7,)),))
+    tuned = s.fitted(null, (Suspect(2, 20, (-0.2, 0.5)),))
+    tuned = replace(tuned, objective=one.objective + (left or 0.0), misfit=one.misfit)
+    grown, states = [], []
+
+    def beside(_, state, *few):
+        states.append(len(state.suspects))
+        return [] if left is None or state.suspects else [tuned]
+
+    def beam(*a, **k):
+        grown.append(a)
+        return Found((null, one), ((), ()))
+
+    monkeypatch.setattr(strategy, "_costs", lambda *_: [0.0, 1.0])
+    monkeypatch.setattr(strategy, "cost", lambda *_: 0.5)
+    monkeypatch.setattr(strategy, "usual", lambda *_: False)
+    monkeypatch.setattr(strategy, "complete", lambda *_: False)
+    monkeypatch.setattr(strategy, "_beside", beside)
+    monkeypatch.setattr(strategy, "grown", beam)
+    searched(s)
+    assert states == [0, 1]
+    assert len(grown) == 1 + followed
+
+
 def off_everywhere(truth, size, seed):
     """K with a random error of relative `size` in modal coordinates, M as it is."""
     k, m = truth
