@@ -201,7 +201,7 @@ def _rows_of_elements(
 
 
 def _patches(patch: Patch, xyz: Floats, inside: Bools, shapes: Sequence[Bools]) -> list[Patch]:
-    """Shapes as patches, each once, none empty nor more than half of all."""
+    """Shapes as patches, each once, none empty nor as large as smooth fields."""
     seen, out = {inside.tobytes()}, []
     for s in shapes:
         if s.tobytes() in seen or not 0 < np.count_nonzero(s) < SEARCH.largest_patch * len(s):

@@ -98,7 +98,7 @@ class SearchNumbers:
     reshape_sizes: tuple[float, ...] = number((-0.4, -0.15, 0.0, 0.15, 0.4), "θ", "tried with every shape: what a patch gains in area it loses in strength")
     link_near: int = number(9, "grids", "about either end of a link where it may end instead")
     row_of_elements: float = number(0.5, "of an element's side", "by which rows of elements are told apart", "half of it")
-    largest_patch: float = number(0.5, "of all elements", "that a patch may hold")
+    largest_patch: float = number(0.25, "of all elements", "to which a patch may grow", "what is larger is a smooth field: false ones of cowls held half of all, true ones a tenth")
     spread_mass: float = number(0.055, SIZE, "radius of a patch from which on its mass is spread, not at a point")
     patch_beside: float = number(0.05, SIZE, "how far from a point patches are tried in its stead")
     property_share: float = number(0.2, "of a patch", "that elements of one property are at least for the patch to end with them")
