@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure, Supports, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
@@ -74,8 +74,9 @@ def at_parameters(structure: Structure, c: Candidates, row: int, log_p: Floats) 
     slopes from the deck's values alone leaves more, or less than nothing.
     """
     assert structure.supports is not None
-    s, w = _at(structure, structure.supports, np.exp(log_p)), c.where[row]
-    own = np.isin(s.grid, w["grids"])
+    w = c.where[row]
+    own = np.isin(structure.supports.grid, w["grids"])
+    s = _at(structure, structure.supports, np.exp(log_p), own)
     sprung, free = (
         np.flatnonzero(own & np.isin(s.component, w.get(key, ())))
         for key in ("components", "free_components")
@@ -107,14 +108,15 @@ def carried(s: Supports, free: Floats, give: Floats) -> Floats:
     return np.asarray(shared + shared.T + give.T @ (s.mass @ give))
 
 
-def _at(structure: Structure, s: Supports, p: Floats) -> Supports:
-    """Return the supports of a structure with other parameters."""
+def _at(structure: Structure, s: Supports, p: Floats, own: Bools) -> Supports:
+    """Return the supports of a structure, those of `own` (n,) with other parameters."""
     n, grids = structure.displacement.shape[0], structure.model.geometry.index_of(s.grid)
     held = 6 * grids + s.component - 1
     deck = structure.model.deck_point
     root, coupling, slopes = s.root, s.coupling, list(s.slopes)
     for m in structure.members:
-        rows = np.flatnonzero(np.isin(m.coordinates(np.arange(len(m.ids))), held).any(axis=1))
+        touched = np.isin(m.coordinates(np.arange(len(m.ids))), held[own]).any(axis=1)
+        rows = np.flatnonzero(touched)
         if not len(rows):
             continue
         here, there = (m.matrices(rows, x)[0] for x in (p, deck))

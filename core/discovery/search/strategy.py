@@ -81,8 +81,8 @@ def searched(
 def _leads(searcher: Searcher, found: Found, f: Fit) -> bool:
     """Whether a hypothesis is better than all of as many suspects and the search not at its end."""
     number = len(f.suspects)
-    worse = number == len(found.levels) or f.objective < found.levels[number].objective
-    return worse and not enough(searcher)(found.levels[number - 1], f, 1.0)
+    first = number == len(found.levels) or f.objective < found.levels[number].objective
+    return first and not enough(searcher)(found.levels[number - 1], f, 1.0)
 
 
 def _better(searcher: Searcher, found: Found, other: Found) -> Found:
