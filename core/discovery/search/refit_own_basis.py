@@ -103,8 +103,8 @@ def by_model_error(
     for _ in range(SEARCH.made_anew):
         m = modal(ground, problem, state)
         found = _on_problem(state, with_drift(m.problem, m.state, m.known, m.smooth, least))
-        moved = found.fit.nuisance, found.fit.suspects
-        before, state = state, replace(state, nuisance=moved[0], suspects=moved[1])
+        before, there = state, found.fit
+        state = replace(before, nuisance=there.nuisance, suspects=there.suspects)
         if _follows(problem, before, state):
             break
     return found
