@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,7 +13,7 @@ import scipy.sparse as sp
 from ..arrays import Bools
 from ..correlation.comparison import Placed
 from ..errors import TrueupError
-from .dampers.damper_evidence import taken_off, weighed
+from .dampers.damper_evidence import Weighed, taken_off, weighed
 from .discovery_numbers import DISCOVERY
 from .effects.candidates import factors_of, lacking
 from .findings import Discovery
@@ -90,8 +91,12 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     said = build_discovery(request, searcher, found, verdict, whole, known, tested, out)
     progress("weighing dashpots by the measured damping")
     best = _best(searcher, found, verdict)
-    sound = replace(request, placed=request.placed.take(~trial.aside))
-    said = with_damper(request, weighed(sound, searcher.problem, best), said)
+    if best.suspects or trial.asked is not request:
+        sound = replace(request, placed=request.placed.take(~trial.aside))
+        dashpot = weighed(sound, searcher.problem, best)
+    else:
+        dashpot = trial.dashpot
+    said = with_damper(request, dashpot, said)
     return with_responses(searcher.problem, found.levels[0].nuisance, best, said)
 
 
@@ -117,8 +122,7 @@ def _dashpot_off(
     What it does follows from the model, whose parameters follow from the test without it: in turns.
     """
     for _ in range(DISCOVERY.dashpot_turns):
-        sound = replace(request, placed=request.placed.take(~trial.aside))
-        w = weighed(sound, trial.problem, trial.null)
+        w = trial.dashpot
         if w is None or not w.heavy or request.responses is not None:
             break
         other = replace(request, placed=taken_off(w, request.placed, trial.problem))
@@ -166,6 +170,11 @@ class _Trial:
         )  # fmt: skip
         self._judged: dict[object, Judged | None] = {}
         self._laid: dict[object, tuple[Searcher, Fit]] = {}
+
+    @cached_property
+    def dashpot(self) -> Weighed | None:
+        """A dashpot weighed beside the known parameters alone."""
+        return weighed(self.request, self.problem, self.null)
 
     def judged(self, problem: Problem, f: Fit, least: float = -np.inf) -> Judged | None:
         """Return a hypothesis as the error of the model judges it, None where it does not solve.

@@ -29,15 +29,15 @@ _TRANSLATIONS = (1, 2, 3)
 
 
 class ElementGroup(Protocol):
-    """Elements of one kind, with their matrices."""
+    """Elements of one kind, with their stiffness."""
 
     @property
     def corners(self) -> Ints:
         """Rows of the geometry, (n, k)."""
         ...
 
-    def matrices(self, rows: Ints, p: Floats) -> tuple[Floats | None, Floats | None]:
-        """Stiffness and mass of some of them, each (n, m, m)."""
+    def stiffness(self, rows: Ints, p: Floats) -> Floats | None:
+        """Stiffness of some of them, (n, m, m), None where they have none."""
         ...
 
     def coordinates(self, rows: Ints) -> Ints:
@@ -176,7 +176,7 @@ def _stiffness(
         rows = _evenly(len(group.corners), share)
         if not len(rows):
             continue
-        K, _ = group.matrices(rows, p)
+        K = group.stiffness(rows, p)
         if K is None:
             continue
         strain = root_of(K, moved[group.coordinates(rows)])

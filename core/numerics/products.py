@@ -55,6 +55,12 @@ def product(a: Floats, b: Floats, out: Floats | None = None, *, add: bool = Fals
     return out
 
 
+def stacked_product(a: Floats, b: Floats) -> Floats:
+    """Return a @ b of stacks of few rows each, (n, q, k), and one matrix (k, m): (n, q, m)."""
+    flat = product(a.reshape(-1, a.shape[-1]), b)
+    return flat.reshape(*a.shape[:-1], b.shape[1])
+
+
 def sparse_product(a: sp.csr_matrix, x: Floats) -> Floats:
     """Return a @ x of a sparse matrix (n, k) and a dense one (k, m), (n, m)."""
     found = library()

@@ -55,8 +55,13 @@ def joined(xyz: Floats, nodes: Ints) -> Ints:
 
 def at_places(at: Ints, axes: Floats, read: Floats, n_node: int) -> Floats:
     """Least displacements of nodes that read so along the axes, (n_mode, n_node, 3)."""
+    nodes, of = np.unique(at, return_inverse=True)
+    order = np.argsort(of, kind="stable")
+    turn = np.empty(len(of), np.int64)
+    turn[order] = np.arange(len(of)) - np.searchsorted(of[order], of[order])
+    most = int(turn.max(initial=-1)) + 1
+    along, values = np.zeros((len(nodes), most, 3)), np.zeros((len(nodes), most, read.shape[1]))
+    along[of, turn], values[of, turn] = axes, read
     moved = np.zeros((read.shape[1], n_node, 3))
-    for node in np.unique(at):
-        here = at == node
-        moved[:, node] = (np.linalg.pinv(axes[here]) @ read[here]).T
+    moved[:, nodes] = np.matmul(np.linalg.pinv(along), values).transpose(2, 0, 1)
     return moved

@@ -260,8 +260,8 @@ class PatchCandidates(Candidates):
 
     def matrices(self, member: Members, rows: Ints) -> Floats:
         """Return the matrices of some elements that the effect changes, (n, m, m)."""
-        K, M = member.matrices(rows, np.ones(len(self.structure.model.parameters)))
-        X = K if self.law.on == "K" else M
+        of = member.stiffness if self.law.on == "K" else member.mass
+        X = of(rows, np.ones(len(self.structure.model.parameters)))
         assert X is not None
         return X
 

@@ -20,7 +20,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     for m, chosen in zip(beams, ends, strict=True):
         if not len(chosen):
             continue
-        K, _ = m.matrices(chosen[:, 0], p)
+        K = m.stiffness(chosen[:, 0], p)
         if K is None:
             continue
         turning = 6 * chosen[:, 1][:, None] + np.arange(3, 6)
@@ -67,7 +67,7 @@ def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: 
     for k in range(len(p)):
         moved = p.copy()
         moved[k] += EFFECTS.joint_step
-        K, _ = m.matrices(rows, moved)
+        K = m.stiffness(rows, moved)
         assert K is not None
         Q = np.take_along_axis(K, turning[:, None, :], axis=2)
         D = np.take_along_axis(Q, turning[:, :, None], axis=1)

@@ -119,7 +119,7 @@ def _at(structure: Structure, s: Supports, p: Floats, own: Bools) -> Supports:
         rows = np.flatnonzero(touched)
         if not len(rows):
             continue
-        here, there = (m.matrices(rows, x)[0] for x in (p, deck))
+        here, there = (m.stiffness(rows, x) for x in (p, deck))
         if here is None or there is None:
             continue
         at = m.coordinates(rows)
@@ -139,7 +139,7 @@ def _at(structure: Structure, s: Supports, p: Floats, own: Bools) -> Supports:
 def _slope(m: Members, rows: Ints, p: Floats, parameter: int) -> Floats:
     """Return the derivative of the stiffness of elements by ln p of a parameter, (n, m, m)."""
     step = EFFECTS.support_slope * (np.arange(len(p)) == parameter)
-    more, less = (m.matrices(rows, p * np.exp(x))[0] for x in (step, -step))
+    more, less = (m.stiffness(rows, p * np.exp(x)) for x in (step, -step))
     assert more is not None
     assert less is not None
     return np.asarray((more - less) / (2.0 * EFFECTS.support_slope))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...arrays import Floats, Ints
+from ...numerics.products import stacked_product
 from ..effects.candidates import Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
@@ -103,11 +104,11 @@ class Problem:
         c = self.catalogue[kind]
         if self.rest is not None and c.rows_each:
             held = np.isin(rows, [s.row for s in self.held if s.kind == kind])
-            lost = _flexibility(U @ self.rest, c.law.shared)
+            lost = _flexibility(stacked_product(U, self.rest), c.law.shared)
             lost[held] = 0.0
             if not held.all():
                 missing = lost if missing is None else missing + lost
-        found = U if self.turn is None else U @ self.turn, missing
+        found = U if self.turn is None else stacked_product(U, self.turn), missing
         if one is not None:
             self.known[one] = found
         return found

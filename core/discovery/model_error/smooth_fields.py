@@ -90,7 +90,8 @@ def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Fl
         start += len(xyz)
         for few in _together(own):
             some = np.flatnonzero(np.isin(own, few))
-            matrices, coordinates = m.matrices(some, everywhere), m.coordinates(some)
+            matrices = m.stiffness(some, everywhere), m.mass(some, everywhere)
+            coordinates = m.coordinates(some)
             for c in few:
                 here = own[some] == c
                 k, mass = (

@@ -104,7 +104,7 @@ def _stiffness(structure: Structure, rows: list[Bools]) -> sp.csr_matrix:
     A = sp.csr_matrix((D.shape[0],) * 2)
     for m, own in zip(structure.members, rows, strict=True):
         which = np.flatnonzero(own)
-        K = m.matrices(which, p)[0] if len(which) else None
+        K = m.stiffness(which, p) if len(which) else None
         if K is not None:
             at = m.coordinates(which)
             i, j = np.broadcast_arrays(at[:, :, None], at[:, None, :])

@@ -43,7 +43,7 @@ def lumping_along(structure: Structure) -> list[tuple[Floats, sp.csr_matrix]]:
 
 def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
     total = _none(structure)
-    for m in structure.members:
+    for m, mass in zip(structure.members, structure.lumped_masses, strict=True):
         share = m.element.linear_mass
         if share is None:
             continue
@@ -53,7 +53,7 @@ def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
             between = share * _squared_cosines(xyz[m.corners[:, : len(share)]], axis)
         apart = _laplacians(between)
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
-        each = np.kron(_lumped(structure, m)[:, None, None] * apart, np.eye(3))
+        each = np.kron(mass[:, None, None] * apart, np.eye(3))
         total += _placed(total.shape[0], at.reshape(len(m.ids), -1), each)
     return _on_free(structure, total).matrix
 
@@ -77,10 +77,10 @@ def consistent_bars(structure: Structure) -> tuple[Term, ...]:
     Bars that are pinned stay as they are: what turns at their ends is not the grid.
     """
     total = _none(structure)
-    for m in structure.members:
+    for m, lumped in zip(structure.members, structure.lumped_masses, strict=True):
         if not m.element.exact:
             continue
-        mass = np.where(_pinned(structure, m), 0.0, _lumped(structure, m))
+        mass = np.where(_pinned(structure, m), 0.0, lumped)
         ends = structure.model.geometry.xyz[m.corners[:, :2]]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         some = np.flatnonzero((mass > 0.0) & (length > 0.0))
@@ -112,19 +112,8 @@ def _on_free(structure: Structure, A: sp.csr_matrix) -> Term:
 
 def _pinned(structure: Structure, m: Members) -> Bools:
     """Bars that do not bend with the grid at one of their ends, (n,)."""
-    K, _ = m.matrices(np.arange(len(m.ids)), np.ones(len(structure.model.parameters)))
+    K = m.stiffness(np.arange(len(m.ids)), np.ones(len(structure.model.parameters)))
     if K is None:
         return np.ones(len(m.ids), bool)
     turning = np.stack([np.linalg.eigvalsh(K[:, s : s + 3, s : s + 3]) for s in (3, 9)], axis=1)
     return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.pinned * turning[:, :, 2], axis=1))
-
-
-def _lumped(structure: Structure, m: Members) -> Floats:
-    """Masses of the elements of one card whose mass is lumped, 0 where it is not, (n,)."""
-    _, M = m.matrices(np.arange(len(m.ids)), np.ones(len(structure.model.parameters)))
-    if M is None:
-        return np.zeros(len(m.ids))
-    along = M[:, ::6, ::6]
-    diagonal = np.einsum("eii->e", along)
-    whole = along.sum(axis=(1, 2))
-    return np.asarray(np.where(np.isclose(diagonal, whole), whole, 0.0))

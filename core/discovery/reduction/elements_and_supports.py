@@ -41,9 +41,13 @@ class Members:
     corners: Ints
     block: ElementBlock
 
-    def matrices(self, rows: Ints, p: Floats) -> tuple[Floats | None, Floats | None]:
-        """Return stiffness and mass of some elements, each (n, m, m)."""
-        return self.block.evaluate(rows, p, (True, True))
+    def stiffness(self, rows: Ints, p: Floats) -> Floats | None:
+        """Return the stiffness of some elements, (n, m, m), None where they have none."""
+        return self.block.evaluate(rows, p, (True, False))[0]
+
+    def mass(self, rows: Ints, p: Floats) -> Floats | None:
+        """Return the mass of some elements, (n, m, m), None where they have none."""
+        return self.block.evaluate(rows, p, (False, True))[1]
 
     def coordinates(self, rows: Ints) -> Ints:
         """Rows of `Structure.displacement` of some elements, (n, m)."""
@@ -124,8 +128,24 @@ class Structure(Noun):
         return np.asarray(np.lexsort(np.round(xyz @ self._axes.T / unit).T[::-1]))
 
     @cached_property
+    def lumped_masses(self) -> tuple[Floats, ...]:
+        """Masses of the elements of each card whose mass is lumped, 0 where it is not, (n,)."""
+        as_it_is = np.ones(len(self.model.parameters))
+        return tuple(_lumped(m, as_it_is) for m in self.members)
+
+    @cached_property
     def _axes(self) -> Floats:
         return own_axes(self.model.geometry.xyz)
+
+
+def _lumped(m: Members, p: Floats) -> Floats:
+    M = m.mass(np.arange(len(m.ids)), p)
+    if M is None:
+        return np.zeros(len(m.ids))
+    along = M[:, ::6, ::6]
+    diagonal = np.einsum("eii->e", along)
+    whole = along.sum(axis=(1, 2))
+    return np.asarray(np.where(np.isclose(diagonal, whole), whole, 0.0))
 
 
 def shelled(structure: Structure) -> Bools:

@@ -65,7 +65,7 @@ def _energy(m: Members, rows: Ints, p: Floats, motion: Floats) -> Floats:
     out = np.zeros(len(rows))
     for first in range(0, len(rows), REDUCTION.elements_at_once):
         part = slice(first, first + REDUCTION.elements_at_once)
-        K, _ = m.matrices(rows[part], p)
+        K = m.stiffness(rows[part], p)
         if K is not None:
             U = motion[m.coordinates(rows[part])]
             out[part] = np.sum(U * np.matmul(K, U), axis=(1, 2))

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
+from ...numerics.products import stacked_product
 from ..effects.candidates import Candidates
 from ..effects.effect_laws import Law, Rows
 from ..likelihood.hypothesis import Fit, Problem
@@ -175,7 +176,7 @@ def foretold(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats
     U, law = problem.part(kind, rows, state.nuisance)
     n = min(problem.columns, len(state.eigenvalues))
     modes = state.vectors[: problem.basis.size, :n]
-    U, seen = U @ modes, problem.sensors @ modes
+    U, seen = stacked_product(U, modes), problem.sensors @ modes
     e, own, noise = problem.evidence, state.match, problem.evidence.noise
     length = np.maximum(np.linalg.norm(seen, axis=0), np.finfo(float).tiny)
     cross, aim = e.shapes.T @ (seen / length), targets(e)
@@ -239,7 +240,7 @@ def promising(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Float
     """
     U, law = problem.part(kind, rows, state.nuisance)
     modes = state.vectors[: problem.basis.size]
-    U, seen = U @ modes, problem.sensors @ modes
+    U, seen = stacked_product(U, modes), problem.sensors @ modes
     lam, aim = np.maximum(state.eigenvalues, 0.0), targets(problem.evidence)
     at_sensors = problem.evidence.shapes.T @ seen, np.asarray(seen.T @ seen, dtype=float)
     out = []

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...arrays import Floats, Ints
+from ...numerics.products import stacked_product
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.mode_likelihood import least_sums, mode_costs
 from .search_numbers import SEARCH
@@ -20,7 +21,7 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
         return np.empty((0, trials.shape[-2]))
     U, law = problem.part(kind, rows, state.nuisance)
     own = state.vectors[: problem.basis.size]
-    U = U @ own
+    U = stacked_product(U, own)
     lam = np.maximum(state.eigenvalues, 0.0)
     trials = np.broadcast_to(trials, (len(rows), *trials.shape[-2:]))
     out = np.empty(trials.shape[:2])

@@ -13,6 +13,7 @@ from trueup.core.discovery.model_error.set_up_fields import (
     suspension,
 )
 from trueup.core.discovery.model_error.smooth_fields import Fields
+from trueup.core.discovery.reduction.elements_and_supports import Structure
 
 
 def smooth(r):
@@ -50,9 +51,11 @@ def test_sensors_are_as_heavy_as_is_said_whatever_way_they_move():
 def test_a_test_by_lumped_bars_is_what_the_deck_has():
     consistent, lumped = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0, np.eye(2) / 2.0
     geometry = SimpleNamespace(xyz=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
-    model = SimpleNamespace(geometry=geometry, expansion=sp.identity(2, format="csr"))
+    model = SimpleNamespace(
+        parameters=(), geometry=geometry, expansion=sp.identity(2, format="csr")
+    )
     bars = (consistent - lumped)[None]
-    fields = mesh_errors(SimpleNamespace(members=(), model=model), np.eye(2), bars)
+    fields = mesh_errors(Structure(model, (), sp.csr_matrix((0, 0))), np.eye(2), bars)
     assert len(fields.names) == 1
     assert consistent + fields.mass[0] == pytest.approx(lumped)
     assert not fields.stiffness.any()

@@ -13,6 +13,7 @@ from trueup.core.discovery.reduction.discretisation_error import (
     lumping,
     lumping_along,
 )
+from trueup.core.discovery.reduction.elements_and_supports import Structure
 from trueup.core.elements.lines.bar import BAR, bar_mass, bar_stiffness
 from trueup.core.elements.surfaces.curved_shell import QUAD8
 from trueup.core.elements.surfaces.quad4 import QUAD4
@@ -34,7 +35,8 @@ def membrane(n, lumped=True):
         ids=np.arange(n),
         corners=corners,
         block=SimpleNamespace(width=6),
-        matrices=lambda rows, p: (None, M[rows]),
+        stiffness=lambda rows, p: None,
+        mass=lambda rows, p: M[rows],
         coordinates=lambda rows: (6 * corners[rows][:, :, None] + np.arange(6)).reshape(n, 24),
     )
     points = 2 * (n + 1)
@@ -44,7 +46,7 @@ def membrane(n, lumped=True):
     x, y = np.tile(np.arange(n + 1.0), 2), np.repeat([0.0, 1.0], n + 1)
     geometry = SimpleNamespace(xyz=np.column_stack([x, y, 0.0 * x]))
     model = SimpleNamespace(parameters=(), expansion=across, geometry=geometry)
-    return SimpleNamespace(members=(member,), model=model)
+    return Structure(model, (member,), sp.csr_matrix((0, 0)))
 
 
 def on(terms, *vectors):
@@ -110,12 +112,13 @@ def cantilever(n, pins=False):
         ids=np.arange(n),
         corners=corners,
         block=SimpleNamespace(width=6),
-        matrices=lambda rows, p: (K[rows], M[rows]),
+        stiffness=lambda rows, p: K[rows],
+        mass=lambda rows, p: M[rows],
         coordinates=lambda rows: at[rows],
     )
     free = sp.eye(6 * (n + 1), format="csr")[:, 6:]
     model = SimpleNamespace(parameters=(), expansion=free, geometry=SimpleNamespace(xyz=xyz))
-    structure = SimpleNamespace(members=(member,), model=model)
+    structure = Structure(model, (member,), sp.csr_matrix((0, 0)))
     whole = [np.zeros((6 * (n + 1),) * 2) for _ in range(2)]
     for A, parts in zip(whole, (K, M), strict=True):
         for rows, part in zip(at, parts, strict=True):

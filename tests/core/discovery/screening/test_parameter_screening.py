@@ -99,7 +99,7 @@ def test_tied_parameters_move_alike_and_the_others_not_at_all():
     assert own.model.dM(0, p).toarray() == pytest.approx(np.array([[0.99]]))
     (tied_member,) = own.members
     assert tied_member.block.depends == ((0,),)
-    K, _ = tied_member.matrices(np.array([0]), p)
+    K = tied_member.stiffness(np.array([0]), p)
     assert K is not None
     assert K[0, 0, 0] == 1.0 + 10.0 * 2.0 + 100.0 * 2.0
 

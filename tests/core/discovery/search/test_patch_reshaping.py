@@ -68,7 +68,8 @@ def membrane(property_of=None):
         block=SimpleNamespace(
             width=6, depends_of=np.zeros(n, int) if property_of is None else property_of
         ),
-        matrices=lambda rows, p: (K[rows], np.tile(np.diag(_MASS), (len(rows), 1, 1))),
+        stiffness=lambda rows, p: K[rows],
+        mass=lambda rows, p: np.tile(np.diag(_MASS), (len(rows), 1, 1)),
         coordinates=lambda rows: at[rows],
     )
     geometry = SimpleNamespace(ids=np.arange(1, len(xyz) + 1), xyz=xyz)
@@ -79,7 +80,7 @@ def membrane(property_of=None):
 def stiffness(structure, soft=()):
     """The stiffness of the membrane, less over some elements."""
     m = structure.members[0]
-    own = m.matrices(np.arange(len(m.ids)), None)[0].copy()
+    own = m.stiffness(np.arange(len(m.ids)), None).copy()
     own[list(soft)] *= FACTOR
     D = structure.displacement.toarray()
     u = D[m.coordinates(np.arange(len(m.ids)))]
