@@ -66,33 +66,21 @@ def borne_out(
 ) -> Discovery:
     """Return what was found as far as its completed deck and what was measured bear it out.
 
-    A claim is a proposal where its deck is hardly nearer to the test. Nearer is: more modes pair,
-    or as many, and those that pair both times deviate less in frequency, a share of what lumping
-    does to each apart: the mesh stays. By so much, `lowered` (n_mode,), are ln f of the modes of
-    the model as it came too low. What brings no mode more to pair and no frequency nearer is
-    nothing that was found. Dashpots show in the damping. Nor is anything said to be complete of
+    What brings its deck no nearer to the test is nothing that was found. Nearer is: more modes
+    pair, or those that pair both times deviate less in frequency, a share of what lumping does to
+    each apart: the mesh stays. By so much, `lowered` (n_mode,), are ln f of the modes of the model
+    as it came too low. Dashpots show in the damping. Nor is anything said to be complete of
     which most of the `tests`, the modes that take part, pair with nothing, or of which too little
     was measured, by so many `readings` of each mode, to tell. What is as far off as its mesh may
     be has a gap, which known parameters explain as well.
     """
     damped = any(f.kind == local_damper.KIND.name for f in found.findings)
     more = len(after.pairs) - len(before.pairs)
-    left = _left(before, after, lowered)
-    helps = more > 0 or left < 1.0
+    helps = more > 0 or _left(before, after, lowered) < 1.0
     if found.verdict != "effect" and not any(f.kind in KINDS for f in found.findings):
         found = _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
         return _as_far_off_as_a_mesh(found, before)
-    if not found.completes or damped or more > 0:
-        return found
-    if not helps:
-        return _withdrawn(found)
-    if found.verdict != "effect" or (left < SCREENING.nearer and not more):
-        return found
-    why = (
-        "what brings the completed deck nearer to the test: "
-        "fewer modes pair, or their frequencies are hardly less off"
-    )
-    return _in_doubt(found, why, proposal=True)
+    return found if helps or damped or not found.completes else _withdrawn(found)
 
 
 def _left(before: Correlation, after: Correlation, lowered: Floats) -> float:

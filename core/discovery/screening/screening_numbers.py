@@ -19,7 +19,6 @@ class ScreeningNumbers:
     modes_least: int = number(60, "modes", "of the model that are found at least, where it has them many times")
     modes_times: int = number(4, "times the modes", "degrees of freedom a model has to have for that")
     moved: float = number(2e-3, "of a property", "by which a known property has moved if it is to change in the deck")
-    nearer: float = number(0.75, "of the deviation before", "that frequencies may be off after a claimed effect was added", "96 frozen claims: 94 are, the others are a dashpot and a claim in part")
     pairs: float = number(0.5, "of the test's modes", "that pair at least where nothing is said to be missing")
     repeats: float = number(0.005, "of f", "mean deviation from which on there is a gap", "what a test repeats by when a structure is mounted anew")
     effect: int = number(4, "unknowns", "of one effect: where it is and how large", "three coordinates and a magnitude")
