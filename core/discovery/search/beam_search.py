@@ -1,8 +1,8 @@
 """A beam of hypotheses that grows by one suspect at a time.
 
 From each, the most promising places of every kind are fitted together with everything chosen
-before; the best of these are moved to better neighbours and reconsidered, and the best of those
-are grown again, until one more suspect no longer earns its place.
+before; the best of these are moved to better neighbours, and the best of those are grown again,
+until one more suspect no longer earns its place.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 import numpy as np
 
@@ -94,10 +93,8 @@ def grown(
             rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
             break
         base = beam[0].objective
-        followed = _leading(searcher, chosen, base)
+        followed = chosen[: searcher.effort.beam - (depth > 1)]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=objective_of)
-        if depth > 1:
-            beam[0] = searcher.reconsidered(beam[0])
         beam = _distinct(searcher, sorted(beam, key=objective_of))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])
@@ -132,22 +129,10 @@ def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Return the best and the next few that gained nearly as much over `base`.
-
-    One that changes the other matrix, where none of these does, comes along: while several
-    effects are missing, stiffness that is lost imitates masses and masses a loss of stiffness.
-    """
+    """Return the best and the next few that gained nearly as much over `base`."""
     near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
-    kept = close[: searcher.effort.beam - 1]
-    changed = {m for f in kept for m in _changed(searcher, f)}
-    others = (f for f in close[len(kept) :] if not _changed(searcher, f) <= changed)
-    return [*kept, *islice(others, 1)]
-
-
-def _changed(searcher: Searcher, f: Fit) -> set[str]:
-    """Return which matrices a hypothesis changes."""
-    return {searcher.problem.catalogue[s.kind].law.acts_on for s in f.suspects}
+    return close[: searcher.effort.beam - 1]
 
 
 def objective_of(f: Fit) -> float:
@@ -176,17 +161,4 @@ def _varied(
             or number[kind] <= searcher.effort.of_each_kind
         ):
             kept.append(s)
-    return kept
-
-
-def _leading(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
-    """Keep the best fits, and the best whose last suspect is of another kind if it is near."""
-    most = searcher.effort.beam - (len(fits[0].suspects) > 1)
-    kept, kinds = list(fits[:most]), set()
-    for f in fits:
-        kind = searcher.problem.catalogue[f.suspects[-1].kind].kind
-        near = base - f.objective > SEARCH.other_kind * (base - fits[0].objective)
-        if kind not in kinds and near and not any(f is g for g in kept):
-            kept.append(f)
-        kinds.add(kind)
     return kept

@@ -209,9 +209,6 @@ def completeness(
         found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
-    levels[0] = _fitted_as(searcher, levels[0], max(levels, key=lambda s: s.score))
-    alone = levels[0].judged
-    assert alone is not None
     number = kept(searcher, levels)
     best, told, places = _centred(searcher, levels[number], fields[number], verdict.scale)
     found = _led(found, told.fit)
@@ -273,14 +270,6 @@ def _centred(
             near, every[q] = alike((told, *others), told, q)
             told = near[middle(c, every[q])]
     return best, told, every
-
-
-def _fitted_as(searcher: Searcher, alone: Scored, best: Scored) -> Scored:
-    """Return the known parameters alone, fitted from where the best hypothesis has them, too."""
-    if best.judged is None or best is alone:
-        return alone
-    there = evaluate(searcher.problem, best.judged.fit.nuisance, ())
-    return max(alone, scored(searcher, there), key=lambda s: s.score)
 
 
 def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:

@@ -1,7 +1,6 @@
 """What is clear, and what an error of the model imitates."""
 
 from dataclasses import replace
-from functools import partial
 from types import SimpleNamespace as Some
 
 import numpy as np
@@ -204,19 +203,6 @@ def test_in_a_deck_that_lacks_nothing_only_what_is_clear_is_told(monkeypatch, ri
     evidence = {(): 0.0, (3,): 30.0, (60,): rival}
     assert weighed(monkeypatch, found, evidence)[1] == 1
     assert weighed(monkeypatch, found, evidence, nothing=True)[1] == kept
-
-
-def test_the_known_parameters_are_fitted_from_where_the_best_has_them_too(monkeypatch):
-    there = np.array([0.3, 0.0])
-    alone = Scored(hypothesis(100.0), judged(np.zeros(10)), 0.0)
-    best = Scored(hypothesis(40.0, 3), Some(fit=Some(nuisance=there)), 20.0)
-    monkeypatch.setattr(room, "evaluate", lambda problem, nuisance, suspects: nuisance)
-    for score, expected in ((15.0, 15.0), (-3.0, 0.0)):
-        anew = partial(Scored, judged=None, score=score)
-        monkeypatch.setattr(room, "scored", lambda searcher, fit, anew=anew: anew(fit))
-        refitted = room._fitted_as(Some(problem=None), alone, best)
-        assert refitted.score == pytest.approx(expected)
-        assert (refitted.fit is there) == (score > 0.0)
 
 
 @pytest.mark.parametrize(("anew", "first"), [(25.0, 9), (15.0, 3)])
