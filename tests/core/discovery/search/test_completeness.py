@@ -269,6 +269,6 @@ def test_the_second_of_two_masses_side_by_side_has_to_gain_a_share_of_what_the_f
     monkeypatch, size, kept
 ):
     levels = hypothesis(100.0), hypothesis(40.0, 3), hypothesis(20.0, 3, 7)
-    evidence = {(): 0.0, (3,): 130.0, (3, 7): 152.0}
+    evidence = {(): 0.0, (3,): 400.0, (3, 7): 460.0}
     found = Found(levels, ((), (), ()))
     assert weighed(monkeypatch, found, evidence, size=size)[1] == kept

@@ -14,10 +14,12 @@ from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search.beam_search import Found, grown
 from trueup.core.discovery.search.credible_places import Place, between, credible_places, middle
 from trueup.core.discovery.search.model_selection import (
+    Scored,
     adequate,
     complete,
     contenders,
     cost,
+    earned,
     enough,
     held_out,
     instead,
@@ -282,3 +284,23 @@ def test_what_is_held_out_does_not_hang_on_the_order_of_a_file():
     for keys in ((hz,), (component, node)):
         told = held_out(1, 3, 6, *keys)
         assert held_out(1, 3, 6, *(k[mixed] for k in keys)).tolist() == told[mixed].tolist()
+
+
+@pytest.mark.parametrize(
+    ("error", "gain", "clear"),
+    [
+        pytest.param(0.002, 45.0, False, id="no more than right models leave"),
+        pytest.param(0.002, 55.0, True, id="that, and five nats a mode gained"),
+        pytest.param(0.02, 30.0, False, id="much is left after as well"),
+        pytest.param(0.02, 45.0, True, id="much was left"),
+    ],
+)
+def test_beside_what_leaves_no_more_than_right_models_an_effect_has_to_be_clear(error, gain, clear):
+    """Ten modes, of whose error a further effect takes a third."""
+
+    def leaving(error, score, *suspects):
+        left = Some(error=error, noise=0.0, each=np.zeros(10))
+        return Scored(Some(suspects=suspects), Some(diffuse=left), score)
+
+    poorer, richer = leaving(error, 0.0, "a mass"), leaving(0.7 * error, gain, "a mass", "a spring")
+    assert earned(richer, poorer) == clear
