@@ -65,10 +65,6 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
 
-    def tuned(self, s: Suspect) -> bool:
-        """Whether a suspect is of a kind with a magnitude that tunes it."""
-        return self.problem.catalogue[s.kind].tunings > 1
-
     def branches(
         self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
     ) -> list[tuple[float, Suspect]]:

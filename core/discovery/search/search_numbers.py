@@ -18,7 +18,7 @@ class SearchNumbers:
     steps: int = number(6, "steps", "of all unknowns with which suspects are fitted, unless said otherwise")
     steps_null: int = number(25, "steps", "for the known parameters alone")
     steps_new: int = number(5, "steps", "for a suspect more, or another in place of one")
-    steps_moved: int = number(4, "steps", "for a suspect that moved to a neighbour, changed its stretch, or was taken out")
+    steps_moved: int = number(4, "steps", "for a suspect that moved to a neighbour or changed its stretch")
     steps_whole: int = number(2, "steps", "on the whole basis after those on a small one")
     steps_polished: int = number(20, "steps", "on a basis made for one hypothesis")
     rounds: int = number(6, "moves", "of each suspect to a neighbour, at most")
