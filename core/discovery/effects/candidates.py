@@ -261,6 +261,17 @@ def places_of(c: Candidates, row: int) -> list[tuple[Candidates, int]]:
     return [(c.single, i) for i in c.copies[row]]
 
 
+def apart(a: Candidates, row: int, b: Candidates, other: int) -> float:
+    """Return how far any place of one candidate is from the nearest of another, at most.
+
+    One of twins has several: the distance is Hausdorff's.
+    """
+    both = (places_of(a, row), places_of(b, other))
+    here, there = (np.array([c.xyz[k] for c, k in places]) for places in both)
+    away = np.linalg.norm(here[:, None] - there, axis=2)
+    return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
+
+
 def parted(catalogue: Catalogue, suspects: Sequence[Suspect]) -> list[tuple[Suspect, ...]]:
     """Return suspects with each pair of twins in turn as two that need not be alike."""
     single = {id(c): kind for kind, c in enumerate(catalogue)}

@@ -1,8 +1,8 @@
 """A beam of hypotheses that grows by one suspect at a time.
 
 From each, the most promising places of every kind are fitted together with everything chosen
-before; the best of these are moved to better neighbours, and the best of those are grown again,
-until one more suspect no longer earns its place.
+before; the best of these are moved to better neighbours and reconsidered, and the best of those
+are grown again, until one more suspect no longer earns its place.
 """
 
 from __future__ import annotations
@@ -95,6 +95,8 @@ def grown(
         base = beam[0].objective
         followed = chosen[: searcher.effort.beam - (depth > 1)]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=objective_of)
+        if depth > 1:
+            beam[0] = searcher.reconsidered(beam[0])
         beam = _distinct(searcher, sorted(beam, key=objective_of))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, permutations
 
 import numpy as np
 
@@ -204,7 +204,7 @@ def completeness(
                 tried += (s for s in again if s is not first)
                 found = found.with_rivals(s.fit for s in again if s is not first)
         found = found.with_rivals(poorer)
-        fields[k] = _from_there(searcher, tried)
+        fields[k] = _plainest_first(searcher, _from_there(searcher, tried))
         found = found.with_rivals(s.fit for s in fields[k] if s not in tried)
         found = _led(found, fields[k][0].fit)
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
@@ -294,6 +294,26 @@ def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
                 out[out.index(s)] = new
         out = ranked(searcher, (), out)
     return out
+
+
+def _plainest_first(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
+    """Return hypotheses, the likeliest first, or what says the same with fewer places.
+
+    A mass between two grids is about as likely as half of it at each.
+    """
+    best = tried[0]
+
+    def same(s: Scored) -> bool:
+        near = best.score - s.score < SEARCH.suspect
+        return near and not any(
+            says_else(searcher, *fits) for fits in permutations((best.fit, s.fit))
+        )
+
+    def places(s: Scored) -> int:
+        return sum(searcher.problem.catalogue[t.kind].many(t.row) for t in s.fit.suspects)
+
+    first = min(filter(same, tried), key=places)
+    return [first, *(s for s in tried if s is not first)]
 
 
 def _nearest(found: Found, k: int) -> list[Fit]:

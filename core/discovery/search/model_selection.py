@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ..effects.candidates import Candidates, Suspect
+from ..effects.candidates import Candidates, Suspect, apart
 from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
@@ -318,7 +318,8 @@ def _unmatched(
     """Numbers of the suspects of the best that a rival does not have, and what it has instead.
 
     A mass that is spread out and one that is not, at one place, say the same `by_nature`, and so
-    does what acts in one direction and more: an edge that turns and one that moves besides.
+    does what acts in one direction and more: an edge that turns and one that moves besides. So do
+    twins on either side of a place.
     """
     catalogue = searcher.problem.catalogue
     near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
@@ -326,10 +327,9 @@ def _unmatched(
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
         alike = a.kind == b.kind or (by_nature and a.kind.joins(b.kind))
-        alike = alike and a.many(s.row) == b.many(t.row)
         along, other = _directions(a, s.row), _directions(b, t.row)
         alike = alike and (along == other or bool(along & other))
-        return alike and float(np.linalg.norm(b.xyz[t.row] - a.xyz[s.row])) < near
+        return alike and apart(a, s.row, b, t.row) < near
 
     return unmatched(best, f, same)
 

@@ -1,7 +1,8 @@
-"""Steps of a search over combinations of suspects.
+"""Steps of a search over combinations of suspects, able to take back an earlier choice.
 
 Every place and several sizes of every kind are evaluated exactly beside a hypothesis, on the basis
-of its own eigenvectors; suspects are fitted together and moved to better neighbours.
+of its own eigenvectors; suspects are fitted together, moved to better neighbours, and each earlier
+one is taken out and looked for anew.
 """
 
 from __future__ import annotations
@@ -308,14 +309,35 @@ class Searcher:
                 return trial
         return None
 
-    def doubtful(self, state: Fit) -> list[int]:
+    def reconsidered(self, state: Fit) -> Fit:
+        """Take each suspect out in turn and look for a better one anywhere.
+
+        The last of a new state was looked for just so, and is left out in the first round.
+        """
+        for number in range(SEARCH.anew_rounds):
+            moved = False
+            for q in self.doubtful(state, first=number == 0):
+                others = state.suspects[:q] + state.suspects[q + 1 :]
+                without = self.fitted(state, others, SEARCH.steps_moved)
+                for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
+                    trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
+                    if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
+                        trial = self.settled(self.refined(trial))
+                    if trial.objective < state.objective - SEARCH.better_anew:
+                        state, moved = trial, True
+                        break
+            if not moved:
+                break
+        return state
+
+    def doubtful(self, state: Fit, first: bool = False) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
-        every = list(range(len(state.suspects)))
-        if len(every) < SEARCH.anew_all:
-            return every
-        others = (state.suspects[:q] + state.suspects[q + 1 :] for q in every)
+        older = list(range(len(state.suspects) - first))
+        if len(state.suspects) < SEARCH.anew_all:
+            return older
+        others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
         left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
-        return [int(np.argmin(left))]
+        return [older[int(np.argmin(left))]]
 
 
 @lru_cache(maxsize=SEARCH.locals_kept)

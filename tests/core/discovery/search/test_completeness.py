@@ -230,6 +230,25 @@ def test_a_rival_is_fitted_from_where_the_best_has_the_parameters_too(monkeypatc
     assert out[0].score == max(anew, 20.0)
 
 
+@pytest.mark.parametrize(
+    ("behind", "same", "row"),
+    [
+        pytest.param(2.0, True, 0, id="about as likely"),
+        pytest.param(9.0, True, 1, id="far less likely"),
+        pytest.param(2.0, False, 1, id="elsewhere"),
+    ],
+)
+def test_a_mass_between_two_grids_is_told_before_half_of_it_at_each(monkeypatch, behind, same, row):
+    monkeypatch.setattr(room, "says_else", lambda s, f, g: f is not g and not same)
+    kind = Some(many=lambda row: 1 + row)
+    one, two = (
+        Scored(hypothesis(40.0, r), None, score) for r, score in ((0, 50.0 - behind), (1, 50.0))
+    )
+    searcher = Some(problem=Some(catalogue=[kind]))
+    out = room._plainest_first(searcher, [two, one])
+    assert [s.fit.suspects[0].row for s in out] == [row, 1 - row]
+
+
 def test_shapes_that_are_off_everywhere_bear_no_model_out():
     assert found(error=0.0003, noise=0.29).explains
     assert not found(error=0.0003, noise=0.34).explains

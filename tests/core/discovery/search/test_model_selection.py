@@ -9,7 +9,7 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects import distributed_mass, ground_spring, point_mass
-from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.candidates import Suspect, together
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search.beam_search import Found, grown
 from trueup.core.discovery.search.credible_places import Place, between, credible_places, middle
@@ -223,7 +223,7 @@ def test_a_mass_at_one_place_is_no_rival_of_itself_spread_out(other, away):
     kinds = (point_mass.KIND, other.KIND)
     places = (np.zeros((1, 3)), np.full((1, 3), away))
     catalogue = [
-        Some(kind=kind, xyz=xyz, many=lambda _: 1, where=[{}])
+        Some(kind=kind, xyz=xyz, single=None, where=[{}])
         for kind, xyz in zip(kinds, places, strict=True)
     ]
     s = Some(problem=Some(catalogue=catalogue), effort=Some(apart=0.1), size=1.0)
@@ -240,7 +240,7 @@ def test_a_support_that_turns_is_another_explanation_than_one_that_only_moves(
     more, components, others
 ):
     where = [{"components": [3], **more}, {"components": components}]
-    support = Some(kind="support", xyz=np.zeros((2, 3)), where=where, many=lambda row: 1)
+    support = Some(kind="support", xyz=np.zeros((2, 3)), where=where, single=None)
     searcher = Some(problem=Some(catalogue=[support]), effort=Some(apart=0.1), size=1.0)
     best, rival = (Some(suspects=(Some(kind=0, row=row),)) for row in (0, 1))
     found = Found((Some(suspects=()), best), ((), (rival,)))
@@ -273,6 +273,17 @@ def test_the_same_spring_in_another_direction_says_else():
     assert says_else(s, at(1, 7), at(1, 25))
     assert says_else(s, at(1, 7), at(0, 7))
     assert not says_else(s, at(1, 7), at(1, 7))
+
+
+@pytest.mark.parametrize(("pair", "other"), [((6, 8), False), ((6, 25), True), ((8, 6), False)])
+def test_twins_on_either_side_of_a_place_say_the_same_as_one_there(pair, other):
+    """A mass between two grids is as well told as half of it at each."""
+    s = searcher(hidden())
+    twins = together(s.problem.catalogue[0], np.array([pair]))
+    s = replace(s, problem=replace(s.problem, catalogue=(*s.problem.catalogue, twins)))
+    one = Some(suspects=(Suspect(0, 7, (0.0,)),))
+    two = Some(suspects=(Suspect(len(s.problem.catalogue) - 1, 0, (0.0,)),))
+    assert says_else(s, one, two) == says_else(s, two, one) == other
 
 
 def test_what_is_held_out_does_not_hang_on_the_order_of_a_file():
