@@ -176,41 +176,23 @@ def mass_evidence(
         Otherwise what is added is stiffness, of either sign.
     """
     patches = sp.identity(len(motion), format="csr") if patches is None else patches.tocsr()
-    n_patch, n_mode = patches.shape[0], motion.shape[2]
-    n_pair, width = lin.residual.shape
-    per_place = n_pair * max(n_mode, width)
-    step = max(1, int(MAPS.at_once / (per_place * max(1.0, patches.nnz / max(n_patch, 1)))))
-    explained, size = np.zeros(n_patch), np.zeros(n_patch)
-    residual, common = lin.residual.ravel(), _common(lin)
-    for start in range(0, n_patch, step):
-        rows = slice(start, min(start + step, n_patch))
-        part = patches[rows]
-        places = np.unique(part.indices)
-        slope = part[:, places] @ _slopes(lin, motion[places], mass)
-        slope = slope - (slope @ common)[:, None] * common
-        top = slope @ residual
-        power = np.einsum("pi,pi->p", slope, slope)
-        best = np.divide(top, power, out=np.zeros_like(top), where=power > 0)
-        if mass:
-            best = np.maximum(best, 0.0)
-        size[rows], explained[rows] = best, best * top
-    total = float(residual @ residual - (residual @ common) ** 2)
-    return Evidence(frozen(explained), frozen(size), total)
-
-
-def _slopes(lin: Linearisation, motion: Floats, mass: bool) -> Floats:
-    """Change of all rows by a unit at each place, (n_place, n_pair * (1 + n_sensor))."""
     own = motion @ lin.modes
     factor = -lin.eigenvalue if mass else np.ones(len(lin.eigenvalue))
-    change = np.matmul(np.swapaxes(own * factor, 1, 2), motion).swapaxes(0, 1)
-    slope = np.empty((len(motion), *lin.residual.shape))
-    slope[:, :, 0] = np.einsum("prj,prj->pj", own, own) * factor * lin.by_eigenvalue
-    slope[:, :, 1:] = (np.ascontiguousarray(change) @ lin.by_mode).swapaxes(0, 1)
-    return slope.reshape(len(motion), lin.residual.size)
-
-
-def _common(lin: Linearisation) -> Floats:
-    """Return the unit vector of a common scale of all eigenvalues: any modulus absorbs it."""
-    direction = np.zeros(lin.residual.shape)
-    direction[:, 0] = lin.eigenvalue * lin.by_eigenvalue
-    return np.asarray((direction / np.linalg.norm(direction)).ravel())
+    # of eigenvalues, without a common scale of all: any modulus absorbs it
+    common = lin.eigenvalue * lin.by_eigenvalue
+    common = common / np.linalg.norm(common)
+    slope = patches @ (np.einsum("prj,prj->pj", own, own) * factor * lin.by_eigenvalue)
+    slope = slope - np.outer(slope @ common, common)
+    top, power = slope @ lin.residual[:, 0], np.einsum("pj,pj->p", slope, slope)
+    left = float(np.sum(lin.residual**2) - (lin.residual[:, 0] @ common) ** 2)
+    step = max(1, MAPS.at_once // (len(motion) * motion.shape[2] or 1))
+    for start in range(0, len(lin.residual), step):
+        few = slice(start, start + step)
+        change = np.matmul(np.swapaxes(own * factor, 1, 2)[:, few], motion).swapaxes(0, 1)
+        for j, part in enumerate(change, start):
+            slope = (patches @ part) @ lin.by_mode[j]
+            top += slope @ lin.residual[j, 1:]
+            power += np.einsum("pi,pi->p", slope, slope)
+    size = np.divide(top, power, out=np.zeros_like(top), where=power > 0)
+    size = np.maximum(size, 0.0) if mass else size
+    return Evidence(frozen(size * top), frozen(size), left)
