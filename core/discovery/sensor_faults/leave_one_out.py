@@ -140,23 +140,23 @@ def predict(survey: Survey, span: Span, sigma: float, width: Floats, masked: Boo
     near = np.maximum(span.frequencies_hz, SENSORS.nearest * survey.frequencies_hz[:, None])
     h = 1.0 / (1.0 + (np.log(near / survey.frequencies_hz[:, None]) / width[:, None]) ** 2) ** 2
     h = h / h.sum(axis=1, keepdims=True)
-    sound = np.zeros(len(y), bool)
-    sound[slots[~masked][there[~masked]]] = True
-    modes = y.shape[1]
+    sound = np.sort(slots[there & ~masked[:, None]])
+    weight, modes = 1.0 / variance[sound], y.shape[1]
     m, C = np.zeros((n, modes, q)), np.zeros((n, modes, q, q))
     reading = np.where(there[:, None, :], y[slots].transpose(0, 2, 1), 0.0)
     noise = np.where(there[:, None, :], variance[slots].transpose(0, 2, 1), SENSORS.absent)
+    none = np.zeros((1, span.rows.shape[1]))
+    rows = np.concatenate([span.rows, span.around.reshape(-1, none.size), none])
+    at = np.hstack([slots, np.arange(len(y), len(rows) - 1).reshape(n, -1)])  # -1: none
     for j in range(modes):
-        root = np.sqrt(np.where(h[j] > SENSORS.faint * h[j].max(), h[j], 0.0))
-        used = root > 0.0
-        B = span.rows[:, used] * root[used]
-        known = B[sound] / variance[sound, j, None]
-        L = np.linalg.cholesky(np.eye(B.shape[1]) + known.T @ B[sound])
-        own, around = np.where(there[..., None], B[slots], 0.0), span.around[:, :, used]
-        X = np.concatenate([own, around * root[used]], axis=1)
-        Z = lower_solved(L, X.reshape(-1, len(L)).T).T.reshape(X.shape)
-        m[:, j] = Z @ lower_solved(L, known.T @ y[sound, j, None])[:, 0]
-        C[:, j] = Z @ Z.transpose(0, 2, 1)
+        used = h[j] > SENSORS.faint * h[j].max()
+        X = rows[:, used] * np.sqrt(h[j, used])
+        known = X[sound].T * weight[:, j]
+        L = np.linalg.cholesky(np.eye(len(known)) + known @ X[sound])
+        Z = lower_solved(L, X.T)
+        m[:, j] = (lower_solved(L, known @ y[sound, j, None])[:, 0] @ Z)[at]
+        own = Z.T[at]
+        C[:, j] = own @ own.transpose(0, 2, 1)
     cross = np.swapaxes(C[..., :k], 2, 3)
     T = -C[..., :k, :k]
     T[..., np.arange(k), np.arange(k)] += noise
