@@ -25,7 +25,7 @@ class DamperNumbers:
     exact: int = number(24, "places", "that are weighed by the quadratic eigenproblem", "time")
     behind: float = number(12.0, "ln", "places further behind the best are not weighed over all levels")
     likely: float = number(0.5, "-", "posterior of a dashpot anywhere, from which on they are")
-    at_once: int = number(4, "places", "weighed at once", "cache: their matrices stay near the processor")
+    at_once: int = number(200_000, "densities", "made at once", "cache: they stay near the processor")
     multiplied: int = number(20, "modes", "whose densities are multiplied before their log is taken", "far from what a float holds")
     middling: float = number(0.6, "of ln ζ", "spread of a first look")
     least_left: float = number(0.2, "of a measured ratio", "that the deck's own dashpots leave to the structure, at least")

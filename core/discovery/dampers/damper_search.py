@@ -167,8 +167,9 @@ class _Weighing:
         """Return ln of how much likelier each size, or some, makes the data, (n, n_trial)."""
         sizes = self.sizes[rows, some]
         out = np.empty(sizes.shape)
-        for start in range(0, len(rows), DAMPERS.at_once):
-            few = slice(start, start + DAMPERS.at_once)
+        step = max(1, DAMPERS.at_once // (sizes.shape[1] * grid.levels.size))
+        for start in range(0, len(rows), step):
+            few = slice(start, start + step)
             c = sizes[few, :, None]
             part = self.own + c * self.gives[rows[few], None]
             error = c * self.wrong[rows[few], None]
