@@ -173,17 +173,17 @@ def finite(value: float) -> float | None:
 
 def plain(value: object) -> Json:
     """Return a value as JSON holds it: arrays as lists, what is no finite number as None."""
-    if dataclasses.is_dataclass(value):
-        return _record(value)
-    if isinstance(value, Mapping):
-        return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
+        value = value.tolist()
     if isinstance(value, float):
         return value if math.isfinite(value) else None
-    return value if value is None or isinstance(value, bool | int | str) else str(value)
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    return _record(value) if dataclasses.is_dataclass(value) else str(value)
 
 
 def _record(value: object) -> dict[str, Json]:
