@@ -71,6 +71,9 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     if not request.keep_factor:  # two factors at a time only where the caller keeps one
         found = replace(found, factor=None)
     del factor, lanczos
+    limit = None if request.keep_counter else request.limit
+    if limit is not None and below == n_rigid + np.count_nonzero(found.values < limit):
+        return replace(found, missed=0)  # as many as were counted
     return replace(_counted(pencil, rigid, found, elastic, request), left_out=left_out)
 
 
