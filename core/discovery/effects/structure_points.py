@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -95,7 +96,8 @@ def points_of(structure: Structure) -> Points:
     every = sp.identity(len(g.ids), format="csr")
     moves = (translations(structure, P) + bows @ rotations(structure, every)).tocsr()
     where: list[dict[str, Any]]
-    where = [{"grids": g.ids[c].tolist()} for c in np.split(P.indices, P.indptr[1:-1])]
+    grids, ends = g.ids[P.indices].tolist(), P.indptr.tolist()
+    where = [{"grids": grids[a:b]} for a, b in pairwise(ends)]
     where[between:] = [
         {**w, "arms": [tuple(a)]} for w, a in zip(where[between:], arms.tolist(), strict=True)
     ]
@@ -183,8 +185,5 @@ def along_axes(points: Points) -> Axes:
     """Return the basic axes along which points move."""
     root, xyz, places = points
     live = np.flatnonzero(np.diff(root.indptr) > 0)
-    at = live // 3
-    where = tuple(
-        {**places[i], "components": [int(c)]} for i, c in zip(at, live % 3 + 1, strict=True)
-    )
-    return Axes(xyz[at], root[live], where)
+    where = tuple({**places[k // 3], "components": [k % 3 + 1]} for k in live.tolist())
+    return Axes(xyz[live // 3], root[live], where)
