@@ -8,6 +8,7 @@ orthogonal to a change everywhere alike, which is a parameter's.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
 
@@ -66,44 +67,42 @@ _EACH = ("stiffness", "mass", "spread", "least")
 
 def smooth_fields(structure: Structure, vectors: Floats) -> Fields:
     """Return the smooth fields of a structure on a basis (n_free, r), the deck's values moved."""
-    at, masses, K, M = _by_cells(structure, vectors)
-    q, words = _polynomials(at, masses)
-    none = np.zeros((q.shape[1], *K.shape[1:]))
-    k, m = (np.tensordot(q.T, A, 1) for A in (K, M))
+    motion = np.asarray(structure.displacement @ vectors)
+    cell, middles, rows, *forces = zip(*_parts(structure, motion), strict=True)
+    masses = np.array([np.sum(motion[own] * f) for own, f in zip(rows, forces[1], strict=True)])
+    masses = np.maximum(masses, np.finfo(float).tiny)
+    weights = np.bincount(cell, masses).astype(float)
+    at = [np.bincount(cell, masses * x) / weights for x in np.transpose(middles)]
+    q, words = _polynomials(np.stack(at, axis=1), weights)
+    k, m = (_summed(q[list(cell)], rows, f, motion) for f in forces)
     names = tuple(f"{what} {w}" for what in ("stiffness", "mass") for w in words)
-    both = np.ones(len(names))
+    both, none = np.ones(len(names)), np.zeros_like(k)
     fields = np.concatenate([k, none]), np.concatenate([none, m])
     return Fields(names, *fields, both, -MODEL_ERROR.most * both)
 
 
-def _by_cells(structure: Structure, vectors: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return centres (n, 3), masses (n,), K and M (n, r, r) of parts of the structure."""
-    motion = np.asarray(structure.displacement @ vectors)
+def _parts(
+    structure: Structure, motion: Floats
+) -> Iterator[tuple[int, Floats, Ints, Floats, Floats]]:
+    """Give cell and middle of each card's elements there, their rows of a motion, K, M times it."""
     centres = [structure.centroids(m) for m in structure.members]
-    cell, count = _cells(np.concatenate(centres))
-    r = vectors.shape[1]
-    K, M = np.zeros((count, r, r)), np.zeros((count, r, r))
-    at, weights = np.zeros((count, 3)), np.zeros(count)
-    start, everywhere = 0, np.ones(len(structure.model.parameters))
+    cell = _cells(np.concatenate(centres))
+    start, p = 0, np.ones(len(structure.model.parameters))
     for m, xyz in zip(structure.members, centres, strict=True):
         own = cell[start : start + len(xyz)]
         start += len(xyz)
         for few in _together(own):
             some = np.flatnonzero(np.isin(own, few))
-            matrices = m.stiffness(some, everywhere), m.mass(some, everywhere)
-            coordinates = m.coordinates(some)
+            places = m.coordinates(some)
+            none = np.zeros((len(some), places.shape[1], places.shape[1]))
+            K, M = (none if X is None else X for X in (m.stiffness(some, p), m.mass(some, p)))
             for c in few:
                 here = own[some] == c
-                k, mass = (
-                    _reduced(A, coordinates[here], motion)
-                    for A in (None if X is None else X[here] for X in matrices)
-                )
-                K[c] += k
-                M[c] += mass
-                w = max(float(np.trace(mass)), np.finfo(float).tiny)
-                at[c] += w * xyz[some[here]].mean(axis=0)
-                weights[c] += w
-    return at / weights[:, None], weights, K, M
+                rows, at = np.unique(places[here], return_inverse=True)
+                added = sp.csr_matrix((np.ones(at.size), (at.ravel(), np.arange(at.size))))
+                moved = motion[places[here]]
+                k, mass = (added @ (A[here] @ moved).reshape(at.size, -1) for A in (K, M))
+                yield c, xyz[some[here]].mean(axis=0), rows, k, mass
 
 
 def _together(cell: Ints) -> list[Ints]:
@@ -113,27 +112,25 @@ def _together(cell: Ints) -> list[Ints]:
     return np.split(cells, ends) if len(cells) else []
 
 
-def _reduced(A: Floats | None, at: Ints, motion: Floats) -> Floats:
-    """Return the sum of the matrices of elements (n, m, m) on a basis: at rows (n, m) of `motion`.
-
-    Nothing where they have none.
-    """
-    if A is None:
-        return np.zeros((motion.shape[1],) * 2)
-    own, places = np.unique(at, return_inverse=True)
-    places = places.reshape(at.shape)
-    where = np.repeat(places, at.shape[1], axis=1).ravel(), np.tile(places, at.shape[1]).ravel()
-    u = motion[own]
-    return np.asarray(u.T @ (sp.csr_matrix((A.ravel(), where), (len(own),) * 2) @ u))
+def _summed(q: Floats, rows: Sequence[Ints], forces: Sequence[Floats], motion: Floats) -> Floats:
+    """Return the matrices of parts on a basis times weights (n, k), added up: (k, r, r)."""
+    each = np.empty((REDUCTION.parts_at_once, motion.shape[1], motion.shape[1]))
+    out = np.zeros((q.shape[1], each[0].size))
+    for first in range(0, len(q), len(each)):
+        few = slice(first, first + len(each))
+        for own, f, A in zip(rows[few], forces[few], each, strict=False):
+            np.matmul(motion[own].T, f, out=A)
+        out += q[few].T @ each[: len(q[few])].reshape(-1, each[0].size)
+    return out.reshape(-1, *each.shape[1:])
 
 
-def _cells(xyz: Floats) -> tuple[Ints, int]:
-    """Divide points among boxes of a grid over them; number of each point's box, and of boxes."""
+def _cells(xyz: Floats) -> Ints:
+    """Divide points among boxes of a grid over them; number of each point's box, (n,)."""
     low, size = xyz.min(axis=0), np.ptp(xyz, axis=0).max() or 1.0
     box = ((xyz - low) / size * MODEL_ERROR.cells).astype(np.int64)
     box = np.minimum(box, MODEL_ERROR.cells - 1)
     _, number = np.unique(box, axis=0, return_inverse=True)
-    return number.ravel(), int(number.max()) + 1
+    return np.asarray(number.ravel())
 
 
 def _said(which: tuple[int, ...]) -> str:
