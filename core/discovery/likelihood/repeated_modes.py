@@ -17,12 +17,13 @@ def turned_to_test(vectors: Floats, values: Floats, cross: Floats, match: Ints) 
     that they stay modes; `cross` (n_test, m) are products of test shapes with the first m at the
     sensors, `match` (n_test,) the mode of each.
     """
+    values = values[: cross.shape[1] + 1]  # what is repeated beyond these no shape matches
     if not some_repeated(values):
         return vectors
-    ends, out = np.flatnonzero(_apart(values)) + 1, vectors
-    for group in np.split(np.arange(len(values)), ends):
+    groups, out = np.split(np.arange(len(values)), np.flatnonzero(_apart(values)) + 1), vectors
+    for group in (g for g in groups if len(g) > 1 and g[-1] < cross.shape[1]):
         tests = np.flatnonzero((match >= group[0]) & (match <= group[-1]))
-        if len(group) == 1 or not len(tests) or group[-1] >= cross.shape[1]:
+        if not len(tests):
             continue
         U, _, Vt = np.linalg.svd(cross[np.ix_(tests, group)].T)
         R, n = np.empty_like(U), len(tests)
