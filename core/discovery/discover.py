@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -27,16 +27,15 @@ from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.elements_and_supports import Structure
-from .search.beam_search import Found
 from .search.coarse_scan import first_places, neighbourhoods
 from .search.completeness import Completeness, completeness
 from .search.footprints import footed, settled
+from .search.found import Found
 from .search.misshapen import beside_geometry
 from .search.model_selection import (
-    Judgement,
     adequate,
+    chosen,
     held_out,
-    judge,
     usual,
 )
 from .search.moves import Searcher
@@ -75,22 +74,23 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     progress("fitting the known parameters")
     trial = _tried(request, bench, ground, modes_out, sensors_out)
     bench, trial = _dashpot_off(request, bench, trial, (modes_out, sensors_out))
-    searcher, found, verdict = _searched(trial, progress)
-    if verdict.accepted:
-        tested = _judged(bench, trial, searcher, found, verdict)
+    searcher, found, accepted = _searched(trial, progress)
+    if accepted:
+        tested = _judged(bench, trial, searcher, found.levels[accepted])
         if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | tested.doubtful
             trial = _Trial(trial.asked, ground, aside, tested.noise, modes_out, sensors_out)
-            searcher, found, verdict = _searched(trial, progress)
+            searcher, found, accepted = _searched(trial, progress)
     progress("weighing what was found against the error of the model")
-    searcher, found, verdict, whole = _completed(trial, searcher, found, verdict)
-    tested = _judged(bench, trial, searcher, found, verdict)
-    known = for_deck(trial.own, searcher.problem, found.levels[verdict.accepted])
+    searcher, found, accepted, whole = _completed(trial, searcher, found, accepted)
+    best = found.levels[accepted]
+    tested = _judged(bench, trial, searcher, best)
+    known = for_deck(trial.own, searcher.problem, best)
     out = modes_out, sensors_out
-    said = build_discovery(request, searcher, found, verdict, whole, known, tested, out)
+    said = build_discovery(request, searcher, found, accepted, whole, known, tested, out)
     progress("weighing dashpots by the measured damping")
-    best = _best(searcher, found, verdict)
+    best = evaluate(searcher.problem, best.nuisance, best.suspects)
     if best.suspects or trial.asked is not request:
         sound = replace(request, placed=request.placed.take(~trial.aside))
         dashpot = weighed(sound, searcher.problem, best)
@@ -190,35 +190,27 @@ class _Trial:
                 self._judged[same] = by_model_error(self.own, problem, f, least=least)
         return self._judged[same]
 
-    def laid(self, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+    def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
         """Lay the masses of a hypothesis on footprints, if that fits better on its own basis."""
         same = searcher.problem, best
         if same not in self._laid:
-            self._laid[same] = _laid(self, searcher, best, scale)
+            self._laid[same] = _laid(self, searcher, best)
         return self._laid[same]
 
-    def explained(self, searcher: Searcher, best: Fit, scale: float) -> bool:
+    def explained(self, searcher: Searcher, best: Fit) -> bool:
         """Whether a hypothesis leaves no more than right models do, its masses laid on footprints.
 
         A mass on the nearest grid leaves what a spring or an absorber beside it would make up for.
         """
-        return usual(*self.laid(searcher, best, scale))
+        return usual(*self.laid(searcher, best))
 
 
-def _judged(
-    bench: Bench, trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> Verdicts:
+def _judged(bench: Bench, trial: _Trial, searcher: Searcher, best: Fit) -> Verdicts:
     """Judge the sensors by what was accepted."""
-    best = found.levels[verdict.accepted]
     return bench.judged(*completed_modes(trial.own, searcher.problem, best))
 
 
-def _best(searcher: Searcher, found: Found, verdict: Judgement) -> Fit:
-    best = found.levels[verdict.accepted]
-    return evaluate(searcher.problem, best.nuisance, best.suspects)
-
-
-def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, Judgement]:
+def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, int]:
     """Search on sensors taken as sound, and weigh."""
     searcher = _searcher(trial)
     if trial.request.responses is not None:
@@ -226,30 +218,16 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher = replace(searcher, problem=heard)
     found = unlike(searcher, searched(searcher, progress, trial.explained))
     progress("weighing the best hypotheses on bases of their own")
-    searcher, found, explained = _footed(trial, searcher, found)
     searcher, found = bettered(searcher, found, reshaped)
-    if not explained:
-        searcher, found, explained = _footed(trial, searcher, found)
-    if not explained:
+    if not trial.explained(searcher, found.levels[chosen(searcher, found)]):
         searcher, found = on_stands(trial.request.structure, searcher, found, progress)
-    found, verdict = _weighed(trial, searcher, found)
-    if not explained:
-        searcher, best = trial.laid(searcher, found.levels[verdict.accepted], verdict.scale)
-        found = found.with_level(best)
-    return searcher, found, verdict
+    found = _weighed(trial, searcher, found)
+    accepted = chosen(searcher, found)
+    searcher, best = trial.laid(searcher, found.levels[accepted])
+    return searcher, found.with_level(best), accepted
 
 
-def _footed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Searcher, Found, bool]:
-    """Lay masses on footprints if no more is left then than right models leave; say whether."""
-    verdict = judge(searcher, found)
-    best = found.levels[verdict.accepted]
-    if not trial.explained(searcher, best, verdict.scale):
-        return searcher, found, False
-    searcher, best = trial.laid(searcher, best, verdict.scale)
-    return searcher, found.with_level(best), True
-
-
-def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[Searcher, Fit]:
+def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
     structure = trial.request.structure
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
@@ -257,47 +235,25 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit, scale: float) -> tuple[S
             free = polished(trial.own, wide.problem, free)
             wide, laid = settled(wide, structure, free)
             if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
-                wide, laid = reshaped(wide, laid, scale)
+                wide, laid = reshaped(wide, laid)
             laid = polished(trial.own, wide.problem, laid)
             if laid.objective < best.objective:
                 return wide, laid
     return searcher, best
 
 
-def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> tuple[Found, Judgement]:
-    """Fit the chosen hypothesis and the one with a suspect less on their own bases, judge again.
-
-    The best with one suspect stays, for what it is by the error of the model. Of
-    one whose completed model does not solve (a release larger than what is there) the next best
-    takes the place.
-    """
-    done: set[int] = set()
-    verdict = judge(searcher, found)
-    while wanted := {verdict.accepted, max(verdict.accepted - 1, 0)} - done:
-        levels, most = list(found.levels), max(verdict.accepted, 1)
-        for k in sorted(wanted, reverse=True):
-            solved = _first_solved(trial, searcher, (levels[k], *found.rivals[k]))
-            if solved is None and k == verdict.accepted:
-                most = k - 1
-                break
-            levels[k] = solved or levels[k]
-            done.add(k)
-        found = Found(tuple(levels[: most + 1]), found.rivals[: most + 1])
-        verdict = judge(searcher, found)
-    return found, verdict
-
-
-def _first_solved(trial: _Trial, searcher: Searcher, fits: Sequence[Fit]) -> Fit | None:
-    """Return the first fit that its own completed model bears, fitted on it."""
-    for f in fits:
+def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> Found:
+    """Fit the chosen hypothesis and the one with a suspect less on bases of their own."""
+    accepted = chosen(searcher, found)
+    for f in found.levels[max(accepted - 1, 0) : accepted + 1]:
         with suppress(TrueupError):
-            return polished(trial.own, searcher.problem, f)
-    return None
+            found = found.with_level(polished(trial.own, searcher.problem, f))
+    return found
 
 
 def _completed(
-    trial: _Trial, searcher: Searcher, found: Found, verdict: Judgement
-) -> tuple[Searcher, Found, Judgement, Completeness]:
+    trial: _Trial, searcher: Searcher, found: Found, accepted: int
+) -> tuple[Searcher, Found, int, Completeness]:
     """Keep the effects that are likelier than an error of the model without any place.
 
     Their magnitudes are those at which the test is likeliest beside such an error, or the middle
@@ -305,8 +261,8 @@ def _completed(
     the next best is taken.
     """
     deck = by_model_error(trial.own, searcher.problem, trial.zero, moving=False)
-    old, careful = found.levels, verdict.accepted
-    searcher, found, kept, whole = completeness(searcher, found, verdict, deck)
+    old = found.levels
+    searcher, found, kept, whole = completeness(searcher, found, accepted, deck)
     reaches = reaches_of(trial.request.structure)
     kept, whole = beside_reach(searcher, found, kept, whole, reaches)
     kept, whole = beside_geometry(trial.own, searcher, found, kept, whole)
@@ -323,7 +279,7 @@ def _completed(
             searcher, rigid, told = blocks
             best = evaluate(searcher.problem, rigid.fit.nuisance, rigid.fit.suspects)
             whole = replace(whole, best=rigid, told=told)
-        if best is not old[kept] or kept > careful:
+        if best is not old[kept] or kept > accepted:
             with suppress(TrueupError):
                 best = polished(trial.own, searcher.problem, best)
         sized = replace(best, suspects=whole.told.fit.suspects)
@@ -331,10 +287,10 @@ def _completed(
         solved = next(solving, None)
         if solved is None:
             found = Found(found.levels[:kept], found.rivals[:kept])
-            return _completed(trial, searcher, found, judge(searcher, found))
+            return _completed(trial, searcher, found, chosen(searcher, found))
         best = solved
     found = Found((*found.levels[:kept], best), found.rivals[: kept + 1])
-    return searcher, found, replace(judge(searcher, found), accepted=kept), whole
+    return searcher, found, kept, whole
 
 
 def _searcher(trial: _Trial) -> Searcher:

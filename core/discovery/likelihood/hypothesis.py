@@ -128,9 +128,7 @@ class Fit:
     `objective` = misfit + prior; `nuisance` (n_parameter + 1,) holds ln p of the known parameters
     and, last and no logarithm, the mesh error (see `discretisation_error`); `information`
     (n_unknown, n_unknown) is the Gauss-Newton Hessian of half the objective, prior included, active
-    nuisance parameters first; `unseen` is the misfit of what was held out from the fit, `surplus`
-    the number of modes in the measured band that the test does not have; both where they were asked
-    for.
+    nuisance parameters first.
     """
 
     objective: float
@@ -142,8 +140,6 @@ class Fit:
     vectors: Floats
     information: Floats
     active: tuple[int, ...]
-    unseen: float | None = None
-    surplus: float | None = None
 
     @property
     def log_p(self) -> Floats:

@@ -122,26 +122,6 @@ def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
     return Fit(total, bad, nuisance, tuple(suspects), match, values, vectors, none, ())
 
 
-def on_whole_test(problem: Problem, state: Fit) -> Fit:
-    """Return a fit that knows what it leaves of the modes and sensors held out from it."""
-    values, vectors = solve(problem, state.nuisance, state.suspects)
-    all_of_it, match = misfit(problem.entire(), values, vectors)
-    seen, _ = misfit(problem, values, vectors)
-    return replace(
-        state, unseen=all_of_it - seen, surplus=_surplus(targets(problem.whole), values, match)
-    )
-
-
-def _surplus(aim: Floats, values: Floats, match: Ints) -> float:
-    """Return the number of modes between the lowest and highest of a test that match none of it.
-
-    One near either end counts in part: a slightly other model would have it outside.
-    """
-    alone = np.maximum(np.delete(values, match), LIKELIHOOD.nil * aim.min())
-    inside = np.minimum(np.log(alone / aim.min()), np.log(aim.max() / alone)) / LIKELIHOOD.edge
-    return float(np.sum(np.clip(inside, 0.0, 1.0)))
-
-
 def fit(
     problem: Problem,
     nuisance: Floats,

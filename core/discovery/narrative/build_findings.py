@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import islice
 
 import numpy as np
 
@@ -14,19 +13,17 @@ from ..likelihood.elimination import InDeck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
 from ..posterior.test_design import further_modes, further_sensors
-from ..search.beam_search import Found
 from ..search.completeness import Completeness
 from ..search.credible_places import Place, between
+from ..search.found import Found, objective_of
 from ..search.model_selection import (
-    Judgement,
     contenders,
-    cost,
     explained,
     instead,
     scored,
     times,
 )
-from ..search.moves import Searcher
+from ..search.moves import Searcher, noise_scale
 from ..sensor_faults.diagnosis import Verdicts
 from .held_places import held_said, is_held
 from .model_error_words import left_over
@@ -40,7 +37,7 @@ def build_discovery(
     request: Request,
     searcher: Searcher,
     found: Found,
-    verdict: Judgement,
+    accepted: int,
     whole: Completeness,
     known: InDeck,
     tested: Verdicts,
@@ -52,7 +49,7 @@ def build_discovery(
     parameters are then; `held_out` are the test modes and the sensors that were kept out of the
     search.
     """
-    outcome = _Outcome(request, searcher, found, verdict, whole)
+    outcome = _Outcome(request, searcher, found, accepted, whole)
     best = outcome.best
     own = np.split(whole.deviations, np.cumsum([len(s.theta) for s in best.suspects])[:-1])
     suspects = [(k, p) for k, s in enumerate(best.suspects) for p in range(len(outcome.places(s)))]
@@ -95,7 +92,7 @@ def build_discovery(
         (*(replace(f, confidence=sure) for f in findings), *accused),
         _alternatives(outcome),
         _moved(known),
-        verdict.scale,
+        noise_scale(searcher.problem, outcome.best),
         2.0 * whole.gain,
         sure,
         whole.agree,
@@ -138,29 +135,27 @@ class _Outcome:
     request: Request
     searcher: Searcher
     found: Found
-    verdict: Judgement
+    accepted: int
     whole: Completeness
 
     @property
     def best(self) -> Fit:
         """The hypothesis that is accepted."""
-        return self.found.levels[self.verdict.accepted]
+        return self.found.levels[self.accepted]
 
     @cached_property
     def rivals(self) -> list[Fit]:
         """Hypotheses that say something else."""
-        return contenders(self.searcher, self.found, self.verdict.accepted)
+        return contenders(self.searcher, self.found, self.accepted)
 
     def behind(self, f: Fit) -> float:
-        """Return by how much a hypothesis costs more than the best."""
-        here = cost(self.searcher, self.best, self.verdict.scale)
-        return cost(self.searcher, f, self.verdict.scale) - here
+        """Return by how much a hypothesis is less likely than the best, ln, choices paid for."""
+        best = scored(self.searcher, self.best)
+        return best.score - scored(self.searcher, f, best).score
 
     def times_less_likely(self, f: Fit) -> float:
         """Return how many times, by the error of the model, choices paid for; at least once."""
-        best = scored(self.searcher, self.best)
-        other = scored(self.searcher, f, best)
-        return times(2.0 * max(best.score - other.score, 0.0))
+        return times(2.0 * max(self.behind(f), 0.0))
 
     def of(self, s: Suspect) -> Candidates:
         """Return the candidates that a suspect is one of."""
@@ -186,7 +181,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
 
     A factor is as many deviations off 1 as the likelihood without it says (its signed root).
     """
-    best, scale, masses = o.best, o.verdict.scale, o.request.masses
+    best, masses = o.best, o.request.masses
     s = best.suspects[number]
     (c, row), spot, sizes = o.places(s)[place], o.region(s, place), np.exp(s.theta)
     places = o.whole.places[number]
@@ -201,7 +196,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
     magnitude = magnitude_of(c, row, sizes, intervals, masses)
     first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)
     interval = (float(first[0]), float(first[1]))
-    rows = explained(o.searcher, best, number, scale)
+    rows = explained(o.searcher, best, number)
     modes = [int(o.request.numbers[j]) for j in rows if j not in o.whole.unexplained]
     where = Where.of(c.where[row], c.xyz[row], region=spot)
     many = len(o.places(s))
@@ -215,7 +210,7 @@ def _credible(o: _Outcome, number: int, place: int, places: Sequence[Place]) -> 
 
     By every position of the test that is as good.
     """
-    others = instead(o.searcher, o.found, o.verdict, number)
+    others = instead(o.searcher, o.found, o.accepted, number)
     every = [*((p.suspect, p.weight) for p in places), *others]
     at = [(w, *o.places(s)[min(place, len(o.places(s)) - 1)]) for s, w in every]
     alignment = o.request.placed.alignment
@@ -269,16 +264,16 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
         return tuple(c.kind.name for c, _ in named(f))
 
     seen: dict[tuple[str, ...], Fit] = {}
-    for f in sorted((f for level in o.found.rivals for f in level), key=o.behind):
+    for f in sorted((f for level in o.found.rivals for f in level), key=objective_of):
         if kinds_of(f) != kinds_of(o.best) or any(f is g for g in o.rivals):
             seen.setdefault(kinds_of(f), f)
     out = []
-    for kinds, f in islice(seen.items(), NARRATIVE.alternatives):
+    for kinds, f in sorted(seen.items(), key=lambda item: o.behind(item[1])):
         xyz = [c.xyz[row] for c, row in named(f)]
         regions = tuple(spot_of(o.request.structure.model.geometry, c, row) for c, row in named(f))
         said = effects_said(kinds, regions)
         out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions))
-    if o.verdict.accepted:
+    if o.accepted:
         ratio = o.times_less_likely(o.found.levels[0])
         out.append(alternative((), (), ratio, "the known parameters alone"))
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
@@ -286,7 +281,7 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
 
 def _would_decide(o: _Outcome, held: Bools) -> tuple[str, ...]:
     """Say which sensors and modes tell the best hypotheses apart."""
-    simpler = o.found.levels[: o.verdict.accepted][-1:]
+    simpler = o.found.levels[: o.accepted][-1:]
     rivals = sorted((*o.rivals, *simpler), key=o.behind)
     near = [f for f in rivals if o.behind(f) < NARRATIVE.rival] or rivals[:1]
     told_apart = tuple((_in_words(o, f), f) for f in near[: NARRATIVE.rivals])

@@ -24,7 +24,7 @@ class NarrativeNumbers:
     hardly: float = number(20.0, "-", "quotient of the ends of an interval from which on a magnitude is hardly known")
     alternatives: int = number(5, "alternatives", "that are told, at most", READER)
     rivals: int = number(3, "hypotheses", "that further data should tell from the best, at most", READER)
-    rival: float = number(14.0, "2 ln L", "how far behind the best they are, at most", "a thousand times less likely")
+    rival: float = number(7.0, "ln L", "how far behind the best they are, at most", "a thousand times less likely")
 
     damper_sure: float = number(0.6, "-", "posterior of a dashpot at its place from which on it is an effect")
     damper_listed: float = number(0.5, "-", "posterior of a dashpot anywhere from which on it is a finding")

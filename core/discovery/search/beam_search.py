@@ -8,62 +8,29 @@ are grown again, until one more suspect no longer earns its place.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit, distinct, softened
 from ..likelihood.map_fit import evaluate
-from .moves import Searcher, noise_scale
+from .found import Found, objective_of
+from .model_selection import enough, hopeless, usual
+from .moves import Searcher
 from .search_numbers import SEARCH
-
-
-@dataclass(frozen=True, eq=False)
-class Found:
-    """The best hypothesis for each number of suspects, and rivals.
-
-    `levels` [k] is the best fit with k suspects; `rivals` are other fits with as many suspects as
-    the best one, best first, places or kinds apart.
-    """
-
-    levels: tuple[Fit, ...]
-    rivals: tuple[tuple[Fit, ...], ...]
-
-    def with_level(self, f: Fit) -> Found:
-        """Return the same with another best hypothesis of as many suspects."""
-        k = len(f.suspects)
-        return Found((*self.levels[:k], f, *self.levels[k + 1 :]), self.rivals)
-
-    def with_richer(self, f: Fit) -> Found:
-        """Return the same with a hypothesis of one suspect more than some level, if it is best."""
-        k = len(f.suspects)
-        if k == len(self.levels):
-            return Found((*self.levels, f), (*self.rivals, ()))
-        better, other = sorted((f, self.levels[k]), key=objective_of)
-        return self.with_level(better).with_rivals((other,))
-
-    def with_rivals(self, fits: Iterable[Fit]) -> Found:
-        """Return the same with further rivals, each to those of as many suspects."""
-        rivals = [list(level) for level in self.rivals]
-        for f in fits:
-            rivals[len(f.suspects)].append(f)
-        return Found(self.levels, tuple(map(tuple, rivals)))
 
 
 def grown(
     searcher: Searcher,
-    enough: Callable[[Fit, Fit, float], bool],
     progress: Callable[[str], None] = lambda _: None,
     first: Sequence[Fit] = (),
     explains: Callable[[Fit], bool] = lambda _: False,
 ) -> Found:
     """Grow the beam until one more suspect no longer earns its place.
 
-    ``enough(previous, next, share)`` says whether the richer fit is not worth that share of what
-    its suspects cost; `first` are hypotheses of no suspect, one and more, the last of which is
-    grown; ``explains(fit)`` ends the search where a hypothesis leaves nothing to explain.
+    `first` are hypotheses of no suspect, one and more, the last of which is grown;
+    ``explains(fit)`` ends the search where a hypothesis leaves nothing to explain.
     """
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]
@@ -83,12 +50,12 @@ def grown(
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
             best = min(found, key=objective_of)
-            if depth > 1 and enough(levels[-1], best, SEARCH.hopeless):
+            if depth > 1 and hopeless(searcher, levels[-1], best):
                 break
         chosen = _distinct(searcher, sorted(found, key=objective_of))
         if not chosen:
             break
-        if depth > 1 and enough(levels[-1], chosen[0], SEARCH.hopeless):
+        if depth > 1 and hopeless(searcher, levels[-1], chosen[0]):
             levels.append(chosen[0])
             rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
             break
@@ -103,7 +70,7 @@ def grown(
         rivals.append(rest[: SEARCH.rivals_kept])
         previous = levels[-1]
         levels.append(best)
-        if enough(previous, best, 1.0):
+        if enough(searcher, previous, best):
             break
         beam = sorted(_near(searcher, beam, base), key=objective_of)
     return Found(tuple(levels), tuple(rivals))
@@ -113,10 +80,10 @@ def _as_the_deck(searcher: Searcher, null: Fit) -> list[Fit]:
     """Return the known parameters as the deck has them, the error of the mesh as fitted.
 
     Where something large is missing the known parameters have gone far to make up for it; what
-    is right then fits to modes that they have spoilt. Nothing where they have not moved, or hardly
-    leave more than scatter.
+    is right then fits to modes that they have spoilt. Nothing where they have not moved, or leave
+    no more than right models do.
     """
-    if noise_scale(searcher.problem, null) <= SEARCH.complete:
+    if usual(searcher, null):
         return []
     mesh = np.arange(len(null.nuisance)) == len(null.nuisance) - 1
     as_it_is = null.nuisance * mesh
@@ -135,11 +102,6 @@ def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
     return close[: searcher.effort.beam - 1]
-
-
-def objective_of(f: Fit) -> float:
-    """Return what hypotheses are ordered by: misfit and prior, -2 ln."""
-    return f.objective
 
 
 def _varied(

@@ -23,11 +23,10 @@ from ..model_error.geometry_error import Misshapen
 from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.support_reach import Reach
-from .beam_search import Found
 from .credible_places import Place, alike, credible_places, middle
+from .found import Found
 from .last_look import looked_again
 from .model_selection import (
-    Judgement,
     Scored,
     adequacy_of,
     by_such_a_test,
@@ -171,7 +170,7 @@ def lacks_nothing(deck: Judged, alone: Judged) -> bool:
 def completeness(
     searcher: Searcher,
     found: Found,
-    verdict: Judgement,
+    accepted: int,
     deck: Judged,
 ) -> tuple[Searcher, Found, int, Completeness]:
     """Return the best of what was found, the number of its suspects, and how well it explains.
@@ -189,7 +188,7 @@ def completeness(
     if alone is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
     enough = alone.diffuse.error <= MODEL_ERROR.usual or lacks_nothing(deck, alone)
-    most = min(max(verdict.accepted, 0 if enough else 1), len(found.levels) - 1)
+    most = min(max(accepted, 0 if enough else 1), len(found.levels) - 1)
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):
@@ -210,7 +209,7 @@ def completeness(
         poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     number = kept(searcher, levels)
-    best, told, places = _centred(searcher, levels[number], fields[number], verdict.scale)
+    best, told, places = _centred(searcher, levels[number], fields[number])
     found = _led(found, told.fit)
     others = contenders(searcher, found, number)
     rivals = [s for s in fields[number] if any(s.fit is f for f in others)]
@@ -232,13 +231,12 @@ def _unsettled(best: Scored) -> bool:
 
     Not at several suspects that leave more error than a right model does.
     """
-    several = len(best.fit.suspects) > 1
     adequate = best.judged is not None and by_such_a_test(best.judged) > MODEL_ERROR.adequate
-    return adequate or not several
+    return adequate or len(best.fit.suspects) < 2
 
 
 def _centred(
-    searcher: Searcher, best: Scored, tried: Sequence[Scored], scale: float
+    searcher: Searcher, best: Scored, tried: Sequence[Scored]
 ) -> tuple[Scored, Scored, list[list[Place]]]:
     """Return a hypothesis, that in the middle of where and how large it may be, and the places.
 
@@ -251,7 +249,7 @@ def _centred(
     for q, c in enumerate(kinds):
         if gives(c):
             continue
-        places = credible_places(searcher, best.fit, q, scale)
+        places = credible_places(searcher, best.fit, q)
         for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
             s, suspects = places[middle(c, places)].suspect, best.fit.suspects
             if s.row == suspects[q].row:
@@ -261,7 +259,7 @@ def _centred(
             if 2.0 * (best.score - new.score) > SEARCH.credible:
                 break
             best = new
-            places = credible_places(searcher, best.fit, q, scale)
+            places = credible_places(searcher, best.fit, q)
         every[q] = places
     told = best
     for q, c in enumerate(kinds):

@@ -12,7 +12,7 @@ from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
 from .model_selection import Scored
-from .moves import Searcher
+from .moves import Searcher, noise_scale
 from .search_numbers import SEARCH
 
 
@@ -24,14 +24,14 @@ class Place:
     weight: float
 
 
-def credible_places(searcher: Searcher, best: Fit, number: int, scale: float) -> list[Place]:
+def credible_places(searcher: Searcher, best: Fit, number: int) -> list[Place]:
     """Return the places of one suspect that explain the data about as well, likeliest first.
 
     Parameters, sizes and other suspects follow at every place: a spring nearer to a clamp and
     stiffer does what one further off does. Those within a likelihood ratio of exp(3) of the
     best are kept.
     """
-    suspect = best.suspects[number]
+    suspect, scale = best.suspects[number], noise_scale(searcher.problem, best)
     before, after = best.suspects[:number], best.suspects[number + 1 :]
     c = searcher.problem.catalogue[suspect.kind]
     away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)

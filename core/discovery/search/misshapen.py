@@ -16,8 +16,8 @@ from ..model_error.diffuse_fit import Judged, everything, judged, seen
 from ..model_error.geometry_error import Deviation, Misshapen, Movable, misshapen, with_deviation
 from ..model_error.geometry_shapes import Shape, shapes_of
 from ..model_error.model_error_numbers import MODEL_ERROR
-from .beam_search import Found
 from .completeness import Completeness, nothing_found
+from .found import Found
 from .model_selection import scored, worth_telling
 from .moves import Searcher
 from .own_basis import Ground

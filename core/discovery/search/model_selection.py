@@ -1,6 +1,6 @@
 """Does a richer hypothesis earn its place, and what else could it be."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,25 +11,13 @@ from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, unmatched
-from ..likelihood.map_fit import mode_misfits, on_whole_test, solve
+from ..likelihood.map_fit import mode_misfits, solve
 from ..model_error.adequacy import adequacy, as_many_astray
 from ..model_error.diffuse_fit import Judged
 from ..model_error.model_error_numbers import MODEL_ERROR
-from .beam_search import Found
+from .found import Found
 from .moves import Searcher, noise_scale
 from .search_numbers import SEARCH
-
-
-@dataclass(frozen=True, eq=False)
-class Judgement:
-    """What the search amounts to.
-
-    `scale` multiplies every variance: the misfit that the best hypothesis leaves, per degree of
-    freedom, but at least 1. `accepted` is the number of suspects that earn their place.
-    """
-
-    scale: float
-    accepted: int
 
 
 def price(searcher: Searcher, suspect: Suspect) -> float:
@@ -47,16 +35,6 @@ def choices(searcher: Searcher, suspect: Suspect) -> int:
         if c.kind == kind
     )
     return max(number, 2) * len({c.kind for c in catalogue})
-
-
-def burden(searcher: Searcher, f: Fit) -> float:
-    """Return what all suspects of a hypothesis must lower the objective by.
-
-    Two suspects of one nature side by side are more likely one effect whose shape the catalogue
-    does not have, so the second costs more.
-    """
-    total = sum(price(searcher, s) for s in f.suspects)
-    return total + 2.0 * _bodies(searcher, f) + SEARCH.same_effect * len(side_by_side(searcher, f))
 
 
 def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
@@ -79,32 +57,16 @@ def _bodies(searcher: Searcher, f: Fit) -> float:
     return sum(c.paid for c in known if c)
 
 
-def judge(searcher: Searcher, found: Found) -> Judgement:
-    """Choose the number of suspects by penalised likelihood of the whole test.
+def chosen(searcher: Searcher, found: Found) -> int:
+    """Return the number of suspects that earn their place, see `kept`, or that may yet.
 
     Modes and sensors that were held out from the search count as well as those that it fitted:
-    an effect that does not foretell them loses what it gained. The penalty of a suspect is twice
-    the log of the number of places it could have been at (its prior) and a margin; the noise is
-    scaled by what the best hypothesis leaves. Where what is chosen so could not be claimed, what it
-    leaves is no noise; richer ones that gain enough for a claim count by the error of the model.
+    an effect that does not foretell them loses what it gained. Where the known parameters alone are
+    not adequate, one suspect is worth a closer look.
     """
-    best = with_unseen(searcher, min(found.levels, key=lambda f: f.objective))
-    scale = noise_scale(searcher.problem, best)
-    accepted = int(np.argmin([cost(searcher, f, scale) for f in found.levels]))
-    if accepted + 1 < len(found.levels) and not _settles(searcher, found, accepted):
-        levels = [scored(searcher, f) for f in found.levels]
-        richer = levels[kept(searcher, levels)]
-        if richer.judged and richer.score - levels[0].score > needed(richer.judged):
-            accepted = max(accepted, len(richer.fit.suspects))
-    return Judgement(scale, accepted)
-
-
-def _settles(searcher: Searcher, found: Found, number: int) -> bool:
-    """Whether a hypothesis explains so much that a richer one has to be worth its price."""
-    if not number:
-        return adequate(searcher, found.levels[0])
-    alone, best = (searcher.judged(searcher.problem, found.levels[k]) for k in (0, number))
-    return alone is not None and best is not None and stands(alone, best)
+    levels = [scored(searcher, f) for f in found.levels]
+    least = 0 if leaves_as_right_models(levels[0].judged) else 1
+    return min(max(kept(searcher, levels), least), len(levels) - 1)
 
 
 def stands(alone: Judged, best: Judged) -> bool:
@@ -118,22 +80,6 @@ def stands(alone: Judged, best: Judged) -> bool:
     left = best.diffuse.error / alone.diffuse.error
     least = SEARCH.usual_left * left if before <= after else 0.0
     return bool(adequacy_of(best) > MODEL_ERROR.claimed and by_such_a_test(best) > least)
-
-
-def cost(searcher: Searcher, f: Fit, scale: float) -> float:
-    """Return what a hypothesis leaves of the whole test, by the noise, and its burden.
-
-    Modes that it has too many count as well: an absorber adds one, which a test would see.
-    Frequency responses, where there are any, count by a noise of their own.
-    """
-    f = with_unseen(searcher, f)
-    left = (f.objective + (f.unseen or 0.0)) / scale + SEARCH.overlooked * (f.surplus or 0.0)
-    return left + burden(searcher, f) + misfit_of_responses(searcher.problem, f)
-
-
-def with_unseen(searcher: Searcher, f: Fit) -> Fit:
-    """Return a fit that knows what it leaves of the modes and sensors held out."""
-    return f if f.unseen is not None else on_whole_test(searcher.problem, f)
 
 
 def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
@@ -167,7 +113,10 @@ def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
     judged = searcher.judged(searcher.problem, f, least)
-    return Scored(f, judged, -np.inf if judged is None else judged.evidence - paid)
+    if judged is None:
+        return Scored(f, None, -np.inf)
+    heard = 0.5 * misfit_of_responses(searcher.problem, f)
+    return Scored(f, judged, judged.evidence - paid - heard)
 
 
 def ranked(searcher: Searcher, fits: Iterable[Fit], known: Sequence[Scored] = ()) -> list[Scored]:
@@ -220,12 +169,12 @@ def worth_telling(alone: Judged, error: float) -> float:
 
 
 def earned(richer: Scored, poorer: Scored) -> bool:
-    """Whether a richer hypothesis is likelier than a poorer one by what an effect more needs.
+    """Whether a richer hypothesis is likelier than a poorer one by what each effect more needs.
 
     What an effect more explains of an error that right models leave half of the time is most
     likely such an error: there it needs `claimed` a mode.
     """
-    gain = richer.score - poorer.score
+    gain = _gain_each(richer, poorer)
     if richer.judged is None or poorer.judged is None or not poorer.fit.suspects:
         return gain > SEARCH.suspect
     if by_such_a_test(poorer.judged) > 0.5:
@@ -237,11 +186,22 @@ def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Score
     """Whether a richer hypothesis earns its place and is no rest of what the poorer one has.
 
     An effect of another shape than those of the catalogue leaves a share of what it gains over the
-    known parameters `alone`, which one more of its nature beside it takes up.
+    known parameters `alone`, which one more of its nature beside it takes up: that one has to gain
+    more than such a share, and `claimed` a mode.
     """
-    beside = len(side_by_side(searcher, richer.fit)) > len(side_by_side(searcher, poorer.fit))
-    rest = SEARCH.rest * (poorer.score - alone.score) if beside else 0.0
-    return earned(richer, poorer) and richer.score - poorer.score > rest
+    if not earned(richer, poorer):
+        return False
+    if len(side_by_side(searcher, richer.fit)) <= len(side_by_side(searcher, poorer.fit)):
+        return True
+    rest = SEARCH.rest * (poorer.score - alone.score)
+    least = SEARCH.claimed * len(richer.judged.diffuse.each) if richer.judged else np.inf
+    return _gain_each(richer, poorer) > max(rest, least)
+
+
+def _gain_each(richer: Scored, poorer: Scored) -> float:
+    """Return the gain of a richer hypothesis over a poorer one for each suspect more."""
+    more = len(richer.fit.suspects) - len(poorer.fit.suspects)
+    return (richer.score - poorer.score) / max(more, 1)
 
 
 def by_such_a_test(judged: Judged) -> float:
@@ -258,23 +218,23 @@ def adequacy_of(judged: Judged) -> float:
 
 def complete(searcher: Searcher, f: Fit) -> bool:
     """Whether a hypothesis leaves no error that could be told from scatter."""
-    if noise_scale(searcher.problem, f) > SEARCH.complete:
-        return False
     judged = searcher.judged(searcher.problem, f)
     return judged is not None and judged.diffuse.complete
 
 
 def usual(searcher: Searcher, f: Fit) -> bool:
     """Whether a hypothesis leaves no more error than right models usually do."""
-    if noise_scale(searcher.problem, f) > SEARCH.complete:
-        return False
     judged = searcher.judged(searcher.problem, f)
     return judged is not None and judged.diffuse.error <= MODEL_ERROR.usual
 
 
 def adequate(searcher: Searcher, f: Fit) -> bool:
     """Whether a hypothesis leaves an error as right models do, and hardly a mode unexplained."""
-    judged = searcher.judged(searcher.problem, f)
+    return leaves_as_right_models(searcher.judged(searcher.problem, f))
+
+
+def leaves_as_right_models(judged: Judged | None) -> bool:
+    """Whether an error as large is no rarity, whatever the test scatters, and few modes astray."""
     if judged is None:
         return False
     left = judged.diffuse
@@ -282,31 +242,26 @@ def adequate(searcher: Searcher, f: Fit) -> bool:
     return bool(strays and adequacy(left.error) > MODEL_ERROR.adequate)
 
 
-def enough(searcher: Searcher) -> Callable[[Fit, Fit, float], bool]:
-    """Return the rule that ends the search: one more suspect is not worth its price.
+def hopeless(searcher: Searcher, previous: Fit, best: Fit) -> bool:
+    """Whether one more suspect gains next to nothing of its price before it is moved about."""
+    return _worth(searcher, previous, best) < SEARCH.hopeless
 
-    What an incomplete hypothesis leaves is not noise, so the noise counts as at most a few times
-    the assumed one here, unless the poorer one is adequate and the richer one no likelier by the
-    error of the model. By that, too, one may be worth it that hardly fits better: modes that are
-    far off count alike, however far. `judge` weighs again with what the best hypothesis leaves.
+
+def _worth(searcher: Searcher, previous: Fit, best: Fit) -> float:
+    """Return what one more suspect gains in the fit, over its price."""
+    return (previous.objective - best.objective) / max(price(searcher, s) for s in best.suspects)
+
+
+def enough(searcher: Searcher, previous: Fit, best: Fit) -> bool:
+    """Whether one more suspect neither pays well nor earns its place, which ends the search.
+
+    By the error of the model one may earn it that hardly fits better: modes that are far off count
+    alike, however far. What pays well may beside another one; not what an adequate one leaves.
     """
-
-    def rule(previous: Fit, best: Fit, share: float) -> bool:
-        scale = noise_scale(searcher.problem, best)
-        added = burden(searcher, best) - burden(searcher, previous)
-        added = max(added, *(price(searcher, s) for s in best.suspects))
-        gain = (previous.objective - best.objective) / (share * added)
-        if gain >= scale:
-            return False
-        pays = gain >= SEARCH.most_noise
-        if pays and not (previous.suspects and adequate(searcher, previous)):
-            return False
-        if not pays and (share < 1.0 or scale <= SEARCH.most_noise):
-            return True
-        before = scored(searcher, previous)
-        return not earned(scored(searcher, best, before), before)
-
-    return rule
+    if _worth(searcher, previous, best) > SEARCH.pays and not adequate(searcher, previous):
+        return False
+    before = scored(searcher, previous)
+    return not earned(scored(searcher, best, before), before)
 
 
 def _unmatched(
@@ -341,25 +296,26 @@ def _directions(c: Candidates, row: int) -> set[int]:
 
 
 def instead(
-    searcher: Searcher, found: Found, verdict: Judgement, number: int
+    searcher: Searcher, found: Found, accepted: int, number: int
 ) -> list[tuple[Suspect, float]]:
     """Return suspects of rivals that take the place of one of the accepted, with weights.
 
     Rivals within a likelihood ratio of exp(3) that differ in this suspect alone; the weight is
     relative to the accepted hypothesis.
     """
-    best = found.levels[verdict.accepted]
-    here = cost(searcher, best, verdict.scale)
+    best = found.levels[accepted]
+    here = scored(searcher, best)
     out = []
     for f in (f for level in found.rivals for f in level):
         alone, others = _unmatched(searcher, best, f, by_nature=False)
-        behind = cost(searcher, f, verdict.scale) - here
-        if alone == [number] and len(others) == 1 and behind < SEARCH.credible:
-            out.append((others[0], float(np.exp(-0.5 * max(behind, 0.0)))))
+        if alone == [number] and len(others) == 1:
+            behind = max(here.score - scored(searcher, f, here).score, 0.0)
+            if 2.0 * behind < SEARCH.credible:
+                out.append((others[0], float(np.exp(-behind))))
     return out
 
 
-def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple[int, ...]:
+def explained(searcher: Searcher, best: Fit, number: int) -> tuple[int, ...]:
     """Return which test modes one of the suspects explains, as rows of the whole test.
 
     Those whose misfit rises clearly where the suspect is taken away and nothing else moves.
@@ -369,7 +325,7 @@ def explained(searcher: Searcher, best: Fit, number: int, scale: float) -> tuple
     left, kept = (
         mode_misfits(p, *solve(p, best.nuisance, suspects)) for suspects in (others, best.suspects)
     )
-    gained = (left - kept) / scale
+    gained = (left - kept) / noise_scale(searcher.problem, best)
     clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())
     return tuple(int(j) for j in np.flatnonzero(clear))
 

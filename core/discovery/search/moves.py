@@ -362,11 +362,8 @@ def _some(rows: Ints, count: int) -> Ints:
 
 
 def noise_scale(problem: Problem, best: Fit) -> float:
-    """Return how many times the assumed variance the best fit leaves, at least 1.
-
-    What was held out from the fit counts as well, where its misfit is known.
-    """
-    e = problem.evidence if best.unseen is None else problem.whole
+    """Return how many times the assumed variance a fit leaves of the whole test, at least 1."""
+    misfit = evaluate(problem.entire(), best.nuisance, best.suspects).misfit
     found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
-    freedom = SEARCH.per_mode * len(e.frequencies_hz) - len(best.active) - found
-    return max(1.0, (best.misfit + (best.unseen or 0.0)) / max(freedom, 1.0))
+    freedom = SEARCH.per_mode * len(problem.whole.frequencies_hz) - len(best.active) - found
+    return max(1.0, misfit / max(freedom, 1.0))

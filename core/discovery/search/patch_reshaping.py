@@ -25,24 +25,21 @@ from .moves import Searcher
 from .search_numbers import SEARCH
 
 
-def reshaped(searcher: Searcher, state: Fit, scale: float) -> tuple[Searcher, Fit]:
-    """Return a hypothesis with patches of better shapes, and a searcher that knows them.
-
-    The noise has `scale` times the assumed variance: a step has to gain that much more.
-    """
+def reshaped(searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
+    """Return a hypothesis with patches of better shapes, and a searcher that knows them."""
     for q in range(len(state.suspects)):
         for _ in range(SEARCH.reshape_steps):
-            better = _step(searcher, state, q, scale)
+            better = _step(searcher, state, q)
             if better is None:
                 break
             searcher, state = better
     return searcher, state
 
 
-def _step(searcher: Searcher, state: Fit, q: int, scale: float) -> tuple[Searcher, Fit] | None:
+def _step(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
-    worth = 2.0 * scale * np.log(1.0 + len(options))
+    worth = 2.0 * np.log(1.0 + len(options))
     for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
         trial = _with(wide, state, q, option)
         if trial.objective < state.objective - worth:

@@ -13,7 +13,7 @@ from ..effects import support_flexibility
 from ..effects.candidates import Suspect
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.map_fit import evaluate, fit, on_whole_test
+from ..likelihood.map_fit import evaluate, fit
 from ..likelihood.mode_likelihood import Evidence, targets
 from ..model_error.beside_fields import with_drift, with_known
 from ..model_error.diffuse_fit import Judged, everything
@@ -36,7 +36,7 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
         own = complete_model(ground, problem, state)
         active = tuple(range(len(state.nuisance)))
         new = fit(own.problem, state.nuisance, own.start, active, SEARCH.steps_polished)
-        before, state = state, replace(on_whole_test(own.problem, new), suspects=_back(state, new))
+        before, state = state, replace(new, suspects=_back(state, new))
         if _follows(problem, before, state):
             break
     return state
@@ -182,7 +182,7 @@ def _beside_mesh(problem: Problem, state: Fit) -> Problem:
 def _in_deck(own: Problem, found: Fit) -> tuple[InDeck, Fit]:
     """Return the known parameters of a fit for a deck, its effects held as they are; the fit."""
     free = fit(own, found.nuisance, found.suspects, everything(own), SEARCH.steps_polished)
-    scale = noise_scale(own, on_whole_test(own, free))
+    scale = noise_scale(own, free)
     n = len(found.log_p)
     known = in_deck(free.log_p, free.information, scale, own.prior.spread[:n])
     held = tuple(

@@ -8,8 +8,8 @@ from ..effects.candidates import Suspect
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import fit
 from ..model_error.support_reach import Reach, Reaches
-from .beam_search import Found
 from .completeness import Completeness, nothing_found
+from .found import Found
 from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH

@@ -14,36 +14,33 @@ import numpy as np
 from ..effects.candidates import parted
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
-from .beam_search import Found, grown, objective_of
+from .beam_search import grown
 from .equipment_growth import equipped
+from .found import Found, objective_of
 from .model_selection import (
     adequate,
+    chosen,
     complete,
-    cost,
     earned,
-    enough,
-    judge,
-    price,
+    hopeless,
+    ranked,
     scored,
     usual,
-    with_unseen,
 )
-from .moves import Searcher, noise_scale
+from .moves import Searcher
 from .search_numbers import SEARCH
 
 
 def searched(
     searcher: Searcher,
     progress: Callable[[str], None] = lambda _: None,
-    explained: Callable[[Searcher, Fit, float], bool] = lambda s, f, _: usual(s, f),
+    explained: Callable[[Searcher, Fit], bool] = lambda s, f: usual(s, f),
 ) -> Found:
     """Search with all kinds but the late ones, and with these where much is left.
 
-    ``explained(searcher, best, scale)`` says where not, `scale` being that of the noise.
-    A tuned one is not looked for where an adequate explanation was found: it would imitate what
-    that leaves. Where not even one suspect pays, what two that hide each other leave is taken for
-    noise, so late kinds are tried beside that one as well, and the search goes on from what fits
-    far better than all else, whether or not it pays.
+    ``explained(searcher, best)`` says where not. A tuned one is not looked for where an adequate
+    explanation was found: it would imitate what that leaves. Where not even one suspect pays, late
+    kinds are tried beside the best one as well: two that hide each other hardly pay alone.
     """
     kinds = [c.kind.late for c in searcher.problem.catalogue]
     simple = _with(searcher, [not late for late in kinds])
@@ -52,13 +49,12 @@ def searched(
         """Whether a hypothesis leaves nothing, or masses on footprints what right models do."""
         laws = [searcher.problem.catalogue[s.kind].law for s in f.suspects]
         masses = bool(laws) and all(law.acts_on == "M" for law in laws)
-        laid = masses and adequate(simple, f) and explained(searcher, f, _scale_of(searcher, f))
+        laid = masses and adequate(simple, f) and explained(searcher, f)
         return laid or complete(simple, f)
 
-    found = grown(simple, enough(simple), progress, explains=explains)
-    scale, costs = _scale(searcher, found, found), _costs(searcher, found, found)
-    best = int(np.argmin(costs))
-    if not any(kinds) or explained(searcher, found.levels[best], scale):
+    found = grown(simple, progress, explains=explains)
+    best = chosen(searcher, found)
+    if not any(kinds) or explained(searcher, found.levels[best]):
         return found
     stands = bool(best) and adequate(searcher, found.levels[best])
     if stands or complete(searcher, found.levels[-1]):
@@ -70,25 +66,17 @@ def searched(
     beside = [f for level in found.levels[first : best + 1] for f in _beside(alone, level)]
     if not best:
         beside += [f for level in found.levels[1:2] for f in _beside(alone, level, 1)]
-    tried = [(cost(searcher, f, scale), f) for f in beside]
-    least, top = min(tried, key=lambda t: t[0], default=(np.inf, None))
-    if top is None or (least > costs[best] and not _leads(searcher, found, top)):
+    best_so_far = scored(searcher, found.levels[best])
+    top = next(iter(ranked(searcher, beside)), best_so_far)
+    if top.score <= best_so_far.score:
         return found.with_rivals(f for f in beside if len(f.suspects) <= best)
-    levels = [*found.levels[: len(top.suspects)], top]
-    return _better(searcher, found, grown(simple, enough(searcher), progress, levels))
+    levels = [*found.levels[: len(top.fit.suspects)], top.fit]
+    return _likelier(searcher, found, grown(simple, progress, levels))
 
 
-def _leads(searcher: Searcher, found: Found, f: Fit) -> bool:
-    """Whether a hypothesis is better than all of as many suspects and the search not at its end."""
-    number = len(f.suspects)
-    first = number == len(found.levels) or f.objective < found.levels[number].objective
-    return first and not enough(searcher)(found.levels[number - 1], f, 1.0)
-
-
-def _better(searcher: Searcher, found: Found, other: Found) -> Found:
+def _likelier(searcher: Searcher, *ways: Found) -> Found:
     """Return the likelier of two outcomes with the levels of the other among its rivals."""
-    if min(_costs(searcher, other, found)) < min(_costs(searcher, found, other)):
-        found, other = other, found
+    other, found = sorted(ways, key=lambda way: _evidence(searcher, way))
     return _beside_others(found, other)
 
 
@@ -102,13 +90,12 @@ def _beside_others(found: Found, other: Found) -> Found:
 def bettered(
     searcher: Searcher,
     found: Found,
-    better: Callable[[Searcher, Fit, float], tuple[Searcher, Fit]],
+    better: Callable[[Searcher, Fit], tuple[Searcher, Fit]],
 ) -> tuple[Searcher, Found]:
     """Give patches better shapes, or masses stands, in what is chosen and with a suspect less."""
-    verdict = judge(searcher, found)
-    levels = list(found.levels)
-    for k in range(max(verdict.accepted - 1, 1), verdict.accepted + 1):
-        searcher, levels[k] = better(searcher, levels[k], verdict.scale)
+    accepted, levels = chosen(searcher, found), list(found.levels)
+    for k in range(max(accepted - 1, 1), accepted + 1):
+        searcher, levels[k] = better(searcher, levels[k])
     return searcher, Found(tuple(levels), found.rivals)
 
 
@@ -118,7 +105,7 @@ def unlike(searcher: Searcher, found: Found) -> Found:
     Two masses at places that are nearly each other's images look like twins and a third. Where the
     second belongs shows by the noise as it is: a softened one holds it where the twins had it.
     """
-    number = judge(searcher, found).accepted
+    number = chosen(searcher, found)
     twins = found.levels[number]
     for apart in parted(searcher.problem.catalogue, twins.suspects):
         near = searcher.fitted(twins, apart, SEARCH.steps_new, soften=True)
@@ -139,41 +126,25 @@ def on_stands(
     What was found beside a mass on no stand made up for its stand. Not where little is left.
     """
 
-    def standing(s: Searcher, f: Fit, _: float) -> tuple[Searcher, Fit]:
+    def standing(s: Searcher, f: Fit) -> tuple[Searcher, Fit]:
         return equipped(structure, s, f)
 
     searcher, new = bettered(searcher, found, standing)
     pairs = enumerate(zip(new.levels, found.levels, strict=True))
     first = next((k for k, (f, old) in pairs if f is not old), None)
-    chosen = new.levels[judge(searcher, new).accepted]
-    if first is None or adequate(searcher, chosen):
+    best = new.levels[chosen(searcher, new)]
+    if first is None or usual(searcher, best):
         return searcher, new
     progress("searching on beside equipment on its stand")
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
-    other = grown(simple, enough(simple), progress, new.levels[: first + 1])
+    other = grown(simple, progress, new.levels[: first + 1])
     searcher, other = bettered(searcher, other, standing)
-    ways = sorted((new, other), key=lambda way: _evidence(searcher, way))
-    return searcher, _beside_others(ways[1], ways[0])
+    return searcher, _likelier(searcher, new, other)
 
 
 def _evidence(searcher: Searcher, found: Found) -> float:
     """Return ln of the evidence for what is chosen of an outcome, by the error of the model."""
-    return scored(searcher, found.levels[judge(searcher, found).accepted]).score
-
-
-def _scale(searcher: Searcher, found: Found, other: Found) -> float:
-    best = min((*found.levels, *other.levels), key=lambda f: f.objective)
-    return _scale_of(searcher, best)
-
-
-def _scale_of(searcher: Searcher, f: Fit) -> float:
-    return noise_scale(searcher.problem, with_unseen(searcher, f))
-
-
-def _costs(searcher: Searcher, found: Found, other: Found) -> list[float]:
-    """Costs of the levels of one outcome, by the noise that the better of two leaves."""
-    scale = _scale(searcher, found, other)
-    return [cost(searcher, f, scale) for f in found.levels]
+    return scored(searcher, found.levels[chosen(searcher, found)]).score
 
 
 def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
@@ -195,7 +166,7 @@ def _beside(searcher: Searcher, state: Fit, few: int = SEARCH.late_moved) -> lis
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
-        if state.objective - new.objective > SEARCH.hopeless * price(searcher, branch):
+        if not hopeless(searcher, state, new):
             fits.setdefault(branch.kind, []).append(new)
     first = (sorted(own, key=objective_of)[:few] for own in fits.values())
     return [min(map(searcher.refined, own), key=objective_of) for own in first]

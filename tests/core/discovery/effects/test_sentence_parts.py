@@ -108,6 +108,6 @@ def test_a_mass_explains_the_modes_that_move_where_it_sits():
     s = searcher(hidden(masses=[(15, 0.5), (16, 0.5)]), scatter=(0.0, 0.0))
     null = s.null()
     best = fit(s.problem, 0.0 * null.nuisance, (Suspect(0, 15, (0.0,)),), (0,), 20)
-    modes = np.array(explained(s, best, 0, 1.0)) + 1
+    modes = np.array(explained(s, best, 0)) + 1
     assert len(modes) >= 4
     assert set(modes % 2) == {1}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace as Some
 
 import numpy as np
 import pytest
@@ -26,8 +27,8 @@ from trueup.core.discovery.likelihood.frf_likelihood import (
     synthesised,
 )
 from trueup.core.discovery.likelihood.map_fit import fit
-from trueup.core.discovery.search.beam_search import Found
-from trueup.core.discovery.search.model_selection import cost, judge, with_unseen
+from trueup.core.discovery.search.found import Found
+from trueup.core.discovery.search.model_selection import chosen, scored
 
 DRIVEN = np.array([4, 17])
 ZETA = 0.006
@@ -154,15 +155,16 @@ def test_the_right_place_is_heard_and_a_wrong_one_is_not():
     assert heard_right < min(heard_wrong, heard_null) - 10.0
     deaf = replace(s, problem=replace(s.problem, heard=None))
     assert misfit_of_responses(deaf.problem, right) == 0.0
-    sound = with_unseen(s, right)
-    twin = replace(wrong, objective=sound.objective, unseen=sound.unseen)
-    assert cost(deaf, twin, 1.0) == pytest.approx(cost(deaf, sound, 1.0))
-    assert cost(s, twin, 1.0) > cost(s, sound, 1.0) + 10.0
+    alike = {"judged": lambda *_: Some(evidence=0.0)}
+    by_modes = [scored(replace(deaf, **alike), f).score for f in (right, wrong)]
+    by_both = [scored(replace(s, **alike), f).score for f in (right, wrong)]
+    assert by_modes[0] == pytest.approx(by_modes[1])
+    assert by_both[0] > by_both[1] + 5.0
 
 
 def test_responses_of_a_string_that_lacks_nothing_name_nothing():
     s, null = listening(hidden())
     light = fit(s.problem, null.nuisance, (Suspect(0, 7, (-3.0,)),), (0,), 20)
-    assert judge(s, Found((null, light), ((), ()))).accepted == 0
+    assert chosen(s, Found((null, light), ((), ()))) == 0
     gained = misfit_of_responses(s.problem, null) - misfit_of_responses(s.problem, light)
     assert abs(gained) < 10.0

@@ -9,9 +9,9 @@ import pytest
 from trueup.core.discovery.effects import point_mass
 from trueup.core.discovery.model_error.support_reach import Reach
 from trueup.core.discovery.search import completeness as room
-from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness, completeness
 from trueup.core.discovery.search.credible_places import Place
+from trueup.core.discovery.search.found import Found
 from trueup.core.discovery.search.model_selection import Scored
 
 
@@ -149,7 +149,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
     monkeypatch.setattr(
         room,
         "credible_places",
-        lambda s, f, q, _: [Place(Some(kind=0, row=r), 1.0) for r in alike or [f.suspects[q].row]],
+        lambda s, f, q: [Place(Some(kind=0, row=r), 1.0) for r in alike or [f.suspects[q].row]],
     )
     monkeypatch.setattr(room, "looked_again", lambda searcher, first, _: (searcher, [first]))
     monkeypatch.setattr(room, "lacks_nothing", lambda *_: nothing)
@@ -169,7 +169,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
         single=None,
     )
     searcher = Some(
-        problem=Some(catalogue=[kind]),
+        problem=Some(catalogue=[kind], heard=None),
         coarse=[np.arange(100)],
         size=size,
         effort=Some(apart=0.1),
@@ -178,7 +178,7 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
     )
     accepted = len(found.levels) - 1
     deck = judged(np.zeros(10))
-    return completeness(searcher, found, Some(accepted=accepted, scale=1.0), deck)[1:]
+    return completeness(searcher, found, accepted, deck)[1:]
 
 
 def test_a_suspect_that_gains_less_than_its_choices_is_dropped(monkeypatch):

@@ -12,8 +12,8 @@ from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.geometry_error import Misshapen
 from trueup.core.discovery.model_error.support_reach import Reach
 from trueup.core.discovery.search import misshapen
-from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness
+from trueup.core.discovery.search.found import Found
 from trueup.core.discovery.search.search_numbers import SEARCH
 
 SHAPE = 50.0

@@ -130,7 +130,7 @@ def searching(structure, K, added, catalogue):
 def test_a_patch_grows_and_shrinks_into_what_is_soft(start):
     soft = box((3, 7), (2, 5))
     s, state = suspecting(membrane(), soft, start)
-    wide, better = reshaped(s, state, 1.0)
+    wide, better = reshaped(s, state)
     suspect = better.suspects[0]
     c = wide.problem.catalogue[0]
     assert c.where[suspect.row]["elements"] == (soft + 1).tolist()
@@ -141,7 +141,7 @@ def test_a_patch_grows_and_shrinks_into_what_is_soft(start):
 def test_a_patch_that_is_right_stays():
     soft = box((3, 7), (2, 5))
     s, state = suspecting(membrane(), soft, soft)
-    assert reshaped(s, state, 1.0) == (s, state)
+    assert reshaped(s, state) == (s, state)
 
 
 def test_rows_are_taken_on_each_side():

@@ -12,8 +12,8 @@ from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.effects.effect_laws import FactorLaw
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.support_reach import KIND, Reaches
-from trueup.core.discovery.search.beam_search import Found
 from trueup.core.discovery.search.completeness import Completeness
+from trueup.core.discovery.search.found import Found
 from trueup.core.discovery.search.search_numbers import SEARCH
 from trueup.core.discovery.search.set_up import beside_reach
 

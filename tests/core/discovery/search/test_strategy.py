@@ -1,6 +1,7 @@
 """Simple explanations first, absorbers where these do clearly worse: on a string of beads."""
 
 from dataclasses import replace
+from types import SimpleNamespace as Some
 
 import numpy as np
 import pytest
@@ -9,15 +10,15 @@ from tests.core.discovery.strings import K, N, hidden, searcher
 from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect, factors_of, together, with_twins
 from trueup.core.discovery.search import strategy
-from trueup.core.discovery.search.beam_search import Found
-from trueup.core.discovery.search.model_selection import judge
+from trueup.core.discovery.search.found import Found
+from trueup.core.discovery.search.model_selection import chosen
 from trueup.core.discovery.search.strategy import searched, unlike
 
 
 def told(s):
     found = searched(s)
-    verdict = judge(s, found)
-    best = found.levels[verdict.accepted]
+    accepted = chosen(s, found)
+    best = found.levels[accepted]
     return [s.problem.catalogue[q.kind].kind.name for q in best.suspects], best
 
 
@@ -52,11 +53,17 @@ def test_late_kinds_are_looked_for_where_the_others_leave_more_than_is_usual(usu
     assert any("two places" in line for line in said) != usual
 
 
-@pytest.mark.parametrize(("left", "followed"), [(None, False), (1e4, False), (-1e4, True)])
-def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(left, followed, monkeypatch):
-    """Two that hide each other: neither pays while what both leave is taken for noise.
+@pytest.mark.parametrize(
+    ("left", "evidence", "followed"),
+    [(None, 0.0, False), (1e4, 0.0, False), (1e4, 21.0, True), (-1e4, 28.0, True)],
+)
+def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(
+    left, evidence, followed, monkeypatch
+):
+    """Two that hide each other: neither pays while the other is not there.
 
-    On goes the search with what is far better than all else of as many suspects.
+    On goes the search with what is likelier than the best or, of as many suspects, fits better
+    than all else and earns its place.
     """
     s = searcher(hidden(masses=[(5, 2.0)], absorbers=[(20, 0.8, 1.7)]), modes_out=(4, 10))
     null = s.null()
@@ -73,8 +80,11 @@ def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(left, followed
         grown.append(a)
         return Found((null, one), ((), ()))
 
-    monkeypatch.setattr(strategy, "_costs", lambda *_: [0.0, 1.0])
-    monkeypatch.setattr(strategy, "cost", lambda *_: 0.5)
+    error = Some(error=0.1, noise=0.02, each=np.zeros(4), stray=np.zeros(4), complete=False)
+    s = replace(
+        s, judged=lambda _, f, *least: Some(diffuse=error, evidence=evidence * (f is tuned))
+    )
+    monkeypatch.setattr(strategy, "chosen", lambda *_: 0)
     monkeypatch.setattr(strategy, "usual", lambda *_: False)
     monkeypatch.setattr(strategy, "complete", lambda *_: False)
     monkeypatch.setattr(strategy, "_beside", beside)

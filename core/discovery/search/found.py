@@ -1,0 +1,45 @@
+"""What a search comes to: the best hypothesis for each number of suspects, and its rivals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ..likelihood.hypothesis import Fit
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The best hypothesis for each number of suspects, and rivals.
+
+    `levels` [k] is the best fit with k suspects; `rivals` are other fits with as many suspects as
+    the best one, best first, places or kinds apart.
+    """
+
+    levels: tuple[Fit, ...]
+    rivals: tuple[tuple[Fit, ...], ...]
+
+    def with_level(self, f: Fit) -> Found:
+        """Return the same with another best hypothesis of as many suspects."""
+        k = len(f.suspects)
+        return Found((*self.levels[:k], f, *self.levels[k + 1 :]), self.rivals)
+
+    def with_richer(self, f: Fit) -> Found:
+        """Return the same with a hypothesis of one suspect more than some level, if it is best."""
+        k = len(f.suspects)
+        if k == len(self.levels):
+            return Found((*self.levels, f), (*self.rivals, ()))
+        better, other = sorted((f, self.levels[k]), key=objective_of)
+        return self.with_level(better).with_rivals((other,))
+
+    def with_rivals(self, fits: Iterable[Fit]) -> Found:
+        """Return the same with further rivals, each to those of as many suspects."""
+        rivals = [list(level) for level in self.rivals]
+        for f in fits:
+            rivals[len(f.suspects)].append(f)
+        return Found(self.levels, tuple(map(tuple, rivals)))
+
+
+def objective_of(f: Fit) -> float:
+    """Return what hypotheses are ordered by: misfit and prior, -2 ln."""
+    return f.objective
