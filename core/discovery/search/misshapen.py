@@ -51,7 +51,7 @@ def _worth_trying(kept: int, whole: Completeness, best: float) -> bool:
     """Whether the known parameters leave what a shape could be, and no effect is beyond that."""
     alone = whole.alone
     if kept:
-        return best < alone.evidence + MODEL_ERROR.drift_gain
+        return best < alone.evidence + MODEL_ERROR.drift_gain or not whole.explains
     drifts = alone.evidence - alone.bare > MODEL_ERROR.seen
     return not whole.lacks_nothing and (drifts or alone.diffuse.error > MODEL_ERROR.usual)
 
