@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...arrays import Floats, Ints
+from ...arrays import Bools, Floats, Ints
 from .model_error_numbers import MODEL_ERROR
 
 _TINY = float(np.finfo(float).tiny)
@@ -53,9 +53,14 @@ class Diffuse:
     mesh: float = 0.0
 
     @property
+    def astray(self) -> Bools:
+        """Which test modes are more likely none of the model's than one that it has, (n_test,)."""
+        return self.stray > 0.5
+
+    @property
     def complete(self) -> bool:
         """Whether every mode is explained and no error is left that frequencies could tell."""
-        return self.error <= MODEL_ERROR.frequency and not np.any(self.stray > 0.5)
+        return self.error <= MODEL_ERROR.frequency and not self.astray.any()
 
 
 @dataclass(frozen=True, eq=False)

@@ -118,12 +118,12 @@ def judged(
 
 def _with_more_modes(here: Seen, found: Diffuse) -> Diffuse | None:
     """Return the likelihood at the least error at which fewer modes are none of the model's."""
-    left = np.count_nonzero(found.stray > 0.5)
+    left = np.count_nonzero(found.astray)
     if not left:
         return None
     errors = np.geomspace(*ranges(here)[0], MODEL_ERROR.starts)
     wider = (at(here, error, found.noise) for error in errors.tolist() if error > found.error)
-    return next((d for d in wider if np.count_nonzero(d.stray > 0.5) < left), None)
+    return next((d for d in wider if np.count_nonzero(d.astray) < left), None)
 
 
 def _at(problem: Problem, state: Fit, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:

@@ -36,6 +36,7 @@ from .model_selection import (
     ranked,
     says_else,
     scored,
+    side_by_side,
     stands,
     told_beside,
     worth_telling,
@@ -145,7 +146,7 @@ class Completeness:
     @property
     def unexplained(self) -> tuple[int, ...]:
         """Test modes that are more likely none of the model's than one that it has, as rows."""
-        return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.stray > 0.5))
+        return tuple(int(k) for k in np.flatnonzero(self.best.diffuse.astray))
 
 
 def nothing_found(deck: Judged, alone: Judged) -> Completeness:
@@ -195,7 +196,8 @@ def completeness(
         richer = fields[k + 1][:1] if k < most else []
         tried = ranked(searcher, (found.levels[k], *poorer), richer)
         tried = [s for s in tried if s not in richer]
-        if not richer or not told_beside(searcher, richer[0], tried[0], levels[0]):
+        clear = bool(richer) and told_beside(searcher, richer[0], tried[0], levels[0])
+        if not clear or side_by_side(searcher, richer[0].fit):
             tried = ranked(searcher, _nearest(found, k), tried)
             first = tried[0]
             if _unsettled(first):

@@ -76,7 +76,7 @@ def stands(alone: Judged, best: Judged) -> bool:
     be: two causes that look alike take away much of the error, the right one nearly all of it. Of
     modes that the known parameters do not explain at all their error says nothing.
     """
-    before, after = (np.count_nonzero(j.diffuse.stray > 0.5) for j in (alone, best))
+    before, after = (np.count_nonzero(j.diffuse.astray) for j in (alone, best))
     left = best.diffuse.error / alone.diffuse.error
     least = SEARCH.usual_left * left if before <= after else 0.0
     return bool(adequacy_of(best) > MODEL_ERROR.claimed and by_such_a_test(best) > least)
@@ -211,9 +211,13 @@ def by_such_a_test(judged: Judged) -> float:
 
 def adequacy_of(judged: Judged) -> float:
     """Return the same of an error as large and of as many modes that nothing explains."""
-    stray = judged.diffuse.stray
-    astray = as_many_astray(int(np.count_nonzero(stray > 0.5)), len(stray))
-    return by_such_a_test(judged) * astray
+    return by_such_a_test(judged) * _as_many_astray(judged)
+
+
+def _as_many_astray(judged: Judged) -> float:
+    """Return the probability that a right model leaves as many modes that nothing explains."""
+    astray = judged.diffuse.astray
+    return as_many_astray(int(np.count_nonzero(astray)), len(astray))
 
 
 def complete(searcher: Searcher, f: Fit) -> bool:
@@ -228,18 +232,23 @@ def usual(searcher: Searcher, f: Fit) -> bool:
     return judged is not None and judged.diffuse.error <= MODEL_ERROR.usual
 
 
+def matched(searcher: Searcher, f: Fit) -> bool:
+    """Whether every test mode is one of a hypothesis'."""
+    judged = searcher.judged(searcher.problem, f)
+    return judged is not None and not judged.diffuse.astray.any()
+
+
 def adequate(searcher: Searcher, f: Fit) -> bool:
     """Whether a hypothesis leaves an error as right models do, and hardly a mode unexplained."""
     return leaves_as_right_models(searcher.judged(searcher.problem, f))
 
 
 def leaves_as_right_models(judged: Judged | None) -> bool:
-    """Whether an error as large is no rarity, whatever the test scatters, and few modes astray."""
+    """Whether an error as large, and as many modes astray, are no rarity in any test."""
     if judged is None:
         return False
-    left = judged.diffuse
-    strays = np.count_nonzero(left.stray > 0.5) <= SEARCH.strays * len(left.stray)
-    return bool(strays and adequacy(left.error) > MODEL_ERROR.adequate)
+    rare = min(adequacy(judged.diffuse.error), _as_many_astray(judged))
+    return rare > MODEL_ERROR.adequate
 
 
 def hopeless(searcher: Searcher, previous: Fit, best: Fit) -> bool:

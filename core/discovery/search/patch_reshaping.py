@@ -2,9 +2,10 @@
 
 The catalogue has round and elongated patches of a few sizes. What is really there ends where a
 bay, a sheet or a blanket ends; on a patch of the wrong shape it leaves a rest that looks like a
-second effect beside the first. So a patch may take in the next row of elements on one side or all
-round, or give one up, or stop at the property it is on, as long as each step gains more than trying
-so many shapes is worth. So do links: the catalogue has those between some grids.
+second effect beside the first, or that a stand under it would make up for. So a patch may take in
+the next row of elements on one side or all round, or give one up, fill its corners, or stop at the
+property it is on, as long as each step makes the test likelier by more than trying so many shapes
+is worth. So do links: the catalogue has those between some grids.
 """
 
 from collections.abc import Sequence
@@ -21,6 +22,7 @@ from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
 from .footprints import with_kind
+from .model_selection import ranked, scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -39,17 +41,15 @@ def reshaped(searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
 def _step(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
-    worth = 2.0 * np.log(1.0 + len(options))
-    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
-        trial = _with(wide, state, q, option)
-        if trial.objective < state.objective - worth:
-            return wide, trial
-    return None
-
-
-def _with(searcher: Searcher, state: Fit, q: int, option: Suspect) -> Fit:
-    beside = (*state.suspects[:q], option, *state.suspects[q + 1 :])
-    return searcher.fitted(state, beside, SEARCH.steps_new)
+    before, after = state.suspects[:q], state.suspects[q + 1 :]
+    tried = [
+        wide.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]
+    ]
+    now = scored(wide, state)
+    best = ranked(wide, tried, [now])[0]
+    worth = float(np.log1p(len(options)))
+    return (wide, best.fit) if best.score > now.score + worth else None
 
 
 def promising(
@@ -137,7 +137,7 @@ def variants(structure: Structure, patch: Patch) -> list[Patch]:
     """Return the patches that are one row of elements larger or smaller, or end with a property.
 
     Rows are taken along the sides of the middle element, forwards, backwards and both, and all
-    round.
+    round; one has its corners filled.
     """
     m = structure.members[patch.member]
     if m.element.dimension != 2:
@@ -167,7 +167,10 @@ def variants(structure: Structure, patch: Patch) -> list[Patch]:
 def _rows_of_elements(
     structure: Structure, m: Members, inside: Bools, ring: Bools, xyz: Floats
 ) -> list[tuple[Bools, Bools]]:
-    """Return the next row outside and the last row inside, towards four sides and opposite ones."""
+    """Return the next row outside and the last row inside, towards four sides and opposite ones.
+
+    And what is missing at the corners, with nothing inside.
+    """
     middle = xyz[inside].mean(axis=0)
     rows = np.flatnonzero(inside)
     nearest = rows[np.argmin(np.linalg.norm(xyz[rows] - middle, axis=1))]
@@ -185,7 +188,8 @@ def _rows_of_elements(
     place = (xyz - middle) @ frame.T / [side, depth]
     half = SEARCH.row_of_elements
     low, high = place[inside].min(axis=0) - half, place[inside].max(axis=0) + half
-    out = []
+    corners = ring & np.all((place > low) & (place < high), axis=1)
+    out = [(corners, np.zeros_like(inside))]
     for k in (0, 1):
         level = (place[:, 1 - k] > low[1 - k]) & (place[:, 1 - k] < high[1 - k])
         ways = [

@@ -23,6 +23,7 @@ from .model_selection import (
     complete,
     earned,
     hopeless,
+    matched,
     ranked,
     scored,
     usual,
@@ -39,8 +40,9 @@ def searched(
     """Search with all kinds but the late ones, and with these where much is left.
 
     ``explained(searcher, best)`` says where not. A tuned one is not looked for where an adequate
-    explanation was found: it would imitate what that leaves. Where not even one suspect pays, late
-    kinds are tried beside the best one as well: two that hide each other hardly pay alone.
+    explanation of every mode was found: it would imitate what that leaves. Where not even one
+    suspect pays, late kinds are tried beside the best one as well: two that hide each other hardly
+    pay alone.
     """
     kinds = [c.kind.late for c in searcher.problem.catalogue]
     simple = _with(searcher, [not late for late in kinds])
@@ -57,7 +59,7 @@ def searched(
     if not any(kinds) or explained(searcher, found.levels[best]):
         return found
     stands = bool(best) and adequate(searcher, found.levels[best])
-    if stands or complete(searcher, found.levels[-1]):
+    if (stands and matched(searcher, found.levels[best])) or complete(searcher, found.levels[-1]):
         tuned = (c.tunings > 1 for c in searcher.problem.catalogue)
         kinds = [late and not t for late, t in zip(kinds, tuned, strict=True)]
     progress("looking for absorbers and for springs between two places")
