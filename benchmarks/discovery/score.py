@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
 Json = dict[str, Any]
 
 PLACE = 0.1
@@ -162,6 +165,11 @@ def _sensor_key(finding: Json) -> tuple[str, tuple[int, ...]]:
     return str(finding.get("kind")), tuple(sorted(sensors))
 
 
+def _worth(named: Named) -> int:
+    """Return how well a finding names an effect: solved, of its kind, at its place."""
+    return 4 * named.solved + 2 * (named.kind == named.found) + named.placed
+
+
 def score(truth: Json, result: Json) -> Score:
     """Return what a result is worth against the truth."""
     size = float(truth["dimension"])
@@ -169,18 +177,17 @@ def score(truth: Json, result: Json) -> Score:
     model = [f for f in findings if f.get("side") == "model"]
     test = list({_sensor_key(f): f for f in findings if f.get("side") == "test"}.values())
     expected = expected_verdicts(truth)
-    named: list[Named] = []
-    for effect in truth["effects"]:
-        if not model:
-            named.append(Named(effect["kind"], "", False, None, None, None, None, None, False))
-            continue
-        tries = [_effect(effect, f, size) for f in model]
-        best = max(
-            range(len(tries)),
-            key=lambda i: (tries[i].solved, tries[i].found == effect["kind"], tries[i].placed),
-        )
-        named.append(tries[best])
-        model.pop(best)
+    effects = truth["effects"]
+    tries = [[_effect(effect, f, size) for f in model] for effect in effects]
+    worth = np.array([[_worth(t) for t in row] for row in tries]).reshape(len(effects), len(model))
+    paired = dict(zip(*linear_sum_assignment(worth, maximize=True), strict=True))
+    named = [
+        tries[i][paired[i]]
+        if i in paired
+        else Named(effect["kind"], "", False, None, None, None, None, None, False)
+        for i, effect in enumerate(effects)
+    ]
+    model = [f for j, f in enumerate(model) if j not in paired.values()]
     held = all(n.in_credible for n in named)
     for fault in truth["faults"]:
         hit, finding = _fault(fault, test)

@@ -22,7 +22,7 @@ from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
 from .footprints import with_kind
-from .model_selection import ranked, scored
+from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -42,14 +42,12 @@ def _step(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, Fit] | None
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
     before, after = state.suspects[:q], state.suspects[q + 1 :]
-    tried = [
-        wide.fitted(state, (*before, option, *after), SEARCH.steps_new)
-        for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]
-    ]
-    now = scored(wide, state)
-    best = ranked(wide, tried, [now])[0]
-    worth = float(np.log1p(len(options)))
-    return (wide, best.fit) if best.score > now.score + worth else None
+    now, worth = scored(wide, state), float(np.log1p(len(options)))
+    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
+        trial = wide.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        if scored(wide, trial, now).score > now.score + worth:
+            return wide, trial
+    return None
 
 
 def promising(

@@ -94,11 +94,9 @@ def bettered(
     found: Found,
     better: Callable[[Searcher, Fit], tuple[Searcher, Fit]],
 ) -> tuple[Searcher, Found]:
-    """Give patches better shapes, or masses stands, in what is chosen and with a suspect less."""
-    accepted, levels = chosen(searcher, found), list(found.levels)
-    for k in range(max(accepted - 1, 1), accepted + 1):
-        searcher, levels[k] = better(searcher, levels[k])
-    return searcher, Found(tuple(levels), found.rivals)
+    """Give patches better shapes, or masses stands, in what is chosen."""
+    searcher, best = better(searcher, found.levels[chosen(searcher, found)])
+    return searcher, found.with_level(best)
 
 
 def unlike(searcher: Searcher, found: Found) -> Found:
@@ -131,15 +129,14 @@ def on_stands(
     def standing(s: Searcher, f: Fit) -> tuple[Searcher, Fit]:
         return equipped(structure, s, f)
 
+    number = chosen(searcher, found)
     searcher, new = bettered(searcher, found, standing)
-    pairs = enumerate(zip(new.levels, found.levels, strict=True))
-    first = next((k for k, (f, old) in pairs if f is not old), None)
-    best = new.levels[chosen(searcher, new)]
-    if first is None or usual(searcher, best):
+    stood = new.levels[number]
+    if stood is found.levels[number] or usual(searcher, stood):
         return searcher, new
     progress("searching on beside equipment on its stand")
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
-    other = grown(simple, progress, new.levels[: first + 1])
+    other = grown(simple, progress, new.levels[: number + 1])
     searcher, other = bettered(searcher, other, standing)
     return searcher, _likelier(searcher, new, other)
 
