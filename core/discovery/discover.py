@@ -36,6 +36,7 @@ from .search.model_selection import (
     adequate,
     chosen,
     held_out,
+    scored,
     usual,
 )
 from .search.moves import Searcher
@@ -191,7 +192,7 @@ class _Trial:
         return self._judged[same]
 
     def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
-        """Lay the masses of a hypothesis on footprints, if that fits better on its own basis."""
+        """Lay the masses of a hypothesis on footprints, if the test is likelier with them there."""
         same = searcher.problem, best
         if same not in self._laid:
             self._laid[same] = _laid(self, searcher, best)
@@ -237,7 +238,7 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
             if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
                 wide, laid = reshaped(wide, laid)
             laid = polished(trial.own, wide.problem, laid)
-            if laid.objective < best.objective:
+            if scored(wide, laid).score > scored(searcher, best).score:
                 return wide, laid
     return searcher, best
 
