@@ -136,6 +136,7 @@ def solve(
     keep_factor: bool = False,
     keep_counter: bool = False,
     count: bool = True,
+    least: int = 0,
     near: Near | None = None,
     seed: int = 0,
 ) -> Eigensolution:
@@ -164,6 +165,8 @@ def solve(
         Keep the factorisation that counted the modes, and what serves further solutions.
     count : bool
         Prove by an inertia count that no mode was missed (about a quarter of the time).
+    least : int
+        How many modes are given where there are fewer up to `fmax`.
     near : Near, optional
         What is known of the `n_modes` beforehand, from a reduced model for instance: half the
         time. The checks are the same, the inertia count with them; where they are not met, or no
@@ -207,7 +210,7 @@ def solve(
         (wanted or 0) > pencil.n // EIGEN.dense_many and pencil.n <= EIGEN.dense_many * EIGEN.dense
     )
     request = Request(
-        wanted, limit, chosen, tolerance, count, keep_factor, keep_counter, seed, near
+        wanted, limit, chosen, tolerance, count, keep_factor, keep_counter, seed, near, least
     )
     held: list[str] = []
     while True:
@@ -231,7 +234,7 @@ def solve(
     n_zero = rigid.shape[1] + zero
     keep = len(values) if wanted is None else min(wanted, len(values))
     if limit is not None:
-        keep = min(keep, int(np.count_nonzero(values <= limit)))
+        keep = min(keep, max(int(np.count_nonzero(values <= limit)), least))
     notes += _notes(pencil, body, n_zero, wanted if limit is None else None, len(values))
     keep -= max(keep - EIGEN.most, 0) if spectrum.left_out else 0
     if spectrum.left_out:

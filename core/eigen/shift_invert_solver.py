@@ -22,8 +22,8 @@ class Request:
     """What is asked of the iteration; see `normal_modes.solve`.
 
     `wanted` modes, rigid-body modes included, or where that is None all up to the eigenvalue
-    `limit`; `tolerance` is that of the Ritz residuals beside the Ritz values. Modes of a
-    number are begun with what is known `near` them.
+    `limit`, `least` of them at least; `tolerance` is that of the Ritz residuals beside the Ritz
+    values. Modes of a number are begun with what is known `near` them.
     """
 
     wanted: int | None
@@ -35,6 +35,7 @@ class Request:
     keep_counter: bool
     seed: int
     near: Near | None = None
+    least: int = 0
 
 
 def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Request) -> Spectrum:
@@ -54,6 +55,9 @@ def sparse_modes(model: Model | None, pencil: Pencil, rigid: Floats, request: Re
     if request.limit is not None:
         bounds = request.limit, request.limit * EIGEN.beside_limit
         below, _ = _inertia(pencil, bounds, request.backend)
+        if below < request.least:
+            more = replace(request, wanted=request.least, limit=None)
+            return sparse_modes(model, pencil, rigid, more)
         if below <= n_rigid:
             none = np.zeros(0)
             return Spectrum(none, rigid[:, :0], none, -request.limit, complete=False, missed=0)

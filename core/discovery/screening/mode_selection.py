@@ -92,9 +92,9 @@ def reference_modes(model: Model, top_hz: float, tests: int = 1) -> Eigensolutio
     up to there.
     """
     fmax = SCREENING.modes_above * top_hz / SCREENING.usual
-    solution = normal_modes.solve(model, fmax=fmax, keep_factor=True)
     many = min(SCREENING.modes_least, model.n_free // SCREENING.modes_times)
-    least = max(many, tests + solution.rigid_body_modes)
+    solution = normal_modes.solve(model, fmax=fmax, least=many, keep_factor=True)
+    least = tests + solution.rigid_body_modes
     if len(solution.eigenvalues) < least:
         solution = normal_modes.solve(model, n_modes=least, keep_factor=True)
     return solution
