@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,7 +83,7 @@ def with_answers(
     if not sides:
         return V
     X = factor.solve(np.ascontiguousarray(np.hstack(sides)))
-    return np.hstack([V, beside(X, V, M, REDUCTION.dependent)])
+    return np.hstack([V, beside(X, [V], M, REDUCTION.dependent)])
 
 
 def independent(loads: Floats) -> Floats:
@@ -102,14 +103,16 @@ def _lengths(X: Floats, M: sp.spmatrix) -> Floats:
     return np.asarray(np.sqrt(np.maximum(np.einsum("ij,ij->j", X, M @ X), 0.0)))
 
 
-def beside(X: Floats, phi: Floats, M: sp.spmatrix, least: float) -> Floats:
-    """Return an M-orthonormal basis of what X (n, k) adds to M-orthonormal vectors `phi` (n, m).
+def beside(X: Floats, parts: Sequence[Floats], M: sp.spmatrix, least: float) -> Floats:
+    """Return an M-orthonormal basis of what X (n, k) adds to M-orthonormal vectors: `parts` (n, m).
 
     Directions with less than the share `least` of the largest squared length are left out.
     """
     before = _lengths(X, M)
     for _ in range(2):
-        X = X - (((M @ X).T @ phi) @ phi.T).T
+        MX = M @ X
+        for V in parts:
+            X = X - ((MX.T @ V) @ V.T).T
     length = _lengths(X, M)
     new = length > REDUCTION.rounding * before
     X = X[:, new] / length[new]

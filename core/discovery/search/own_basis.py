@@ -240,36 +240,41 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     b = ground.basis
     sums: tuple[ReducedSum, ...] = b.stiffness, b.mass, ground.mesh, ground.bars
     added, seen = V[:, :0], ground.readings
+    acting = [_acting(c, row) for c, row in places]
     if places:
         before, (c, row) = _known(ground, places[:-1], columns), places[-1]
         sums = before.stiffness, before.mass, before.mesh, before.bars
         if c.rows_each:
-            loads = _root(c, row).T.toarray()
+            loads = acting[-1].T.toarray()
             if c.rows_each > 6 * c.many(row):
                 loads = independent(loads)
         else:
-            loads = independent(c.full(row) @ V[:, :columns])
+            loads = independent(acting[-1] @ V[:, :columns])
         released = any(c.law.shared for c, _ in places)
         least = REDUCTION.released if released else REDUCTION.dependent
-        known = np.hstack([V, before.added])
+        known = [basis for basis in (V, before.added) if basis.shape[1]]
         W = beside(ground.compliance.responses(loads), known, ground.mass, least)
-        sums = tuple(s.widened([known], W) for s in sums)
+        sums = tuple(s.widened(known, W) for s in sums)
         added = np.hstack([before.added, W])
         seen = np.hstack([before.seen, ground.observation @ W])
     stiffness, mass, mesh, bars = sums
-    factors = tuple(_factor(c, row, V, added)[None] for c, row in places)
+    both = zip(places, acting, strict=True)
+    factors = tuple(_factor(c, A, V, added)[None] for (c, _), A in both)
     return Own(stiffness, mass, mesh, bars, added, seen, factors)
 
 
-def _root(c: Candidates, row: int) -> sp.csr_matrix:
-    return c.root[row * c.rows_each : (row + 1) * c.rows_each]
+def _acting(c: Candidates, row: int) -> sp.csr_matrix:
+    """Return the rows of a root of the matrix of one place, or where it has none the matrix."""
+    return c.root[row * c.rows_each : (row + 1) * c.rows_each] if c.rows_each else c.full(row)
 
 
-def _factor(c: Candidates, row: int, V: Floats, W: Floats) -> Floats:
-    """Return rows (q, r + s) whose outer products are the matrix of one place on V and W."""
+def _factor(c: Candidates, A: sp.csr_matrix, V: Floats, W: Floats) -> Floats:
+    """Return rows (q, r + s) whose outer products are the matrix of one place on V and W.
+
+    A is that matrix or, of candidates that have one, a root of it.
+    """
     if c.rows_each:
-        return np.hstack([_root(c, row) @ V, _root(c, row) @ W])
-    A = c.full(row)
+        return np.hstack([A @ V, A @ W])
     own = np.unique(A.indices)
     X = np.hstack([V[own], W[own]])
     return root_of(X.T @ (A[own][:, own] @ X), EFFECTS.patch_rounding)
