@@ -129,11 +129,12 @@ class ReducedSum:
         """Return the sum with the terms of another, both on the basis as it was made."""
         return ReducedSum(self.terms + other.terms, np.concatenate([self.whole, other.whole]))
 
-    def plus(self, change: Floats, factor: Factor | None = None) -> ReducedSum:
-        """Return the sum with a matrix (r, r) on the basis more, times a `factor`."""
+    def plus(self, changes: Sequence[Floats], factors: Sequence[Factor] = ()) -> ReducedSum:
+        """Return the sum with matrices (r, r) on the basis more, times `factors` if any."""
         none = sp.csr_matrix(self.terms[0].matrix.shape)
-        factors = () if factor is None else (factor,)
-        return ReducedSum((*self.terms, Term(none, factors)), np.stack([*self.matrices, change]))
+        each = [(f,) for f in factors] if factors else [()] * len(changes)
+        terms = (Term(none, own) for own in each)
+        return ReducedSum((*self.terms, *terms), np.stack([*self.matrices, *changes]))
 
 
 def reduced_sum(terms: tuple[Term, ...], V: Floats) -> ReducedSum:

@@ -143,7 +143,6 @@ def with_fields(problem: Problem, fields: Fields) -> Problem:
 
 def _moved(matrices: ReducedSum, changes: Floats, first: int) -> ReducedSum:
     """Return a sum with `changes` times p − 1 of parameters from `first` on."""
-    for k, A in enumerate(changes):
-        if A.any():
-            matrices = matrices.plus(A, Factor(first + k, (0.0, 1.0), 0.0, 2.0))
-    return matrices
+    moving = np.flatnonzero(changes.any(axis=(1, 2)))
+    factors = [Factor(first + k, (0.0, 1.0), 0.0, 2.0) for k in moving.tolist()]
+    return matrices.plus([*changes[moving]], factors) if factors else matrices

@@ -116,11 +116,11 @@ def with_deviation(problem: Problem, d: Deviation) -> Problem:
     p = problem.prior
     ends = (p.spread, u), (p.lower, -most), (p.upper, most)
     b, orders = problem.basis, [tuple(c / u**k for c in s) for k, s in enumerate(_ORDERS, 1)]
-    stiffness, mass = b.stiffness, b.mass
-    for k, series in enumerate(orders):
-        f = Factor(n, series, 0.0, 2.0)
-        stiffness = stiffness.plus(_padded(d.stiffness[k], b.size), f)
-        mass = mass.plus(_padded(d.mass[k], b.size), f)
+    factors = [Factor(n, series, 0.0, 2.0) for series in orders]
+    stiffness, mass = (
+        matrices.plus([_padded(A, b.size) for A in own], factors)
+        for matrices, own in ((b.stiffness, d.stiffness), (b.mass, d.mass))
+    )
     return replace(
         problem,
         basis=replace(b, stiffness=stiffness, mass=mass),

@@ -46,7 +46,8 @@ class Fields:
     def turned(self, T: Floats) -> Fields:
         """Return the fields on the basis turned by T (≥ r, s); its further vectors are local."""
         own = T[: self.mass.shape[1]]
-        return replace(self, stiffness=own.T @ self.stiffness @ own, mass=own.T @ self.mass @ own)
+        stiffness, mass = (_turned(A, own) for A in (self.stiffness, self.mass))
+        return replace(self, stiffness=stiffness, mass=mass)
 
     def of(self, size: float) -> Fields:
         """Return the fields with amplitudes of another size beforehand."""
@@ -63,6 +64,13 @@ class Fields:
 
 
 _EACH = ("stiffness", "mass", "spread", "least")
+
+
+def _turned(A: Floats, T: Floats) -> Floats:
+    """Return TᵀAT of matrices (n, r, r), many of which are nothing."""
+    out, live = np.zeros((len(A), *T.shape[1:] * 2)), A.any(axis=(1, 2))
+    out[live] = T.T @ A[live] @ T
+    return out
 
 
 def smooth_fields(structure: Structure, vectors: Floats) -> Fields:

@@ -181,7 +181,7 @@ def complete_model(ground: Ground, problem: Problem, state: Fit) -> CompletedMod
         seen = seen + ground.at_supports @ give
         free = np.hstack([ground.basis.vectors, own.added])
         basis = replace(
-            basis, mass=basis.mass.plus(support_flexibility.carried(supports, free, give))
+            basis, mass=basis.mass.plus([support_flexibility.carried(supports, free, give)])
         )
     new = replace(
         problem,
