@@ -110,7 +110,8 @@ def diffuse(seen: Seen) -> Diffuse:
     """
     errors, noises = (np.geomspace(*r, MODEL_ERROR.starts) for r in ranges(seen))
     best = max((at(seen, e, noises[len(noises) // 2]) for e in errors), key=lambda d: d.log)
-    best = max((at(seen, best.error, s) for s in noises), key=lambda d: d.log)
+    others = (at(seen, best.error, s) for s in noises if s != best.noise)
+    best = max((best, *others), key=lambda d: d.log)
     for _ in range(MODEL_ERROR.settling):
         step, gain = slope(seen, best).towards(seen, best)
         if gain < MODEL_ERROR.tolerance:
