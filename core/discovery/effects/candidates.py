@@ -188,11 +188,13 @@ def _rows(c: Candidates) -> dict[Ends, int]:
     return {e: row for row, e in enumerate(c.ends)}
 
 
-def with_twins(single: Candidates, grids: Floats, size: float) -> tuple[Candidates, ...]:
+def with_twins(
+    single: Candidates, grids: Floats, size: float, held: Floats
+) -> tuple[Candidates, ...]:
     """Return candidates at points, and beside them the same at every set of equivalent ones.
 
     A set has one magnitude, that of each place. The symmetry is that of the structure's `grids`
-    (n, 3), held ones among them; `size` is its size.
+    (n, 3) and of those that are `held` (m, 3); `size` is its size.
     """
     points = {
         (*sorted(w["grids"]), *w.get("arms", ())): i
@@ -204,7 +206,7 @@ def with_twins(single: Candidates, grids: Floats, size: float) -> tuple[Candidat
         return (single,)
     sets = [
         together(single, once[rows], np.concatenate([np.eye(3)[None], s.maps]))
-        for s in symmetries(grids, size)
+        for s in symmetries(grids, size, held)
         for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
         if len(rows)
     ]

@@ -57,7 +57,8 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     for m in structure.members:
         used[m.corners.ravel()] = True
     grids = structure.model.geometry.xyz[used]
-    return (*with_twins(at_points, grids, scale.size), *on_feet)
+    held = grids[:0] if structure.supports is None else structure.supports.places
+    return (*with_twins(at_points, grids, scale.size, held), *on_feet)
 
 
 def _grids(structure: Structure, feet: Sequence[Patch]) -> tuple[dict[str, Any], ...]:

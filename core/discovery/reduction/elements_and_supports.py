@@ -89,6 +89,12 @@ class Supports:
     mass: sp.csr_matrix
     motion: sp.csr_matrix
 
+    @property
+    def places(self) -> Floats:
+        """Where grids are held in any direction, not turned alone, (m, 3)."""
+        pinned = np.flatnonzero(self.component <= 3)
+        return self.xyz[pinned[np.unique(self.grid[pinned], return_index=True)[1]]]
+
 
 @dataclass(frozen=True, eq=False)
 class Structure(Noun):

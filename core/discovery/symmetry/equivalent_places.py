@@ -40,18 +40,21 @@ class Symmetry:
         return np.asarray((xyz - self.centre) @ self.maps.transpose(0, 2, 1) + self.centre)
 
 
-def symmetries(xyz: Floats, size: float) -> tuple[Symmetry, ...]:
+def symmetries(xyz: Floats, size: float, held: Floats) -> tuple[Symmetry, ...]:
     """Return the planes, pairs of planes and turns by which grids (n, 3) are their own images.
 
+    So are those that are `held` (m, 3): at a clamp and at the free end opposite nothing is alike.
     `size` is that of the structure.
     """
     from scipy.spatial import cKDTree
 
-    tree = cKDTree(xyz)
+    trees = [(own, cKDTree(own)) for own in (xyz, held) if len(own)]
 
     def holds(s: Symmetry) -> bool:
-        away, _ = tree.query(s.images(xyz), distance_upper_bound=SYMMETRY.image_off * size)
-        return bool(np.isfinite(away).mean(axis=1).min() > SYMMETRY.image_share)
+        near = SYMMETRY.image_off * size
+        off = [tree.query(s.images(own), distance_upper_bound=near)[0] for own, tree in trees]
+        share = min(np.isfinite(away).mean(axis=1).min() for away in off)
+        return bool(share > SYMMETRY.image_share)
 
     found = [s for s in _mirrors(xyz) if holds(s)]
     mirrors = [s for k, s in enumerate(found) if not any(_same(s, t, size) for t in found[:k])]

@@ -5,6 +5,8 @@ import pytest
 
 from trueup.core.discovery.symmetry.equivalent_places import images_of, symmetries
 
+NOWHERE = np.zeros((0, 3))
+
 
 def plate(x, y):
     a, b = np.meshgrid(np.linspace(0.0, x, 11), np.linspace(0.0, y, 7))
@@ -15,9 +17,9 @@ def size(xyz):
     return float(np.linalg.norm(np.ptp(xyz, axis=0)))
 
 
-def sets(xyz):
+def sets(xyz, held=NOWHERE):
     near, apart = 0.01 * size(xyz), 0.05 * size(xyz)
-    found = (images_of(s, xyz, near, apart) for s in symmetries(xyz, size(xyz)))
+    found = (images_of(s, xyz, near, apart) for s in symmetries(xyz, size(xyz), held))
     return [rows for rows in found if len(rows)]
 
 
@@ -27,6 +29,20 @@ def test_a_plate_has_pairs_by_each_plane_and_fours_by_both():
     corners = [{0, 10, 66, 76}]
     fours = next(rows for rows in sets(xyz) if rows.shape[1] == 4)
     assert {frozenset(r) for r in fours.tolist()} >= {frozenset(c) for c in corners}
+
+
+def test_a_plate_clamped_at_one_edge_has_pairs_across_it_alone():
+    xyz = plate(5.0, 3.0)
+    (pairs,) = sets(xyz, xyz[xyz[:, 0] == 0.0])
+    assert {frozenset(p) for p in pairs.tolist()} == {
+        frozenset((i + 11 * j, i + 11 * (6 - j))) for i in range(11) for j in range(3)
+    }
+
+
+def test_a_plate_clamped_at_opposite_edges_is_alike_both_ways():
+    xyz = plate(5.0, 3.0)
+    both = sets(xyz, xyz[np.isin(xyz[:, 0], (0.0, 5.0))])
+    assert sorted(rows.shape[1] for rows in both) == [2, 2, 4]
 
 
 def test_images_are_where_the_plane_puts_them_in_any_frame():
