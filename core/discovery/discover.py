@@ -222,10 +222,9 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     searcher, found = bettered(searcher, found, reshaped)
     if not trial.explained(searcher, found.levels[chosen(searcher, found)]):
         searcher, found = on_stands(trial.request.structure, searcher, found, progress)
-    found = _weighed(trial, searcher, found)
     accepted = chosen(searcher, found)
     searcher, best = trial.laid(searcher, found.levels[accepted])
-    return searcher, found.with_level(best), accepted
+    return searcher, _weighed(trial, searcher, found.with_level(best), accepted), accepted
 
 
 def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
@@ -243,9 +242,8 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
     return searcher, best
 
 
-def _weighed(trial: _Trial, searcher: Searcher, found: Found) -> Found:
+def _weighed(trial: _Trial, searcher: Searcher, found: Found, accepted: int) -> Found:
     """Fit the chosen hypothesis and the one with a suspect less on bases of their own."""
-    accepted = chosen(searcher, found)
     for f in found.levels[max(accepted - 1, 0) : accepted + 1]:
         with suppress(TrueupError):
             found = found.with_level(polished(trial.own, searcher.problem, f))
