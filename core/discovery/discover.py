@@ -50,7 +50,7 @@ from .search.refit_own_basis import (
     solves,
 )
 from .search.set_up import beside_reach
-from .search.strategy import bettered, on_stands, searched, unlike
+from .search.strategy import bettered, on_stands, searched
 from .search.unknown_mounts import as_blocks_on_mounts
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
@@ -217,7 +217,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
     if trial.request.responses is not None:
         heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
         searcher = replace(searcher, problem=heard)
-    found = unlike(searcher, searched(searcher, progress, trial.explained))
+    found = searched(searcher, progress, trial.explained)
     progress("weighing the best hypotheses on bases of their own")
     searcher, found = bettered(searcher, found, reshaped)
     if not trial.explained(searcher, found.levels[chosen(searcher, found)]):

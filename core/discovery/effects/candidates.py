@@ -274,18 +274,6 @@ def apart(a: Candidates, row: int, b: Candidates, other: int) -> float:
     return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
 
 
-def parted(catalogue: Catalogue, suspects: Sequence[Suspect]) -> list[tuple[Suspect, ...]]:
-    """Return suspects with each pair of twins in turn as two that need not be alike."""
-    single = {id(c): kind for kind, c in enumerate(catalogue)}
-    out = []
-    for q, s in enumerate(suspects):
-        c = catalogue[s.kind]
-        if c.many(s.row) == 2 and id(c.single) in single:
-            both = (replace(s, kind=single[id(c.single)], row=i) for i in c.copies[s.row])
-            out.append((*suspects[:q], *both, *suspects[q + 1 :]))
-    return out
-
-
 def lacking(
     c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
 ) -> Flexibility | SharedFlexibility | None:

@@ -24,14 +24,6 @@ class Found:
         k = len(f.suspects)
         return Found((*self.levels[:k], f, *self.levels[k + 1 :]), self.rivals)
 
-    def with_richer(self, f: Fit) -> Found:
-        """Return the same with a hypothesis of one suspect more than some level, if it is best."""
-        k = len(f.suspects)
-        if k == len(self.levels):
-            return Found((*self.levels, f), (*self.rivals, ()))
-        better, other = sorted((f, self.levels[k]), key=objective_of)
-        return self.with_level(better).with_rivals((other,))
-
     def with_rivals(self, fits: Iterable[Fit]) -> Found:
         """Return the same with further rivals, each to those of as many suspects."""
         rivals = [list(level) for level in self.rivals]

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..effects.candidates import parted
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
 from .beam_search import grown
@@ -21,7 +20,6 @@ from .model_selection import (
     adequate,
     chosen,
     complete,
-    earned,
     hopeless,
     matched,
     ranked,
@@ -97,22 +95,6 @@ def bettered(
     """Give patches better shapes, or masses stands, in what is chosen."""
     searcher, best = better(searcher, found.levels[chosen(searcher, found)])
     return searcher, found.with_level(best)
-
-
-def unlike(searcher: Searcher, found: Found) -> Found:
-    """Part twins of what is chosen where two that are not alike earn their place.
-
-    Two masses at places that are nearly each other's images look like twins and a third. Where the
-    second belongs shows by the noise as it is: a softened one holds it where the twins had it.
-    """
-    number = chosen(searcher, found)
-    twins = found.levels[number]
-    for apart in parted(searcher.problem.catalogue, twins.suspects):
-        near = searcher.fitted(twins, apart, SEARCH.steps_new, soften=True)
-        two = searcher.settled(searcher.refined(searcher.refined(near), lambda p: p))
-        if earned(scored(searcher, two), scored(searcher, twins)):
-            return found.with_richer(two)
-    return found
 
 
 def on_stands(
