@@ -93,7 +93,8 @@ class Supports:
     def places(self) -> Floats:
         """Where grids are held in any direction, not turned alone, (m, 3)."""
         pinned = np.flatnonzero(self.component <= 3)
-        return self.xyz[pinned[np.unique(self.grid[pinned], return_index=True)[1]]]
+        first = np.unique(self.grid[pinned], return_index=True)[1]
+        return np.asarray(self.xyz[pinned[first]])
 
 
 @dataclass(frozen=True, eq=False)
