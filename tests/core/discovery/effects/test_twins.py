@@ -7,10 +7,12 @@ from tests.core.discovery.strings import N, hidden, searcher
 
 from trueup.core.discovery.effects.candidates import factors_of, places_of, with_twins
 
+NOWHERE = np.zeros((0, 3))
+
 
 def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():
     problem = searcher(hidden()).problem
-    single, pairs = with_twins(problem.catalogue[0], problem.catalogue[0].xyz, 1.0)
+    single, pairs = with_twins(problem.catalogue[0], problem.catalogue[0].xyz, 1.0, NOWHERE)
     assert {tuple(sorted(c)) for c in pairs.copies} == {
         (i, N - 1 - i) for i in range(N // 2) if N - 1 - 2 * i > 0.05 * (N + 1)
     }
@@ -36,5 +38,5 @@ def test_images_are_those_of_the_whole_structure_one_end_held():
         root=single.root[1:],
         where=single.where[1:],
     )
-    _, pairs = with_twins(moving, single.xyz, 1.0)
+    _, pairs = with_twins(moving, single.xyz, 1.0, NOWHERE)
     assert all(i + j + 2 == N - 1 for i, j in pairs.copies)

@@ -18,7 +18,7 @@ from trueup.core.discovery.search.model_selection import Scored
 def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0, scatter=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
     each = np.asarray(each, float)
-    shared = Some(each=each, error=error, noise=noise, stray=chance, mesh=mesh)
+    shared = Some(each=each, error=error, noise=noise, stray=chance, astray=chance > 0.5, mesh=mesh)
     here = Some(nuisance=np.zeros(2), suspects=())
     test = Some(evidence=Some(scatter=scatter))
     return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here, problem=test)

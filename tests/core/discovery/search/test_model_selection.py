@@ -138,6 +138,7 @@ def leaving(error, stray=0.0, evidence=lambda f: 0.0):
         noise=0.02,
         each=np.zeros(10),
         stray=np.full(10, stray),
+        astray=np.full(10, stray > 0.5),
         complete=error < 1e-3,
     )
     return lambda _, f, *least: Some(diffuse=left, evidence=evidence(f))

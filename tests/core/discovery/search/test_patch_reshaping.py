@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
+from tests.core.discovery.strings import by_the_whole_test
 
 from trueup.core.data.parametric_model import Term
 from trueup.core.discovery.effects import KINDS
@@ -123,7 +124,8 @@ def searching(structure, K, added, catalogue):
         40, 20,
     )  # fmt: skip
     every = tuple(np.arange(len(c)) for c in catalogue)
-    return Searcher(problem, every, (0,), np.zeros(1), float(np.hypot(NX, NY)), Effort())
+    size = float(np.hypot(NX, NY))
+    return Searcher(problem, every, (0,), np.zeros(1), size, Effort(), by_the_whole_test)
 
 
 @pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])
