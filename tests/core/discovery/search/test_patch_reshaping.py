@@ -157,6 +157,12 @@ def test_rows_are_taken_on_each_side():
         assert tuple(box(x, y)) in found
 
 
+def test_the_corners_of_a_round_patch_are_filled():
+    cross = np.union1d(box((4, 7), (3, 4)), box((5, 6), (2, 5)))
+    found = variants(membrane(), Patch(0, cross, np.array([5.5, 3.5, 0.0]), True))
+    assert box((4, 7), (2, 5)).tolist() in [p.rows.tolist() for p in found]
+
+
 def test_a_patch_grows_along_both_sides_at_once():
     structure = membrane()
     start = box((4, 6), (2, 5))

@@ -95,6 +95,27 @@ def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(
     assert len(grown) == 1 + followed
 
 
+@pytest.mark.parametrize("astray", [False, True])
+def test_beside_what_is_adequate_absorbers_are_looked_for_where_a_mode_is_astray(
+    astray, monkeypatch
+):
+    """An absorber adds a mode; what else an adequate explanation leaves it would imitate."""
+    s = searcher(hidden(masses=[(5, 2.0)], absorbers=[(20, 0.8, 1.7)]), modes_out=(4, 10))
+    one = s.fitted(s.null(), (Suspect(0, 5, (0.7,)),))
+    lost = astray & (np.arange(10) == 3)
+    left = Some(error=0.003, noise=0.02, each=np.zeros(10), astray=lost, complete=False)
+    s = replace(s, judged=lambda *_: Some(diffuse=left, evidence=0.0))
+    tuned = s.problem.catalogue[2]
+    assert tuned.tunings > 1
+    places = []
+    monkeypatch.setattr(strategy, "chosen", lambda *_: 1)
+    monkeypatch.setattr(strategy, "_beside", lambda own, *_: places.append(own.coarse[2]) or [])
+    monkeypatch.setattr(strategy, "grown", lambda *_, **__: Found((s.null(), one), ((), ())))
+    searched(s, explained=lambda *_: False)
+    assert all(bool(len(rows)) == astray for rows in places)
+    assert places or not astray
+
+
 def off_everywhere(truth, size, seed):
     """K with a random error of relative `size` in modal coordinates, M as it is."""
     k, m = truth
