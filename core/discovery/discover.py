@@ -50,7 +50,7 @@ from .search.refit_own_basis import (
     solves,
 )
 from .search.set_up import beside_reach
-from .search.strategy import bettered, on_stands, searched
+from .search.strategy import on_stands, searched
 from .search.unknown_mounts import as_blocks_on_mounts
 from .sensor_faults.diagnosis import Bench, Verdicts
 from .starting_point import Deck, ground_of, prepared
@@ -219,7 +219,8 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress, trial.explained)
     progress("weighing the best hypotheses on bases of their own")
-    searcher, found = bettered(searcher, found, reshaped)
+    searcher, best = reshaped(searcher, found.levels[chosen(searcher, found)])
+    found = found.with_level(best)
     if not trial.explained(searcher, found.levels[chosen(searcher, found)]):
         searcher, found = on_stands(trial.request.structure, searcher, found, progress)
     accepted = chosen(searcher, found)

@@ -87,16 +87,6 @@ def _beside_others(found: Found, other: Found) -> Found:
     return found.with_rivals((*other.levels[1:levels], *others))
 
 
-def bettered(
-    searcher: Searcher,
-    found: Found,
-    better: Callable[[Searcher, Fit], tuple[Searcher, Fit]],
-) -> tuple[Searcher, Found]:
-    """Give patches better shapes, or masses stands, in what is chosen."""
-    searcher, best = better(searcher, found.levels[chosen(searcher, found)])
-    return searcher, found.with_level(best)
-
-
 def on_stands(
     structure: Structure,
     searcher: Searcher,
@@ -107,20 +97,24 @@ def on_stands(
 
     What was found beside a mass on no stand made up for its stand. Not where little is left.
     """
-
-    def standing(s: Searcher, f: Fit) -> tuple[Searcher, Fit]:
-        return equipped(structure, s, f)
-
-    number = chosen(searcher, found)
-    searcher, new = bettered(searcher, found, standing)
-    stood = new.levels[number]
-    if stood is found.levels[number] or usual(searcher, stood):
+    searcher, new = _stood(structure, searcher, found)
+    pairs = enumerate(zip(new.levels, found.levels, strict=True))
+    first = next((k for k, (f, old) in pairs if f is not old), None)
+    if first is None or usual(searcher, new.levels[chosen(searcher, new)]):
         return searcher, new
     progress("searching on beside equipment on its stand")
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
-    other = grown(simple, progress, new.levels[: number + 1])
-    searcher, other = bettered(searcher, other, standing)
+    other = grown(simple, progress, new.levels[: first + 1])
+    searcher, other = _stood(structure, searcher, other)
     return searcher, _likelier(searcher, new, other)
+
+
+def _stood(structure: Structure, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
+    """Put masses on stands in what is chosen and with a suspect less."""
+    number, levels = chosen(searcher, found), list(found.levels)
+    for k in range(max(number - 1, 1), number + 1):
+        searcher, levels[k] = equipped(structure, searcher, levels[k])
+    return searcher, Found(tuple(levels), found.rivals)
 
 
 def _evidence(searcher: Searcher, found: Found) -> float:
