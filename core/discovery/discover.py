@@ -38,6 +38,7 @@ from .search.model_selection import (
     held_out,
     scored,
     usual,
+    without_one_to_spare,
 )
 from .search.moves import Searcher
 from .search.own_basis import Ground
@@ -192,10 +193,15 @@ class _Trial:
         return self._judged[same]
 
     def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
-        """Lay the masses of a hypothesis on footprints, if the test is likelier with them there."""
+        """Lay the masses of a hypothesis on footprints, if the test is likelier with them there.
+
+        What made up for their places no longer earns its own then: anew without it.
+        """
         same = searcher.problem, best
         if same not in self._laid:
-            self._laid[same] = _laid(self, searcher, best)
+            wide, laid = _laid(self, searcher, best)
+            spare = without_one_to_spare(wide, laid, self.null) if laid is not best else None
+            self._laid[same] = self.laid(wide, spare) if spare else (wide, laid)
         return self._laid[same]
 
     def explained(self, searcher: Searcher, best: Fit) -> bool:
@@ -225,6 +231,7 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher, found = on_stands(trial.request.structure, searcher, found, progress)
     accepted = chosen(searcher, found)
     searcher, best = trial.laid(searcher, found.levels[accepted])
+    accepted = len(best.suspects)
     return searcher, _weighed(trial, searcher, found.with_level(best), accepted), accepted
 
 

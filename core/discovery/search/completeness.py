@@ -39,6 +39,7 @@ from .model_selection import (
     side_by_side,
     stands,
     told_beside,
+    without_one,
     worth_telling,
 )
 from .moves import Searcher
@@ -208,7 +209,7 @@ def completeness(
         fields[k] = _plainest_first(searcher, _from_there(searcher, tried))
         found = found.with_rivals(s.fit for s in fields[k] if s not in tried)
         found = _led(found, fields[k][0].fit)
-        poorer = _without_one(searcher, fields[k][0].fit) if k > 1 else []
+        poorer = without_one(searcher, fields[k][0].fit) if k > 1 else []
     levels += [field[0] for field in fields[1:]]
     number = kept(searcher, levels)
     best, told, places = _centred(searcher, levels[number], fields[number])
@@ -323,12 +324,6 @@ def _nearest(found: Found, k: int) -> list[Fit]:
     """
     rivals = sorted(found.rivals[k], key=lambda f: f.objective)
     return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals_judged))
-
-
-def _without_one(searcher: Searcher, f: Fit) -> list[Fit]:
-    """Return a hypothesis without one of its suspects, each in turn, nothing else moved."""
-    parts = (f.suspects[:q] + f.suspects[q + 1 :] for q in range(len(f.suspects)))
-    return [evaluate(searcher.problem, f.nuisance, suspects) for suspects in parts]
 
 
 def _led(found: Found, best: Fit) -> Found:

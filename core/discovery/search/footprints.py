@@ -24,6 +24,8 @@ from ..effects.element_patches import Patch, PatchCandidates
 from ..effects.structure_points import translations
 from ..likelihood.hypothesis import Fit
 from ..reduction.elements_and_supports import Structure
+from ..reduction.own_axes import own_axes
+from ..reduction.reduction_numbers import REDUCTION
 from .moves import Searcher
 from .search_numbers import SEARCH
 
@@ -204,13 +206,27 @@ def surroundings(structure: Structure, xyz: Floats) -> Surroundings | None:
         return None
     own = grids[tree.query_ball_point(xyz, SEARCH.foot_reach * mesh)]
     middle = g.xyz[own].mean(axis=0)
-    _, _, axes = np.linalg.svd(g.xyz[own] - middle, full_matrices=False)
-    found = Surroundings(own, g.xyz[own], middle, axes[:2], xyz, mesh)
+    found = Surroundings(own, g.xyz[own], middle, _laid_along(g.xyz, own), xyz, mesh)
     try:
         found.shares(np.zeros(3))
     except (QhullError, ValueError):
         return None
     return found
+
+
+def _laid_along(xyz: Floats, own: Ints) -> Floats:
+    """Return the axes of the plane through some grids, along the structure's own, (2, 3).
+
+    A breath askew, so that which diagonal halves a square does not hang on rounding.
+    """
+    _, _, axes = np.linalg.svd(xyz[own] - xyz[own].mean(axis=0), full_matrices=False)
+    flat = own_axes(xyz) @ axes[:2].T @ axes[:2]
+    length = np.round(np.linalg.norm(flat, axis=1) / REDUCTION.alike)
+    first, second = flat[np.sort(np.argsort(-length, kind="stable")[:2])]
+    first = first / np.linalg.norm(first)
+    second = second - first * (second @ first)
+    second = second / np.linalg.norm(second)
+    return np.array([first + SEARCH.foot_askew * second, second])
 
 
 def shares(cells: Delaunay, middle: Floats, radius: float) -> Floats:

@@ -11,7 +11,7 @@ from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
 from ..likelihood.frf_evidence import misfit_of_responses
 from ..likelihood.hypothesis import Fit, unmatched
-from ..likelihood.map_fit import mode_misfits, solve
+from ..likelihood.map_fit import evaluate, mode_misfits, solve
 from ..model_error.adequacy import adequacy, as_many_astray
 from ..model_error.diffuse_fit import Judged
 from ..model_error.model_error_numbers import MODEL_ERROR
@@ -196,6 +196,26 @@ def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Score
     rest = SEARCH.rest * (poorer.score - alone.score)
     least = SEARCH.claimed * len(richer.judged.diffuse.each) if richer.judged else np.inf
     return _gain_each(richer, poorer) > max(rest, least)
+
+
+def without_one(searcher: Searcher, f: Fit) -> list[Fit]:
+    """Return a hypothesis without one of its suspects, each in turn, nothing else moved."""
+    parts = (f.suspects[:q] + f.suspects[q + 1 :] for q in range(len(f.suspects)))
+    return [evaluate(searcher.problem, f.nuisance, suspects) for suspects in parts]
+
+
+def without_one_to_spare(searcher: Searcher, f: Fit, null: Fit) -> Fit | None:
+    """Return a hypothesis less the suspect that it misses least, None where that earns its place.
+
+    None either where it is all that is left.
+    """
+    if len(f.suspects) < 2:
+        return None
+    richer = scored(searcher, f)
+    poorer = ranked(searcher, without_one(searcher, f), [richer])
+    first = next(s for s in poorer if s is not richer)
+    kept = told_beside(searcher, richer, first, scored(searcher, null))
+    return None if kept else first.fit
 
 
 def _gain_each(richer: Scored, poorer: Scored) -> float:
