@@ -15,6 +15,7 @@ from ..correlation.comparison import Placed
 from ..errors import TrueupError
 from .dampers.damper_evidence import Weighed, taken_off, weighed
 from .discovery_numbers import DISCOVERY
+from .effects import point_mass
 from .effects.candidates import factors_of, lacking
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
@@ -193,7 +194,7 @@ class _Trial:
         return self._judged[same]
 
     def laid(self, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
-        """Lay the masses of a hypothesis on footprints, if the test is likelier with them there.
+        """Give patches better shapes, and lay masses on footprints, if the test is likelier so.
 
         What made up for their places no longer earns its own then: anew without it.
         """
@@ -225,18 +226,22 @@ def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher,
         searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress, trial.explained)
     progress("weighing the best hypotheses on bases of their own")
-    searcher, best = reshaped(searcher, found.levels[chosen(searcher, found)])
-    found = found.with_level(best)
-    if not trial.explained(searcher, found.levels[chosen(searcher, found)]):
+    best = found.levels[chosen(searcher, found)]
+    if not trial.explained(searcher, best):
+        searcher, best = reshaped(searcher, best)
+        found = found.with_level(best)
         searcher, found = on_stands(trial.request.structure, searcher, found, progress)
-    accepted = chosen(searcher, found)
-    searcher, best = trial.laid(searcher, found.levels[accepted])
+        best = found.levels[chosen(searcher, found)]
+    searcher, best = trial.laid(searcher, best)
     accepted = len(best.suspects)
     return searcher, _weighed(trial, searcher, found.with_level(best), accepted), accepted
 
 
 def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
     structure = trial.request.structure
+    kinds = (searcher.problem.catalogue[s.kind].kind for s in best.suspects)
+    if any(kind is not point_mass.KIND for kind in kinds):
+        searcher, best = reshaped(searcher, best)
     wide, free = footed(searcher, structure, best)
     if wide is not searcher:
         with suppress(TrueupError):
