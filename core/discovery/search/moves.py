@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, permutations
 
 import numpy as np
 
@@ -329,6 +329,43 @@ class Searcher:
             if not moved:
                 break
         return state
+
+    def turned_about(self, state: Fit) -> Fit:
+        """Move two suspects of one nature near each other at once, where that is better.
+
+        Each makes up for the wrong place of the other, so that none moves alone.
+        """
+        soft = softened(self.local(state)[0])
+        for p, q in permutations(range(len(state.suspects)), 2):
+            if not self._near_alike(state.suspects[p], state.suspects[q]):
+                continue
+            options: list[tuple[float, tuple[Suspect, ...]]] = []
+            for moved in self._places_beside(state.suspects[p]):
+                rest = [moved if k == p else s for k, s in enumerate(state.suspects)]
+                here = evaluate(soft, state.nuisance, rest[:q] + rest[q + 1 :])
+                for cost, other in next(self._near(soft, here, state.suspects[q])):
+                    options.append((cost, (*rest[:q], other, *rest[q + 1 :])))
+            options = sorted(options, key=lambda o: o[0])[: SEARCH.together]
+            hoped = [(promised(soft, state.nuisance, s, self.active), s) for _, s in options]
+            for _, suspects in sorted(hoped, key=lambda o: o[0])[: SEARCH.moves_tried]:
+                trial = self.fitted(state, suspects, SEARCH.steps_new, soften=True)
+                if trial.objective < state.objective - SEARCH.better_anew:
+                    return self.refined(trial)
+        return state
+
+    def _near_alike(self, one: Suspect, other: Suspect) -> bool:
+        c, d = (self.problem.catalogue[s.kind] for s in (one, other))
+        away = np.linalg.norm(c.spots[one.row] - d.spots[other.row])
+        alike = one.kind == other.kind or c.kind.joins(d.kind)
+        return bool(alike and away < SEARCH.together_near * self.size)
+
+    def _places_beside(self, suspect: Suspect) -> list[Suspect]:
+        """Return a suspect at places near by."""
+        c = self.problem.catalogue[suspect.kind]
+        away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
+        rows = np.flatnonzero(away <= self.effort.near * self.size)
+        rows = _some(rows[np.argsort(away[rows], kind="stable")], self.effort.around)
+        return [replace(suspect, row=int(row)) for row in rows]
 
     def doubtful(self, state: Fit, first: bool = False) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""
