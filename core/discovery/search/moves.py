@@ -336,36 +336,36 @@ class Searcher:
         Each makes up for the wrong place of the other, so that none moves alone.
         """
         soft = softened(self.local(state)[0])
-        for p, q in permutations(range(len(state.suspects)), 2):
-            if not self._near_alike(state.suspects[p], state.suspects[q]):
-                continue
-            options: list[tuple[float, tuple[Suspect, ...]]] = []
-            for moved in self._places_beside(state.suspects[p]):
-                rest = [moved if k == p else s for k, s in enumerate(state.suspects)]
-                here = evaluate(soft, state.nuisance, rest[:q] + rest[q + 1 :])
-                for cost, other in next(self._near(soft, here, state.suspects[q])):
-                    options.append((cost, (*rest[:q], other, *rest[q + 1 :])))
-            options = sorted(options, key=lambda o: o[0])[: SEARCH.together]
-            hoped = [(promised(soft, state.nuisance, s, self.active), s) for _, s in options]
-            for _, suspects in sorted(hoped, key=lambda o: o[0])[: SEARCH.moves_tried]:
-                trial = self.fitted(state, suspects, SEARCH.steps_new, soften=True)
-                if trial.objective < state.objective - SEARCH.better_anew:
-                    return self.refined(trial)
+        pairs = permutations(range(len(state.suspects)), 2)
+        moved = (self._moved_both(soft, state, *pair) for pair in pairs)
+        options = sorted(chain.from_iterable(moved), key=lambda o: o[0])[: SEARCH.together]
+        hoped = [(promised(soft, state.nuisance, s, self.active), s) for _, s in options]
+        for _, suspects in sorted(hoped, key=lambda o: o[0])[: SEARCH.moves_tried]:
+            trial = self.fitted(state, suspects, SEARCH.steps_new, soften=True)
+            if trial.objective < state.objective - SEARCH.better_anew:
+                return self.refined(trial)
         return state
 
-    def _near_alike(self, one: Suspect, other: Suspect) -> bool:
+    def _moved_both(
+        self, soft: Problem, state: Fit, p: int, q: int
+    ) -> Iterator[tuple[float, tuple[Suspect, ...]]]:
+        """Give what is left with two suspects near each other both at other places near by."""
+        one, other = state.suspects[p], state.suspects[q]
         c, d = (self.problem.catalogue[s.kind] for s in (one, other))
-        away = np.linalg.norm(c.spots[one.row] - d.spots[other.row])
-        alike = one.kind == other.kind or c.kind.joins(d.kind)
-        return bool(alike and away < SEARCH.together_near * self.size)
-
-    def _places_beside(self, suspect: Suspect) -> list[Suspect]:
-        """Return a suspect at places near by."""
-        c = self.problem.catalogue[suspect.kind]
-        away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
+        apart = np.linalg.norm(c.spots[one.row] - d.spots[other.row])
+        if apart > SEARCH.together_near * self.size or not c.kind.joins(d.kind):
+            return
+        away, beside = (
+            np.linalg.norm(e.spots - e.spots[s.row], axis=1) for e, s in ((c, one), (d, other))
+        )
         rows = np.flatnonzero(away <= self.effort.near * self.size)
-        rows = _some(rows[np.argsort(away[rows], kind="stable")], self.effort.around)
-        return [replace(suspect, row=int(row)) for row in rows]
+        for row in _some(rows[np.argsort(away[rows], kind="stable")], self.effort.around):
+            suspects = list(state.suspects)
+            suspects[p] = replace(one, row=int(row))
+            here = evaluate(soft, state.nuisance, suspects[:q] + suspects[q + 1 :])
+            theta, count = np.array(other.theta), self.effort.neighbours
+            for cost, s in self._promising(soft, here, other.kind, beside, theta, count):
+                yield cost, (*suspects[:q], s, *suspects[q + 1 :])
 
     def doubtful(self, state: Fit, first: bool = False) -> list[int]:
         """Suspects to be looked for anew: of many only the one that is missed least."""

@@ -35,7 +35,7 @@ class SearchNumbers:
     anew_all: int = number(3, "suspects", "from so many on only the one that is missed least is looked for anew")
 
     together: int = number(40, "pairs of places", "of two suspects near each other of which it is asked what a step of all unknowns would leave")
-    together_near: float = number(0.4, SIZE, "how near each other they are")
+    together_near: float = number(0.25, SIZE, "how near each other they are")
     hopeless: float = number(0.3, "of its price", "a further suspect that gains less before it is moved to better neighbours is given up")
     pays: float = number(3.0, "of its price", "that a further suspect gains with which the search goes on, likelier or not: beside another one it may be")
     worth_fitting: float = number(0.35, GAIN, "a branch that gains less is not fitted")
