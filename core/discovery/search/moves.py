@@ -249,7 +249,7 @@ class Searcher:
                 return trial
         return None
 
-    def _forms(self, suspect: Suspect) -> Iterator[tuple[int, Floats, float]]:
+    def forms(self, suspect: Suspect) -> Iterator[tuple[int, Floats, float]]:
         """Give kinds, place and ln of the size of what a suspect may be as well: one of its nature.
 
         A mass at a point is one on a patch, twins beside each other are one between them.
@@ -270,7 +270,7 @@ class Searcher:
         theta, count = np.array(suspect.theta), self.effort.neighbours
         near = self._promising(small, here, suspect.kind, away, theta, count)
         yield [(cost, s) for cost, s in near if s.row != suspect.row]
-        for kind, spot, size in self._forms(suspect):
+        for kind, spot, size in self.forms(suspect):
             c = self.problem.catalogue[kind]
             away = np.linalg.norm(c.xyz - spot, axis=1)
             theta = c.like([size])

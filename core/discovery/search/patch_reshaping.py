@@ -62,9 +62,10 @@ def promising(
     small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
     tried: list[tuple[float, Suspect]] = []
     for kind in sorted({s.kind for s in options}):
-        rows = np.array([s.row for s in options if s.kind == kind])
+        of_kind = [s for s in options if s.kind == kind]
+        rows = np.array([s.row for s in of_kind])
         c = searcher.problem.catalogue[kind]
-        trials = c.around(c.like(state.suspects[q].theta).tolist(), np.array(sizes))
+        trials = c.around(c.like(of_kind[0].theta).tolist(), np.array(sizes))
         score = scan(small, here, kind, rows, trials) + c.surprise(trials)
         for row, own in zip(rows, score, strict=True):
             best = int(np.argmin(own))
@@ -82,10 +83,12 @@ def options_beside(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list
         options = [replace(suspect, kind=kind, row=row) for row in range(len(near))]
         return with_kind(searcher, kind, near), options
     beside = [
-        replace(suspect, kind=kind, row=int(row))
-        for kind, d in _patched(searcher, c)
+        Suspect(kind, int(row), tuple(d.like([size])))
+        for kind, spot, size in searcher.forms(suspect)
+        for d in [searcher.problem.catalogue[kind]]
+        if isinstance(d, PatchCandidates) or c.many(suspect.row) > 1
         for row in np.flatnonzero(
-            np.linalg.norm(d.xyz - c.xyz[suspect.row], axis=1) < SEARCH.patch_beside * searcher.size
+            np.linalg.norm(d.xyz - spot, axis=1) < SEARCH.patch_beside * searcher.size
         )
     ]
     return searcher, beside

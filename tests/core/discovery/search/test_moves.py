@@ -95,7 +95,7 @@ def test_twins_beside_each_other_are_one_mass_between_them(apart, forms):
     )
     s = replace(s, problem=problem, coarse=(*s.coarse, np.zeros(1, int)))
     both = Suspect(len(p.catalogue), 0, (0.0,))
-    assert [kind for kind, *_ in s._forms(both)] == forms
+    assert [kind for kind, *_ in s.forms(both)] == forms
     state = fit(problem, np.zeros(2), (both,), s.active, 20)
     (moved,) = s.refined(state).suspects
     assert ((moved.kind, moved.row) == (MASS, 15)) == bool(forms)
