@@ -50,15 +50,22 @@ class _Standing:
 
 
 def equipped(structure: Structure, searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
-    """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them."""
+    """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them.
+
+    What has both climbs on where that is likelier: it climbed beside other suspects.
+    """
     for q, s in enumerate(state.suspects):
         c = searcher.problem.catalogue[s.kind]
-        weighs = c.kind is tuned_absorber.KIND or c.kind.joins(point_mass.KIND)
-        if weighs and grown(c, s.row) is None:
-            better = _best(structure, _Replaced(searcher, state, q))
-            if better and earned(better.scored, scored(searcher, state)):
+        if c.kind is tuned_absorber.KIND or c.kind.joins(point_mass.KIND):
+            better, now = _best(structure, _Replaced(searcher, state, q)), scored(searcher, state)
+            if better and _instead(better.scored, now, stood=grown(c, s.row) is not None):
                 searcher, state = better.searcher, better.scored.fit
     return searcher, state
+
+
+def _instead(better: Scored, now: Scored, *, stood: bool) -> bool:
+    """Whether a body takes the place of a mass that stood on its own, or of another body."""
+    return better.score > now.score + SEARCH.look_gain if stood else earned(better, now)
 
 
 def as_blocks(

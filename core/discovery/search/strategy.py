@@ -105,14 +105,16 @@ def on_stands(
     progress("searching on beside equipment on its stand")
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
     other = grown(simple, progress, new.levels[: first + 1])
-    searcher, other = _stood(structure, searcher, other)
+    searcher, other = _stood(structure, searcher, other, more=1)
     return searcher, _likelier(searcher, new, other)
 
 
-def _stood(structure: Structure, searcher: Searcher, found: Found) -> tuple[Searcher, Found]:
-    """Put masses on stands in what is chosen and with a suspect less."""
+def _stood(
+    structure: Structure, searcher: Searcher, found: Found, more: int = 0
+) -> tuple[Searcher, Found]:
+    """Put masses on stands in what is chosen, with a suspect less, and with some `more`."""
     number, levels = chosen(searcher, found), list(found.levels)
-    for k in range(max(number - 1, 1), number + 1):
+    for k in range(max(number - 1, 1), min(number + more + 1, len(levels))):
         searcher, levels[k] = equipped(structure, searcher, levels[k])
     return searcher, Found(tuple(levels), found.rivals)
 
