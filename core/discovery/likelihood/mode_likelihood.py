@@ -136,18 +136,27 @@ def joint_macs(eigenvalues: Floats, cross: Floats, gram: Floats, size: float) ->
 
 
 def mode_costs(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) -> Floats:
-    """Misfit of every test mode with every analysis mode, (..., n_test, n); see `joint_macs`.
+    """Misfit of every test mode with every analysis mode, (..., n_test, n); see `mode_squares`."""
+    return robust(mode_squares(e, eigenvalues, cross, gram), e.noise.robust)
 
-    (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², robust: c ln(1 + d/c), with `joint_macs`.
+
+def mode_squares(e: Evidence, eigenvalues: Floats, cross: Floats, gram: Floats) -> Floats:
+    """Square d of what parts every test mode from every analysis mode, (..., n_test, n).
+
+    (ln f_a/f_t)²/σ_f² + n_ind (1 − MAC)/σ_s², with `joint_macs`.
     """
     omega2 = targets(e)
     floor = LIKELIHOOD.least_eigenvalue * omega2.min()
-    off = 0.5 * np.log(np.maximum(eigenvalues, floor)[..., None, :] / omega2[:, None])
+    off = 0.5 * (np.log(np.maximum(eigenvalues, floor))[..., None, :] - np.log(omega2)[:, None])
     n = e.noise
     macs = joint_macs(np.where(eigenvalues > floor, eigenvalues, 0.0), cross, gram, n.mixing)
     f, s = np.asarray(n.frequency)[..., None], np.asarray(n.shape)[..., None]
-    d = (off / f) ** 2 + n.independent * (1.0 - macs) / s**2
-    return np.asarray(n.robust * np.log1p(d / n.robust))
+    return np.asarray((off / f) ** 2 + n.independent * (1.0 - macs) / s**2)
+
+
+def robust(d: Floats, most: float) -> Floats:
+    """Return misfits c ln(1 + d/c) of squares d, which count less and less from c, `most`, on."""
+    return np.asarray(most * np.log1p(d / most))
 
 
 def mixing(eigenvalues: Floats, size: float) -> Floats:
@@ -168,10 +177,14 @@ def matched(costs: Floats) -> tuple[float, Ints]:
     return float(costs[rows, columns].sum()), columns
 
 
-def least_sums(costs: Floats) -> Floats:
-    """Return the smallest sums of `costs` (n, n_test, m) over one-to-one matches, (n,)."""
-    own = costs.argmin(axis=-1)
-    out = np.take_along_axis(costs, own[..., None], axis=-1)[..., 0].sum(axis=-1)
+def least_sums(d: Floats, most: float) -> Floats:
+    """Return the smallest sums of misfits over one-to-one matches, (n,); see `robust`.
+
+    Of squares d (n, n_test, m): which is least of them is the least misfit.
+    """
+    own = d.argmin(axis=-1)
+    least = np.take_along_axis(d, own[..., None], axis=-1)[..., 0]
+    out = robust(least, most).sum(axis=-1)
     shared = np.any(np.diff(np.sort(own, axis=-1), axis=-1) == 0, axis=-1)
-    out[shared] = [matched(x)[0] for x in costs[shared]]
+    out[shared] = [matched(x)[0] for x in robust(d[shared], most)]
     return np.asarray(out)

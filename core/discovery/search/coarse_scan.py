@@ -16,7 +16,7 @@ from ...numerics.products import stacked_product
 from ..effects.candidates import Candidates
 from ..effects.effect_laws import Law, Rows
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.mode_likelihood import Evidence, targets
+from ..likelihood.mode_likelihood import Evidence, robust, targets
 from ..reduction.elements_and_supports import thinned
 from .exact_scan import scan
 from .search_numbers import SEARCH
@@ -194,7 +194,7 @@ def foretold(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats
             off = 0.5 * np.log(each[:, own] / aim)
             lost = 1.0 - _macs(coupled, np.log(each), own, cross, noise.mixing)
             d = (off / noise.frequency) ** 2 + noise.independent * lost / noise.shape**2
-            out[some, j] = np.sum(noise.robust * np.log1p(d / noise.robust), axis=1)
+            out[some, j] = robust(d, noise.robust).sum(axis=1)
     return out
 
 
@@ -289,4 +289,4 @@ def _misfit(
         noise = e.noise
         d = (off / noise.frequency) ** 2 + noise.independent * (1.0 - mac) / noise.shape**2
         best = np.minimum(best, d)
-    return np.asarray(np.sum(e.noise.robust * np.log1p(best / e.noise.robust), axis=-1))
+    return np.asarray(robust(best, e.noise.robust).sum(axis=-1))

@@ -5,7 +5,7 @@ import numpy as np
 from ...arrays import Floats, Ints
 from ...numerics.products import stacked_product
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.mode_likelihood import least_sums, mode_costs
+from ..likelihood.mode_likelihood import least_sums, mode_squares
 from .search_numbers import SEARCH
 
 
@@ -42,8 +42,8 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
                 values, Z = _changed(lam, u, c, law.on)
             values, Z = values[:, :n], Z[:, :, :n]
             gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
-            costs = mode_costs(problem.evidence, values, cross @ Z, gram)
-            out[part, j] = least_sums(costs)
+            squares = mode_squares(problem.evidence, values, cross @ Z, gram)
+            out[part, j] = least_sums(squares, problem.evidence.noise.robust)
     return out
 
 

@@ -15,6 +15,7 @@ from trueup.core.discovery.likelihood.mode_likelihood import (
     mixing,
     mode_costs,
     noise_of,
+    robust,
 )
 
 RNG = np.random.default_rng(0)
@@ -108,8 +109,10 @@ def bare_problem(e):
 
 def test_sums_of_many_matches_are_those_of_each():
     """Where two test modes want one analysis mode as well."""
-    costs = np.random.default_rng(3).integers(0, 6, (200, 4, 6)).astype(float)
-    own = costs.argmin(axis=-1)
+    squares = np.random.default_rng(3).integers(0, 6, (200, 4, 6)).astype(float)
+    own = squares.argmin(axis=-1)
     shared = [len(set(row)) < 4 for row in own.tolist()]
     assert 0 < sum(shared) < 200
-    np.testing.assert_array_equal(least_sums(costs), [matched(each)[0] for each in costs])
+    np.testing.assert_array_equal(
+        least_sums(squares, 5.0), [matched(each)[0] for each in robust(squares, 5.0)]
+    )
