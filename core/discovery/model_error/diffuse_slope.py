@@ -59,13 +59,13 @@ def slope(seen: Seen, d: Diffuse) -> Slope:
     values, own = seen.values, seen.values[k]
     c2, f = shares(seen, d.error, k)
     D = c2[:, None] * f
-    T, root = seen.cross[:, np.arange(len(k))].T, np.sqrt(D / s2)
-    half = root[:, :, None] * gram
-    system = half * root[:, None, :] + np.eye(len(gram))
-    solved = np.linalg.solve(system, np.dstack([half, root * T]))
-    taken = np.matmul(half.transpose(0, 2, 1), solved)
-    W, v = (gram - taken[:, :, :-1]) / s2, (T - taken[:, :, -1]) / s2
-    N = 0.5 * each[:, None, None] * (W - v[:, :, None] * v[:, None, :])
+    T = seen.cross[:, np.arange(len(k))].T
+    system = s2 * np.eye(len(gram)) + gram * D[:, None, :]
+    sides = np.dstack([np.broadcast_to(gram, system.shape), T])
+    solved = np.linalg.solve(system, sides)
+    W, v = solved[:, :, :-1], solved[:, :, -1]
+    counted = each[:, None, None] * W
+    N = 0.5 * (counted - (each[:, None] * v)[:, :, None] * v[:, None, :])
 
     by_log = D * np.einsum("mjj->mj", N)
     first, second = f @ np.diag(gram), np.sum(f * (f @ gram**2), axis=1)
@@ -74,8 +74,9 @@ def slope(seen: Seen, d: Diffuse) -> Slope:
     N += by_gram[1, :, None, None] * np.matmul(gram * f[:, None, :], gram)
     x = values / own[:, None]
     below = (1.0 - x) ** 2 + e2 * x
-    L = e2 * (1.0 - x[:, :, None] * x[:, None, :]) / (below[:, :, None] * below[:, None, :])
-    stiffness = np.sum(N * L / own[:, None, None], axis=0)
+    scaled = below * own[:, None] / e2
+    L = (1.0 - x[:, :, None] * x[:, None, :]) / (scaled[:, :, None] * below[:, None, :])
+    stiffness = np.sum(N * L, axis=0)
     held = 0.5 * np.einsum("mjl,mj->jl", N, f)
     mass = -0.5 * stiffness * (values[:, None] + values) - held - held.T
 
@@ -89,7 +90,8 @@ def slope(seen: Seen, d: Diffuse) -> Slope:
     b = 2.0 * (1.0 - f)
     by_length = np.diag(gram) / first[:, None] - 2.0 * (f @ gram**2) / second[:, None]
     b += np.sum(f * b * by_length, axis=1)[:, None]
-    P = W * np.sqrt(D[:, :, None] * D[:, None, :])
+    root = np.sqrt(D)
+    P = W * root[:, :, None] * root[:, None, :]
     p, squares, m = np.einsum("mjj->mj", P), P**2, D * v
     left = (1.0 - np.sum(m * (2.0 * T - m @ gram), axis=1)) / s2
     rest, free = p - squares.sum(axis=2), sensors - p.sum(axis=1)
@@ -100,7 +102,7 @@ def slope(seen: Seen, d: Diffuse) -> Slope:
     of_noise = 2.0 * each @ (free - rest.sum(axis=1))
     information = np.array([[of_error, both], [both, of_noise]])
     errors = np.array([by_error, each @ (free - left)])
-    return Slope(errors, information, stiffness, mass, each[:, None, None] * W)
+    return Slope(errors, information, stiffness, mass, counted)
 
 
 def diffuse(seen: Seen) -> Diffuse:
