@@ -84,22 +84,30 @@ class Flexibility:
     ) -> None:
         self._compliance = compliance
         self._vectors, self._inverse = vectors, inverse
-        self._loads, self._turns, self._each = loads, turns.multiply(turns).tocsr(), each
-        self._kept = np.full(loads.shape[0], np.nan)
+        self._loads, self._turns = loads, turns.multiply(turns).tocsr()
+        self._of_loads = np.full(loads.shape[0], np.nan)
+        self._kept = np.full((turns.shape[0] // each, each), np.nan)
 
     def __getitem__(self, rows: Ints) -> Floats:
         """Return what the basis lacks, (len(rows), q)."""
-        q = self._each
+        new = np.unique(rows[np.isnan(self._kept[rows, 0])])
+        if len(new):
+            self._kept[new] = self._found(new)
+        return np.asarray(self._kept[rows])
+
+    def _found(self, rows: Ints) -> Floats:
+        """Find what the basis lacks of some rows, of each load once."""
+        q = self._kept.shape[1]
         turns = self._turns[(rows[:, None] * q + np.arange(q)).ravel()]
         wanted = np.unique(turns.indices)
-        new = wanted[np.isnan(self._kept[wanted])]
+        new = wanted[np.isnan(self._of_loads[wanted])]
         if len(new):
             own = self._loads[new]
             seen = np.asarray(own @ self._vectors)
             lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
-            self._kept[new] = np.maximum(lost, 0.0)
-        known = np.zeros_like(self._kept)
-        known[wanted] = self._kept[wanted]
+            self._of_loads[new] = np.maximum(lost, 0.0)
+        known = np.zeros_like(self._of_loads)
+        known[wanted] = self._of_loads[wanted]
         return np.asarray(turns @ known).reshape(len(rows), q)
 
 
