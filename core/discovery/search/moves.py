@@ -152,9 +152,11 @@ class Searcher:
         order = np.lexsort((alike, which))
         number = np.arange(len(rows)) - np.searchsorted(which[order], which[order])
         kept = order[number < SEARCH.promising // 2]
-        rows = rows[kept]
-        trials = np.array([c.around(coarse.theta[i], _NEARBY) for i in which[kept]])
-        fine = scan(small, here, kind, rows, trials) + c.surprise(trials)
+        rows, which = rows[kept], which[kept]
+        moved = np.array([c.around(coarse.theta[i], _NEARBY) for i in which])
+        trials = np.concatenate([coarse.theta[which][:, None], moved], axis=1)
+        other = scan(small, here, kind, rows, moved)
+        fine = np.hstack([alike[kept, None], other]) + c.surprise(trials)
         each, best = np.arange(len(rows)), fine.argmin(axis=1)
         return Look(
             np.concatenate([coarse.rows, rows]),
@@ -286,10 +288,12 @@ class Searcher:
         rows = rows[~self._taken(here, kind, rows)]
         if not len(rows):
             return []
-        alike = scan(small, here, kind, rows, theta[None])[:, 0]
-        rows = rows[np.argsort(alike, kind="stable")[: SEARCH.sized]]
-        trials = c.around(theta.tolist(), np.array(SEARCH.neighbouring))
-        score = scan(small, here, kind, rows, trials)
+        own = c.within(theta)[None]
+        alike = scan(small, here, kind, rows, own)
+        kept = np.argsort(alike[:, 0], kind="stable")[: SEARCH.sized]
+        rows, moved = rows[kept], c.around(own[0].tolist(), np.array(SEARCH.neighbouring))
+        trials = np.concatenate([own, moved])
+        score = np.hstack([alike[kept], scan(small, here, kind, rows, moved)])
         return [
             (float(score[i].min()), _at(kind, rows[i], trials[score[i].argmin()]))
             for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]

@@ -10,9 +10,9 @@ SCAN = "cache: their matrices stay near the processor"
 
 @dataclass(frozen=True)
 class SearchNumbers:
-    neighbouring: tuple[float, ...] = number((-0.45, 0.0, 0.45), "θ", "steps tried when a suspect moves to a neighbouring place")
+    neighbouring: tuple[float, ...] = number((-0.45, 0.45), "θ", "steps tried besides the size it has when a suspect moves to a neighbouring place")
     sized: int = number(16, "places", "that promise most at the size it has, at which the others are tried")
-    nearby: tuple[float, ...] = number((-0.35, 0.0, 0.35), "θ", "steps tried around the best places of the first scan")
+    nearby: tuple[float, ...] = number((-0.35, 0.35), "θ", "steps tried around the best places of the first scan, besides the size that is best there")
     hoped_each: int = number(8, "places", "of each kind that a scan may bring forward")
     hoped: int = number(24, "places", "of a scan, the best and the best of each kind, of which it is asked what a step of all unknowns would leave", "time")
     steps: int = number(6, "steps", "of all unknowns with which suspects are fitted, unless said otherwise")
