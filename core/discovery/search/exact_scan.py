@@ -32,14 +32,15 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     for start in range(0, len(rows), SEARCH.at_once):
         part = slice(start, start + SEARCH.at_once)
         u = U[part]
-        places = np.arange(len(U))[part]
+        places, alike = np.arange(len(U))[part], _gram(u)
         for j in range(trials.shape[1]):
             at = trials[part, j]
             c = law.value(at, places)
             if law.on == "A":
                 values, Z = _attached(lam, u, c, 1.0 / law.flexibility(at, places))
             else:
-                values, Z = _changed(lam, u, c, law.on)
+                added = c[:, :, None] * alike if c.shape[1] == 1 else _gram(u, c)
+                values, Z = _changed(lam, added, law.on)
             values, Z = values[:, :n], Z[:, :, :n]
             gram = np.matmul(Z.transpose(0, 2, 1), S2 @ Z)
             squares = mode_squares(problem.evidence, values, cross @ Z, gram)
@@ -47,23 +48,22 @@ def scan(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats) ->
     return out
 
 
-def _changed(lam: Floats, u: Floats, c: Floats, on: str) -> tuple[Floats, Floats]:
-    """Eigenpairs of diag(lam) + c uᵀu or of the pencil (diag(lam), I + c uᵀu), batched.
+def _gram(u: Floats, c: Floats | float = 1.0) -> Floats:
+    """Return uᵀ c u of rows u (g, q, n), each times one of c (g, q), (g, n, n)."""
+    return np.asarray(np.matmul((u * np.asarray(c)[..., None]).transpose(0, 2, 1), u))
 
-    The pencil is solved for the reciprocals of its eigenvalues, with a shift where there are
-    rigid-body modes, whose share in each eigenvalue is taken off again.
+
+def _changed(lam: Floats, added: Floats, on: str) -> tuple[Floats, Floats]:
+    """Eigenpairs of diag(lam) + A or of the pencil (diag(lam), I + A), A `added` (g, n, n).
+
+    Batched. The pencil is solved for the reciprocals of its eigenvalues, with a shift where there
+    are rigid-body modes, whose share in each eigenvalue is taken off again.
     """
-    n = len(lam)
     if on == "K":
-        A = np.matmul(u.transpose(0, 2, 1) * c[:, None, :], u)
-        A[:, np.arange(n), np.arange(n)] += lam
-        return tuple(np.linalg.eigh(A))  # type: ignore[return-value]
+        return tuple(np.linalg.eigh(added + np.diag(lam)))  # type: ignore[return-value]
     shift = max(SEARCH.pencil_shift * lam[-1] - lam[0], 0.0)
     root = 1.0 / np.sqrt(lam + shift)
-    v = u * root
-    B = np.matmul(v.transpose(0, 2, 1) * c[:, None, :], v)
-    B[:, np.arange(n), np.arange(n)] += root**2
-    e, Y = np.linalg.eigh(B)
+    e, Y = np.linalg.eigh(added * (root * root[:, None]) + np.diag(root**2))
     values = 1.0 / e[:, ::-1]
     Z = root[:, None] * Y[:, :, ::-1] * np.sqrt(values)[:, None, :]
     return values - shift * np.sum(Z**2, axis=1), Z
@@ -76,10 +76,8 @@ def _attached(lam: Floats, u: Floats, m: Floats, k: Floats) -> tuple[Floats, Flo
     """
     g, q, n = u.shape
     A = np.zeros((g, n + q, n + q))
-    A[:, :n, :n] = np.matmul(u.transpose(0, 2, 1) * k[:, None, :], u)
-    A[:, np.arange(n), np.arange(n)] += lam
-    A[:, n:, :n] = -u * (k / np.sqrt(m))[:, :, None]
-    A[:, :n, n:] = A[:, n:, :n].transpose(0, 2, 1)
+    A[:, :n, :n] = _gram(u, k) + np.diag(lam)
+    A[:, n:, :n] = -u * (k / np.sqrt(m))[:, :, None]  # what is above the diagonal is not read
     A[:, np.arange(n, n + q), np.arange(n, n + q)] = k / m
     values, Z = np.linalg.eigh(A)
     return values, Z[:, :n]
