@@ -245,8 +245,8 @@ def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats,
     for out, matrices in ((a, problem.basis.stiffness), (b, problem.basis.mass)):
         moving = np.flatnonzero([q in matrices.moved_by for q in active])
         which = np.array(active, np.int64)[moving]
-        slopes = matrices.slopes(p, which.tolist()) * p[which, None, None]
-        out[moving] = np.matmul(S.T, np.matmul(slopes, S[:, k]))
+        moved = np.matmul(matrices.slopes(p, which.tolist()), S[:, k])
+        out[moving] = p[which, None, None] * np.matmul(S.T, moved)
     if len(p) in active:
         b[active.index(len(p))] = -S.T @ (problem.mesh @ S[:, k])
     for s in now.suspects:
