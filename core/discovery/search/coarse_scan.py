@@ -189,27 +189,28 @@ def foretold(problem: Problem, state: Fit, kind: int, rows: Ints, trials: Floats
             c = law.value(np.broadcast_to(theta, (len(some), len(theta))), some)[..., None]
             heavier = 1.0 + np.sum(c * u**2, axis=1)
             each, scale = lam / heavier, 1.0 / np.sqrt(heavier)
-            coupled = np.matmul((u[:, :, own] * c).transpose(0, 2, 1), u)
-            coupled *= -scale[:, own, None] * scale[:, None, :]
-            off = 0.5 * np.log(each[:, own] / aim)
-            lost = 1.0 - _macs(coupled, np.log(each), own, cross, noise.mixing)
+            twice = np.matmul((u[:, :, own] * c).transpose(0, 2, 1), u)
+            twice *= -2.0 * scale[:, own, None] * scale[:, None, :]
+            log = np.log(each)
+            off = 0.5 * (log[:, own] - np.log(aim))
+            lost = 1.0 - _macs(twice, log, own, cross, noise.mixing)
             d = (off / noise.frequency) ** 2 + noise.independent * lost / noise.shape**2
             out[some, j] = robust(d, noise.robust).sum(axis=1)
     return out
 
 
-def _macs(coupled: Floats, log: Floats, own: Ints, cross: Floats, size: float) -> Floats:
+def _macs(twice: Floats, log: Floats, own: Ints, cross: Floats, size: float) -> Floats:
     """Return the MAC of each test mode with the mode `own` (t,) as it turns, (n, t).
 
-    `coupled` (n, t, r) beside their eigenvalues, of which `log` (n, r) are the logs; `cross` (t, r)
-    are test shapes times modes. Of a mode j it takes tan α = 2 b / (|g| + √(g² + 4 b²)), b being
-    coupled and g the gap between the logs, times g² / (g² + size²): modes that differ by no more
-    than `size` turn freely, see `mixing`.
+    Coupled by half of `twice` (n, t, r) beside their eigenvalues, of which `log` (n, r) are the
+    logs; `cross` (t, r) are test shapes times modes. Of a mode j it takes
+    tan α = 2 b / (|g| + √(g² + 4 b²)), b being coupled and g the gap between the logs, times
+    g² / (g² + size²): modes that differ by no more than `size` turn freely, see `mixing`.
     """
     turned = log[:, own, None] - log[:, None, :]
     away = np.abs(turned)
     square = np.square(turned)
-    over = np.square(2.0 * coupled)
+    over = np.square(twice)
     over += square
     np.sqrt(over, out=over)
     over += away
@@ -217,9 +218,8 @@ def _macs(coupled: Floats, log: Floats, own: Ints, cross: Floats, size: float) -
     over *= square
     np.maximum(over, np.finfo(float).tiny, out=over)
     turned *= away
-    turned *= coupled
+    turned *= twice
     turned /= over
-    turned *= 2.0
     turned[:, np.arange(len(own)), own] = 1.0
     onto = np.einsum("ntr,tr->nt", turned, cross)
     return np.asarray(np.minimum(onto**2 / np.einsum("ntr,ntr->nt", turned, turned), 1.0))
