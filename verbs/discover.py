@@ -155,7 +155,7 @@ def discover(
             asked,
             before.placed.test_geometry.length_unit,
             before=given,
-            after=done.deck if done.deck.diff else None,
+            after=done.again if done.deck.diff else None,
         ),
         deck_file=f"deck/{done.deck.name}",
         input_deck=deck.told,

@@ -28,6 +28,8 @@ class CompletedDeck:
     Parameters
     ----------
     deck : ChangedDeck
+    again : Deck
+        As it was read back.
     after : SolvedModel
         It, solved in full and compared with the test again.
     cards : tuple of tuple of str
@@ -37,6 +39,7 @@ class CompletedDeck:
     """
 
     deck: ChangedDeck
+    again: Deck
     after: SolvedModel
     cards: tuple[tuple[str, ...], ...]
     refused: tuple[str, ...]
@@ -86,7 +89,7 @@ def complete(
     modes, rigid = modes_of(again.model, again.solution), again.solution.rigid_body_modes
     after = compare(again.model.geometry, modes, sound, criteria, rigid)
     solved = SolvedModel(after, again.solution, free_damping(again.deck, again.model))
-    return CompletedDeck(changed, solved, _standing(cards, text), tuple(refused))
+    return CompletedDeck(changed, again.deck, solved, _standing(cards, text), tuple(refused))
 
 
 def _moved(
