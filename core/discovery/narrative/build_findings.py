@@ -15,7 +15,7 @@ from ..likelihood.request import Request
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.completeness import Completeness
 from ..search.credible_places import Place, between
-from ..search.found import Found, objective_of
+from ..search.found import Found, noise_scale, objective_of
 from ..search.model_selection import (
     contenders,
     explained,
@@ -23,7 +23,7 @@ from ..search.model_selection import (
     scored,
     times,
 )
-from ..search.moves import Searcher, noise_scale
+from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
 from .held_places import held_said, is_held
 from .model_error_words import left_over

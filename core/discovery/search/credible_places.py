@@ -11,8 +11,9 @@ from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate, fit
 from .exact_scan import scan
+from .found import noise_scale
 from .model_selection import Scored
-from .moves import Searcher, noise_scale
+from .moves import Searcher
 from .search_numbers import SEARCH
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ..likelihood.hypothesis import Fit
+from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.map_fit import evaluate
+from .search_numbers import SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,3 +37,11 @@ class Found:
 def objective_of(f: Fit) -> float:
     """Return what hypotheses are ordered by: misfit and prior, -2 ln."""
     return f.objective
+
+
+def noise_scale(problem: Problem, best: Fit) -> float:
+    """Return how many times the assumed variance a fit leaves of the whole test, at least 1."""
+    misfit = evaluate(problem.entire(), best.nuisance, best.suspects).misfit
+    found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
+    freedom = SEARCH.per_mode * len(problem.whole.frequencies_hz) - len(best.active) - found
+    return max(1.0, misfit / max(freedom, 1.0))

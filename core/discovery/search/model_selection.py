@@ -15,8 +15,8 @@ from ..likelihood.map_fit import evaluate, mode_misfits, solve
 from ..model_error.adequacy import adequacy, as_many_astray
 from ..model_error.diffuse_fit import Judged
 from ..model_error.model_error_numbers import MODEL_ERROR
-from .found import Found
-from .moves import Searcher, noise_scale
+from .found import Found, noise_scale
+from .moves import Searcher
 from .search_numbers import SEARCH
 
 

@@ -81,9 +81,9 @@ class Searcher:
     ) -> Scanned:
         """Return the most promising further suspects of every kind, `count` of each.
 
-        Of the places `among` the rows of each kind and those next to the best of them, by exact
-        evaluation with all else as it stands, and of the best of these by what a step of all
-        unknowns would leave; ``by(problem)`` has the noise by which they promise.
+        Of the places `among` the rows of each kind and those next to the best of them, exactly with
+        all else as it stands, and of the best of these by what a step of all unknowns would leave;
+        ``by(problem)`` has the noise by which they promise.
         """
         small, here = self.local(state)
         small = by(small)
@@ -295,7 +295,10 @@ class Searcher:
         trials = np.concatenate([own, moved])
         score = np.hstack([alike[kept], scan(small, here, kind, rows, moved)])
         return [
-            (float(score[i].min()), _at(kind, rows[i], trials[score[i].argmin()]))
+            (
+                float(score[i].min()),
+                Suspect(kind, int(rows[i]), tuple(trials[score[i].argmin()].tolist())),
+            )
             for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]
         ]
 
@@ -314,10 +317,7 @@ class Searcher:
         return None
 
     def reconsidered(self, state: Fit) -> Fit:
-        """Take each suspect out in turn and look for a better one anywhere.
-
-        The last of a new state was looked for just so, and is left out in the first round.
-        """
+        """Take each suspect out in turn, the last of a new state later; look for a better one."""
         for number in range(SEARCH.anew_rounds):
             moved = False
             for q in self.doubtful(state, first=number == 0):
@@ -356,7 +356,7 @@ class Searcher:
         """Give what is left with two suspects near each other both at other places near by."""
         one, other = state.suspects[p], state.suspects[q]
         c, d = (self.problem.catalogue[s.kind] for s in (one, other))
-        apart = np.linalg.norm(c.spots[one.row] - d.spots[other.row])
+        apart = np.linalg.norm(c.xyz[one.row] - d.xyz[other.row])
         if apart > SEARCH.together_near * self.size or not c.kind.joins(d.kind):
             return
         away, beside = (
@@ -367,8 +367,8 @@ class Searcher:
             suspects = list(state.suspects)
             suspects[p] = replace(one, row=int(row))
             here = evaluate(soft, state.nuisance, suspects[:q] + suspects[q + 1 :])
-            theta, count = np.array(other.theta), self.effort.neighbours
-            for cost, s in self._promising(soft, here, other.kind, beside, theta, count):
+            near = beside, np.array(other.theta), self.effort.neighbours
+            for cost, s in self._promising(soft, here, other.kind, *near):
                 yield cost, (*suspects[:q], s, *suspects[q + 1 :])
 
     def doubtful(self, state: Fit, first: bool = False) -> list[int]:
@@ -392,19 +392,7 @@ def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     return small, evaluate(small, state.nuisance, state.suspects)
 
 
-def _at(kind: int, row: int, theta: Floats) -> Suspect:
-    return Suspect(kind, int(row), tuple(theta.tolist()))
-
-
 def _some(rows: Ints, count: int) -> Ints:
     """Return so many of rows in order of distance: half are the nearest, half spread over all."""
     near, far = np.split(rows, [count // 2])
     return np.concatenate([near, far[:: max(1, -(-2 * len(far) // count))]])
-
-
-def noise_scale(problem: Problem, best: Fit) -> float:
-    """Return how many times the assumed variance a fit leaves of the whole test, at least 1."""
-    misfit = evaluate(problem.entire(), best.nuisance, best.suspects).misfit
-    found = len(best.suspects) + sum(len(s.theta) for s in best.suspects)
-    freedom = SEARCH.per_mode * len(problem.whole.frequencies_hz) - len(best.active) - found
-    return max(1.0, misfit / max(freedom, 1.0))

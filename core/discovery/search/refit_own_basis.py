@@ -21,7 +21,7 @@ from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.set_up_fields import suspension
 from ..model_error.smooth_fields import Fields
 from ..reduction.search_basis import structural
-from .moves import noise_scale
+from .found import noise_scale
 from .own_basis import Ground, complete_model
 from .search_numbers import SEARCH
 

@@ -8,7 +8,7 @@ import pytest
 
 from trueup.core.discovery.effects import point_mass
 from trueup.core.discovery.model_error.support_reach import Reach
-from trueup.core.discovery.search import completeness as room
+from trueup.core.discovery.search import completeness as room, model_selection
 from trueup.core.discovery.search.completeness import Completeness, completeness
 from trueup.core.discovery.search.credible_places import Place
 from trueup.core.discovery.search.found import Found
@@ -154,9 +154,10 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
     monkeypatch.setattr(room, "looked_again", lambda searcher, first, _: (searcher, [first]))
     monkeypatch.setattr(room, "lacks_nothing", lambda *_: nothing)
     monkeypatch.setattr(room, "foretold", lambda judged: judged.diffuse.each)
-    monkeypatch.setattr(
-        room, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
-    )
+    for where in (room, model_selection):
+        monkeypatch.setattr(
+            where, "evaluate", lambda problem, _, s: hypothesis(99.0, *(t.row for t in s))
+        )
     xyz = np.column_stack([np.arange(100.0), np.zeros((100, 2))])
     kind = Some(
         kind=point_mass.KIND,

@@ -80,6 +80,19 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     assert sentence.endswith(f"its centre about {off:.2g} from its foot.")
 
 
+def test_a_body_that_climbed_beside_something_else_climbs_on(tmp_path, monkeypatch):
+    request = asked(tmp_path, monkeypatch)
+    s = searching(request)
+    row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
+    light = (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.1])))),)
+    heavy, block = as_blocks(request.structure, s, s.fitted(s.null(), light), 1e2)
+    wide, stood = equipped(request.structure, heavy, block)
+    (found,) = stood.suspects
+    off = wide.problem.catalogue[found.kind].bodies[found.row].offset
+    assert np.linalg.norm(off - np.array([0.08, 0.0, 0.0])) < 0.03
+    assert scored(wide, stood).score > scored(heavy, block).score + 10.0
+
+
 def test_what_looks_like_an_absorber_is_a_mass_that_resists_being_turned(tmp_path, monkeypatch):
     request = asked(tmp_path, monkeypatch)
     s = searching(request)

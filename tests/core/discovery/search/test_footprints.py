@@ -40,6 +40,23 @@ def structure(dimension):
     return SimpleNamespace(model=SimpleNamespace(geometry=geometry), members=[member])
 
 
+@pytest.mark.parametrize("place", [(4.2, 4.0, 0.0), (1.0, 7.5, 0.0)])
+def test_what_a_grid_bears_does_not_hang_on_the_order_of_grids_nor_on_the_axes(place):
+    order = np.random.default_rng(3).permutation(len(GRID))
+    turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    one, other = structure(2), structure(2)
+    stretched = one.model.geometry.xyz * [2.0, 1.0, 1.0]
+    one.model.geometry.xyz = stretched
+    other.model.geometry.xyz = stretched[order] @ turn.T
+    other.members[0].corners = np.argsort(order)[other.members[0].corners]
+    spot, theta = np.array(place) * [2.0, 1.0, 1.0], np.array([0.3, -0.6, 0.1])
+    a, b = surroundings(one, spot), surroundings(other, spot @ turn.T)
+    both = [np.zeros(len(GRID)), np.zeros(len(GRID))]
+    both[0][a.grids] = a.shares(theta)
+    both[1][order[b.grids]] = b.shares(theta)
+    np.testing.assert_allclose(both[1], both[0], atol=1e-12)
+
+
 def test_places_on_shells_have_surroundings_and_others_none():
     place = np.array([4.2, 4.0, 0.0])
     around = surroundings(structure(2), place)

@@ -13,7 +13,7 @@ from trueup.core.discovery.effects.candidates import Suspect, together
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search.beam_search import grown
 from trueup.core.discovery.search.credible_places import Place, between, credible_places, middle
-from trueup.core.discovery.search.found import Found
+from trueup.core.discovery.search.found import Found, noise_scale
 from trueup.core.discovery.search.model_selection import (
     Scored,
     adequate,
@@ -28,8 +28,8 @@ from trueup.core.discovery.search.model_selection import (
     says_else,
     scored,
     usual,
+    without_one_to_spare,
 )
-from trueup.core.discovery.search.moves import noise_scale
 
 
 def found_in(s):
@@ -308,3 +308,23 @@ def test_beside_what_leaves_no_more_than_right_models_an_effect_has_to_be_clear(
 
     poorer, richer = leaving(error, 0.0, "a mass"), leaving(0.7 * error, gain, "a mass", "a spring")
     assert earned(richer, poorer) == clear
+
+
+def test_what_no_longer_earns_its_place_is_to_spare():
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    right, spare = Suspect(0, 9, (np.log(2.0),)), Suspect(1, 22, (np.log(0.01),))
+    null, both, one = (
+        fit(s.problem, np.zeros(2), suspects, s.active, 20)
+        for suspects in ((), (right, spare), (right,))
+    )
+    left = without_one_to_spare(s, both, null)
+    assert left is not None
+    assert [q.row for q in left.suspects] == [9]
+    assert without_one_to_spare(s, one, null) is None
+
+
+def test_what_earns_its_place_is_not_to_spare():
+    s = searcher(hidden(masses=[(9, 2.0)], springs=[(22, 250.0)]))
+    beside = Suspect(0, 9, (np.log(2.0),)), Suspect(1, 22, (np.log(250.0),))
+    null, both = (fit(s.problem, np.zeros(2), f, s.active, 20) for f in ((), beside))
+    assert without_one_to_spare(s, both, null) is None

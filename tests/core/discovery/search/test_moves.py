@@ -12,6 +12,7 @@ from trueup.core.discovery.effects.candidates import Suspect, together
 from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
 from trueup.core.discovery.search import coarse_scan, moves
+from trueup.core.discovery.search.patch_reshaping import options_beside
 from trueup.core.discovery.search.search_numbers import SEARCH
 
 MASS, SPRING, ABSORBER = range(3)
@@ -99,6 +100,18 @@ def test_twins_beside_each_other_are_one_mass_between_them(apart, forms):
     state = fit(problem, np.zeros(2), (both,), s.active, 20)
     (moved,) = s.refined(state).suspects
     assert ((moved.kind, moved.row) == (MASS, 15)) == bool(forms)
+    _, between = options_beside(s, both)
+    assert (Suspect(MASS, 15, (pytest.approx(np.log(2.0)),)) in between) == bool(forms)
+
+
+@pytest.mark.parametrize(("near", "rows"), [(0.5, [9, 17]), (0.0, [12, 14])])
+def test_two_masses_near_each_other_move_at_once(near, rows, monkeypatch):
+    s = searcher(hidden(masses=[(9, 2.0), (17, 2.0)]))
+    beside = (Suspect(MASS, 12, (np.log(2.0),)), Suspect(MASS, 14, (np.log(2.0),)))
+    state = evaluate(s.problem, np.zeros(2), beside)
+    monkeypatch.setattr(moves, "SEARCH", replace(SEARCH, together_near=near))
+    moved = s.turned_about(state)
+    assert sorted(q.row for q in moved.suspects) == rows
 
 
 def test_a_spring_has_no_other_form():
