@@ -111,7 +111,7 @@ def equipment(
     )
     if len(alike) == 1:
         return single
-    return together(single, np.arange(len(each)).reshape(len(bodies), len(alike)))
+    return together(single, np.arange(len(each)).reshape(len(bodies), len(alike)), template.maps)
 
 
 def grown(c: Candidates, row: int) -> Equipment | None:

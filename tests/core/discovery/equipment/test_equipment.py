@@ -5,6 +5,7 @@ import pytest
 
 import trueup
 from trueup.adapters.nastran.discovery.build_structure import build_structure
+from trueup.core.discovery.effects.candidates import together
 from trueup.core.discovery.effects.effect_kind import Scale
 from trueup.core.discovery.effects.point_mass import KIND
 from trueup.core.discovery.equipment.bodies import Body, ball, equipment
@@ -139,8 +140,11 @@ def test_mirrored_places_have_mirrored_bodies(tmp_path):
         stands(structure, {"grids": [6]}, np.eye(3))[0],
         stands(structure, {"grids": [7]}, MIRROR)[0],
     ]
-    made = equipment(masses_of(structure), both, [ROD])
+    masses = masses_of(structure)
+    twins = together(masses, np.array([[5, 6]]), np.stack([np.eye(3), MIRROR]))
+    made = equipment(twins, both, [ROD])
     assert made.copies == ((0, 1),)
+    np.testing.assert_allclose(made.maps, twins.maps)
     here, there = made.single.bodies
     assert there.offset == pytest.approx(MIRROR @ here.offset)
     assert there.extent == pytest.approx(MIRROR @ here.extent @ MIRROR)
