@@ -110,7 +110,7 @@ class SearchNumbers:
     foot: tuple[tuple[float, ...], ...] = number(((0.0, 0.0, -0.36), (0.7, 0.7, 0.7), (0.2, 0.2, 0.2), (1.2, 1.2, 0.8)), "sides of an element, the last of ln radius", "middle and radius of a footprint beforehand, their standard deviations, the units of their largest steps, how far they reach")
     foot_step: float = number(0.03, "likewise", "by which shares of grids are differentiated")
     foot_points: int = number(80, "points", "that a disc is laid on the mesh by", "its share at a grid to a few per cent")
-    foot_askew: float = number(1e-3, "", "shear of the plane that a disc is laid on, which tells the diagonals of a square apart", ROUNDING)
+    foot_askew: float = number(1e-3, "-", "shear of the plane that a disc is laid on, which tells the diagonals of a square apart", ROUNDING)
     foot_share: float = number(0.01, "of a mass", "at a grid, below which it is left out")
     foot_near: int = number(5, "grids", "the last of which is a side of an element away")
     foot_reach: float = number(2.6, "sides of an element", "around a place that footprints may lie")
