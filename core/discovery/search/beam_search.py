@@ -63,7 +63,7 @@ def grown(
         followed = chosen[: searcher.effort.beam - (depth > 1)]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=objective_of)
         if depth > 1:
-            beam[0] = searcher.turned_about(searcher.reconsidered(beam[0]))
+            beam[0] = searcher.moved_at_once(searcher.reconsidered(beam[0]))
         beam = _distinct(searcher, sorted(beam, key=objective_of))
         best = beam[0]
         rest = (*beam[1:], *chosen[searcher.effort.beam :])

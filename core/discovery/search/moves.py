@@ -334,7 +334,7 @@ class Searcher:
                 break
         return state
 
-    def turned_about(self, state: Fit) -> Fit:
+    def moved_at_once(self, state: Fit) -> Fit:
         """Move two suspects of one nature near each other at once, where that is better.
 
         Each makes up for the wrong place of the other, so that none moves alone.

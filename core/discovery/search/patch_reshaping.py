@@ -74,7 +74,10 @@ def promising(
 
 
 def options_beside(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list[Suspect]]:
-    """Return the shapes next to that of a suspect, and a searcher whose catalogue has them."""
+    """Return the shapes next to that of a suspect, and a searcher whose catalogue has them.
+
+    Of twins beside each other what one between them may be, as large as both.
+    """
     c = searcher.problem.catalogue[suspect.kind]
     if isinstance(c, PatchCandidates):
         return _added(searcher, suspect, variants(c.structure, c.patches[suspect.row]))

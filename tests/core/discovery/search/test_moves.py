@@ -110,7 +110,7 @@ def test_two_masses_near_each_other_move_at_once(near, rows, monkeypatch):
     beside = (Suspect(MASS, 12, (np.log(2.0),)), Suspect(MASS, 14, (np.log(2.0),)))
     state = evaluate(s.problem, np.zeros(2), beside)
     monkeypatch.setattr(moves, "SEARCH", replace(SEARCH, together_near=near))
-    moved = s.turned_about(state)
+    moved = s.moved_at_once(state)
     assert sorted(q.row for q in moved.suspects) == rows
 
 
