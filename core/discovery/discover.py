@@ -110,7 +110,8 @@ def _tried(
     motion = np.asarray(request.structure.model.expansion @ request.solution.vectors)
     first = bench.judged(motion, request.solution.eigenvalues)
     trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
-    tested = bench.judged_by(trial.problem, trial.null)
+    basis, null = trial.problem.basis, trial.null
+    tested = bench.judged(basis.motion @ null.vectors[: basis.size], null.eigenvalues)
     if np.any(tested.doubtful != first.doubtful):
         return _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
     return trial

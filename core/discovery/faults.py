@@ -107,10 +107,11 @@ def corrected(shapes: Floats, faults: Sequence[Fault]) -> Floats:
     return out
 
 
+def accused(faults: Sequence[Fault], n: int) -> Bools:
+    """Return which of the sensors any fault concerns, (n,)."""
+    return np.isin(np.arange(n), [i for f in faults for i in f.sensors])
+
+
 def lost(faults: Sequence[Fault], n: int) -> Bools:
     """Return the sensors whose right readings cannot be had from what they read, (n,)."""
-    out = np.zeros(n, bool)
-    for f in faults:
-        if f.reads is None:
-            out[list(f.sensors)] = True
-    return out
+    return accused([f for f in faults if f.reads is None], n)

@@ -20,8 +20,7 @@ from ...correlation.mac import realised
 from ...data.dofs import Dofs
 from ...data.parametric_model import Model
 from ...sensors.sensor_map import observe
-from ..faults import AXIS, FAULTS, SWAP, Fault
-from ..likelihood.hypothesis import Fit, Problem
+from ..faults import AXIS, FAULTS, SWAP, Fault, accused
 from .fault_hypotheses import Alternative
 from .fault_posterior import Weighed, weigh
 from .leave_one_out import Span, Survey
@@ -53,10 +52,7 @@ class Verdicts:
     @property
     def accused(self) -> Bools:
         """Sensors that a fault is told of, (n_sensor,)."""
-        out = np.zeros(len(self.doubtful), bool)
-        for f in self.faults:
-            out[list(f.sensors)] = True
-        return out
+        return accused(self.faults, len(self.doubtful))
 
     @property
     def beyond_doubt(self) -> Verdicts:
@@ -183,12 +179,6 @@ class Bench:
         hz = np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * np.pi)
         around = np.asarray(self._around @ motion).reshape(-1, 3, motion.shape[1])
         return judge_sensors(self.survey, Span(np.asarray(self._along @ motion), around, hz))
-
-    def judged_by(self, problem: Problem, state: Fit) -> Verdicts:
-        """Judge by the shapes of a fit."""
-        return self.judged(
-            problem.basis.motion @ state.vectors[: problem.basis.size], state.eigenvalues
-        )
 
 
 def survey_of(placed: Placed) -> Survey:

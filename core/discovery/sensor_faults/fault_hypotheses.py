@@ -54,7 +54,7 @@ class Alternative:
 class Before:
     """What is assumed of a node before its readings are looked at.
 
-    `faulty` is the chance of any fault; `shares` those of `readings.LOCAL`; `proportion` the
+    `faulty` is the chance of any fault; `shares` those of `node_likelihood.LOCAL`; `proportion` the
     scale of what sound nodes have off in proportion, over the rms of a shape; `in_proportion`
     (n, 3) the chance that the model is wrong there by a factor of its own in all modes, by how
     much, and its spread, both over the rms of a shape.
@@ -102,7 +102,8 @@ def _scaled(
     for r in rows:
         maps[:, r] *= every[:, None]
     log, reverse = np.split(of(maps), 2)
-    size = max(float(np.sqrt(np.mean(node.mean[:, list(rows)] ** 2))), SENSORS.least_motion)
+    square = np.mean(node.mean[:, list(rows)] ** 2)
+    size = float(np.sqrt(max(square, SENSORS.least_variance)))
     step = _LOG_GAIN[1] - _LOG_GAIN[0]
     scale = np.hypot(SENSORS.gain_scatter, before.proportion / size)
     sound = -0.5 * (_LOG_GAIN / scale) ** 2 - np.log(scale * np.sqrt(2.0 * np.pi)) + np.log(step)
@@ -110,9 +111,9 @@ def _scaled(
     off = ((gains - 1.0) * size - centre) / scale
     each = chance * gains * size / scale * step
     model = logsumexp(_student(off, SENSORS.tail), axis=0, b=each)
-    wide = np.exp(-0.5 * (_LOG_GAIN / SENSORS.gain_spread) ** 2)
-    wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = SENSORS.never
-    as_fault = log + np.log(wide / wide.sum())
+    wide = -0.5 * (_LOG_GAIN / SENSORS.gain_spread) ** 2
+    wide[np.abs(_LOG_GAIN) <= np.log(SENSORS.gain_least)] = -np.inf
+    as_fault = log + wide - logsumexp(wide)
     weight = np.exp(as_fault - as_fault.max())
     weight /= weight.sum()
     factor = float(np.sum(weight * gains))
@@ -151,15 +152,13 @@ def _turned(node: Node, axes: Floats, of: Evidence, before: Before) -> list[Alte
 
     if k == 1:
         return [told(tilted(axes[0], of), SENSORS.lonely_axis)]
-    share = SENSORS.axis
     own = axes if k == 3 else np.vstack([axes, np.cross(*axes)])
-    pair, three = share * np.array(SENSORS.about_pair), np.full(3, share / SENSORS.about_each)
-    weights = three if k == 3 else pair
-    out = [told(about(axes, u, of), w) for u, w in zip(own, weights, strict=True)]
+    ways = [(1.0 - SENSORS.about_any) / 3.0] * 3 if k == 3 else SENSORS.about_pair
+    out = [told(about(axes, u, of), SENSORS.axis * w) for u, w in zip(own, ways, strict=True)]
     if k == 3:
         found = anyhow(axes, _kabsch(node, axes), of)
         if found is not None:
-            out.append(told(found, SENSORS.about_any * share))
+            out.append(told(found, SENSORS.axis * SENSORS.about_any))
     return out
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats, Ints
 from ...numerics.lapack import lower_solved
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from .sensor_numbers import SENSORS
 
 
@@ -86,7 +87,7 @@ class Span:
     def seen(self) -> Span:
         """Return the shapes that the sensors see, each of unit rms at them."""
         length = np.sqrt(np.mean(self.rows**2, axis=0))
-        keep = length > SENSORS.unseen * length.max()
+        keep = length > np.sqrt(LIKELIHOOD.unseen) * length.max()
         scale = length[keep]
         return Span(
             self.rows[:, keep] / scale, self.around[:, :, keep] / scale, self.frequencies_hz[keep]

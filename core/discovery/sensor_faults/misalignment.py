@@ -11,9 +11,8 @@ from .sensor_numbers import SENSORS
 
 
 def rotation(vector: Floats) -> Floats:
-    """Return the rotation matrices of rotation vectors (..., 3) [rad], (..., 3, 3)."""
-    v = np.asarray(vector, dtype=float)
-    return np.asarray(Rotation.from_rotvec(v.reshape(-1, 3)).as_matrix()).reshape(*v.shape, 3)
+    """Return the rotation matrix of a rotation vector (3,) [rad], (3, 3), or of several."""
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 
 def maps_of(axes: Floats, Q: Floats) -> Floats:
@@ -72,7 +71,7 @@ def anyhow(axes: Floats, start: Floats, of: Evidence) -> tuple[float, Floats, fl
             break
     best = float(of(maps_of(axes, Q[None]))[0])
     vector = np.asarray(Rotation.from_matrix(Q).as_rotvec())
-    along = vector / max(float(np.linalg.norm(vector)), SENSORS.least_variance)
+    along = vector / max(float(np.linalg.norm(vector)), np.finfo(float).tiny)
     log = best + 1.5 * np.log(2.0 * np.pi) - 0.5 * np.log(values).sum() - np.log(8.0 * np.pi**2)
     return float(log), vector, float(np.sqrt(along @ np.linalg.solve(-H, along)))
 

@@ -11,7 +11,7 @@ from .sensor_numbers import SENSORS
 LEVELS = SENSORS.noise_least * SENSORS.noise_step ** np.arange(SENSORS.noise_levels)
 """Noise of a sound sensor over the rms of its shape that is thought possible."""
 _SPREAD = range(1, len(LEVELS), SENSORS.noise_strides)
-_WIDTHS = SENSORS.width_least * SENSORS.width_step ** np.arange(SENSORS.widths)
+_WIDTHS = np.array(SENSORS.widths)
 
 
 def suspects(survey: Survey, span: Span) -> tuple[Bools, int]:
