@@ -86,6 +86,6 @@ def damped(e: Evidence, shapes: Numbers, omega: Floats, sensors: Floats, D: Floa
     misfit, match = matched(n.robust * np.log1p(d / n.robust))
     real = np.asarray(Q[:, match].real)
     real = real / np.linalg.norm(real, axis=0)
-    near = np.sqrt(mixing(np.maximum(omega**2, least**2), LIKELIHOOD.turning)[:, match])
+    near = np.sqrt(mixing(np.maximum(omega**2, least**2), LIKELIHOOD.mixing)[:, match])
     U, _, Vt = np.linalg.svd(near * real, full_matrices=False)
     return Damped(misfit, poles[match], real, np.asarray(U @ Vt), omega[match])

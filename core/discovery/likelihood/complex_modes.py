@@ -54,7 +54,7 @@ def oriented(e: Evidence, eigenvalues: Floats, sensors: Floats, columns: int) ->
     n = min(columns, len(eigenvalues))
     S = sensors[:, :n]
     _, match = matched(mode_costs(e, eigenvalues[:n], e.shapes.T @ S, S.T @ S))
-    near = mixing(eigenvalues, LIKELIHOOD.turning)
+    near = mixing(eigenvalues, LIKELIHOOD.mixing)
     own = np.stack([_combined(e, j, sensors, near[k], int(k)) for j, k in enumerate(match)], axis=1)
     top = (LIKELIHOOD.above * float(targets(e).max()) ** 0.5) ** 2
     rest = np.setdiff1d(np.flatnonzero(eigenvalues < top), match)
@@ -152,7 +152,7 @@ def imaginary(u: Floats, modes: Oriented, sensors: Floats) -> tuple[Floats, Floa
     """
     lam = modes.omega**2
     gap = lam[None, :] - lam[: modes.count, None]
-    size = LIKELIHOOD.turning * np.maximum(lam[None, :], lam[: modes.count, None])
+    size = LIKELIHOOD.mixing * np.maximum(lam[None, :], lam[: modes.count, None])
     inverse = gap / (gap**2 + size**2)
     turned = -(modes.omega[: modes.count] * u[:, : modes.count])[:, :, None] * (
         u[:, None, :] * inverse

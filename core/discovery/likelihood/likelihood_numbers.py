@@ -28,7 +28,7 @@ class LikelihoodNumbers:
     placed: float = number(0.04, "of the rms of a shape", "the same of any test: positions of sensors, discretisation")
     independent: float = number(12.0, "sensors", "that count as independent: errors of a model are smooth")
     robust: float = number(40.0, "2 ln L", "misfit of one mode beyond which more of it counts less and less")
-    mixing: float = number(0.02, "of λ", "changes of K that no model has right, see `mixing`")
+    mixing: float = number(0.02, "of λ", "changes of K that no model has right: modes that are no further apart turn freely, see `mixing`")
     soft: float = number(3.0, "of the noise", "where wide valleys are wanted")
     soft_mixing: float = number(5.0, "of `mixing`", "where the known parameters have yet to follow")
     unseen: float = number(1e-10, "of the largest squared length", "at the sensors, of a mode that they do not see", ROUNDING)
@@ -43,7 +43,6 @@ class LikelihoodNumbers:
     damping_first: float = number(0.05, "of the curvature", "least damping after a step that failed")
     damping_up: float = number(5.0, "-", "times the damping after a step that failed")
     damping_down: float = number(0.3, "-", "times the damping after one that did not")
-    damping_least: float = number(1e-10, "of the curvature", "damping of any step", ROUNDING)
     reach: float = number(0.8, "ln p, or steps of a kind", "largest move of an unknown at once")
     few_modes: float = number(0.25, "of the eigenpairs", "below which finding these alone takes less time than all", "time")
     degenerate: float = number(2e-3, "of λ", "gap below which modes do not turn into each other in a derivative")
@@ -52,7 +51,6 @@ class LikelihoodNumbers:
     law_top: float = number(2.0, "of the test's highest λ", "below which springs that stand for a rigid link do not matter")
 
     above: float = number(1.5, "of the highest test frequency", "up to which modes count when shapes are turned onto the test's")
-    turning: float = number(0.02, "of λ", "gaps below which modes turn freely, see `mixing`")
     elastic: float = number(1e-3, "of the highest frequency", "above which a mode has a damping ratio", ROUNDING)
 
     lines: int = number(240, "lines", "of the responses that hypotheses are compared on", "time")

@@ -16,6 +16,8 @@ from .mode_likelihood import joint_macs, matched, mode_costs, targets
 from .repeated_modes import none_cut, turned_to_test
 
 _FIRST = np.zeros(1, np.int64)
+Box = tuple[Floats | float, Floats | float]
+_ANYWHERE: Box = (-np.inf, np.inf)
 
 
 def _matrices(
@@ -145,7 +147,7 @@ def fit(
         H, g = _normal_equations(problem, now, active)
         better = None
         for _ in range(LIKELIHOOD.dampings):
-            step = _step(H, g, damping)
+            step = step_within(H, g, damping=damping)
             if -float(g @ step) < tolerance:
                 break
             with suppress(np.linalg.LinAlgError):
@@ -172,11 +174,20 @@ def promised(
     return now.objective - float(g @ np.linalg.solve(H, g)) if len(g) else now.objective
 
 
-def _step(H: Floats, g: Floats, damping: float) -> Floats:
-    """Return Levenberg's step, each unknown in units of its own curvature."""
+def step_within(H: Floats, g: Floats, box: Box = _ANYWHERE, damping: float = 0.0) -> Floats:
+    """Return Levenberg's step within a box, the others knowing what its sides hold."""
     unit = 1.0 / np.sqrt(np.diag(H))
-    scaled = H * unit * unit[:, None] + (damping + LIKELIHOOD.damping_least) * np.eye(len(H))
-    return np.asarray(-unit * np.linalg.solve(scaled, unit * g))
+    A = H * unit * unit[:, None] + damping * np.eye(len(H))
+    step, free = np.zeros(len(g)), np.ones(len(g), bool)
+    while free.any():
+        due = unit * g + A[:, ~free] @ (step / unit)[~free]
+        step[free] = -unit[free] * np.linalg.solve(A[np.ix_(free, free)], due[free])
+        inside = np.clip(step, *box)
+        held = free & (step != inside)
+        step, free = inside, free & ~held
+        if not held.any():
+            break
+    return step
 
 
 def stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
@@ -227,12 +238,24 @@ def _normal_equations(problem: Problem, now: Fit, active: Sequence[int]) -> tupl
     J = np.concatenate([doff * w, (d * w).reshape(len(d), -1)], axis=1)
     r = np.concatenate([off * w, (rest * w).ravel()])
     H, g = J @ J.T, J @ r
+    return with_prior(problem, now, active, H, g)
+
+
+def with_prior(
+    problem: Problem, now: Fit, active: Sequence[int], H: Floats, g: Floats
+) -> tuple[Floats, Floats]:
+    """Return second derivative and gradient of −ln posterior from those of −ln likelihood."""
     kinds = [problem.catalogue[s.kind] for s in now.suspects]
-    spread = np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
+    spread = spread_of(problem, now, active)
     mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
     x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
-    H = H + np.diag(1.0 / spread**2)
-    return H, g + (x - mean) / spread**2
+    return H + np.diag(1.0 / spread**2), g + (x - mean) / spread**2
+
+
+def spread_of(problem: Problem, now: Fit, active: Sequence[int]) -> Floats:
+    """Return the standard deviation beforehand of each unknown."""
+    kinds = [problem.catalogue[s.kind] for s in now.suspects]
+    return np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
 
 
 def products(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:

@@ -15,6 +15,7 @@ from ...arrays import Floats, Ints
 from ...data.parametric_model import Factor
 from ...reduction.reduced_sum import ReducedSum
 from ..likelihood.hypothesis import Fit, Prior, Problem
+from ..likelihood.map_fit import spread_of, step_within
 from .diffuse_fit import (
     Drift,
     Judged,
@@ -24,8 +25,6 @@ from .diffuse_fit import (
     judged,
     normal_equations,
     seen,
-    spread_of,
-    step_within,
 )
 from .model_error_numbers import MODEL_ERROR
 from .smooth_fields import Fields

@@ -40,8 +40,6 @@ class Diffuse:
         Its analysis mode.
     stray : (n_test,) float
         Chance that it is none of the model's.
-    mesh : float
-        See `Seen`.
     """
 
     log: float
@@ -50,7 +48,6 @@ class Diffuse:
     each: Floats
     match: Ints
     stray: Floats
-    mesh: float = 0.0
 
     @property
     def astray(self) -> Bools:
@@ -81,8 +78,6 @@ class Seen:
         How many of the modes may match.
     reading : float
         Noise of a reading over the rms of its shape, at least.
-    mesh : float
-        What lumping does to ln f of the modes in the measured band, rms.
     """
 
     hz: Floats
@@ -92,7 +87,6 @@ class Seen:
     modes: Floats
     columns: int
     reading: float = 0.0
-    mesh: float = 0.0
 
     @cached_property
     def values(self) -> Floats:
@@ -111,11 +105,6 @@ class Seen:
         return np.asarray(self.modes.T @ self.shapes)
 
 
-def likelihood_of(seen: Seen, known: Diffuse) -> Floats:
-    """Return ln of the likelihood of each test mode at a known error and noise, (n_test,)."""
-    return at(seen, known.error, known.noise).each
-
-
 def at(seen: Seen, error: float, noise: float) -> Diffuse:
     """Return the likelihood at one error and noise."""
     n = len(seen.shapes)
@@ -131,7 +120,7 @@ def at(seen: Seen, error: float, noise: float) -> Diffuse:
         match = linear_sum_assignment(-likelier)[1]
     each = L[np.arange(len(L)), match]
     chance, log = np.exp(astray - each), float(each.sum())
-    return Diffuse(log, float(error), float(noise), each, match, chance, seen.mesh)
+    return Diffuse(log, float(error), float(noise), each, match, chance)
 
 
 def _tie(seen: Seen) -> Floats:

@@ -14,12 +14,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Floats
-from ..effects.candidates import Suspect, changed, magnitudes
+from ..effects.candidates import magnitudes
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.likelihood_numbers import LIKELIHOOD
-from ..likelihood.map_fit import evaluate, products, solve, surprise
+from ..likelihood.map_fit import (
+    evaluate,
+    products,
+    spread_of,
+    step_within,
+    stepped,
+    surprise,
+    with_prior,
+)
 from ..likelihood.mode_likelihood import targets
-from ..likelihood.repeated_modes import some_repeated
 from .diffuse_error import Diffuse, Seen, at
 from .diffuse_slope import Slope, diffuse, moved, ranges, slope
 from .model_error_numbers import MODEL_ERROR
@@ -72,6 +79,15 @@ class Judged:
         """Whether smooth fields, if they were not tried, may make it as likely as that."""
         return self.evidence + MODEL_ERROR.drift_gain >= evidence
 
+    @property
+    def lumped(self) -> float:
+        """What lumping does to ln f of the modes in the measured band, rms."""
+        p, values, aim = self.problem, self.state.eigenvalues, targets(self.problem.evidence)
+        band = (values >= aim.min()) & (values <= aim.max())
+        modes = self.state.vectors[: p.basis.size, band]
+        each = 0.5 * np.sum(modes * (p.mesh @ modes), axis=0)
+        return float(np.sqrt(np.mean(each**2))) if band.any() else 0.0
+
 
 def everything(problem: Problem) -> tuple[int, ...]:
     """Return the numbers of all entries of the nuisance parameters of a problem."""
@@ -80,18 +96,11 @@ def everything(problem: Problem) -> tuple[int, ...]:
 
 def seen(problem: Problem, state: Fit) -> Seen:
     """Return a fit beside the test."""
-    p = problem
-    modes = state.vectors[: p.basis.size]
-    shapes = np.asarray(p.sensors @ modes)
-    e = p.evidence
-    aim = targets(e)
-    band = (state.eigenvalues >= aim.min()) & (state.eigenvalues <= aim.max())
-    lumped = 0.5 * np.sum(modes[:, band] * (p.mesh @ modes[:, band]), axis=0)
+    e = problem.evidence
+    shapes = np.asarray(problem.sensors @ state.vectors[: problem.basis.size])
     scatter = np.hypot(np.broadcast_to(e.scatter, e.frequencies_hz.shape), MODEL_ERROR.frequency)
-    columns = min(p.columns, len(state.eigenvalues))
-    mesh = float(np.sqrt(np.mean(lumped**2))) if band.any() else 0.0
-    hz, values = e.frequencies_hz, state.eigenvalues
-    return Seen(hz, e.shapes, scatter, values, shapes, columns, e.reading, mesh)
+    values, columns = state.eigenvalues, min(problem.columns, len(state.eigenvalues))
+    return Seen(e.frequencies_hz, e.shapes, scatter, values, shapes, columns, e.reading)
 
 
 def judged(
@@ -105,7 +114,7 @@ def judged(
     out of the model, which then pull no more: where a larger one has more of them in it, the climb
     goes on from there (graduated non-convexity: Blake and Zisserman 1987, chapter 3).
     """
-    state = _at(problem, state, state.nuisance, state.suspects)
+    state = evaluate(problem, state.nuisance, state.suspects)
     here = seen(problem, state)
     best = at(here, near.error, near.noise) if near else diffuse(here)
     found = climbed(problem, state, active, best)
@@ -126,15 +135,6 @@ def _with_more_modes(here: Seen, found: Diffuse) -> Diffuse | None:
     return next((d for d in wider if np.count_nonzero(d.astray) < left), None)
 
 
-def _at(problem: Problem, state: Fit, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:
-    """Return a fit elsewhere, vectors of repeated modes as the test found them."""
-    values, vectors = solve(problem, nuisance, suspects)
-    if some_repeated(values):
-        vectors = evaluate(problem, nuisance, suspects).vectors
-    moved = replace(state, nuisance=nuisance, suspects=tuple(suspects))
-    return replace(moved, eigenvalues=values, vectors=vectors)
-
-
 def climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse) -> Judged:
     """Return a hypothesis moved from a state, at which `best` is the diffuse error."""
     now, height = state, best.log - 0.5 * surprise(problem, state.nuisance, state.suspects)
@@ -151,7 +151,7 @@ def climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse) 
                 break
             new = -np.inf
             with suppress(np.linalg.LinAlgError):
-                trial = _stepped(problem, now, active, step)
+                trial = stepped(problem, now, active, step)
                 there = seen(problem, trial)
                 d = at(there, *moved(there, best, scale))
                 new = d.log - 0.5 * surprise(problem, trial.nuisance, trial.suspects)
@@ -171,42 +171,12 @@ def climbed(problem: Problem, state: Fit, active: Sequence[int], best: Diffuse) 
     return Judged(now, best, evidence, H, evidence, evidence, problem, now)
 
 
-def _stepped(problem: Problem, now: Fit, active: Sequence[int], step: Floats) -> Fit:
-    """Return a fit with its unknowns moved by a step."""
-    nuisance = np.array(now.nuisance)
-    nuisance[list(active)] += step[: len(active)]
-    suspects = changed(problem.catalogue, now.suspects, step[len(active) :])
-    return _at(problem, now, nuisance, suspects)
-
-
 def box_of(problem: Problem, now: Fit, active: Sequence[int]) -> tuple[Floats, Floats]:
     """Return how far the unknowns may move down and up."""
     free = np.full(len(magnitudes(now.suspects)), np.inf)
     x, p, moving = now.nuisance, problem.prior, list(active)
     low, high = ((end - x)[moving] for end in (p.lower, p.upper))
     return np.concatenate([low, -free]), np.concatenate([high, free])
-
-
-def step_within(H: Floats, g: Floats, box: tuple[Floats, Floats], damping: float = 0.0) -> Floats:
-    """Return Levenberg's step within a box, the others knowing what its sides hold."""
-    unit = 1.0 / np.sqrt(np.diag(H))
-    A = H * unit * unit[:, None] + damping * np.eye(len(H))
-    step, free = np.zeros(len(g)), np.ones(len(g), bool)
-    while free.any():
-        due = unit * g + A[:, ~free] @ (step / unit)[~free]
-        step[free] = -unit[free] * np.linalg.solve(A[np.ix_(free, free)], due[free])
-        inside = np.clip(step, *box)
-        held = free & (step != inside)
-        step, free = inside, free & ~held
-        if not held.any():
-            break
-    return step
-
-
-def spread_of(problem: Problem, now: Fit, active: Sequence[int]) -> Floats:
-    """Return the standard deviation beforehand of each unknown."""
-    kinds = [problem.catalogue[s.kind] for s in now.suspects]
-    return np.concatenate([problem.prior.spread[list(active)], *(c.spread for c in kinds)])
 
 
 def normal_equations(
@@ -235,8 +205,4 @@ def normal_equations(
     dlam = 0.5 * F[:, k, count] / floor
     H = (dlam * (sure / variance)) @ dlam.T
     H = H + np.sum(np.matmul(C, np.matmul(by.shapes, C.transpose(0, 2, 1))), axis=0)
-    kinds = [problem.catalogue[s.kind] for s in now.suspects]
-    spread = spread_of(problem, now, active)
-    mean = np.concatenate([np.zeros(len(active)), *(c.typical for c in kinds)])
-    x = np.concatenate([now.nuisance[list(active)], magnitudes(now.suspects)])
-    return H + np.diag(1.0 / spread**2), g + (x - mean) / spread**2, by
+    return *with_prior(problem, now, active, H, g), by

@@ -114,7 +114,7 @@ def diffuse(seen: Seen) -> Diffuse:
     best = max((at(seen, e, noises[len(noises) // 2]) for e in errors), key=lambda d: d.log)
     others = (at(seen, best.error, s) for s in noises if s != best.noise)
     best = max((best, *others), key=lambda d: d.log)
-    for _ in range(MODEL_ERROR.settling):
+    for _ in range(MODEL_ERROR.steps):
         step, gain = slope(seen, best).towards(seen, best)
         if gain < MODEL_ERROR.tolerance:
             break

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Floats
-from .diffuse_error import likelihood_of
+from .diffuse_error import at
 from .diffuse_fit import Judged, everything, judged, seen
 from .model_error_numbers import MODEL_ERROR
 
@@ -33,7 +33,8 @@ def foretold(hypothesis: Judged) -> Floats:
         away[first :: MODEL_ERROR.folds] = True
         part = replace(problem, evidence=problem.evidence.take(~away, sensors))
         rest = judged(part, state, everything(part), hypothesis.diffuse)
-        out[away] = likelihood_of(seen(problem, rest.fit), rest.diffuse)[away]
+        left = at(seen(problem, rest.fit), rest.diffuse.error, rest.diffuse.noise)
+        out[away] = left.each[away]
     return out
 
 

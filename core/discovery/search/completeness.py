@@ -164,7 +164,7 @@ def lacks_nothing(deck: Judged, alone: Judged) -> bool:
     by more than such a model errs does not show that nothing is missing.
     """
     clearly = alone.evidence - deck.evidence > MODEL_ERROR.seen
-    most = np.hypot(MODEL_ERROR.usual, SEARCH.nothing * deck.diffuse.mesh)
+    most = np.hypot(MODEL_ERROR.usual, SEARCH.nothing * deck.lumped)
     shows = np.median(deck.problem.evidence.scatter) <= most
     return bool(shows and not clearly and deck.diffuse.error <= most)
 

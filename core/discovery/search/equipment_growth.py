@@ -20,8 +20,8 @@ from ..equipment.bodies import Body, Equipment, ball, block, equipment, grown
 from ..equipment.loose_body import body_of, loose, theta_of
 from ..equipment.stands import Stand, stands
 from ..likelihood.hypothesis import Fit
-from ..likelihood.map_fit import evaluate
-from ..model_error.diffuse_fit import Judged, everything, spread_of
+from ..likelihood.map_fit import evaluate, spread_of
+from ..model_error.diffuse_fit import Judged, everything
 from ..reduction.elements_and_supports import Structure
 from .exact_scan import scan
 from .model_selection import Scored, earned, scored

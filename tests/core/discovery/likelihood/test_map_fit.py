@@ -3,10 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects.candidates import Suspect
-from trueup.core.discovery.likelihood.map_fit import _matrices, _normal_equations, evaluate
+from trueup.core.discovery.likelihood.map_fit import (
+    _matrices,
+    _normal_equations,
+    evaluate,
+    step_within,
+)
 
 
 def test_a_partner_that_no_sensor_sees_says_nothing_of_the_unknowns():
@@ -22,3 +28,10 @@ def test_a_partner_that_no_sensor_sees_says_nothing_of_the_unknowns():
     H, _ = _normal_equations(problem, start, (0, 1))
     unseen, _ = _normal_equations(blind, start, (0, 1))
     assert np.all(np.diag(unseen) < 10.0 * np.diag(H))
+
+
+def test_what_a_bound_holds_does_not_hold_up_the_others():
+    H, g = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-3.0, -1.0])
+    far = np.full(2, 9.0)
+    assert step_within(H, g, (-far, far)) == pytest.approx(np.array([5.0, -1.0]) / 3.0)
+    assert step_within(H, g, (-far, np.array([0.5, 9.0]))) == pytest.approx([0.5, 0.25])

@@ -15,7 +15,6 @@ from trueup.core.discovery.model_error.diffuse_fit import (
     judged,
     normal_equations,
     seen,
-    step_within,
 )
 
 
@@ -23,7 +22,7 @@ def test_a_step_to_where_no_model_is_counts_as_too_long(monkeypatch):
     problem = searcher(hidden(masses=[(7, 1.0)])).problem.entire()
     start = evaluate(problem, np.zeros(len(problem.prior.spread)), (Suspect(0, 7, (0.3,)),))
     free = judged(problem, start, everything(problem))
-    honest, calls = diffuse_fit._stepped, []
+    honest, calls = diffuse_fit.stepped, []
 
     def first_fails(*arguments):
         calls.append(1)
@@ -31,17 +30,10 @@ def test_a_step_to_where_no_model_is_counts_as_too_long(monkeypatch):
             raise np.linalg.LinAlgError
         return honest(*arguments)
 
-    monkeypatch.setattr(diffuse_fit, "_stepped", first_fails)
+    monkeypatch.setattr(diffuse_fit, "stepped", first_fails)
     found = judged(problem, start, everything(problem))
     assert found.fit.suspects[0].theta[0] == pytest.approx(0.0, abs=0.05)
     assert found.evidence == pytest.approx(free.evidence, abs=0.5)
-
-
-def test_what_a_bound_holds_does_not_hold_up_the_others():
-    H, g = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-3.0, -1.0])
-    far = np.full(2, 9.0)
-    assert step_within(H, g, (-far, far)) == pytest.approx(np.array([5.0, -1.0]) / 3.0)
-    assert step_within(H, g, (-far, np.array([0.5, 9.0]))) == pytest.approx([0.5, 0.25])
 
 
 def test_a_partner_that_no_sensor_sees_says_nothing_of_the_unknowns():

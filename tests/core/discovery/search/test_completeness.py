@@ -18,10 +18,11 @@ from trueup.core.discovery.search.model_selection import Scored
 def judged(each, error=0.001, noise=0.02, stray=(), evidence=0.0, mesh=0.0, scatter=0.0):
     chance = np.isin(np.arange(10), stray).astype(float)
     each = np.asarray(each, float)
-    shared = Some(each=each, error=error, noise=noise, stray=chance, astray=chance > 0.5, mesh=mesh)
+    shared = Some(each=each, error=error, noise=noise, stray=chance, astray=chance > 0.5)
     here = Some(nuisance=np.zeros(2), suspects=())
     test = Some(evidence=Some(scatter=scatter))
-    return Some(diffuse=shared, evidence=evidence, plain=evidence, fit=here, problem=test)
+    sure = Some(evidence=evidence, plain=evidence, lumped=mesh)
+    return Some(**vars(sure), diffuse=shared, fit=here, problem=test)
 
 
 def found(gain=30.0, ahead=np.inf, agree=3.0, before=0.03, lost=(), **more):

@@ -26,9 +26,9 @@ def weighed(monkeypatch, evidence, kept, error=0.006, moved=True, reach=None):
     def judged(problem, f, _=0.0):
         score = evidence * len(f.suspects)
         none = np.zeros(12)
-        left = Some(error=error, noise=0.02, mesh=0.0, each=none, stray=none, astray=none > 0.5)
+        left = Some(error=error, noise=0.02, each=none, stray=none, astray=none > 0.5)
         own = Some(evidence=Some(scatter=np.array([0.001])))
-        return Some(evidence=score, bare=score, diffuse=left, fit=f, problem=own)
+        return Some(evidence=score, bare=score, lumped=0.0, diffuse=left, fit=f, problem=own)
 
     tried = []
 
