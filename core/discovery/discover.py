@@ -20,6 +20,7 @@ from .effects.candidates import factors_of, lacking
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Problem
+from .likelihood.likelihood_numbers import EFFORT
 from .likelihood.map_fit import evaluate
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
@@ -222,9 +223,9 @@ def _judged(bench: Bench, trial: _Trial, searcher: Searcher, best: Fit) -> Verdi
 def _searched(trial: _Trial, progress: Callable[[str], None]) -> tuple[Searcher, Found, int]:
     """Search on sensors taken as sound, and weigh."""
     searcher = _searcher(trial)
-    if trial.request.responses is not None:
-        heard = hearing(trial.request, searcher.problem, trial.null.nuisance)
-        searcher = replace(searcher, problem=heard)
+    compliance, null = trial.ground.compliance, trial.null
+    heard = hearing(trial.request, searcher.problem, compliance, null.nuisance)
+    searcher = replace(searcher, problem=heard)
     found = searched(searcher, progress, trial.explained)
     progress("weighing the best hypotheses on bases of their own")
     best = found.levels[chosen(searcher, found)]
@@ -321,5 +322,5 @@ def _searcher(trial: _Trial) -> Searcher:
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     beside = tuple(neighbourhoods(c, rows, size) for c, rows in zip(made, coarse, strict=True))
-    active, effort = tuple(range(len(problem.prior.spread))), request.effort
-    return Searcher(small, coarse, active, null.nuisance, size, effort, trial.judged, beside)
+    active = tuple(range(len(problem.prior.spread)))
+    return Searcher(small, coarse, active, null.nuisance, size, EFFORT, trial.judged, beside)

@@ -90,8 +90,8 @@ def prepared(
         e, whole, basis, observed[sensors], observed, mesh, (), (), prior, size, ground.columns
     )
     n = len(prior.spread)
-    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps_deck)
-    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps_null)
+    zero = fit(problem, np.zeros(n), (), (n - 1,), DISCOVERY.steps)
+    null = fit(problem, np.zeros(n), (), tuple(range(n)), DISCOVERY.steps)
     columns = none_cut(null.eigenvalues, _targets(null.eigenvalues, hz) + DISCOVERY.band_more)
     return replace(problem, columns=columns), null, zero
 

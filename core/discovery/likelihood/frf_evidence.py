@@ -13,6 +13,7 @@ from ...data.geometry import Geometry
 from ...errors import InputError
 from ...sensors.sensor_map import observe
 from ..findings import Discovery, ResponseGap
+from ..reduction.residual_flexibility import Compliance
 from .complex_modes import oriented
 from .frf_likelihood import Heard, Responses, State, frac, heard, lacking, ratios_of, synthesised
 from .hypothesis import Fit, Problem
@@ -58,11 +59,13 @@ def place_responses(
     return Responses(whole.at(rows, columns), at.matrix[rows], by.matrix[columns]), ()
 
 
-def hearing(request: Request, problem: Problem, nuisance: Floats) -> Problem:
+def hearing(
+    request: Request, problem: Problem, compliance: Compliance, nuisance: Floats
+) -> Problem:
     """Return the problem with the responses, at sensors that the test still has, as evidence.
 
-    `nuisance` (n_parameter + 1,) is that of the known parameters fitted alone: what that leaves
-    shows how lines go along.
+    `compliance` is the deck's; `nuisance` (n_parameter + 1,) that of the known parameters fitted
+    alone: what that leaves shows how lines go along.
     """
     if request.responses is None:
         return problem
@@ -70,14 +73,8 @@ def hearing(request: Request, problem: Problem, nuisance: Floats) -> Problem:
     if not len(r.frfs.responses):
         return problem
     hz, measured = problem.whole.frequencies_hz, request.placed.test.damping
-    model = request.structure.model
-    rest = lacking(
-        (r.observed @ model.expansion).tocsr(),
-        (r.driven @ model.expansion).tocsr(),
-        (model.K() - request.solution.sigma * model.M()).tocsr(),
-        problem.basis.vectors,
-        request.solution.factor,
-    )
+    observed, driven = (A @ request.structure.model.expansion for A in (r.observed, r.driven))
+    rest = lacking(observed, driven, compliance, problem.basis.vectors)
     state = turned_state(problem, evaluate(problem, nuisance, ()), measured)
     return replace(problem, heard=heard(r, hz, measured, rest, state))
 

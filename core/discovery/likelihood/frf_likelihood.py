@@ -22,7 +22,7 @@ import scipy.sparse as sp
 
 from ...arrays import Floats, Ints, Numbers
 from ...data.frfs import Frfs
-from ...numerics.factorisation import Factorisation, factorise
+from ..reduction.residual_flexibility import Compliance
 from .likelihood_numbers import LIKELIHOOD
 
 
@@ -194,21 +194,12 @@ def heard(
 
 
 def lacking(
-    observed: sp.csr_matrix,
-    driven: sp.csr_matrix,
-    A: sp.csr_matrix,
-    basis: Floats,
-    factor: Factorisation | None = None,
+    observed: sp.csr_matrix, driven: sp.csr_matrix, compliance: Compliance, basis: Floats
 ) -> Floats:
     """Return the static flexibility between responses and references that a basis lacks.
 
-    Shapes: `observed` (n_response, n_free), `driven` (n_reference, n_free), `basis` (n_free, r);
-    A = K − σM is positive definite, `factor` its own.
+    Shapes: `observed` (n_response, n_free), `driven` (n_reference, n_free), `basis` (n_free, r).
     """
-    factor = factor or factorise(A, definite=True)
-    fewer = driven.shape[0] <= observed.shape[0]
-    few, many = (driven, observed) if fewer else (observed, driven)
-    exact = np.asarray(many @ np.asarray(factor.solve(np.ascontiguousarray(few.T.toarray()))))
-    inner = np.linalg.inv(basis.T @ (A @ basis))
-    seen = np.asarray(observed @ basis) @ inner @ np.asarray(driven @ basis).T
-    return np.asarray((exact if fewer else exact.T) - seen)
+    exact = observed @ compliance.responses(driven.T.toarray())
+    inner = compliance.on(basis)
+    return np.asarray(exact - np.asarray(observed @ basis) @ inner @ np.asarray(driven @ basis).T)

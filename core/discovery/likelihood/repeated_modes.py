@@ -46,9 +46,7 @@ def _apart(values: Floats) -> Bools:
 
 def none_cut(values: Floats, number: int) -> int:
     """Return so many of eigenvalues (n,), or as many more as are repeated ones of the last."""
-    while 0 < number < len(values):
-        gap = values[number] - values[number - 1]
-        if gap > LIKELIHOOD.repeated * abs(values[number]):
-            break
+    apart = _apart(values)
+    while 0 < number < len(values) and not apart[number - 1]:
         number += 1
     return number

@@ -11,7 +11,6 @@ from ...eigen.normal_modes import Eigensolution
 from ...noun import Noun
 from ..reduction.elements_and_supports import Structure
 from .frf_likelihood import Responses
-from .likelihood_numbers import EFFORT, Effort
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,6 @@ class Request(Noun):
         Of the structure, in units of the mass matrix.
     masses : MassUnit
         What masses are said in.
-    effort : Effort
     responses : Responses, optional
         Frequency responses of the test: further evidence.
     densest : float
@@ -47,7 +45,6 @@ class Request(Noun):
     placed: Placed
     mass: float
     masses: MassUnit = field(default_factory=MassUnit)
-    effort: Effort = EFFORT
     responses: Responses | None = None
     densest: float = 0.0
     modes: Ints | None = None

@@ -35,7 +35,7 @@ class ModelErrorNumbers:
     mesh_most: float = number(3.0, "of what lumping does", "that it is, at most")
     drift_gain: float = number(60.0, "ln L", "that smooth fields gain, at most: they are not tried for hypotheses that are further behind", "time")
     promised: float = number(1.0, "ln L", "that smooth fields must promise to be tried", "time")
-    seen: float = number(3.0, "ln L", "what smooth fields must gain to be spoken of, and for a model to lack something")
+    seen: float = number(3.0, "ln L", "what smooth fields or known parameters must gain to be spoken of, and for a model to lack something")
     clamp: tuple[float, float] = number((1.0, 1.0), "of ln f", "mean and standard deviation beforehand of what the row in which a clamp ends is stiffer by", "1/f is the part of it that is left: anything between 0 and 1")
     clamp_rows: int = number(4, "rows of elements", "that a clamp may reach further in, at most")
     clamp_rigid: float = number(100.0, "times that", "what rows within the reach are stiffer by")

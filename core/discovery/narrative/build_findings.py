@@ -12,6 +12,7 @@ from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import InDeck
 from ..likelihood.hypothesis import Fit
 from ..likelihood.request import Request
+from ..model_error.model_error_numbers import MODEL_ERROR
 from ..posterior.test_design import further_modes, further_sensors
 from ..search.completeness import Completeness
 from ..search.credible_places import Place, between
@@ -78,11 +79,11 @@ def build_discovery(
         word = "test_fault"
     elif whole.shape is not None:
         word = "undecided"
-    elif whole.moved > NARRATIVE.matters:
+    elif whole.moved > MODEL_ERROR.seen:
         word = "parameters_only"
     elif not whole.lacks_nothing:
         word = "undecided"
-    sure = whole.posterior * _share(word, bool(suspects), proposal, whole)
+    sure = whole.posterior * _share(word, bool(suspects), whole)
     told = whole.shape is not None or whole.reach is not None or whole.unexplained
     if not adequate or (word == "undecided" and (told or not decide)):
         decide = (*left_over(whole, request.numbers), *decide)
@@ -225,7 +226,7 @@ def _nearest(c: Candidates, xyz: Floats) -> int:
     return int(np.argmin(np.linalg.norm(c.xyz - xyz, axis=1)))
 
 
-def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> float:
+def _share(word: str, findings: bool, whole: Completeness) -> float:
     """Return the share of frozen cases in which what is told so was right.
 
     The posterior compares hypotheses of the catalogue. That one of them is true is less than
@@ -236,7 +237,7 @@ def _share(word: str, findings: bool, proposal: bool, whole: Completeness) -> fl
         return NARRATIVE.nothing
     if word == "effect":
         return NARRATIVE.claimed_by_little if _gains_little(whole) else NARRATIVE.claimed
-    return NARRATIVE.proposed if proposal else NARRATIVE.doubted
+    return NARRATIVE.doubted
 
 
 def _moved(known: InDeck) -> tuple[MovedParameter, ...]:

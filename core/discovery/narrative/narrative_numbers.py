@@ -11,12 +11,10 @@ CALIBRATED = "279 unseen cases, frozen, by `benchmarks.discovery.calibrate`, rou
 @dataclass(frozen=True)
 class NarrativeNumbers:
     off_one: float = number(4.0, "standard deviations", "that a factor is off 1, at most, by the likelihood without it")
-    matters: float = number(3.0, "ln L", "what known parameters must gain")
     claimed: float = number(0.9, "-", "share of findings that are right where an effect is claimed", CALIBRATED)
     little: float = number(2.5, "ln L a test mode", "gain of a claim below which it is less sure")
     claimed_by_little: float = number(0.6, "-", "share of findings that are right where a claim gains less", "5 of 7 fresh cases, and the rule of succession, rounded down")
-    proposed: float = number(0.4, "-", "the same where one is proposed", CALIBRATED)
-    doubted: float = number(0.4, "-", "the same where neither is", CALIBRATED)
+    doubted: float = number(0.4, "-", "the same where none is, one proposed or not", CALIBRATED)
     nothing: float = number(0.92, "-", "share of answers without an effect that are right", CALIBRATED)
     like_model: float = number(0.8, "-", "share of sensors said to be turned or to read too much or little that are", CALIBRATED)
     interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")

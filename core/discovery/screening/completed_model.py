@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -32,16 +32,7 @@ class SolvedModel:
     damping: sp.csr_matrix | None
 
 
-class Completed(Protocol):
-    """A model that was completed by what was found."""
-
-    @property
-    def after(self) -> SolvedModel:
-        """SolvedModel and compared again."""
-        ...
-
-
-C = TypeVar("C", bound=Completed)
+C = TypeVar("C")
 
 
 def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discovery, C]:

@@ -27,6 +27,7 @@ from trueup.core.discovery.likelihood.frf_likelihood import (
     synthesised,
 )
 from trueup.core.discovery.likelihood.map_fit import fit
+from trueup.core.discovery.reduction.residual_flexibility import Compliance
 from trueup.core.discovery.search.found import Found
 from trueup.core.discovery.search.model_selection import chosen, scored
 
@@ -85,9 +86,9 @@ def test_what_a_short_basis_lacks_is_put_back():
     r = responses(hidden(), LINES)
     values, phi = la.eigh(K, M)
     short = phi[:, :14]
-    A = sp.csr_matrix(K)
-    rest = lacking(r.observed, r.driven, A, short)
-    np.testing.assert_allclose(rest, lacking(r.driven, r.observed, A, short).T, atol=1e-12)
+    deck = Some(K=lambda: sp.csr_matrix(K), M=lambda: sp.csr_matrix(M))
+    compliance = Compliance(deck, Some(sigma=0.0, factor=None))
+    rest = lacking(r.observed, r.driven, compliance, short)
     s = State(np.sqrt(values[:14]), np.full(14, ZETA), short)
     static = replace(r, frfs=replace(r.frfs, frequencies_hz=np.full(300, 1e-6)))
     np.testing.assert_allclose(

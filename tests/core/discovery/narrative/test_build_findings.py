@@ -19,7 +19,7 @@ from trueup.core.discovery.narrative.sentences import sentence_of, spot_of
 @pytest.mark.parametrize(("gain", "said"), [(20.0, 0.6), (60.0, 0.9)])
 def test_a_claim_that_gains_little_a_mode_is_less_sure(gain, said):
     best = SimpleNamespace(diffuse=SimpleNamespace(each=np.zeros(10)))
-    assert _share("effect", True, False, SimpleNamespace(gain=gain, best=best)) == said
+    assert _share("effect", True, SimpleNamespace(gain=gain, best=best)) == said
 
 
 @pytest.mark.parametrize(
