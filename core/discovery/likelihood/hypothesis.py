@@ -90,7 +90,7 @@ class Problem:
         """Return rows (n, q, r) of some candidates on the basis, and their law at `nuisance`."""
         U, missing = self._rows(kind, rows)
         top = LIKELIHOOD.law_top * float((2.0 * np.pi * self.evidence.frequencies_hz.max()) ** 2)
-        law = self.catalogue[kind].law.on_basis(rows, missing, taken_apart(nuisance)[0], top)
+        law = self.catalogue[kind].law.on_basis(rows, missing, nuisance[:-1], top)
         return U if law.turn is None else np.matmul(law.turn, U), law
 
     def _rows(self, kind: int, rows: Ints) -> tuple[Floats, Floats | None]:
@@ -144,12 +144,7 @@ class Fit:
     @property
     def log_p(self) -> Floats:
         """Return ln p of the known parameters, (n_parameter,)."""
-        return taken_apart(self.nuisance)[0]
-
-
-def taken_apart(nuisance: Floats) -> tuple[Floats, float]:
-    """Return ln p of the known parameters (n_parameter,) and the mesh error."""
-    return nuisance[:-1], float(nuisance[-1])
+        return self.nuisance[:-1]
 
 
 def softened(problem: Problem) -> Problem:

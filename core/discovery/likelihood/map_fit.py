@@ -5,12 +5,11 @@ from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg as la
 
 from ...arrays import Floats, Ints
 from ...numerics.lapack import eigenpairs
 from ..effects.candidates import Suspect, changed, magnitudes
-from .hypothesis import Fit, Problem, taken_apart
+from .hypothesis import Fit, Problem
 from .likelihood_numbers import LIKELIHOOD
 from .mode_likelihood import joint_macs, matched, mode_costs, targets
 from .repeated_modes import none_cut, turned_to_test
@@ -23,9 +22,8 @@ _ANYWHERE: Box = (-np.inf, np.inf)
 def _matrices(
     problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]
 ) -> tuple[Floats, Floats]:
-    log_p, mesh_error = taken_apart(nuisance)
-    p = np.exp(log_p)
-    K, M = problem.basis.K(p), problem.basis.M(p) - mesh_error * problem.mesh
+    p = np.exp(nuisance[:-1])
+    K, M = problem.basis.K(p), problem.basis.M(p) - nuisance[-1] * problem.mesh
     own = []
     for s in suspects:
         rows, law = problem.part(s.kind, np.array([s.row]), nuisance)
@@ -66,12 +64,8 @@ def solve(
     suspects, times √m.
     """
     K, M = _matrices(problem, nuisance, suspects)
-    n = min(modes or problem.modes, len(K))
-    if n < LIKELIHOOD.few_modes * len(K):
-        values, vectors = la.eigh(K, M, subset_by_index=(0, n), check_finite=False)
-    else:
-        values, vectors = eigenpairs(K, M)
-    n = none_cut(values, n)
+    values, vectors = eigenpairs(K, M)
+    n = none_cut(values, min(modes or problem.modes, len(K)))
     return values[:n], vectors[:, :n]
 
 
@@ -129,7 +123,7 @@ def fit(
     nuisance: Floats,
     suspects: Sequence[Suspect],
     active: Sequence[int],
-    iterations: int = LIKELIHOOD.steps,
+    iterations: int,
     tolerance: float = LIKELIHOOD.tolerance,
 ) -> Fit:
     """Minimise misfit plus prior over nuisance parameters and θ: Gauss-Newton, Levenberg's damping.

@@ -27,24 +27,21 @@ def centred(found: Judged) -> Judged:
 
     Its deviation stands in the information. Magnitudes that come in pairs stay.
     """
-    each = [len(s.theta) for s in found.state.suspects]
-    first = len(found.information) - sum(each)
-    for k, n in enumerate(each):
-        own = first + sum(each[:k])
-        deviation = float(np.sqrt(np.linalg.pinv(found.information)[own, own]))
-        if n == 1 and deviation > MODEL_ERROR.told:
-            found = _centred(found, k, own, deviation)
+    for k, s in enumerate(found.state.suspects):
+        deviation = float(np.sqrt(_variance(found, k)))
+        if len(s.theta) == 1 and deviation > MODEL_ERROR.told:
+            found = _centred(found, k, deviation)
     return found
 
 
-def _centred(found: Judged, number: int, own: int, deviation: float) -> Judged:
-    """Return a hypothesis with one magnitude, a row of the information, in the middle."""
+def _centred(found: Judged, number: int, deviation: float) -> Judged:
+    """Return a hypothesis with one magnitude in the middle."""
     known = dict(_profile(found, number, deviation))
     theta = np.array(sorted(known))
     log = np.array([known[t] for t in theta.tolist()])
     fine = np.linspace(theta[0], theta[-1], MODEL_ERROR.profile_fine)
     share = np.cumsum(np.exp(np.interp(fine, theta, log) - log.max()))
-    return _put(found, number, own, np.interp(_QUANTILES, share / share[-1], fine))
+    return _put(found, number, np.interp(_QUANTILES, share / share[-1], fine))
 
 
 def amid(found: Judged, others: Sequence[Judged]) -> Judged:
@@ -52,29 +49,32 @@ def amid(found: Judged, others: Sequence[Judged]) -> Judged:
 
     These have as many suspects, and are as likely as each other, whatever the test says.
     """
-    each = [len(s.theta) for s in found.state.suspects]
-    for k in range(len(each)):
-        theta, deviation = np.transpose([_first(other, k) for other in others])
+    for k in range(len(found.state.suspects)):
+        theta = np.array([other.state.suspects[k].theta[0] for other in others])
+        deviation = np.sqrt([_variance(other, k) for other in others])
         ends = theta + np.outer([-1.0, 1.0], MODEL_ERROR.profile_depth * deviation)
         fine = np.linspace(ends.min(), ends.max(), MODEL_ERROR.profile_fine)
         share = ndtr((fine[:, None] - theta) / deviation).mean(axis=1)
-        own = len(found.information) - sum(each[k:])
-        found = _put(found, k, own, np.interp(_QUANTILES, share, fine))
+        found = _put(found, k, np.interp(_QUANTILES, share, fine))
     return found
 
 
-def _first(found: Judged, number: int) -> tuple[float, float]:
-    """Return the first magnitude of a suspect and its standard deviation."""
-    suspects = found.state.suspects
-    own = len(found.information) - sum(len(s.theta) for s in suspects[number:])
-    return suspects[number].theta[0], float(np.sqrt(np.linalg.pinv(found.information)[own, own]))
+def _row(found: Judged, number: int) -> int:
+    """Return the row of the information that is the first magnitude of a suspect's."""
+    return len(found.information) - sum(len(s.theta) for s in found.state.suspects[number:])
 
 
-def _put(found: Judged, number: int, own: int, quantiles: Floats) -> Judged:
-    """Return a hypothesis with the first magnitude of a suspect, a row of the information, put."""
+def _variance(found: Judged, number: int) -> float:
+    """Return the variance of the first magnitude of a suspect."""
+    own = _row(found, number)
+    return float(np.linalg.pinv(found.information)[own, own])
+
+
+def _put(found: Judged, number: int, quantiles: Floats) -> Judged:
+    """Return a hypothesis with the first magnitude of a suspect at the middle of quantiles."""
     low, middle, high = quantiles
-    H = found.information.copy()
-    H[own, own] += 1.0 / (0.5 * (high - low)) ** 2 - 1.0 / np.linalg.pinv(H)[own, own]
+    H, own = found.information.copy(), _row(found, number)
+    H[own, own] += 1.0 / (0.5 * (high - low)) ** 2 - 1.0 / _variance(found, number)
     fit, state = (
         replace(f, suspects=_at(f.suspects, number, middle)) for f in (found.fit, found.state)
     )

@@ -75,7 +75,7 @@ def test_a_law_of_ones_own_is_searched_and_fitted_likewise():
     told = []
     for p in (s.problem, mine):
         null, every = evaluate(p, np.zeros(2), ()), np.arange(N)
-        found = fit(p, np.zeros(2), start, (0,))
+        found = fit(p, np.zeros(2), start, (0,), 8)
         told.append([scan(p, null, 2, every, trials), promising(p, null, 2, every, trials)])
         told[-1] += [found.objective, magnitudes(found.suspects)]
     for theirs, ours in zip(*told, strict=True):
