@@ -9,6 +9,7 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ...numerics.products import stacked_product
+from ...reduction.reduced_sum import ReducedSum
 from ..effects.candidates import Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
@@ -81,6 +82,13 @@ class Problem:
             rest=rest,
             held=tuple(held),
         )
+
+    def with_more(self, more: Prior, stiffness: ReducedSum, mass: ReducedSum) -> Problem:
+        """Return the problem with `more` parameters before the mesh error, and what they move."""
+        of = self.prior
+        both = (of.spread, more.spread), (of.lower, more.lower), (of.upper, more.upper)
+        prior = Prior(*(np.insert(a, len(a) - 1, b) for a, b in both))
+        return replace(self, basis=replace(self.basis, stiffness=stiffness, mass=mass), prior=prior)
 
     def entire(self) -> Problem:
         """Return the problem with all of the test as evidence."""

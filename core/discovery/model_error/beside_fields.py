@@ -130,14 +130,9 @@ def _told(plain: Judged, best: Judged, fields: Fields, without: float) -> Judged
 def with_fields(problem: Problem, fields: Fields) -> Problem:
     """Return a problem whose known parameters are followed by the amplitudes of fields."""
     n = len(problem.prior.spread) - 1
-    most = np.maximum(MODEL_ERROR.most, -fields.least)
-    added = (problem.prior.spread, fields.spread), (problem.prior.lower, fields.least)
-    prior = Prior(*(np.insert(a, n, b) for a, b in (*added, (problem.prior.upper, most))))
-    b = problem.basis
-    stiffness, mass = (
-        _moved(s, A, n) for s, A in ((b.stiffness, fields.stiffness), (b.mass, fields.mass))
-    )
-    return replace(problem, basis=replace(b, stiffness=stiffness, mass=mass), prior=prior)
+    more = Prior(fields.spread, fields.least, np.maximum(MODEL_ERROR.most, -fields.least))
+    K, M = problem.basis.stiffness, problem.basis.mass
+    return problem.with_more(more, _moved(K, fields.stiffness, n), _moved(M, fields.mass, n))
 
 
 def _moved(matrices: ReducedSum, changes: Floats, first: int) -> ReducedSum:

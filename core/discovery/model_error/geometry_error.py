@@ -10,7 +10,7 @@ Structures 1, 581).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -112,20 +112,14 @@ def with_deviation(problem: Problem, d: Deviation) -> Problem:
     It may be on the first modes of the problem alone.
     """
     n, u = len(problem.prior.spread) - 1, MODEL_ERROR.shape_unit
-    most = MODEL_ERROR.shape_most * u
-    p = problem.prior
-    ends = (p.spread, u), (p.lower, -most), (p.upper, most)
+    most = np.array([MODEL_ERROR.shape_most * u])
     b, orders = problem.basis, [tuple(c / u**k for c in s) for k, s in enumerate(_ORDERS, 1)]
     factors = [Factor(n, series, 0.0, 2.0) for series in orders]
     stiffness, mass = (
         matrices.plus([_padded(A, b.size) for A in own], factors)
         for matrices, own in ((b.stiffness, d.stiffness), (b.mass, d.mass))
     )
-    return replace(
-        problem,
-        basis=replace(b, stiffness=stiffness, mass=mass),
-        prior=Prior(*(np.insert(a, n, x) for a, x in ends)),
-    )
+    return problem.with_more(Prior(np.array([u]), -most, most), stiffness, mass)
 
 
 def _padded(A: Floats, size: int) -> Floats:

@@ -14,6 +14,7 @@ from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.request import Request
 from ..model_error.model_error_numbers import MODEL_ERROR
 from ..search.model_selection import times
+from ..search.search_numbers import SEARCH
 from .narrative_numbers import NARRATIVE
 from .sentences import alternative, region
 
@@ -66,7 +67,7 @@ def _beside(request: Request, damper: Finding, model: list[Finding]) -> str:
     size = request.structure.model.geometry.size
     for f in model:
         apart = np.linalg.norm(np.subtract(f.where.xyz, damper.where.xyz))
-        if KINDS[f.kind].at_points and apart < NARRATIVE.damper_beside * size:
+        if KINDS[f.kind].at_points and apart < SEARCH.beside * size:
             return KINDS[f.kind].label
     return ""
 

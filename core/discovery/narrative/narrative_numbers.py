@@ -29,7 +29,6 @@ class NarrativeNumbers:
     damper_told: float = number(0.02, "-", "the same, from which on it is an alternative")
     damper_confidence: float = number(0.88, "-", "share of clear findings of dashpots that are right", "six of six, and the rule of succession")
     damper_together: float = number(0.1, SIZE, "places that are nearer are one")
-    damper_beside: float = number(0.2, SIZE, "how near a heavy dashpot looks like another effect to the search")
     damper_tie: float = number(1e-6, "-", "weight by which the likeliest of places that hold as much comes first", "decides ties alone")
     damper_credible: float = number(0.05, "of the likeliest place's weight", "below which a place is not listed")
     damper_places: int = number(40, "places", "that are listed, at most", READER)

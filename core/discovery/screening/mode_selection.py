@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import Bools, Floats, Ints
 from ...correlation.comparison import Comparison, Placed
+from ...correlation.correlation_numbers import CORRELATION
 from ...correlation.mac import realised
 from ...data.parametric_model import Model
 from ...eigen import normal_modes
@@ -91,7 +92,7 @@ def reference_modes(model: Model, top_hz: float, tests: int = 1) -> Eigensolutio
     Where it has them, as many elastic modes as the test has: a deck that is far too stiff has few
     up to there.
     """
-    fmax = SCREENING.modes_above * top_hz / SCREENING.usual
+    fmax = SCREENING.modes_above * top_hz / (1.0 + CORRELATION.frequency)
     many = min(SCREENING.modes_least, model.n_free // SCREENING.modes_times)
     solution = normal_modes.solve(model, fmax=fmax, least=many, keep_factor=True)
     least = tests + solution.rigid_body_modes

@@ -16,6 +16,7 @@ import scipy.sparse as sp
 
 from ...arrays import Floats
 from ...assembly.element_assembly import ElementBlock
+from ...correlation.correlation_numbers import CORRELATION
 from ...data.parameter import Parameter
 from ...data.parametric_model import Model, Term
 from ...eigen.normal_modes import Eigensolution
@@ -29,7 +30,7 @@ Groups = Sequence[tuple[int, ...]]
 def shifts(
     model: Model, solution: Eigensolution, band_hz: tuple[float, float], parameters: Sequence[int]
 ) -> Floats:
-    """Return ∂ln f/∂ln p of the modes in the measured band at the deck, (n, n_pair).
+    """Return ∂ln f/∂ln p of the modes that may pair in the measured band, at the deck, (n, n_pair).
 
     First order, each mode apart from all others (Fox and Kapoor 1968) but for those as close as a
     shift that is noticed: what turns such a pair is a column of its own, so that which vectors of
@@ -37,7 +38,8 @@ def shifts(
     `band_hz` the lowest and highest frequency measured.
     """
     hz = solution.frequencies_hz
-    inside = (hz > band_hz[0] / SCREENING.around) & (hz < band_hz[1] * SCREENING.around)
+    around = 1.0 + CORRELATION.frequency
+    inside = (hz > band_hz[0] / around) & (hz < band_hz[1] * around)
     inside[: solution.rigid_body_modes] = False
     phi, values = solution.vectors[:, inside], solution.eigenvalues[inside]
     ln_f = 0.5 * np.log(values)

@@ -11,11 +11,9 @@ ELASTIC = "of the first elastic frequency"
 class ScreeningNumbers:
     noticed: float = number(0.01, "of f", "shift of a frequency that is noticed")
     most: int = number(12, "parameters", "that are small and may matter move, those with the largest shifts")
-    around: float = number(1.3, "of the measured band's ends", "how far outside it a mode counts as well")
     swings: float = number(0.5, ELASTIC, "below which a test mode that moves as a whole swings on its suspension")
     swings_far: float = number(0.15, ELASTIC, "below which it does whatever its shape", "what it moves in is not measured")
     modes_above: float = number(1.6, "of the test's highest frequency", "up to where modes of the model are found, at the usual tolerance of pairs")
-    usual: float = number(1.3, "of the test's highest frequency", "where modes may pair up to at the usual tolerance of pairs")
     modes_least: int = number(60, "modes", "of the model that are found at least, where it has them many times")
     modes_times: int = number(4, "times the modes", "degrees of freedom a model has to have for that")
     moved: float = number(2e-3, "of a property", "by which a known property has moved if it is to change in the deck")

@@ -75,7 +75,7 @@ class SearchNumbers:
     look_moves: int = number(6, "moves", "of all suspects to these, at most")
     look_gain: float = number(0.5, "ln L", "what such a move must gain for another to be tried")
     nothing: float = number(0.33, "of what lumping does to ln f", "error of a deck of shells that lacks nothing, at most", "nine of these: 0.18 to 0.33")
-    beside: float = number(0.2, SIZE, "suspects of one nature that are nearer may be one effect")
+    beside: float = number(0.2, SIZE, "suspects of one nature, or a dashpot and what the search took it for, that are nearer may be one effect")
     rest: float = number(0.2, "of the gain of the first", "that the second of them has to gain by the error of the model", "rests of two masses that were spread over parts of a wheel: 6 and 14 %")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")
     credible: float = number(6.0, LN, "explanations no further behind are told", "likelihood ratio of exp(3)")
