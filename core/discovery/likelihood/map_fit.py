@@ -87,13 +87,8 @@ def _shapes(problem: Problem, values: Floats, vectors: Floats) -> Floats:
 
 
 def _costs(problem: Problem, values: Floats, vectors: Floats) -> Floats:
-    shapes = _shapes(problem, values, vectors)
-    return _costs_of(problem, values, shapes, np.asarray(problem.evidence.shapes.T @ shapes))
-
-
-def _costs_of(problem: Problem, values: Floats, shapes: Floats, cross: Floats) -> Floats:
-    gram = np.asarray(shapes.T @ shapes, dtype=float)
-    return mode_costs(problem.evidence, values[: shapes.shape[1]], cross, gram)
+    e, shapes = problem.evidence, _shapes(problem, values, vectors)
+    return mode_costs(e, values[: shapes.shape[1]], e.shapes.T @ shapes, shapes.T @ shapes)
 
 
 def surprise(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> float:
@@ -107,9 +102,8 @@ def surprise(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) ->
 def evaluate(problem: Problem, nuisance: Floats, suspects: Sequence[Suspect]) -> Fit:
     """Return a hypothesis as it stands, nothing fitted."""
     values, vectors = solve(problem, nuisance, suspects)
-    shapes = _shapes(problem, values, vectors)
-    cross = np.asarray(problem.evidence.shapes.T @ shapes)
-    bad, match = matched(_costs_of(problem, values, shapes, cross))
+    bad, match = misfit(problem, values, vectors)
+    cross = problem.evidence.shapes.T @ _shapes(problem, values, vectors)
     turned = turned_to_test(vectors, values, cross, match)
     if turned is not vectors:
         vectors, costs = turned, _costs(problem, values, turned)

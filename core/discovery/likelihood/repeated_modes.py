@@ -4,6 +4,8 @@ Which ones a solver gives follows from rounding. What looks at single vectors, a
 at the sensors, must not.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
@@ -18,26 +20,21 @@ def turned_to_test(vectors: Floats, values: Floats, cross: Floats, match: Ints) 
     sensors, `match` (n_test,) the mode of each.
     """
     values = values[: cross.shape[1] + 1]  # what is repeated beyond these no shape matches
-    if not some_repeated(values):
-        return vectors
-    groups, out = np.split(np.arange(len(values)), np.flatnonzero(_apart(values)) + 1), vectors
-    for group in (g for g in groups if len(g) > 1 and g[-1] < cross.shape[1]):
-        tests = np.flatnonzero((match >= group[0]) & (match <= group[-1]))
-        if not len(tests):
+    ends = [0, *(np.flatnonzero(_apart(values)) + 1).tolist(), len(values)]
+    out = vectors
+    for first, end in pairwise(ends):
+        tests = np.flatnonzero((match >= first) & (match < end)) if end - first > 1 else ()
+        if not len(tests) or end > cross.shape[1]:
             continue
+        group = np.arange(first, end)
         U, _, Vt = np.linalg.svd(cross[np.ix_(tests, group)].T)
         R, n = np.empty_like(U), len(tests)
-        own = match[tests] - group[0]
+        own = match[tests] - first
         R[:, own] = U[:, :n] @ Vt
-        R[:, np.setdiff1d(np.arange(len(group)), own)] = U[:, n:]
+        R[:, np.setdiff1d(group - first, own)] = U[:, n:]
         out = vectors.copy() if out is vectors else out
         out[:, group] = vectors[:, group] @ R
     return out
-
-
-def some_repeated(values: Floats) -> bool:
-    """Whether some of eigenvalues (n,) are one."""
-    return not bool(_apart(values).all())
 
 
 def _apart(values: Floats) -> Bools:

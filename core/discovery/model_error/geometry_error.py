@@ -116,14 +116,10 @@ def with_deviation(problem: Problem, d: Deviation) -> Problem:
     b, orders = problem.basis, [tuple(c / u**k for c in s) for k, s in enumerate(_ORDERS, 1)]
     factors = [Factor(n, series, 0.0, 2.0) for series in orders]
     stiffness, mass = (
-        matrices.plus([_padded(A, b.size) for A in own], factors)
+        matrices.plus([np.pad(A, (0, b.size - len(A))) for A in own], factors)
         for matrices, own in ((b.stiffness, d.stiffness), (b.mass, d.mass))
     )
     return problem.with_more(Prior(np.array([u]), -most, most), stiffness, mass)
-
-
-def _padded(A: Floats, size: int) -> Floats:
-    return np.pad(A, (0, size - len(A)))
 
 
 def misshapen(d: Deviation, found: Judged, choices: int) -> Misshapen:
