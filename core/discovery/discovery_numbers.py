@@ -7,8 +7,7 @@ from ..number_table import number
 
 @dataclass(frozen=True)
 class DiscoveryNumbers:
-    mesh_spread: float = number(1.0, "-", "standard deviation of the error of the mesh: 0 lumped mass, 1 consistent", "what lumping does to linear shells")
-    mesh_bounds: tuple[float, float] = number((-1.0, 1.05), "-", "between which it lies")
+    mesh_bounds: tuple[float, float] = number((-1.0, 1.05), "-", "between which the error of the mesh lies: 0 lumped mass, 1 consistent")
     modes: int = number(110, "modes", "on which known parameters are fitted, at most", "time")
     small_modes: int = number(80, "modes", "on which suspects are fitted, at most", "time")
     band: float = number(1.15, "of the highest test frequency", "up to which a mode may match")

@@ -17,6 +17,7 @@ from .likelihood.map_fit import fit
 from .likelihood.mode_likelihood import Evidence, noise_of
 from .likelihood.repeated_modes import none_cut
 from .likelihood.request import Request
+from .model_error.model_error_numbers import MODEL_ERROR
 from .reduction.discretisation_error import consistent_bars, lumping
 from .reduction.residual_flexibility import Compliance
 from .reduction.search_basis import Basis, build_basis
@@ -81,7 +82,7 @@ def prepared(
     basis = ground.basis
     observed = np.asarray(placed.weighted(placed.observation.matrix @ basis.motion))
     prior = Prior(
-        np.append(request.spread, DISCOVERY.mesh_spread),
+        np.append(request.spread, MODEL_ERROR.mesh),
         np.append(np.log([q.lower for q in model.parameters]), DISCOVERY.mesh_bounds[0]),
         np.append(np.log([q.upper for q in model.parameters]), DISCOVERY.mesh_bounds[1]),
     )

@@ -24,8 +24,7 @@ class Effort:
 @dataclass(frozen=True)
 class LikelihoodNumbers:
     frequency: float = number(0.004, "of ln f", "standard deviation of what a right model misses")
-    shape: float = number(0.05, "of the rms of a shape", "the same of a sensor's reading, if nothing is known of the test")
-    placed: float = number(0.04, "of the rms of a shape", "the same of any test: positions of sensors, discretisation")
+    placed: float = number(0.04, "of the rms of a shape", "the same of a sensor's reading: positions of sensors, discretisation")
     independent: float = number(12.0, "sensors", "that count as independent: errors of a model are smooth")
     robust: float = number(40.0, "2 ln L", "misfit of one mode beyond which more of it counts less and less")
     mixing: float = number(0.02, "of λ", "changes of K that no model has right: modes that are no further apart turn freely, see `mixing`")

@@ -33,8 +33,8 @@ class Noise:
         differ by no more than this turn freely within their subspace.
     """
 
-    frequency: float | Floats = LIKELIHOOD.frequency
-    shape: float | Floats = LIKELIHOOD.shape
+    frequency: float | Floats
+    shape: float | Floats
     independent: float = LIKELIHOOD.independent
     robust: float = LIKELIHOOD.robust
     mixing: float = LIKELIHOOD.mixing
@@ -53,13 +53,13 @@ def noise_of(errors: ModeErrors | None, level: float, weights: Floats | None = N
     `level` is that of a sound sensor besides the standard errors, over the rms of the shape;
     `weights` (n_test,) divide the variances.
     """
-    usual = Noise(shape=float(np.hypot(level, LIKELIHOOD.placed)))
-    f, s = usual.frequency, usual.shape
+    f: float | Floats = LIKELIHOOD.frequency
+    s: float | Floats = float(np.hypot(level, LIKELIHOOD.placed))
     if errors is not None:
         f, s = np.hypot(f, errors.frequency), np.hypot(s, errors.length)
     if weights is not None:
         f, s = f / np.sqrt(weights), s / np.sqrt(weights)
-    return replace(usual, frequency=f, shape=s)
+    return Noise(f, s)
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ class ModelErrorNumbers:
     drift_part: float = number(0.15, "of the diffuse error", "below which a size of smooth fields is not tried: it could not make it", "fits from three starts on a measured aeroplane find the same then")
     suspension: float = number(0.1, "of the lowest eigenvalue", "standard deviation of what a free structure swings on", "a suspension is soft where it swings at a third of the lowest frequency")
     sensor_mass: float = number(0.02, "of the structure's mass", "standard deviation of what all sensors weigh")
-    mesh: float = number(1.0, "of what lumping does", "standard deviation of the error of the mesh along each axis", "as that of the mesh itself")
+    mesh: float = number(1.0, "of what lumping does", "standard deviation of the error of the mesh, as a whole and along each axis: 0 lumped mass, 1 consistent", "what lumping does to linear shells")
     mesh_most: float = number(3.0, "of what lumping does", "that it is, at most")
     drift_gain: float = number(60.0, "ln L", "that smooth fields gain, at most: they are not tried for hypotheses that are further behind", "time")
     promised: float = number(1.0, "ln L", "that smooth fields must promise to be tried", "time")

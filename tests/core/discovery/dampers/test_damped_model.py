@@ -9,7 +9,7 @@ from trueup.core.discovery.dampers.damped_model import damped
 from trueup.core.discovery.dampers.damper_search import DampingEvidence, find_damper
 from trueup.core.discovery.effects.local_damper import PEAKS
 from trueup.core.discovery.likelihood.complex_modes import Oriented
-from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, noise_of
 
 N, COUNT = 60, 8
 X = np.linspace(0.05, 1.0, 20)
@@ -43,7 +43,7 @@ def exact(place: int, c: float, count: int = COUNT) -> tuple[np.ndarray, np.ndar
 
 def evidence(poles: np.ndarray, shapes: np.ndarray) -> Evidence:
     unit = np.real(shapes) / np.linalg.norm(np.real(shapes), axis=0)
-    return Evidence(np.abs(poles) / (2.0 * np.pi), unit, Noise())
+    return Evidence(np.abs(poles) / (2.0 * np.pi), unit, noise_of(None, 0.03))
 
 
 def with_dashpot(place: int, c: float, poles: np.ndarray, shapes: np.ndarray):

@@ -14,7 +14,7 @@ from trueup.core.discovery.likelihood.complex_modes import (
     predicted,
     ratios,
 )
-from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise, noise_of
 
 K = np.array([[300.0, -100.0], [-100.0, 150.0]])
 M = np.diag([1.0, 0.5])
@@ -66,7 +66,7 @@ def test_the_first_order_is_the_slope_of_the_exact_solution():
     u, c = phi[1], 1e-4
     poles, shapes = complex_modes(omega, c * np.outer(u, u))
     np.testing.assert_allclose(ratios(poles) / c, added(u, omega), rtol=1e-6)
-    e = Evidence(omega / (2 * np.pi), phi / np.linalg.norm(phi, axis=0), Noise())
+    e = Evidence(omega / (2 * np.pi), phi / np.linalg.norm(phi, axis=0), noise_of(None, 0.03))
     modes = oriented(e, omega**2, phi, 2)
     turned, _ = imaginary((phi @ modes.turn)[[1]], modes, phi @ modes.turn)
     along = modes.turn @ turned[0].T
@@ -90,7 +90,9 @@ def test_an_overdamped_mode_has_no_ratio_and_the_others_keep_theirs():
     assert ratios(poles[[1]])[0] == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize("noise", [Noise(), Noise(np.full(3, 0.004), np.full(3, 0.05))])
+@pytest.mark.parametrize(
+    "noise", [noise_of(None, 0.03), Noise(np.full(3, 0.004), np.full(3, 0.05))]
+)
 def test_a_repeated_pair_lies_as_the_test_found_it(noise):
     """Two modes of one frequency, turned by 30 degrees in the test."""
     rng = np.random.default_rng(1)

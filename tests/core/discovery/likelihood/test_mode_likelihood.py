@@ -6,9 +6,9 @@ import scipy.linalg as la
 
 from trueup.core.correlation.mode_errors import ModeErrors
 from trueup.core.discovery.likelihood.hypothesis import Prior, Problem, softened
+from trueup.core.discovery.likelihood.likelihood_numbers import LIKELIHOOD
 from trueup.core.discovery.likelihood.mode_likelihood import (
     Evidence,
-    Noise,
     joint_macs,
     least_sums,
     matched,
@@ -50,7 +50,7 @@ def test_mixing_is_half_where_the_gap_is_the_size():
 
 
 def test_a_perfect_model_costs_nothing_and_matches_in_order():
-    e = Evidence(np.array([1.0, 2.0, 3.0, 4.0]), SHAPES, Noise())
+    e = Evidence(np.array([1.0, 2.0, 3.0, 4.0]), SHAPES, noise_of(None, 0.03))
     lam = (2.0 * np.pi * e.frequencies_hz) ** 2
     total, match = matched(mode_costs(e, lam, SHAPES.T @ SHAPES, SHAPES.T @ SHAPES))
     assert total == pytest.approx(0.0, abs=1e-2)
@@ -58,7 +58,9 @@ def test_a_perfect_model_costs_nothing_and_matches_in_order():
 
 
 def test_parts_of_the_evidence_have_unit_shapes():
-    e = Evidence(np.arange(1.0, 5.0), SHAPES, Noise()).take(np.array([0, 2]), np.arange(20))
+    e = Evidence(np.arange(1.0, 5.0), SHAPES, noise_of(None, 0.03)).take(
+        np.array([0, 2]), np.arange(20)
+    )
     np.testing.assert_allclose(np.linalg.norm(e.shapes, axis=0), 1.0)
 
 
@@ -69,7 +71,7 @@ def test_a_mode_known_badly_counts_less():
     lam = (2.0 * np.pi * e.frequencies_hz * 1.002) ** 2
     cross = SHAPES[:, :2].T @ SHAPES[:, :2]
     one, two = np.diag(mode_costs(e, lam, cross, cross))
-    usual = Noise().frequency
+    usual = LIKELIHOOD.frequency
     assert two / one == pytest.approx(usual**2 / (usual**2 + 0.03**2), rel=0.02)
 
 
@@ -84,13 +86,13 @@ def test_noise_goes_with_its_modes():
     e = Evidence(np.arange(1.0, 4.0), SHAPES[:, :3], noise_of(errors, 0.02))
     part = e.take(np.array([True, False, True]), np.arange(20))
     np.testing.assert_allclose(part.noise.frequency, np.asarray(e.noise.frequency)[[0, 2]])
-    assert e.noise.of(np.array([1])).robust == Noise().robust
+    assert e.noise.of(np.array([1])).robust == LIKELIHOOD.robust
 
 
 def test_a_pair_that_parameters_to_come_will_turn_does_not_hide_a_place():
     """Two modes 6 % apart in frequency, turned by 30 degrees: looked for, they count as a pair."""
     turned = SHAPES @ la.block_diag([[0.866, -0.5], [0.5, 0.866]], np.eye(2))
-    e = Evidence(np.array([1.0, 1.06, 3.0, 4.0]), turned, Noise())
+    e = Evidence(np.array([1.0, 1.06, 3.0, 4.0]), turned, noise_of(None, 0.03))
     lam = (2.0 * np.pi * e.frequencies_hz) ** 2
 
     def cost(evidence):

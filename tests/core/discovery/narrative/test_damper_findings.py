@@ -16,7 +16,7 @@ from trueup.core.discovery.dampers.damper_search import DamperFound
 from trueup.core.discovery.effects.structure_points import Axes
 from trueup.core.discovery.findings import Discovery, Finding, Where
 from trueup.core.discovery.likelihood.complex_modes import Oriented
-from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
+from trueup.core.discovery.likelihood.mode_likelihood import Evidence, noise_of
 from trueup.core.discovery.narrative.damper_findings import with_damper
 
 XYZ = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11), np.zeros(11)])
@@ -50,7 +50,7 @@ def weighed(exists, weights, omega=(10.0, 10.5, 20.0, 30.0), c=0.2):
     omega = np.array(omega)
     modes = Oriented(omega, np.eye(4), 3)
     u = np.tile([1.0, 0.8, 0.3, 0.5], (11, 1))
-    test = Evidence(omega[:3] / (2.0 * np.pi), np.eye(4)[:, :3], Noise())
+    test = Evidence(omega[:3] / (2.0 * np.pi), np.eye(4)[:, :3], noise_of(None, 0.03))
     D = c * np.outer(u[0], u[0]) + np.diag(2.0 * 0.01 * omega)
     with_it = damped(test, test.shapes, omega, np.eye(4), D)
     return Weighed(found, PLACES, modes, u, with_it, np.eye(4))
