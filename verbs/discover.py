@@ -247,7 +247,7 @@ def _request(
         mass_unit(deck, on_model.test_geometry.length_unit),
         responses=responses,
         densest=densest(deck),
-        modes=np.flatnonzero(elastic) + 1,
+        numbers=np.flatnonzero(elastic) + 1,
     )
     return request, tuple(unplaced)
 

@@ -1,8 +1,6 @@
 """What discovery is asked."""
 
-from dataclasses import dataclass, field
-
-import numpy as np
+from dataclasses import dataclass
 
 from ...arrays import Floats, Ints
 from ...correlation.comparison import Placed
@@ -31,12 +29,12 @@ class Request(Noun):
         Of the structure, in units of the mass matrix.
     masses : MassUnit
         What masses are said in.
-    responses : Responses, optional
+    responses : Responses or None
         Frequency responses of the test: further evidence.
     densest : float
         Largest density of what the structure is made of, as in the mass matrix; 0 if unknown.
-    modes : (n_test,) int, optional
-        Numbers by which to speak of the modes in `placed`; otherwise 1, 2, ...
+    numbers : (n_test,) int
+        By which to speak of the modes in `placed`.
     """
 
     structure: Structure
@@ -44,12 +42,7 @@ class Request(Noun):
     solution: Eigensolution
     placed: Placed
     mass: float
-    masses: MassUnit = field(default_factory=MassUnit)
-    responses: Responses | None = None
-    densest: float = 0.0
-    modes: Ints | None = None
-
-    @property
-    def numbers(self) -> Ints:
-        """Numbers of the test modes, (n_test,)."""
-        return np.arange(len(self.placed.test)) + 1 if self.modes is None else self.modes
+    masses: MassUnit
+    responses: Responses | None
+    densest: float
+    numbers: Ints
