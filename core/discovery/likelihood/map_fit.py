@@ -163,7 +163,10 @@ def promised(
 
 
 def step_within(H: Floats, g: Floats, box: Box = _ANYWHERE, damping: float = 0.0) -> Floats:
-    """Return Levenberg's step within a box, the others knowing what its sides hold."""
+    """Return Levenberg's step within a box, each unknown in units of its own curvature.
+
+    The others know what the sides of the box hold.
+    """
     unit = 1.0 / np.sqrt(np.diag(H))
     A = H * unit * unit[:, None] + damping * np.eye(len(H))
     step, free = np.zeros(len(g)), np.ones(len(g), bool)
