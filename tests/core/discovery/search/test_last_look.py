@@ -35,6 +35,17 @@ def test_a_suspect_far_off_its_place_and_size_is_found_there():
     assert any(t.fit is state for t in tried)
 
 
+def test_another_kind_at_the_same_place_is_looked_at_however_badly_it_fits(monkeypatch):
+    """A beam that is softer was told as a joint at its end, 11 nats behind."""
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    spring = fit(s.problem, np.zeros(2), (Suspect(SPRING, 10, (np.log(50.0),)),), s.active, 20)
+    s = replace(s, judged=by_misfit)
+    monkeypatch.setattr(last_look, "_elsewhere", lambda *_: [])
+    _, tried = looked_again(s, scored(s, spring), scored(s, s.null()).score)
+    (best,) = tried[0].fit.suspects
+    assert (best.kind, best.row) == (MASS, 9)
+
+
 def test_what_comes_next_elsewhere_is_moved_before_it_is_left_behind(monkeypatch):
     """An absorber between the places of a scan was told as equipment at 0.9, 60 nats ahead."""
     bead, hz = 10, 2.3
