@@ -34,7 +34,7 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
     the shapes that were tried.
     """
     tried = [first]
-    for q in searcher.doubtful(first.fit):
+    for q in searcher.doubtful(first.fit, len(first.fit.suspects)):
         tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
         tried = ranked(searcher, _other_kinds(searcher, first.fit, q), tried)
     searcher, moved = _moved(searcher, tried[0], tried)
