@@ -74,7 +74,7 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
 
 
 def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
-    """Return fits with effects of other kinds near a suspect in its place, the best of each kind.
+    """Return fits with effects of kinds alike near a suspect in its place, the best of each kind.
 
     However well they fit: what a beam's joint does a softer beam does as well.
     """
@@ -85,7 +85,8 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     for kind, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
         rows = np.flatnonzero(away < searcher.effort.near * searcher.size)
-        if c.kind is own.kind or c.kind.late or not len(rows):
+        alike = c.law.acts_on == own.law.acts_on and c.kind is not own.kind
+        if not alike or c.kind.late or not len(rows):
             continue
         cost = scan(small, here, kind, rows, c.trials) + c.surprise(c.trials)
         row, size = np.unravel_index(cost.argmin(), cost.shape)
