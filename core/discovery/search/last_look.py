@@ -74,9 +74,9 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
 
 
 def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
-    """Return fits with effects of kinds alike near a suspect in its place, the best of each kind.
+    """Return fits with effects of another nature near a suspect in its place, the best of each.
 
-    However well they fit: what a beam's joint does a softer beam does as well.
+    On the same matrix, however well they fit: what a beam's joint does a softer beam does as well.
     """
     s, others = state.suspects[q], state.suspects[:q] + state.suspects[q + 1 :]
     own = searcher.problem.catalogue[s.kind]
@@ -85,17 +85,16 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     for kind, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
         rows = np.flatnonzero(away < searcher.effort.near * searcher.size)
-        alike = c.law.acts_on == own.law.acts_on and c.kind is not own.kind
-        if not alike or c.kind.late or not len(rows):
+        alike = c.kind is own.kind or c.kind.joins(own.kind) or c.law.acts_on != own.law.acts_on
+        if alike or c.kind.late or not len(rows):
             continue
         cost = scan(small, here, kind, rows, c.trials) + c.surprise(c.trials)
         row, size = np.unravel_index(cost.argmin(), cost.shape)
         found.append((float(cost.min()), Suspect(kind, int(rows[row]), tuple(c.trials[size]))))
     nearest = sorted(found, key=lambda f: f[0])[: SEARCH.look_judged]
-    tried = [
+    return [
         searcher.fitted(state, (*others, new), SEARCH.steps_new, small, True) for _, new in nearest
     ]
-    return _best(tried, SEARCH.look_judged)
 
 
 def _moved(
