@@ -65,8 +65,8 @@ def grown(
         if depth > 1:
             beam[0] = searcher.moved_at_once(searcher.reconsidered(beam[0]))
         beam = _distinct(searcher, sorted(beam, key=objective_of))
-        best = beam[0]
-        rest = (*beam[1:], *chosen[searcher.effort.beam :])
+        best = next(filter(explains, beam), beam[0])
+        rest = (*(f for f in beam if f is not best), *chosen[searcher.effort.beam :])
         rivals.append(rest[: SEARCH.rivals_kept])
         previous = levels[-1]
         levels.append(best)

@@ -18,6 +18,7 @@ from ..effects.candidates import Suspect
 from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
+from .exact_scan import scan
 from .model_selection import Scored, needed, ranked, says_else
 from .moves import Searcher
 from .patch_reshaping import options_beside, promising
@@ -33,8 +34,9 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
     the shapes that were tried.
     """
     tried = [first]
-    for q in searcher.doubtful(first.fit):
+    for q in searcher.doubtful(first.fit, len(first.fit.suspects)):
         tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
+        tried = ranked(searcher, _other_kinds(searcher, first.fit, q), tried)
     searcher, moved = _moved(searcher, tried[0], tried)
     tried += moved
     best = max(tried, key=_score)
@@ -69,6 +71,30 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     ]
     far = SEARCH.rival_gain * (without.objective - state.objective)
     return _best([f for f in tried if f.objective - state.objective < far], SEARCH.look_judged)
+
+
+def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
+    """Return fits with effects of another nature near a suspect in its place, the best of each.
+
+    On the same matrix, however well they fit: what a beam's joint does a softer beam does as well.
+    """
+    s, others = state.suspects[q], state.suspects[:q] + state.suspects[q + 1 :]
+    own = searcher.problem.catalogue[s.kind]
+    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
+    found: list[tuple[float, Suspect]] = []
+    for kind, c in enumerate(searcher.problem.catalogue):
+        away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
+        rows = np.flatnonzero(away < searcher.effort.near * searcher.size)
+        alike = c.kind is own.kind or c.kind.joins(own.kind) or c.law.acts_on != own.law.acts_on
+        if alike or c.kind.late or not len(rows):
+            continue
+        cost = scan(small, here, kind, rows, c.trials) + c.surprise(c.trials)
+        row, size = np.unravel_index(cost.argmin(), cost.shape)
+        found.append((float(cost.min()), Suspect(kind, int(rows[row]), tuple(c.trials[size]))))
+    nearest = sorted(found, key=lambda f: f[0])[: SEARCH.look_judged]
+    return [
+        searcher.fitted(state, (*others, new), SEARCH.steps_new, small, True) for _, new in nearest
+    ]
 
 
 def _moved(

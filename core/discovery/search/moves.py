@@ -317,21 +317,17 @@ class Searcher:
         return None
 
     def reconsidered(self, state: Fit) -> Fit:
-        """Take each suspect out in turn, the last of a new state later; look for a better one."""
-        for number in range(SEARCH.anew_rounds):
-            moved = False
-            for q in self.doubtful(state, first=number == 0):
-                others = state.suspects[:q] + state.suspects[q + 1 :]
-                without = self.fitted(state, others, SEARCH.steps_moved)
-                for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
-                    trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
-                    if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
-                        trial = self.settled(self.refined(trial))
-                    if trial.objective < state.objective - SEARCH.better_anew:
-                        state, moved = trial, True
-                        break
-            if not moved:
-                break
+        """Take each suspect but the last out in turn, and look for a better one."""
+        for q in self.doubtful(state, len(state.suspects) - 1):
+            others = state.suspects[:q] + state.suspects[q + 1 :]
+            without = self.fitted(state, others, SEARCH.steps_moved)
+            for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
+                trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
+                if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
+                    trial = self.settled(self.refined(trial))
+                if trial.objective < state.objective - SEARCH.better_anew:
+                    state = trial
+                    break
         return state
 
     def moved_at_once(self, state: Fit) -> Fit:
@@ -371,9 +367,9 @@ class Searcher:
             for cost, s in self._promising(soft, here, other.kind, *near):
                 yield cost, (*suspects[:q], s, *suspects[q + 1 :])
 
-    def doubtful(self, state: Fit, first: bool = False) -> list[int]:
-        """Suspects to be looked for anew: of many only the one that is missed least."""
-        older = list(range(len(state.suspects) - first))
+    def doubtful(self, state: Fit, first: int) -> list[int]:
+        """Of the `first` suspects those to be looked for anew: of many the one missed least."""
+        older = list(range(first))
         if len(state.suspects) < SEARCH.anew_all:
             return older
         others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)

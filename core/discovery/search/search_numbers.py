@@ -28,7 +28,6 @@ class SearchNumbers:
     stretches_tried: int = number(2, "stretches", "of an edge beside a suspect's that are fitted to the whole basis")
     better: float = number(0.3, LN, "what a move must gain")
     better_anew: float = number(1.0, LN, "what another suspect in place of one must gain")
-    anew_rounds: int = number(1, "rounds", "in which each suspect is taken out and looked for anew")
     anew_looked: int = number(2, "places", "of each kind that are looked at for it")
     anew_tried: int = number(3, "places", "that are fitted for it")
     anew_near: float = number(0.05, "of the objective", "one that is no worse by more than this is moved to better neighbours")

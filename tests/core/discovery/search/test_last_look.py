@@ -6,6 +6,7 @@ from types import SimpleNamespace as Some
 import numpy as np
 from tests.core.discovery.strings import hidden, searcher
 
+from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.search import last_look
@@ -33,6 +34,21 @@ def test_a_suspect_far_off_its_place_and_size_is_found_there():
     assert places == {(MASS, 9), (SPRING, 25)}
     assert np.exp([t.theta[0] for t in best.suspects if t.kind == SPRING]) < 40.0
     assert any(t.fit is state for t in tried)
+
+
+def test_another_kind_at_the_place_of_a_suspect_is_looked_at_however_badly_it_fits(monkeypatch):
+    """A soft beam was told as the joint at its end, which fits better on the basis of a search."""
+    s = searcher(hidden(springs=[(9, 200.0)]))
+    p = s.problem
+    joint = replace(p.catalogue[SPRING], kind=KINDS["joint_flexibility"])
+    both = replace(p, catalogue=(*p.catalogue, joint), factors=(*p.factors, p.factors[SPRING]))
+    s = replace(s, problem=both, coarse=(*s.coarse, s.coarse[SPRING]), judged=by_misfit)
+    told = fit(both, np.zeros(2), (Suspect(len(p.catalogue), 10, (np.log(50.0),)),), s.active, 20)
+    monkeypatch.setattr(last_look, "_elsewhere", lambda *_: [])
+    _, tried = looked_again(s, scored(s, told), scored(s, s.null()).score)
+    kinds = {(o.kind, o.row) for t in tried for o in t.fit.suspects}
+    assert (SPRING, 9) in kinds
+    assert not {kind for kind, _ in kinds} - {SPRING, len(p.catalogue)}
 
 
 def test_what_comes_next_elsewhere_is_moved_before_it_is_left_behind(monkeypatch):
