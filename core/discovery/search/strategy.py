@@ -6,7 +6,7 @@ without such kinds first. Then one of them is put beside every level of what was
 best of these the search goes on with the others, and the likelier of the two outcomes counts.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -105,17 +105,22 @@ def on_stands(
     progress("searching on beside equipment on its stand")
     simple = _with(searcher, [not c.kind.late for c in searcher.problem.catalogue])
     other = grown(simple, progress, new.levels[: first + 1])
-    searcher, other = _stood(structure, searcher, other, more=1)
+    searcher, other = _stood(structure, searcher, other, new.levels)
     return searcher, _likelier(searcher, new, other)
 
 
 def _stood(
-    structure: Structure, searcher: Searcher, found: Found, more: int = 0
+    structure: Structure, searcher: Searcher, found: Found, done: Sequence[Fit] = ()
 ) -> tuple[Searcher, Found]:
-    """Put masses on stands in what is chosen, with a suspect less, and with some `more`."""
+    """Put masses on stands in what is chosen, with a suspect less, and with one more if likelier.
+
+    Not in what is `done`.
+    """
     number, levels = chosen(searcher, found), list(found.levels)
-    for k in range(max(number - 1, 1), min(number + more + 1, len(levels))):
-        searcher, levels[k] = equipped(structure, searcher, levels[k])
+    for k in range(max(number - 1, 1), min(number + 2, len(levels))):
+        ahead = scored(searcher, levels[k]).score - scored(searcher, levels[number]).score
+        if (k <= number or ahead > 0.0) and levels[k] not in done:
+            searcher, levels[k] = equipped(structure, searcher, levels[k])
     return searcher, Found(tuple(levels), found.rivals)
 
 
