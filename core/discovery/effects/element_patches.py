@@ -19,7 +19,7 @@ from ..reduction.search_basis import Basis
 from ..reduction.strain_energies import Energies
 from .candidates import Candidates
 from .effect_kind import EffectKind
-from .effect_laws import FollowingFactorLaw, Law, Rows
+from .effect_laws import FactorLaw, Law, Rows
 from .effect_numbers import EFFECTS
 
 
@@ -232,7 +232,7 @@ class PatchCandidates(Candidates):
         """Return the candidates as factors on a stiffness that known parameters change."""
         held = np.array([energies[p.member][p.rows].sum(axis=0) for p in self.patches])
         slopes = held[:, 1:] / np.maximum(held[:, :1], np.finfo(float).tiny)
-        return replace(self, law=FollowingFactorLaw(slopes), energies=energies)
+        return replace(self, law=FactorLaw(slopes), energies=energies)
 
     def extended(self, known: Rows) -> PatchRows:
         """Return the rows of these candidates from those of the first of them."""

@@ -9,7 +9,7 @@ from ...arrays import Floats
 from ..reduction.elements_and_supports import Structure
 from .candidates import Candidates, with_twins
 from .effect_kind import MASS, EffectKind, Magnitude, Scale
-from .effect_laws import MassLaw, MountedLaw
+from .effect_laws import MassLaw, TunedLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
 from .structure_points import points_of
@@ -40,7 +40,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     at_points = Mounted(
         kind=KIND,
         xyz=xyz,
-        law=MountedLaw(np.zeros((len(xyz), 1)), 0.0),
+        law=TunedLaw(np.zeros((len(xyz), 1)), 0.0),
         trials=np.insert(masses, 1, top + np.log(middle), axis=1),
         root=moves,
         rows_each=3,

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from ...arrays import Floats
 from ..effects.candidates import Candidates, places_of, together
 from ..effects.effect_kind import Words
-from ..effects.effect_laws import MassLaw, MountedLaw
+from ..effects.effect_laws import MassLaw, TunedLaw
 from ..effects.effect_numbers import EFFECTS
 from .stands import Stand, cross
 
@@ -96,7 +96,7 @@ def equipment(
     single = Equipment(
         kind=template.kind,
         xyz=np.array([s.xyz for s, _ in each]),
-        law=MassLaw() if mount is None else MountedLaw(np.zeros((len(each), 1)), 0.0),
+        law=MassLaw() if mount is None else TunedLaw(np.zeros((len(each), 1)), 0.0),
         trials=np.hstack([template.trials[:, :1], np.tile(held, (len(template.trials), 1))]),
         root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
         rows_each=6,
