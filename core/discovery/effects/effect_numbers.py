@@ -63,7 +63,6 @@ class EffectNumbers:
     bar_first: tuple[float, float] = number((0.08, 0.25), SIZE, "least and largest length of those")
 
     joint_straight: float = number(0.98, "cosine", "between beams that continue each other and make no joint")
-    joint_step: float = number(0.01, "of p", "by which the stiffness of beam ends is differentiated")
     joint_stiff: float = number(1e-9, "of the stiffest", "below which a beam end turns freely", ROUNDING)
     joint_trials: tuple[float, ...] = number((0.003, 0.03, 0.3, 3.0), "of the median beam end's stiffness", "that are tried")
     joint_softer: float = number(1.0, "of ln k", "how much softer a joint is beforehand than its beams' ends")
@@ -77,7 +76,6 @@ class EffectNumbers:
     support_softer: float = number(2.5, "of ln k", "how much softer a support that turns is beforehand than what it holds")
     support_least: float = number(1e-9, "of the stiffest", "direction of a group that is not free", ROUNDING)
     support_along: float = number(0.95, "cosine", "between a direction of a support and that of an edge that count as one")
-    support_slope: float = number(1e-4, "of ln p", "by which parameters move for the slopes of what a support holds", ROUNDING)
     support_at_once: int = number(100, "places", "whose stiffness is found together", "memory")
 
     link_spacing: float = number(0.02, SIZE, "between the ends of links, at least")

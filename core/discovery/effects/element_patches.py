@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, thinned
+from ..reduction.elements_and_supports import Members, Structure, placed, thinned
 from ..reduction.search_basis import Basis
 from ..reduction.strain_energies import Energies
 from .candidates import Candidates
@@ -247,23 +247,16 @@ class PatchCandidates(Candidates):
         """Return A of one place, (n_free, n_free)."""
         patch = self.patches[row]
         member = self.structure.members[patch.member]
-        at = member.coordinates(patch.rows)
         X = self.matrices(member, patch.rows)
         X = X / masses(X).sum() if self.of_unit_mass else X
-        m = at.shape[1]
         D = self.structure.displacement
-        n = D.shape[0]
-        A = sp.csr_matrix(
-            (X.ravel(), (np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel())), (n, n)
-        )
+        A = placed(D.shape[0], member.coordinates(patch.rows), X)
         return (D.T @ A @ D).tocsr()
 
     def matrices(self, member: Members, rows: Ints) -> Floats:
         """Return the matrices of some elements that the effect changes, (n, m, m)."""
         of = member.stiffness if self.law.on == "K" else member.mass
-        X = of(rows, np.ones(len(self.structure.model.parameters)))
-        assert X is not None
-        return X
+        return of(rows, self.structure.model.deck_point)
 
     @property
     def of_unit_mass(self) -> bool:

@@ -16,32 +16,29 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     beams = [m for m in structure.members if m.element.dimension == 1 and m.element.freedoms == 6]
     ends = _joints(structure, beams)
     roots, own, xyz, where, elastic = [], [], [], [], []
-    p = np.ones(len(structure.model.parameters))
+    p = structure.model.deck_point
     for m, chosen in zip(beams, ends, strict=True):
         if not len(chosen):
             continue
-        K = m.stiffness(chosen[:, 0], p)
-        if K is None:
-            continue
-        turning = 6 * chosen[:, 1][:, None] + np.arange(3, 6)
-        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
-        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
+        Q, D = _turning(m.stiffness(chosen[:, 0], p), chosen[:, 1])
         d, R = np.linalg.eigh(D)
         stiff = d[:, 0] > EFFECTS.joint_stiff * d[:, -1]
         if not stiff.any():
             continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
-        turning = turning[stiff]
-        elastic.append(_elasticity(m, chosen[:, 0], turning, R, d, p))
-        at = m.coordinates(chosen[:, 0])
-        roots.append(_rows(np.matmul(Q, R), at, structure))
+        rows, ends = chosen.T
+        elastic.append(np.zeros((*d.shape, len(p))))
+        for k in range(len(p)):
+            slope = _turning(m.slope(rows, p, k), ends)[1]
+            elastic[-1][:, :, k] = np.einsum("nia,nij,nja->na", R, slope, R) / d
+        roots.append(_rows(np.matmul(Q, R), m.coordinates(rows), structure))
         own.append(d)
-        grids = m.corners[chosen[:, 0], chosen[:, 1]]
+        grids = m.corners[rows, ends]
         xyz.append(structure.model.geometry.xyz[grids])
         numbers = structure.model.geometry.ids[grids].tolist()
         where += [
             {"grids": [g], "elements": [e], "components": [4, 5, 6]}
-            for g, e in zip(numbers, m.ids[chosen[:, 0]].tolist(), strict=True)
+            for g, e in zip(numbers, m.ids[rows].tolist(), strict=True)
         ]
     if not roots:
         return ()
@@ -61,19 +58,11 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     return (made,)
 
 
-def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: Floats) -> Floats:
-    """∂ln d/∂ln p of the rotational stiffness of beam ends, (n, 3, n_parameter)."""
-    out = np.zeros((*d.shape, len(p)))
-    for k in range(len(p)):
-        moved = p.copy()
-        moved[k] += EFFECTS.joint_step
-        K = m.stiffness(rows, moved)
-        assert K is not None
-        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
-        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
-        new = np.einsum("nia,nij,nja->na", R, D, R)
-        out[:, :, k] = np.log(new / d) / np.log1p(EFFECTS.joint_step)
-    return out
+def _turning(K: Floats, ends: Ints) -> tuple[Floats, Floats]:
+    """Return the columns of stiffness (n, m, m) that turn an end, (n, m, 3), and (n, 3, 3)."""
+    turning = 6 * ends[:, None] + np.arange(3, 6)
+    Q = np.take_along_axis(K, turning[:, None, :], axis=2)
+    return Q, np.take_along_axis(Q, turning[:, :, None], axis=1)
 
 
 def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, Supports, thinned
+from ..reduction.elements_and_supports import Structure, Supports, placed, thinned
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -119,30 +119,13 @@ def _at(structure: Structure, s: Supports, p: Floats, own: Bools) -> Supports:
         rows = np.flatnonzero(touched)
         if not len(rows):
             continue
-        here, there = (m.stiffness(rows, x) for x in (p, deck))
-        if here is None or there is None:
-            continue
         at = m.coordinates(rows)
-        i, j = (np.broadcast_to(k, here.shape).ravel() for k in (at[:, :, None], at[:, None, :]))
-
-        def among(K: Floats, i: Ints = i, j: Ints = j) -> sp.csr_matrix:
-            return sp.csr_matrix((K.ravel(), (i, j)), (n, n))[held]
-
-        change = among(here - there)
+        change = placed(n, at, m.stiffness(rows, p) - m.stiffness(rows, deck))[held]
         root, coupling = root + change @ structure.displacement, coupling + change[:, held]
         for k in range(len(slopes)):
-            other = _slope(m, rows, p, k) - _slope(m, rows, deck, k)
-            slopes[k] = slopes[k] + among(other)[:, held]
+            other = placed(n, at, m.slope(rows, p, k) - m.slope(rows, deck, k))
+            slopes[k] = slopes[k] + other[held][:, held]
     return replace(s, root=root.tocsr(), coupling=coupling.tocsr(), slopes=tuple(slopes))
-
-
-def _slope(m: Members, rows: Ints, p: Floats, parameter: int) -> Floats:
-    """Return the derivative of the stiffness of elements by ln p of a parameter, (n, m, m)."""
-    step = EFFECTS.support_slope * (np.arange(len(p)) == parameter)
-    more, less = (m.stiffness(rows, p * np.exp(x)) for x in (step, -step))
-    assert more is not None
-    assert less is not None
-    return np.asarray((more - less) / (2.0 * EFFECTS.support_slope))
 
 
 def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[_Place]:

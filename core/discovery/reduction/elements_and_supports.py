@@ -41,13 +41,24 @@ class Members:
     corners: Ints
     block: ElementBlock
 
-    def stiffness(self, rows: Ints, p: Floats) -> Floats | None:
-        """Return the stiffness of some elements, (n, m, m), None where they have none."""
-        return self.block.evaluate(rows, p, (True, False))[0]
+    def stiffness(self, rows: Ints, p: Floats) -> Floats:
+        """Return the stiffness of some elements, (n, m, m)."""
+        return self._known(rows, self.block.evaluate(rows, p, (True, False))[0])
 
-    def mass(self, rows: Ints, p: Floats) -> Floats | None:
-        """Return the mass of some elements, (n, m, m), None where they have none."""
-        return self.block.evaluate(rows, p, (False, True))[1]
+    def mass(self, rows: Ints, p: Floats) -> Floats:
+        """Return the mass of some elements, (n, m, m)."""
+        return self._known(rows, self.block.evaluate(rows, p, (False, True))[1])
+
+    def _known(self, rows: Ints, matrices: Floats | None) -> Floats:
+        """Return matrices of some elements, zeros where they have none."""
+        m = self.block.width * self.block.places.shape[1]
+        return np.zeros((len(rows), m, m)) if matrices is None else matrices
+
+    def slope(self, rows: Ints, p: Floats, parameter: int) -> Floats:
+        """Return the derivative of the stiffness of some elements by ln p of one, (n, m, m)."""
+        step = REDUCTION.log_step * (np.arange(len(p)) == parameter)
+        more, less = (self.stiffness(rows, p * np.exp(x)) for x in (step, -step))
+        return np.asarray((more - less) / (2.0 * REDUCTION.log_step))
 
     def coordinates(self, rows: Ints) -> Ints:
         """Rows of `Structure.displacement` of some elements, (n, m)."""
@@ -137,8 +148,7 @@ class Structure(Noun):
     @cached_property
     def lumped_masses(self) -> tuple[Floats, ...]:
         """Masses of the elements of each card whose mass is lumped, 0 where it is not, (n,)."""
-        as_it_is = np.ones(len(self.model.parameters))
-        return tuple(_lumped(m, as_it_is) for m in self.members)
+        return tuple(_lumped(m, self.model.deck_point) for m in self.members)
 
     @cached_property
     def _axes(self) -> Floats:
@@ -146,13 +156,16 @@ class Structure(Noun):
 
 
 def _lumped(m: Members, p: Floats) -> Floats:
-    M = m.mass(np.arange(len(m.ids)), p)
-    if M is None:
-        return np.zeros(len(m.ids))
-    along = M[:, ::6, ::6]
+    along = m.mass(np.arange(len(m.ids)), p)[:, ::6, ::6]
     diagonal = np.einsum("eii->e", along)
     whole = along.sum(axis=(1, 2))
     return np.asarray(np.where(np.isclose(diagonal, whole), whole, 0.0))
+
+
+def placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
+    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
+    rows, columns = np.broadcast_arrays(at[:, :, None], at[:, None, :])
+    return sp.csr_matrix((matrices.ravel(), (rows.ravel(), columns.ravel())), (n, n))
 
 
 def shelled(structure: Structure) -> Bools:

@@ -16,9 +16,7 @@ class ReductionNumbers:
     pinned: float = number(1e-9, "of the larger bending stiffness", "below which a bar does not bend with the grid", ROUNDING)
     strained: float = number(1e-6, "of the highest eigenvalue", "below it a mode strains nothing", ROUNDING)
     log_step: float = number(1e-3, "of ln p", "by which a known parameter is moved for its derivatives", ROUNDING)
-    elements_at_once: int = number(4096, "elements", "whose matrices are made at once", "memory")
     parts_at_once: int = number(16, "parts", "of a structure whose matrices on a basis are made at once", "cache and memory")
-    bars_at_once: int = number(512, "bars", "whose consistent mass is made at once", "memory")
     at_once: int = number(128, "loads", "whose displacements are found at once", "memory")
     shared_at_once: int = number(600, "loads", "whose flexibilities among each other are found together", "memory")
 
