@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import expit, logsumexp
 
 from ...arrays import Bools, Floats, Ints
 from ..likelihood.complex_modes import Oriented, added, imaginary
@@ -111,7 +111,7 @@ def find_damper(
     rows = live[best[kept]]
     score = w.scores(rows, w.grid)
     odds = float(logsumexp(score)) - np.log(len(trials) * len(live)) - DAMPERS.rare
-    exists = 1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most)))
+    exists = float(expit(odds))
     order = np.argsort(-logsumexp(score, axis=1), kind="stable")
     rows, score = rows[order], score[order]
     with_one = w.level(int(rows[0]), _mean(score[:1], w.sizes[rows[:1]])[0])
@@ -224,8 +224,8 @@ def _weighing(
 
 def _coarse(w: _Weighing) -> Levels:
     """Few levels for a first look: of middling spread, the course that suits no dashpot best."""
-    away = np.abs(w.grid.spreads - DAMPERS.middling)
-    some = w.grid.take(np.flatnonzero(away == away.min()))
+    middling = DAMPERS.spreads[len(DAMPERS.spreads) // 2]
+    some = w.grid.take(np.flatnonzero(w.grid.spreads == middling))
     alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own)
     best = some.course[int(np.argmax(alone + some.log_prior))]
     return some.take(np.flatnonzero(some.course == best)[::2])

@@ -88,7 +88,7 @@ def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
     along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
     along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
     rows, columns = order[pairs] // 2, order[pairs + 1] // 2
-    straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.bar_straight
+    straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.straight
     rows, columns = rows[straight], columns[straight]
     graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
     number, label = connected_components(graph, directed=False)

@@ -44,7 +44,7 @@ class Magnitude:
 
 MASS = Magnitude("mass", EFFECTS.mass_error, is_mass=True)
 STIFFNESS = Magnitude("stiffness", EFFECTS.stiffness_error)
-FACTOR = Magnitude("factor", EFFECTS.factor_error)
+FACTOR = Magnitude("factor", EFFECTS.stiffness_error)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure, placed, thinned
+from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.search_basis import Basis
 from ..reduction.strain_energies import Energies
 from .candidates import Candidates
@@ -69,10 +70,10 @@ def _on_sheet(
     centres = np.concatenate([middles, grids[structure.in_order(grids)]])
     nearest = sheet[tree.query(centres)[1]]
     for k, r in enumerate(radii):
-        apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
-        wider = EFFECTS.patch_first * apart * r * size
+        apart, within = EFFECTS.spacing * r * size, np.linalg.norm(sides[0]) * r * size
+        wider = EFFECTS.patch_first * apart
         coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
-        some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
+        some = np.array(sorted({*_centres(centres, apart), *coarse}))
         around = tree.query_ball_point(centres[some], within, return_sorted=True)
         of = np.repeat(np.arange(len(some)), [len(reach) for reach in around])
         own, c = sheet[np.concatenate(around).astype(np.int64)], some[of]
@@ -106,10 +107,12 @@ def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:
     across = np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1)
     across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
     order = np.lexsort(sides.T)
-    pairs = []
-    for step in range(1, EFFECTS.sheets_at_side):
+    pairs = [np.zeros((2, 0), np.int64)]
+    for step in range(1, len(order)):
         a, b = order[:-step], order[step:]
         on = np.all(sides[a] == sides[b], axis=1)
+        if not on.any():
+            break
         on &= np.sum(across[a] * across[b], axis=1) < -EFFECTS.sheet_bend
         pairs.append(np.stack([a[on], b[on]]) // k)
     first, last = np.concatenate(pairs, axis=1)
@@ -181,7 +184,7 @@ class PatchRows:
             every = np.arange(len(member.ids))
             X = self._candidates.matrices(member, every)
             values, vectors = np.linalg.eigh(X)
-            counts = values > EFFECTS.patch_rounding * values[:, -1:]
+            counts = values > REDUCTION.nil * values[:, -1:]
             rank = int(np.max(np.sum(counts, axis=1), initial=1))
             R = vectors[:, :, -rank:] * np.sqrt(np.maximum(values[:, None, -rank:], 0.0))
             W = np.matmul(R.transpose(0, 2, 1), self._motion[member.coordinates(every)])

@@ -5,6 +5,7 @@ import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
 from ..reduction.elements_and_supports import Members, Structure, shelled
+from ..reduction.reduction_numbers import REDUCTION
 from .candidates import Candidates
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw
@@ -22,7 +23,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
             continue
         Q, D = _turning(m.stiffness(chosen[:, 0], p), chosen[:, 1])
         d, R = np.linalg.eigh(D)
-        stiff = d[:, 0] > EFFECTS.joint_stiff * d[:, -1]
+        stiff = d[:, 0] > REDUCTION.free * d[:, -1]
         if not stiff.any():
             continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
@@ -80,7 +81,7 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
         for (a, b), direction in zip(m.corners, t, strict=True):
             along[a].append(direction)
             along[b].append(-direction)
-    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.joint_straight for d in along])
+    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.straight for d in along])
     kinked &= count == 2
     joint = ((count >= 3) | kinked) & ~shelled(structure)
     return [np.argwhere(joint[m.corners]) for m in beams]

@@ -97,8 +97,8 @@ def _continued(ends: Ints, along: Floats, normal: Floats) -> list[Ints]:
     for group in np.split(order // 2, np.flatnonzero(np.diff(grids)) + 1):
         for k, a in enumerate(group):
             for b in group[k + 1 :]:
-                straight = abs(float(along[a] @ along[b])) > EFFECTS.edge_straight
-                if straight and abs(float(normal[a] @ normal[b])) > EFFECTS.edge_straight:
+                straight = abs(float(along[a] @ along[b])) > EFFECTS.straight
+                if straight and abs(float(normal[a] @ normal[b])) > EFFECTS.straight:
                     first.append(a)
                     last.append(b)
     graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
 from ..reduction.elements_and_supports import Structure, Supports, placed, thinned
+from ..reduction.reduction_numbers import REDUCTION
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -143,7 +144,7 @@ def _groups(s: Supports, own: Ints, size: float) -> Iterator[_Place]:
     tree = cKDTree(s.xyz[own])
     seen = set()
     for half in EFFECTS.support_halves:
-        for i in thinned(s.xyz[own], EFFECTS.support_spacing * half * size):
+        for i in thinned(s.xyz[own], EFFECTS.spacing * half * size):
             rows = own[sorted(tree.query_ball_point(s.xyz[own[i]], half * size))]
             if len(rows) > 1 and rows.tobytes() not in seen:
                 seen.add(rows.tobytes())
@@ -208,7 +209,7 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
         grids = np.unique(s.grid[rows])
         (d,), (W,) = directions(C[None], len(p.free))
-        d = np.maximum(d, EFFECTS.support_least * d[-1])
+        d = np.maximum(d, REDUCTION.free * d[-1])
         own[i, at] = d * len(grids)
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))
@@ -238,8 +239,8 @@ def _with_stiffness(
     s: Supports, places: Sequence[_Place]
 ) -> Iterator[tuple[_Place, Floats, Floats]]:
     """Return places with the stiffness among their rows and its slopes, (q, q) and (p, q, q)."""
-    for start in range(0, len(places), EFFECTS.support_at_once):
-        some = places[start : start + EFFECTS.support_at_once]
+    for start in range(0, len(places), REDUCTION.at_once):
+        some = places[start : start + REDUCTION.at_once]
         own = np.unique(np.concatenate([p.rows for p in some]))
         both = np.array([A[own][:, own].toarray() for A in (s.coupling, *s.slopes)])
         for p in some:

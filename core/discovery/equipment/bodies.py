@@ -102,7 +102,7 @@ def equipment(
         rows_each=6,
         where=tuple(s.where for s, _ in each),
         typical=np.append(template.typical[:1], held),
-        spread=np.append(template.spread[:1], np.full(len(held), EFFECTS.mount_held)),
+        spread=np.append(template.spread[:1], np.full(len(held), EFFECTS.held)),
         steps=np.ones(1 + len(held)),
         lower=np.append(-anywhere, held),
         upper=np.append(anywhere, held),

@@ -108,4 +108,4 @@ def _pinned(structure: Structure, m: Members) -> Bools:
     """Bars that do not bend with the grid at one of their ends, (n,)."""
     K = m.stiffness(np.arange(len(m.ids)), structure.model.deck_point)
     turning = np.stack([np.linalg.eigvalsh(K[:, s : s + 3, s : s + 3]) for s in (3, 9)], axis=1)
-    return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.pinned * turning[:, :, 2], axis=1))
+    return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.free * turning[:, :, 2], axis=1))
