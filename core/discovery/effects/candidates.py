@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
+from ..reduction.residual_flexibility import Flexibility, Lost, SharedFlexibility
 from ..reduction.search_basis import Basis
 from ..symmetry.equivalent_places import images_of, symmetries
 from ..symmetry.symmetry_numbers import SYMMETRY
@@ -274,16 +274,11 @@ def apart(a: Candidates, row: int, b: Candidates, other: int) -> float:
     return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
 
 
-def lacking(
-    c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
-) -> Flexibility | SharedFlexibility | None:
-    """Return the flexibility that a basis lacks for candidates, None where it does not matter.
-
-    `vectors` (n_dof, n_basis) are the basis, `inverse` the compliance on them (n_basis, n_basis).
-    """
+def lacking(c: Candidates, lost: Lost) -> Flexibility | SharedFlexibility | None:
+    """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
     if not c.rows_each:
         return None
     loads = c.root if c.loads is None else c.loads
     turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
     of = SharedFlexibility if c.law.shared else Flexibility
-    return of(compliance, vectors, inverse, loads, turns, c.rows_each)
+    return of(lost, loads, turns, c.rows_each)

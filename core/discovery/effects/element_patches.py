@@ -10,11 +10,17 @@ from typing import Any, TypeGuard
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, placed, thinned
+from ..reduction.elements_and_supports import (
+    Members,
+    Structure,
+    connected,
+    placed,
+    thinned,
+    unit,
+)
 from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.search_basis import Basis
 from ..reduction.strain_energies import Energies
@@ -104,8 +110,7 @@ def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:
     """
     n, k = corners.shape
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
-    across = np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1)
-    across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
+    across = unit(np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1))
     order = np.lexsort(sides.T)
     pairs = [np.zeros((2, 0), np.int64)]
     for step in range(1, len(order)):
@@ -115,19 +120,14 @@ def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:
             break
         on &= np.sum(across[a] * across[b], axis=1) < -EFFECTS.sheet_bend
         pairs.append(np.stack([a[on], b[on]]) // k)
-    first, last = np.concatenate(pairs, axis=1)
-    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
-    _, label = connected_components(graph, directed=False)
-    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+    return connected(n, *np.concatenate(pairs, axis=1))
 
 
 def _frames(corners: Floats) -> Floats:
     """Return the first side of shells (n, k, 3), what is across it, and the normal, (n, 3, 3)."""
     along, side = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
     normal = np.cross(along, side)
-    frames = np.stack([along, np.cross(normal, along), normal], axis=1)
-    length = np.linalg.norm(frames, axis=2, keepdims=True)
-    return np.asarray(frames / np.maximum(length, np.finfo(float).tiny))
+    return unit(np.stack([along, np.cross(normal, along), normal], axis=1))
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:

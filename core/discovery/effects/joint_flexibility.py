@@ -4,7 +4,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, shelled
+from ..reduction.elements_and_supports import Members, Structure, unit, used
 from ..reduction.reduction_numbers import REDUCTION
 from .candidates import Candidates
 from .effect_kind import STIFFNESS, EffectKind, Scale
@@ -76,14 +76,12 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
             np.add.at(count, m.corners.ravel(), 1)
     for m in beams:
         x = structure.model.geometry.xyz[m.corners]
-        t = x[:, 1] - x[:, 0]
-        t = t / np.maximum(np.linalg.norm(t, axis=1), np.finfo(float).tiny)[:, None]
-        for (a, b), direction in zip(m.corners, t, strict=True):
+        for (a, b), direction in zip(m.corners, unit(x[:, 1] - x[:, 0]), strict=True):
             along[a].append(direction)
             along[b].append(-direction)
     kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.straight for d in along])
     kinked &= count == 2
-    joint = ((count >= 3) | kinked) & ~shelled(structure)
+    joint = ((count >= 3) | kinked) & ~used(structure, 2)
     return [np.argwhere(joint[m.corners]) for m in beams]
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Floats
-from ..reduction.elements_and_supports import Structure
+from ..reduction.elements_and_supports import Structure, used
 from .candidates import Candidates, with_twins
 from .effect_kind import MASS, EffectKind, Magnitude, Scale
 from .effect_laws import MassLaw, TunedLaw
@@ -53,10 +53,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     )
     feet, prior = patches_of(structure, scale.size, EFFECTS.feet), (typical, spread)
     on_feet = on_patches(KIND, structure, feet, MassLaw(), masses, prior, _grids)
-    used = np.zeros(len(structure.model.geometry.ids), bool)
-    for m in structure.members:
-        used[m.corners.ravel()] = True
-    grids = structure.model.geometry.xyz[used]
+    grids = structure.model.geometry.xyz[used(structure)]
     held = grids[:0] if structure.supports is None else structure.supports.places
     return (*with_twins(at_points, grids, scale.size, held), *on_feet)
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Structure
+from ..reduction.elements_and_supports import Structure, unit, used
 from .bar_members import bare_bars
 from .effect_numbers import EFFECTS
 
@@ -56,10 +56,7 @@ def points_of(structure: Structure) -> Points:
     carries = np.zeros(len(g.ids), bool)
     rows = g.index_of(structure.model.dofs.node)
     carries[rows[moving & (rows >= 0)]] = True
-    used = np.zeros(len(g.ids), bool)
-    for m in structure.members:
-        used[m.corners.ravel()] = True
-    own = np.flatnonzero(carries & used)
+    own = np.flatnonzero(carries & used(structure))
     own = own[structure.in_order(g.xyz[own])]
     weights = [
         sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
@@ -68,9 +65,7 @@ def points_of(structure: Structure) -> Points:
     for m in structure.members:
         if m.element.dimension == 2:
             diagonals = g.xyz[m.corners[:, [2, -1]]] - g.xyz[m.corners[:, [0, 1]]]
-            normal = np.cross(diagonals[:, 0], diagonals[:, 1])
-            length = np.linalg.norm(normal, axis=1)
-            normal /= np.where(length > 0.0, length, 1.0)[:, None]
+            normal = unit(np.cross(diagonals[:, 0], diagonals[:, 1]))
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges, first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)
             for corners, across in (

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats
+from ...arrays import Floats, skew
 from ..effects.candidates import Candidates, places_of, together
 from ..effects.effect_kind import Words
 from ..effects.effect_laws import MassLaw, TunedLaw
 from ..effects.effect_numbers import EFFECTS
-from .stands import Stand, cross
+from .stands import Stand
 
 _PRODUCTS = 2.0 * np.eye(3) - 1.0
 """Signs between a matrix of inertia and products of inertia."""
@@ -126,7 +126,7 @@ def _turned(s: Stand, b: Body) -> Body:
 
 def _rows(s: Stand, b: Body) -> sp.csr_matrix:
     """Root of the mass matrix of unit mass: motion of the centre, and what resists turns."""
-    off = np.hstack([np.eye(3), -cross(b.offset)])
+    off = np.hstack([np.eye(3), -skew(b.offset)])
     squares, axes = np.linalg.eigh(b.inertia)
     turns = np.hstack([np.zeros((3, 3)), np.sqrt(squares.clip(0.0))[:, None] * axes.T])
     return sp.csr_matrix(np.concatenate([off, turns])) @ s.motion

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from ...arrays import Bools, Floats, Ints
 from ...assembly.element_assembly import ElementBlock
@@ -168,13 +169,26 @@ def placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
     return sp.csr_matrix((matrices.ravel(), (rows.ravel(), columns.ravel())), (n, n))
 
 
-def shelled(structure: Structure) -> Bools:
-    """Whether each grid is one of a shell or solid, (n_grid,)."""
+def used(structure: Structure, dimension: int = 0) -> Bools:
+    """Whether each grid is one of an element of so many dimensions or more, (n_grid,)."""
     out = np.zeros(len(structure.model.geometry.ids), bool)
     for m in structure.members:
-        if m.element.dimension > 1:
+        if m.element.dimension >= dimension:
             out[m.corners.ravel()] = True
     return out
+
+
+def unit(v: Floats) -> Floats:
+    """Return vectors (..., 3) scaled to length one, those without length as they are."""
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.asarray(v / np.maximum(length, np.finfo(float).tiny))
+
+
+def connected(n: int, first: Ints, last: Ints) -> list[Ints]:
+    """Return the rows of n things in sets, joined by pairs of `first` and `last`."""
+    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
+    label = connected_components(graph, directed=False)[1]
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label)))[:-1]
 
 
 def thinned(xyz: Floats, distance: float) -> Ints:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats, Ints
+from ...arrays import Floats, Ints, skew
 from .symmetry_numbers import SYMMETRY
 
 
@@ -129,8 +129,7 @@ def _ring(axis: Floats, centre: Floats, n: int) -> Symmetry:
 
 def _turn(axis: Floats, angle: float) -> Floats:
     """Rodrigues' rotation about a unit axis."""
-    x, y, z = axis
-    W = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    W = skew(axis)
     return np.asarray(np.eye(3) + np.sin(angle) * W + (1.0 - np.cos(angle)) * W @ W)
 
 
