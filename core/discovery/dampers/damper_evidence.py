@@ -8,7 +8,7 @@ from ...arrays import Floats, Numbers
 from ...correlation.comparison import Placed
 from ...correlation.mac import principal, realised
 from ...correlation.mode_errors import ModeErrors, mode_errors
-from ..effects.local_damper import PEAKS, dashpots
+from ..effects.local_damper import dashpots
 from ..effects.structure_points import Axes
 from ..likelihood.complex_modes import Oriented, oriented
 from ..likelihood.hypothesis import Fit, Problem
@@ -78,7 +78,7 @@ def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
     imaginary = _imaginary(shapes, own[:, : modes.count])
     evidence = DampingEvidence(test.damping, imaginary, e.noise.independent)
     turned = modes.turn.T @ known @ modes.turn
-    found = find_damper(evidence, modes, u, own, turned, np.log(PEAKS), exact)
+    found = find_damper(evidence, modes, u, own, turned, exact)
     if found is None:
         return None
     level = float(np.exp(np.mean(np.log(found.level_with))))

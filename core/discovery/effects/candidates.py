@@ -16,7 +16,6 @@ from ...arrays import Floats, Ints
 from ..reduction.residual_flexibility import Flexibility, Lost, SharedFlexibility
 from ..reduction.search_basis import Basis
 from ..symmetry.equivalent_places import images_of, symmetries
-from ..symmetry.symmetry_numbers import SYMMETRY
 from .effect_kind import EffectKind, Words
 from .effect_laws import Law, Rows
 
@@ -207,7 +206,7 @@ def with_twins(
     sets = [
         together(single, once[rows], np.concatenate([np.eye(3)[None], s.maps]))
         for s in symmetries(grids, size, held)
-        for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
+        for rows in [images_of(s, xyz, size)]
         if len(rows)
     ]
     return (single, *sets)

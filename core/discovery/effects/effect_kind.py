@@ -144,6 +144,11 @@ class Scale:
         """Trial masses, ln, (count, 1)."""
         return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
 
+    @property
+    def spring(self) -> Floats:
+        """A usual stiffness, ln, (1,)."""
+        return np.array([np.log(EFFECTS.spring * self.mass * self.omega2)])
+
     def springs(self) -> Floats:
         """Trial stiffnesses, ln, (n, 1): at steps, down to what the lowest mode would notice."""
         first, last = np.log(self.mass * self.omega2 * np.array(EFFECTS.spring_trials))

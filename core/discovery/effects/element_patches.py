@@ -173,7 +173,7 @@ class PatchRows:
             patch = self._candidates.patches[i]
             W, mass = self._member(patch.member)
             w = W[patch.rows].reshape(-1, W.shape[2])
-            scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.of_unit_mass else 1.0
+            scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.law.on == "M" else 1.0
             self._kept[i] = scale * root_of(w.T @ w)
         return self._kept[i]
 
@@ -205,7 +205,7 @@ Described = Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PatchCandidates(Candidates):
-    """Candidates whose matrix is the stiffness or the mass of a patch of elements.
+    """Candidates whose matrix is the stiffness of a patch of elements, or its mass scaled to one.
 
     `described` says where patches are, `energies` what their elements hold and how known
     parameters change it, None where the law does not ask.
@@ -251,7 +251,7 @@ class PatchCandidates(Candidates):
         patch = self.patches[row]
         member = self.structure.members[patch.member]
         X = self.matrices(member, patch.rows)
-        X = X / masses(X).sum() if self.of_unit_mass else X
+        X = X / masses(X).sum() if self.law.on == "M" else X
         D = self.structure.displacement
         A = placed(D.shape[0], member.coordinates(patch.rows), X)
         return (D.T @ A @ D).tocsr()
@@ -260,11 +260,6 @@ class PatchCandidates(Candidates):
         """Return the matrices of some elements that the effect changes, (n, m, m)."""
         of = member.stiffness if self.law.on == "K" else member.mass
         return of(rows, self.structure.model.deck_point)
-
-    @property
-    def of_unit_mass(self) -> bool:
-        """Whether the matrix of a patch is scaled to unit mass."""
-        return self.law.on == "M"
 
 
 def gives(c: Candidates) -> TypeGuard[PatchCandidates]:

@@ -58,9 +58,7 @@ def points_of(structure: Structure) -> Points:
     carries[rows[moving & (rows >= 0)]] = True
     own = np.flatnonzero(carries & used(structure))
     own = own[structure.in_order(g.xyz[own])]
-    weights = [
-        sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
-    ]
+    weights = [_means(own[:, None], len(g.ids))]
     bent = [np.zeros((len(own), 3, 3))]
     for m in structure.members:
         if m.element.dimension == 2:

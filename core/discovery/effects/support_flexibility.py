@@ -184,8 +184,8 @@ def _rows(s: Supports, e: Edge, component: int) -> Ints:
     return np.array([row.get(g, -1) for g in e.grids.tolist()])
 
 
-def _near(s: Supports, rows: Ints, direction: Floats) -> Ints:
-    """Whether the axes of rows lie along a direction at each of them, (n,) bool."""
+def _near(s: Supports, rows: Ints, direction: Floats) -> Bools:
+    """Whether the axes of rows lie along a direction at each of them, (n,)."""
     return np.asarray(abs(np.sum(s.axis[rows] * direction, axis=1)) > EFFECTS.support_along)
 
 

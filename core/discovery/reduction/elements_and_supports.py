@@ -25,8 +25,6 @@ class Members:
 
     Parameters
     ----------
-    card : str
-        What the adapter calls them, opaque here but for sentences.
     element : Element
         What they are; one that has a shape.
     ids : (n,) int
@@ -36,7 +34,6 @@ class Members:
         Their matrices, in the coordinates of `Structure.displacement`.
     """
 
-    card: str
     element: Element
     ids: Ints
     corners: Ints

@@ -68,13 +68,14 @@ def symmetries(xyz: Floats, size: float, held: Floats) -> tuple[Symmetry, ...]:
     return (*mirrors, *(s for s in pairs if s is not None and holds(s)), *turns)
 
 
-def images_of(s: Symmetry, xyz: Floats, near: float, apart: float) -> Ints:
+def images_of(s: Symmetry, xyz: Floats, size: float) -> Ints:
     """Return rows of places (n, 3) that are each other's images, (n_set, m + 1), the first leading.
 
-    Images lie within `near` of a place; places of a set at least `apart` from each other.
+    `size` is that of the structure.
     """
     from scipy.spatial import cKDTree
 
+    near = SYMMETRY.image_off * size
     images = s.images(xyz)
     away, there = cKDTree(xyz).query(images, distance_upper_bound=near)
     lead = np.flatnonzero(np.isfinite(away).all(axis=0))
@@ -83,7 +84,7 @@ def images_of(s: Symmetry, xyz: Floats, near: float, apart: float) -> Ints:
     first = along[:, 0] >= along.max(axis=1) - SYMMETRY.image_skew * near
     gap = np.linalg.norm(xyz[sets][:, :, None] - xyz[sets][:, None], axis=3)
     gap[:, np.arange(sets.shape[1]), np.arange(sets.shape[1])] = np.inf
-    sets = sets[first & (gap.min(axis=(1, 2)) > apart)]
+    sets = sets[first & (gap.min(axis=(1, 2)) > SYMMETRY.twins_apart * size)]
     _, kept = np.unique(np.sort(sets, axis=1), axis=0, return_index=True)
     return np.asarray(sets[np.sort(kept)])
 
