@@ -126,10 +126,9 @@ class Candidates:
         """Return the number of places that one of the candidates takes."""
         return len(self.copies[row]) if self.copies else 1
 
-    def full(self, row: int) -> sp.csr_matrix:
-        """Return A of one place, (n_free, n_free)."""
-        part = self.root[row * self.rows_each : (row + 1) * self.rows_each]
-        return (part.T @ part).tocsr()
+    def acting(self, row: int) -> sp.csr_matrix:
+        """Return the rows of `root` of one place, (q, n_free); of elements A itself."""
+        return self.root[row * self.rows_each : (row + 1) * self.rows_each]
 
 
 @dataclass(frozen=True)

@@ -140,9 +140,10 @@ class Scale:
     omega2: float
     band_hz: tuple[float, float]
 
-    def masses(self, count: int = EFFECTS.trials) -> Floats:
-        """Trial masses, ln, (count, 1)."""
-        return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
+    def masses(self) -> Floats:
+        """Trial masses, ln, (n, 1)."""
+        shares = np.geomspace(*EFFECTS.mass_trials, EFFECTS.trials)
+        return np.asarray(np.log(self.mass * shares))[:, None]
 
     @property
     def spring(self) -> Floats:

@@ -66,9 +66,8 @@ class Law(ABC):
         """Return the derivative of the value by ln p of a known parameter, None where it is nil."""
         return None
 
-    @abstractmethod
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law of some rows alone on a basis.
+        """Return the law of some rows alone on a basis, as it is where that changes nothing.
 
         Parameters
         ----------
@@ -81,6 +80,7 @@ class Law(ABC):
         top : float
             An eigenvalue above those of interest.
         """
+        return self
 
 
 class _Mass(Law):
@@ -88,7 +88,7 @@ class _Mass(Law):
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
-        return np.asarray(np.exp(theta))
+        return np.asarray(np.exp(theta[:, :1]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
@@ -149,10 +149,6 @@ class TunedLaw(AttachedLaw):
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the spring in line with what this basis lacks."""
         return TunedLaw(np.zeros((len(rows), 1)) if missing is None else missing, top)
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return m."""
-        return np.asarray(np.exp(theta[:, :1]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""

@@ -80,8 +80,7 @@ class EffectNumbers:
     absorber_spacing: float = number(0.04, "of ln f", "between the frequencies that are tried")
     absorber_step: float = number(0.15, "of ln f", "unit of its largest step in a fit")
 
-    damper_least: float = number(0.004, "damping ratio", "least that a dashpot gives the mode which feels it most")
-    damper_most: float = number(0.3, "damping ratio", "largest")
+    damper_trials: tuple[float, float] = number((0.004, 0.3), "damping ratio", "least and largest that a dashpot gives the mode which feels it most")
     damper_sizes: int = number(14, "sizes", "of a dashpot that are tried")
 
     alike: float = number(1.1, "-", "likelihoods whose ratio is nearer to 1 say nothing", "what a reader takes in")

@@ -246,7 +246,7 @@ class PatchCandidates(Candidates):
         """Return the leading rows of a root of each patch's matrix on the basis."""
         return PatchRows(self, basis)
 
-    def full(self, row: int) -> sp.csr_matrix:
+    def acting(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""
         patch = self.patches[row]
         member = self.structure.members[patch.member]

@@ -29,10 +29,6 @@ class LooseLaw(Law):
     copies: int = 1
     on = "M"
 
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law as it is."""
-        return self
-
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return what each row counts, (n, 15 · copies)."""
         found = [_counts(_matrix(t)) for t in theta]

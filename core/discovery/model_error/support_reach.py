@@ -54,7 +54,7 @@ class Reaches(Candidates):
             own[: len(root)] = root
         return out
 
-    def full(self, row: int) -> sp.csr_matrix:
+    def acting(self, row: int) -> sp.csr_matrix:
         """Return A of one reach."""
         return self.matrices[row]
 

@@ -56,7 +56,7 @@ def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
         each = np.kron(mass[:, None, None] * apart, np.eye(3))
         total += placed(total.shape[0], at.reshape(len(m.ids), -1), each)
-    return _on_free(structure, total).matrix
+    return _on_free(structure, total)
 
 
 def _laplacians(W: Floats) -> Floats:
@@ -91,17 +91,17 @@ def consistent_bars(structure: Structure) -> tuple[Term, ...]:
             across = np.eye(3)[np.argmin(np.abs(b - a), axis=1)]
             D = bar_mass(a, b, across, per_length, True) - bar_mass(a, b, across, per_length, False)
             total += placed(total.shape[0], m.coordinates(rows), D)
-    return (_on_free(structure, total),) if total.nnz else ()
+    return (Term(_on_free(structure, total)),) if total.nnz else ()
 
 
 def _none(structure: Structure) -> sp.csr_matrix:
     return sp.csr_matrix((structure.model.expansion.shape[0],) * 2)
 
 
-def _on_free(structure: Structure, A: sp.csr_matrix) -> Term:
+def _on_free(structure: Structure, A: sp.csr_matrix) -> sp.csr_matrix:
     X = structure.model.expansion
     A.eliminate_zeros()
-    return Term((X.T @ A @ X).tocsr())
+    return (X.T @ A @ X).tocsr()
 
 
 def _pinned(structure: Structure, m: Members) -> Bools:

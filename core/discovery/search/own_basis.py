@@ -239,7 +239,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     b = ground.basis
     sums: tuple[ReducedSum, ...] = b.stiffness, b.mass, ground.mesh, ground.bars
     added, seen = V[:, :0], ground.readings
-    acting = [_acting(c, row) for c, row in places]
+    acting = [c.acting(row) for c, row in places]
     if places:
         before, (c, row) = _known(ground, places[:-1], columns), places[-1]
         sums = before.stiffness, before.mass, before.mesh, before.bars
@@ -260,11 +260,6 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     both = zip(places, acting, strict=True)
     factors = tuple(_factor(c, A, V, added)[None] for (c, _), A in both)
     return Own(stiffness, mass, mesh, bars, added, seen, factors)
-
-
-def _acting(c: Candidates, row: int) -> sp.csr_matrix:
-    """Return the rows of a root of the matrix of one place, or where it has none the matrix."""
-    return c.root[row * c.rows_each : (row + 1) * c.rows_each] if c.rows_each else c.full(row)
 
 
 def _factor(c: Candidates, A: sp.csr_matrix, V: Floats, W: Floats) -> Floats:
