@@ -32,8 +32,7 @@ class DamperNumbers:
     own_share: float = number(0.2, "of what a dashpot is foretold to do to a shape or a frequency", "that is wrong")
     freedom: float = number(3.0, "degrees of freedom", "how firmly both are known")
     complex_least: float = number(1e-3, "of the largest reading", "imaginary part below which shapes are real", ROUNDING)
-    shifted: float = number(0.004, "of f", "change of a frequency that a search for other effects would see")
-    turned: float = number(0.1, "of a shape's length", "the same of a shape")
+    turned: float = number(0.1, "of a shape's length", "change of a shape that a search for other effects would see, as it would one of ln f by `likelihood.frequency`")
 
 
 DAMPERS = DamperNumbers()

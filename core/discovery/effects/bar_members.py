@@ -2,10 +2,10 @@
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components, depth_first_order
+from scipy.sparse.csgraph import depth_first_order
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Structure, unit, used
+from ..reduction.elements_and_supports import Structure, connected, unit, used
 from .effect_numbers import EFFECTS
 from .element_patches import Patch
 
@@ -90,11 +90,9 @@ def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
     straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.straight
     rows, columns = rows[straight], columns[straight]
     graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
-    number, label = connected_components(graph, directed=False)
     neighbours = np.bincount([*rows, *columns], minlength=n)
     out = []
-    for k in range(number):
-        own = np.flatnonzero(label == k)
+    for own in connected(n, rows, columns):
         start = int(own[np.argmin(neighbours[own])])
         out.append(depth_first_order(graph, start, directed=False, return_predecessors=False))
     return out

@@ -80,8 +80,6 @@ class EffectKind:
         Whether it is what small patches of its nature become when they grow.
     further : callable
         Further words of the magnitude of one place.
-    in_modes : bool
-        Whether undamped modes show it.
     plural : str
         The label of several; "" where it ends with another s.
     late : bool
@@ -98,7 +96,6 @@ class EffectKind:
     nature: str = ""
     spread_out: bool = False
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
-    in_modes: bool = True
     plural: str = ""
     late: bool = False
 

@@ -276,9 +276,8 @@ def masses(M: Floats) -> Floats:
 def area_of(structure: Structure, patch: Patch) -> float:
     """Area of the shell elements of a patch."""
     x = structure.model.geometry.xyz[structure.members[patch.member].corners[patch.rows]]
-    last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
-    diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
-    return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
+    across = np.cross(x[:, 2] - x[:, 0], x[:, -1] - x[:, 1])
+    return float(0.5 * np.linalg.norm(across, axis=1).sum())
 
 
 def where_of(structure: Structure, patches: Sequence[Patch]) -> tuple[dict[str, Any], ...]:

@@ -54,5 +54,4 @@ KIND = EffectKind(
     sentence="A dashpot to ground of about {damping:.3g} (force per velocity, deck units) in "
     "direction {components} is missing {region}: it",
     magnitudes=(Magnitude("damping", EFFECTS.damper_error),),
-    in_modes=False,
 )

@@ -56,7 +56,8 @@ def symmetries(xyz: Floats, size: float, held: Floats) -> tuple[Symmetry, ...]:
         share = min(np.isfinite(away).mean(axis=1).min() for away in off)
         return bool(share > SYMMETRY.image_share)
 
-    found = [s for s in _mirrors(xyz) if holds(s)]
+    planes = (Symmetry((np.eye(3) - 2.0 * np.outer(n, n))[None], c, n) for n, c in _lines(xyz))
+    found = [s for s in planes if holds(s)]
     mirrors = [s for k, s in enumerate(found) if not any(_same(s, t, size) for t in found[:k])]
     turns: list[Symmetry] = []
     for axis, centre in _lines(xyz):
@@ -106,11 +107,6 @@ def _lines(xyz: Floats) -> Iterator[tuple[Floats, Floats]]:
         for axis in frame[wanted]:
             yield axis, box
             yield axis, middle
-
-
-def _mirrors(xyz: Floats) -> Iterator[Symmetry]:
-    for n, centre in _lines(xyz):
-        yield Symmetry((np.eye(3) - 2.0 * np.outer(n, n))[None], centre, n)
 
 
 def _pair(s: Symmetry, t: Symmetry) -> Symmetry | None:
