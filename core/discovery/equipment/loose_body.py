@@ -41,7 +41,7 @@ class LooseLaw(Law):
 
 
 _PAIRS = np.array([(i, j) for i, j in combinations(range(6), 2) if j > 2 and j != i + 3])
-_SIDES = tuple(-skew(e) for e in np.eye(3))
+_SIDES = -skew(np.eye(3))
 _EXTENTS = tuple(
     (np.outer(a, b) + np.outer(b, a)) / (2.0 if i == j else np.sqrt(2.0))
     for i, a in enumerate(np.eye(3))
