@@ -29,6 +29,7 @@ from .model_error.support_reach import reaches_of
 from .narrative.build_findings import build_discovery
 from .narrative.damper_findings import with_damper
 from .reduction.elements_and_supports import Structure
+from .reduction.residual_flexibility import Lost
 from .search.coarse_scan import first_places, neighbourhoods
 from .search.completeness import Completeness, completeness
 from .search.footprints import footed, settled
@@ -310,13 +311,11 @@ def _completed(
 def _searcher(trial: _Trial) -> Searcher:
     """Put the catalogue on the leading vectors of the fitted state."""
     request, problem, null = trial.request, trial.problem, trial.null
-    made, compliance = trial.ground.catalogue, trial.ground.compliance
-    size = request.structure.model.geometry.size
+    made, size = trial.ground.catalogue, request.structure.model.geometry.size
     small = problem.turned(null.vectors)
     small = replace(small, modes=min(DISCOVERY.small_modes, small.basis.size))
-    vectors = small.basis.vectors
-    inverse = compliance.on(vectors)
-    missing = tuple(lacking(c, compliance, vectors, inverse) for c in made)
+    lost = Lost(trial.ground.compliance, small.basis.vectors)
+    missing = tuple(lacking(c, lost) for c in made)
     factors = factors_of(made, small.basis)
     small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
     both, columns = zip(made, factors, strict=True), small.columns

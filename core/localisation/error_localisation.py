@@ -36,8 +36,8 @@ class ElementGroup(Protocol):
         """Rows of the geometry, (n, k)."""
         ...
 
-    def stiffness(self, rows: Ints, p: Floats) -> Floats | None:
-        """Stiffness of some of them, (n, m, m), None where they have none."""
+    def stiffness(self, rows: Ints, p: Floats) -> Floats:
+        """Stiffness of some of them, (n, m, m)."""
         ...
 
     def coordinates(self, rows: Ints) -> Ints:
@@ -177,7 +177,7 @@ def _stiffness(
         if not len(rows):
             continue
         K = group.stiffness(rows, p)
-        if K is None:
+        if not K.any():
             continue
         strain = root_of(K, moved[group.coordinates(rows)])
         middle = geometry.xyz[group.corners[rows]].mean(axis=1)

@@ -28,7 +28,7 @@ def build_structure(deck: Deck, parameters: Sequence[ParameterSpec] = ()) -> Str
     model, parts = whole.model, whole.structure
     displacement = (to_basic(parts.points).T @ model.expansion).tocsr()
     members = tuple(
-        Members(g.card, g.element, g.ids, g.corners, b)
+        Members(g.element, g.ids, g.corners, b)
         for g, b in zip(parts.groups, parts.blocks, strict=True)
         if g.element.shape
     )

@@ -60,7 +60,7 @@ class Damped:
         To a search for missing stiffness and mass that looks like something else.
         """
         turned = np.linalg.norm(self.shapes - self.undamped, axis=0)
-        still = (np.abs(self.stretched - 1.0) < DAMPERS.shifted) & (turned < DAMPERS.turned)
+        still = (np.abs(self.stretched - 1.0) < LIKELIHOOD.frequency) & (turned < DAMPERS.turned)
         return np.flatnonzero(~still)
 
 

@@ -8,7 +8,7 @@ from ...arrays import Floats, Numbers
 from ...correlation.comparison import Placed
 from ...correlation.mac import principal, realised
 from ...correlation.mode_errors import ModeErrors, mode_errors
-from ..effects.local_damper import PEAKS, dashpots
+from ..effects.local_damper import dashpots
 from ..effects.structure_points import Axes
 from ..likelihood.complex_modes import Oriented, oriented
 from ..likelihood.hypothesis import Fit, Problem
@@ -78,7 +78,7 @@ def weighed(request: Request, problem: Problem, state: Fit) -> Weighed | None:
     imaginary = _imaginary(shapes, own[:, : modes.count])
     evidence = DampingEvidence(test.damping, imaginary, e.noise.independent)
     turned = modes.turn.T @ known @ modes.turn
-    found = find_damper(evidence, modes, u, own, turned, np.log(PEAKS), exact)
+    found = find_damper(evidence, modes, u, own, turned, exact)
     if found is None:
         return None
     level = float(np.exp(np.mean(np.log(found.level_with))))
@@ -95,20 +95,15 @@ def taken_off(w: Weighed, placed: Placed, problem: Problem) -> Placed:
     test, d = placed.test, w.damped
     sensors = np.asarray(placed.observation.matrix @ (problem.basis.motion @ w.vectors))
     with_it, real = sensors @ d.shapes, realised(test.shapes)
-    length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
-    scaled = real * (np.sum(with_it * real, axis=0) / length)
     change = sensors @ d.undamped - with_it
-    without = scaled + change
+    without = real * _scale(real, with_it) + change
     hz = test.frequencies_hz / d.stretched
     off, wrong = DAMPERS.own_share * np.abs(hz - test.frequencies_hz), DAMPERS.own_share * change
     errors = mode_errors(hz, without, off, np.abs(wrong))
     if placed.errors is not None:
         own = placed.errors
-        frequency, shape = (
-            np.hypot(own.frequency, errors.frequency),
-            np.hypot(own.shape, errors.shape),
-        )
-        errors = ModeErrors(frequency, shape)
+        frequency = np.hypot(own.frequency, errors.frequency)
+        errors = ModeErrors(frequency, np.hypot(own.shape, errors.shape))
     test = replace(test, frequencies_hz=hz, shapes=without)
     return replace(placed, test=test, errors=errors)
 
@@ -117,6 +112,10 @@ def _imaginary(shapes: Numbers, own: Floats) -> Floats | None:
     """Imaginary parts scaled as the real parts are to unit modal mass, None of real shapes."""
     if not np.iscomplexobj(shapes):
         return None
-    real = np.asarray(shapes.real)
+    return np.asarray(shapes.imag * _scale(np.asarray(shapes.real), own))
+
+
+def _scale(real: Floats, own: Floats) -> Floats:
+    """Return what real shapes (n, n_mode) are to be multiplied by to be a model's, (n_mode,)."""
     length = np.maximum(np.sum(real**2, axis=0), np.finfo(float).tiny)
-    return np.asarray(shapes.imag * (np.sum(own * real, axis=0) / length))
+    return np.asarray(np.sum(own * real, axis=0) / length)

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import expit, logsumexp
 
 from ...arrays import Bools, Floats, Ints
+from ..effects.local_damper import PEAKS
 from ..likelihood.complex_modes import Oriented, added, imaginary
 from .damped_model import Damped
 from .damper_numbers import DAMPERS
@@ -86,20 +87,18 @@ def find_damper(
     u: Floats,
     sensors: Floats,
     known: Floats,
-    trials: Floats,
     exact: Exact | None = None,
 ) -> DamperFound | None:
     """Weigh a dashpot at every place against none; None where fewer than five ratios are known.
 
     `u` (n_place, n) is the motion of every place in the coordinates of `modes`, along the direction
     tried there, `sensors` (n_sensor, n) likewise; `known` (n, n) are dashpots that the deck has, on
-    unit modal masses; `trials` (n_trial,) are ln of the ratio that the mode which feels a dashpot
-    most gets from it. By `exact`, where given, the best places are weighed once more.
+    unit modal masses. By `exact`, where given, the best places are weighed once more.
     """
     chosen = np.flatnonzero(e.known)
     if len(chosen) < DAMPERS.fewest or not len(u):
         return None
-    w = _weighing(e, modes, u, sensors, known, trials, chosen)
+    w = _weighing(e, modes, u, sensors, known, chosen)
     peak = w.gives.max(axis=1)
     live = np.flatnonzero(peak > DAMPERS.still * peak.max())
     if not len(live):
@@ -110,8 +109,8 @@ def find_damper(
     kept[: DAMPERS.exact] = True
     rows = live[best[kept]]
     score = w.scores(rows, w.grid)
-    odds = float(logsumexp(score)) - np.log(len(trials) * len(live)) - DAMPERS.rare
-    exists = 1.0 / (1.0 + np.exp(-np.clip(odds, -DAMPERS.odds_most, DAMPERS.odds_most)))
+    odds = float(logsumexp(score)) - np.log(len(PEAKS) * len(live)) - DAMPERS.rare
+    exists = float(expit(odds))
     order = np.argsort(-logsumexp(score, axis=1), kind="stable")
     rows, score = rows[order], score[order]
     with_one = w.level(int(rows[0]), _mean(score[:1], w.sizes[rows[:1]])[0])
@@ -123,7 +122,7 @@ def find_damper(
     place = logsumexp(score, axis=1)
     mean = np.log(_mean(score, w.sizes[rows]))
     within = np.exp(score - place[:, None])
-    step = float(np.ptp(trials)) / max(len(trials) - 1, 1)
+    step = float(np.log(PEAKS[1] / PEAKS[0]))
     spread = np.sum(within * (np.log(w.sizes[rows]) - mean[:, None]) ** 2, axis=1)
     return DamperFound(
         exists,
@@ -132,7 +131,7 @@ def find_damper(
         np.exp(place - logsumexp(place)),
         mean,
         np.sqrt(spread + step**2 / 12.0),
-        _everywhere(w.level(None, 0.0), modes, chosen),
+        _everywhere(w.level(0, 0.0), modes, chosen),
         _everywhere(with_one, modes, chosen),
     )
 
@@ -176,10 +175,8 @@ class _Weighing:
             out[few] = marginal(self.measured, grid, part, error)
         return out - self.null + self.shapes(rows, sizes)
 
-    def level(self, row: int | None, c: float) -> Floats:
+    def level(self, row: int, c: float) -> Floats:
         """Return the ratios that the modes have by themselves beside one dashpot, (n_mode,)."""
-        if row is None:
-            return expected_level(self.measured, self.grid, self.own, 0.0 * self.own)
         part = self.own + c * self.gives[row]
         return expected_level(self.measured, self.grid, part, c * self.wrong[row])
 
@@ -205,7 +202,6 @@ def _weighing(
     u: Floats,
     sensors: Floats,
     known: Floats,
-    trials: Floats,
     chosen: Ints,
 ) -> _Weighing:
     z, omega = e.measured[chosen], modes.omega[chosen]
@@ -216,7 +212,7 @@ def _weighing(
     delta = DAMPERS.shape_error * np.sqrt(np.mean(v**2, axis=0))
     wrong = (2.0 * np.abs(v) * delta + delta**2) / (2.0 * omega)
     peak = np.maximum(gives.max(axis=1), np.finfo(float).tiny)
-    sizes = np.exp(trials) / peak[:, None]
+    sizes = PEAKS / peak[:, None]
     null = float(marginal(z, grid, own, np.zeros(len(z))))
     shapes = _of_shapes(e, modes, u, sensors)
     return _Weighing(z, own, chosen, grid, gives, wrong, sizes, shapes, null)
@@ -224,8 +220,8 @@ def _weighing(
 
 def _coarse(w: _Weighing) -> Levels:
     """Few levels for a first look: of middling spread, the course that suits no dashpot best."""
-    away = np.abs(w.grid.spreads - DAMPERS.middling)
-    some = w.grid.take(np.flatnonzero(away == away.min()))
+    middling = DAMPERS.spreads[len(DAMPERS.spreads) // 2]
+    some = w.grid.take(np.flatnonzero(w.grid.spreads == middling))
     alone = log_likelihood(w.measured, some, w.own, 0.0 * w.own)
     best = some.course[int(np.argmax(alone + some.log_prior))]
     return some.take(np.flatnonzero(some.course == best)[::2])

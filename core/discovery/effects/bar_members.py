@@ -2,10 +2,10 @@
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components, depth_first_order
+from scipy.sparse.csgraph import depth_first_order
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Structure, shelled
+from ..reduction.elements_and_supports import Structure, connected, unit, used
 from .effect_numbers import EFFECTS
 from .element_patches import Patch
 
@@ -38,7 +38,7 @@ def bars_of(structure: Structure, size: float) -> list[Patch]:
 
 def bare_bars(structure: Structure) -> list[tuple[int, Ints]]:
     """Return number of the member and rows of line elements that bend, off the shells."""
-    on_shell = shelled(structure)
+    on_shell = used(structure, 2)
     return [
         (number, np.flatnonzero(~on_shell[m.corners[:, :2]].all(axis=1)))
         for number, m in enumerate(structure.members)
@@ -53,7 +53,7 @@ def _bars(structure: Structure) -> list[tuple[int, Ints]]:
     for m in structure.members:
         if m.element.dimension == 1:
             np.add.at(count, m.corners[:, :2].ravel(), 1)
-    through = (count == 2) & ~shelled(structure)
+    through = (count == 2) & ~used(structure, 2)
     return [
         (number, free[rows])
         for number, free in bare_bars(structure)
@@ -85,17 +85,14 @@ def _chains(ends: Ints, through: Bools, xyz: Floats) -> list[Ints]:
     order = np.argsort(ends.ravel(), kind="stable")
     nodes = ends.ravel()[order]
     pairs = np.flatnonzero((nodes[1:] == nodes[:-1]) & through[nodes[1:]])
-    along = xyz[ends[:, 1]] - xyz[ends[:, 0]]
-    along = along / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
+    along = unit(xyz[ends[:, 1]] - xyz[ends[:, 0]])
     rows, columns = order[pairs] // 2, order[pairs + 1] // 2
-    straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.bar_straight
+    straight = np.abs(np.sum(along[rows] * along[columns], axis=1)) > EFFECTS.straight
     rows, columns = rows[straight], columns[straight]
     graph = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (n, n))
-    number, label = connected_components(graph, directed=False)
     neighbours = np.bincount([*rows, *columns], minlength=n)
     out = []
-    for k in range(number):
-        own = np.flatnonzero(label == k)
+    for own in connected(n, rows, columns):
         start = int(own[np.argmin(neighbours[own])])
         out.append(depth_first_order(graph, start, directed=False, return_predecessors=False))
     return out

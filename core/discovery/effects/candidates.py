@@ -13,10 +13,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..reduction.residual_flexibility import Compliance, Flexibility, SharedFlexibility
+from ..reduction.residual_flexibility import Flexibility, Lost, SharedFlexibility
 from ..reduction.search_basis import Basis
 from ..symmetry.equivalent_places import images_of, symmetries
-from ..symmetry.symmetry_numbers import SYMMETRY
 from .effect_kind import EffectKind, Words
 from .effect_laws import Law, Rows
 
@@ -127,10 +126,9 @@ class Candidates:
         """Return the number of places that one of the candidates takes."""
         return len(self.copies[row]) if self.copies else 1
 
-    def full(self, row: int) -> sp.csr_matrix:
-        """Return A of one place, (n_free, n_free)."""
-        part = self.root[row * self.rows_each : (row + 1) * self.rows_each]
-        return (part.T @ part).tocsr()
+    def acting(self, row: int) -> sp.csr_matrix:
+        """Return the rows of `root` of one place, (q, n_free); of elements A itself."""
+        return self.root[row * self.rows_each : (row + 1) * self.rows_each]
 
 
 @dataclass(frozen=True)
@@ -207,7 +205,7 @@ def with_twins(
     sets = [
         together(single, once[rows], np.concatenate([np.eye(3)[None], s.maps]))
         for s in symmetries(grids, size, held)
-        for rows in [images_of(s, xyz, SYMMETRY.image_off * size, SYMMETRY.twins_apart * size)]
+        for rows in [images_of(s, xyz, size)]
         if len(rows)
     ]
     return (single, *sets)
@@ -274,16 +272,11 @@ def apart(a: Candidates, row: int, b: Candidates, other: int) -> float:
     return float(max(away.min(axis=0).max(), away.min(axis=1).max()))
 
 
-def lacking(
-    c: Candidates, compliance: Compliance, vectors: Floats, inverse: Floats
-) -> Flexibility | SharedFlexibility | None:
-    """Return the flexibility that a basis lacks for candidates, None where it does not matter.
-
-    `vectors` (n_dof, n_basis) are the basis, `inverse` the compliance on them (n_basis, n_basis).
-    """
+def lacking(c: Candidates, lost: Lost) -> Flexibility | SharedFlexibility | None:
+    """Return the flexibility that a basis lacks for candidates, None where it does not matter."""
     if not c.rows_each:
         return None
     loads = c.root if c.loads is None else c.loads
     turns = sp.identity(c.root.shape[0], format="csr") if c.turns is None else c.turns
     of = SharedFlexibility if c.law.shared else Flexibility
-    return of(compliance, vectors, inverse, loads, turns, c.rows_each)
+    return of(lost, loads, turns, c.rows_each)

@@ -44,7 +44,7 @@ class Magnitude:
 
 MASS = Magnitude("mass", EFFECTS.mass_error, is_mass=True)
 STIFFNESS = Magnitude("stiffness", EFFECTS.stiffness_error)
-FACTOR = Magnitude("factor", EFFECTS.factor_error)
+FACTOR = Magnitude("factor", EFFECTS.stiffness_error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +80,6 @@ class EffectKind:
         Whether it is what small patches of its nature become when they grow.
     further : callable
         Further words of the magnitude of one place.
-    in_modes : bool
-        Whether undamped modes show it.
     plural : str
         The label of several; "" where it ends with another s.
     late : bool
@@ -98,7 +96,6 @@ class EffectKind:
     nature: str = ""
     spread_out: bool = False
     further: Callable[[Candidates, int, Words], Words] = lambda *_: {}
-    in_modes: bool = True
     plural: str = ""
     late: bool = False
 
@@ -140,9 +137,15 @@ class Scale:
     omega2: float
     band_hz: tuple[float, float]
 
-    def masses(self, count: int = EFFECTS.trials) -> Floats:
-        """Trial masses, ln, (count, 1)."""
-        return np.asarray(np.log(self.mass * np.geomspace(*EFFECTS.mass_trials, count)))[:, None]
+    def masses(self) -> Floats:
+        """Trial masses, ln, (n, 1)."""
+        shares = np.geomspace(*EFFECTS.mass_trials, EFFECTS.trials)
+        return np.asarray(np.log(self.mass * shares))[:, None]
+
+    @property
+    def spring(self) -> Floats:
+        """A usual stiffness, ln, (1,)."""
+        return np.array([np.log(EFFECTS.spring * self.mass * self.omega2)])
 
     def springs(self) -> Floats:
         """Trial stiffnesses, ln, (n, 1): at steps, down to what the lowest mode would notice."""

@@ -66,9 +66,8 @@ class Law(ABC):
         """Return the derivative of the value by ln p of a known parameter, None where it is nil."""
         return None
 
-    @abstractmethod
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law of some rows alone on a basis.
+        """Return the law of some rows alone on a basis, as it is where that changes nothing.
 
         Parameters
         ----------
@@ -81,6 +80,7 @@ class Law(ABC):
         top : float
             An eigenvalue above those of interest.
         """
+        return self
 
 
 class _Mass(Law):
@@ -88,7 +88,7 @@ class _Mass(Law):
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return m."""
-        return np.asarray(np.exp(theta))
+        return np.asarray(np.exp(theta[:, :1]))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
@@ -140,17 +140,15 @@ class AttachedLaw(_Mass):
 class TunedLaw(AttachedLaw):
     """A mass m = e^θ₁ on a spring that tunes it to f = e^θ₂ Hz, with no top.
 
-    On a basis that lacks flexibility where it sits its spring m (2πf)² is in line with that.
+    On a basis that lacks flexibility where it sits its spring m (2πf)² is in line with that. It is
+    an absorber or, alike in all directions and tuned above the measured band, the mount of a mass:
+    brackets give, and so does the skin between the grids of a shell, which a load at a point of
+    its mesh does not feel.
     """
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the absorber in line with what the basis lacks."""
-        lost = self.missing[rows]
-        return TunedLaw(lost if missing is None else lost + missing, top)
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return m."""
-        return np.asarray(np.exp(theta[:, :1]))
+        """Return the spring in line with what this basis lacks."""
+        return TunedLaw(np.zeros((len(rows), 1)) if missing is None else missing, top)
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return dm/dθ."""
@@ -167,73 +165,42 @@ class TunedLaw(AttachedLaw):
 
 
 @dataclass(frozen=True, eq=False)
-class MountedLaw(TunedLaw):
-    """A mass on a mount: alike in all directions, tuned above the measured band.
-
-    Brackets give, and so does the skin between the grids of a shell, which a load at a point of its
-    mesh does not feel.
-    """
-
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the mount in line with what the basis lacks."""
-        none = np.zeros((len(rows), 1))
-        return MountedLaw(none if missing is None else missing, top)
-
-
-@dataclass(frozen=True)
 class FactorLaw(Law):
-    """A stiffness factor f = e^θ on some elements adds (f − 1)·A to K."""
-
-    on = "K"
-
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law as it is."""
-        return self
-
-    def value(self, theta: Floats, rows: Ints) -> Floats:
-        """Return f − 1."""
-        return np.asarray(np.expm1(theta))
-
-    def slope(self, theta: Floats, rows: Ints) -> Floats:
-        """Return df/dθ."""
-        return np.asarray(np.exp(theta)[:, :, None])
-
-
-@dataclass(frozen=True, eq=False)
-class FollowingFactorLaw(FactorLaw):
-    """A stiffness factor f = e^θ beside known parameters adds (f − 1) g·A to K.
+    """A stiffness factor f = e^θ on some elements adds (f − 1) g·A to K.
 
     A is as the deck has it, g = exp(elasticity · ln p) by how much the known parameters change it:
     f counts from where they stand, as in the deck that is written, and never takes more than
-    there is. `elasticity` (n, n_parameter) is ∂ln A/∂ln p of each place, `log_p` (n_parameter,).
+    there is. `elasticity` (n, n_parameter) is ∂ln A/∂ln p of each place, None where A stays as it
+    is; `log_p` (n_parameter,).
     """
 
-    elasticity: Floats
+    elasticity: Floats | None = None
     log_p: Floats | None = None
+    on = "K"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
         """Return the law where the parameters stand."""
-        return FollowingFactorLaw(self.elasticity[rows], log_p)
+        return self if self.elasticity is None else FactorLaw(self.elasticity[rows], log_p)
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return (f − 1) g."""
-        return np.asarray(super().value(theta, rows) * self._followed(rows))
+        return np.asarray(np.expm1(theta) * self._followed(rows))
 
     def slope(self, theta: Floats, rows: Ints) -> Floats:
         """Return its derivative by θ."""
-        return np.asarray(super().slope(theta, rows) * self._followed(rows)[:, :, None])
+        return np.asarray((np.exp(theta) * self._followed(rows))[:, :, None])
 
     def by_parameter(self, theta: Floats, rows: Ints, parameter: int) -> Floats | None:
         """Return the derivative by ln p of a known parameter."""
-        if parameter >= self.elasticity.shape[1]:
+        if self.elasticity is None or parameter >= self.elasticity.shape[1]:
             return None
         return np.asarray(self.elasticity[rows, parameter, None] * self.value(theta, rows))
 
     def _followed(self, rows: Ints) -> Floats:
         """Return g, (n, 1)."""
-        known = self.elasticity[rows]
-        if self.log_p is None:
+        if self.elasticity is None or self.log_p is None:
             return np.ones((len(rows), 1))
+        known = self.elasticity[rows]
         return np.asarray(np.exp(known @ self.log_p[: known.shape[1]])[:, None])
 
 
@@ -248,9 +215,8 @@ class SpringLaw(Law):
     on = "K"
 
     def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the spring in line with what the basis lacks."""
-        lost = self.missing[rows]
-        return SpringLaw(lost if missing is None else lost + missing)
+        """Return the spring in line with what this basis lacks."""
+        return SpringLaw(np.zeros((len(rows), 1)) if missing is None else missing)
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return what the spring is worth."""

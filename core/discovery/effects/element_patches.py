@@ -10,16 +10,23 @@ from typing import Any, TypeGuard
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, thinned
+from ..reduction.elements_and_supports import (
+    Members,
+    Structure,
+    connected,
+    placed,
+    thinned,
+    unit,
+)
+from ..reduction.reduction_numbers import REDUCTION
 from ..reduction.search_basis import Basis
 from ..reduction.strain_energies import Energies
 from .candidates import Candidates
 from .effect_kind import EffectKind
-from .effect_laws import FollowingFactorLaw, Law, Rows
+from .effect_laws import FactorLaw, Law, Rows
 from .effect_numbers import EFFECTS
 
 
@@ -69,10 +76,10 @@ def _on_sheet(
     centres = np.concatenate([middles, grids[structure.in_order(grids)]])
     nearest = sheet[tree.query(centres)[1]]
     for k, r in enumerate(radii):
-        apart, within = EFFECTS.patch_spacing, EFFECTS.patch_reach * r * size
-        wider = EFFECTS.patch_first * apart * r * size
+        apart, within = EFFECTS.spacing * r * size, np.linalg.norm(sides[0]) * r * size
+        wider = EFFECTS.patch_first * apart
         coarse = set(_centres(middles, wider)) if k % 3 == 1 else set()
-        some = np.array(sorted({*_centres(centres, apart * r * size), *coarse}))
+        some = np.array(sorted({*_centres(centres, apart), *coarse}))
         around = tree.query_ball_point(centres[some], within, return_sorted=True)
         of = np.repeat(np.arange(len(some)), [len(reach) for reach in around])
         own, c = sheet[np.concatenate(around).astype(np.int64)], some[of]
@@ -103,28 +110,24 @@ def _sheets(xyz: Floats, corners: Ints) -> list[Ints]:
     """
     n, k = corners.shape
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
-    across = np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1)
-    across /= np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)[:, None]
+    across = unit(np.repeat(xyz[corners].mean(axis=1), k, axis=0) - xyz[sides].mean(axis=1))
     order = np.lexsort(sides.T)
-    pairs = []
-    for step in range(1, EFFECTS.sheets_at_side):
+    pairs = [np.zeros((2, 0), np.int64)]
+    for step in range(1, len(order)):
         a, b = order[:-step], order[step:]
         on = np.all(sides[a] == sides[b], axis=1)
+        if not on.any():
+            break
         on &= np.sum(across[a] * across[b], axis=1) < -EFFECTS.sheet_bend
         pairs.append(np.stack([a[on], b[on]]) // k)
-    first, last = np.concatenate(pairs, axis=1)
-    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
-    _, label = connected_components(graph, directed=False)
-    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+    return connected(n, *np.concatenate(pairs, axis=1))
 
 
 def _frames(corners: Floats) -> Floats:
     """Return the first side of shells (n, k, 3), what is across it, and the normal, (n, 3, 3)."""
     along, side = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
     normal = np.cross(along, side)
-    frames = np.stack([along, np.cross(normal, along), normal], axis=1)
-    length = np.linalg.norm(frames, axis=2, keepdims=True)
-    return np.asarray(frames / np.maximum(length, np.finfo(float).tiny))
+    return unit(np.stack([along, np.cross(normal, along), normal], axis=1))
 
 
 def _centres(xyz: Floats, spacing: float) -> Ints:
@@ -170,7 +173,7 @@ class PatchRows:
             patch = self._candidates.patches[i]
             W, mass = self._member(patch.member)
             w = W[patch.rows].reshape(-1, W.shape[2])
-            scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.of_unit_mass else 1.0
+            scale = 1.0 / np.sqrt(mass[patch.rows].sum()) if self._candidates.law.on == "M" else 1.0
             self._kept[i] = scale * root_of(w.T @ w)
         return self._kept[i]
 
@@ -181,7 +184,7 @@ class PatchRows:
             every = np.arange(len(member.ids))
             X = self._candidates.matrices(member, every)
             values, vectors = np.linalg.eigh(X)
-            counts = values > EFFECTS.patch_rounding * values[:, -1:]
+            counts = values > REDUCTION.nil * values[:, -1:]
             rank = int(np.max(np.sum(counts, axis=1), initial=1))
             R = vectors[:, :, -rank:] * np.sqrt(np.maximum(values[:, None, -rank:], 0.0))
             W = np.matmul(R.transpose(0, 2, 1), self._motion[member.coordinates(every)])
@@ -202,7 +205,7 @@ Described = Callable[[Structure, Sequence[Patch]], tuple[dict[str, Any], ...]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PatchCandidates(Candidates):
-    """Candidates whose matrix is the stiffness or the mass of a patch of elements.
+    """Candidates whose matrix is the stiffness of a patch of elements, or its mass scaled to one.
 
     `described` says where patches are, `energies` what their elements hold and how known
     parameters change it, None where the law does not ask.
@@ -232,7 +235,7 @@ class PatchCandidates(Candidates):
         """Return the candidates as factors on a stiffness that known parameters change."""
         held = np.array([energies[p.member][p.rows].sum(axis=0) for p in self.patches])
         slopes = held[:, 1:] / np.maximum(held[:, :1], np.finfo(float).tiny)
-        return replace(self, law=FollowingFactorLaw(slopes), energies=energies)
+        return replace(self, law=FactorLaw(slopes), energies=energies)
 
     def extended(self, known: Rows) -> PatchRows:
         """Return the rows of these candidates from those of the first of them."""
@@ -243,32 +246,20 @@ class PatchCandidates(Candidates):
         """Return the leading rows of a root of each patch's matrix on the basis."""
         return PatchRows(self, basis)
 
-    def full(self, row: int) -> sp.csr_matrix:
+    def acting(self, row: int) -> sp.csr_matrix:
         """Return A of one place, (n_free, n_free)."""
         patch = self.patches[row]
         member = self.structure.members[patch.member]
-        at = member.coordinates(patch.rows)
         X = self.matrices(member, patch.rows)
-        X = X / masses(X).sum() if self.of_unit_mass else X
-        m = at.shape[1]
+        X = X / masses(X).sum() if self.law.on == "M" else X
         D = self.structure.displacement
-        n = D.shape[0]
-        A = sp.csr_matrix(
-            (X.ravel(), (np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel())), (n, n)
-        )
+        A = placed(D.shape[0], member.coordinates(patch.rows), X)
         return (D.T @ A @ D).tocsr()
 
     def matrices(self, member: Members, rows: Ints) -> Floats:
         """Return the matrices of some elements that the effect changes, (n, m, m)."""
         of = member.stiffness if self.law.on == "K" else member.mass
-        X = of(rows, np.ones(len(self.structure.model.parameters)))
-        assert X is not None
-        return X
-
-    @property
-    def of_unit_mass(self) -> bool:
-        """Whether the matrix of a patch is scaled to unit mass."""
-        return self.law.on == "M"
+        return of(rows, self.structure.model.deck_point)
 
 
 def gives(c: Candidates) -> TypeGuard[PatchCandidates]:
@@ -285,9 +276,8 @@ def masses(M: Floats) -> Floats:
 def area_of(structure: Structure, patch: Patch) -> float:
     """Area of the shell elements of a patch."""
     x = structure.model.geometry.xyz[structure.members[patch.member].corners[patch.rows]]
-    last = x[:, 3] if x.shape[1] == 4 else x[:, 0]
-    diagonals = np.cross(x[:, 2] - x[:, 0], last - x[:, 1])
-    return float(0.5 * np.linalg.norm(diagonals, axis=1).sum())
+    across = np.cross(x[:, 2] - x[:, 0], x[:, -1] - x[:, 1])
+    return float(0.5 * np.linalg.norm(across, axis=1).sum())
 
 
 def where_of(structure: Structure, patches: Sequence[Patch]) -> tuple[dict[str, Any], ...]:

@@ -21,7 +21,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         root=root,
         rows_each=1,
         where=where,
-        typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
+        typical=scale.spring,
         spread=np.array([EFFECTS.spring_spread]),
     )
     return (made,)

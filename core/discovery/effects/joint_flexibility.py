@@ -4,7 +4,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, shelled
+from ..reduction.elements_and_supports import Members, Structure, unit, used
+from ..reduction.reduction_numbers import REDUCTION
 from .candidates import Candidates
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw
@@ -16,32 +17,29 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     beams = [m for m in structure.members if m.element.dimension == 1 and m.element.freedoms == 6]
     ends = _joints(structure, beams)
     roots, own, xyz, where, elastic = [], [], [], [], []
-    p = np.ones(len(structure.model.parameters))
+    p = structure.model.deck_point
     for m, chosen in zip(beams, ends, strict=True):
         if not len(chosen):
             continue
-        K = m.stiffness(chosen[:, 0], p)
-        if K is None:
-            continue
-        turning = 6 * chosen[:, 1][:, None] + np.arange(3, 6)
-        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
-        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
+        Q, D = _turning(m.stiffness(chosen[:, 0], p), chosen[:, 1])
         d, R = np.linalg.eigh(D)
-        stiff = d[:, 0] > EFFECTS.joint_stiff * d[:, -1]
+        stiff = d[:, 0] > REDUCTION.free * d[:, -1]
         if not stiff.any():
             continue
         chosen, Q, d, R = chosen[stiff], Q[stiff], d[stiff], R[stiff]
-        turning = turning[stiff]
-        elastic.append(_elasticity(m, chosen[:, 0], turning, R, d, p))
-        at = m.coordinates(chosen[:, 0])
-        roots.append(_rows(np.matmul(Q, R), at, structure))
+        rows, ends = chosen.T
+        elastic.append(np.zeros((*d.shape, len(p))))
+        for k in range(len(p)):
+            slope = _turning(m.slope(rows, p, k), ends)[1]
+            elastic[-1][:, :, k] = np.einsum("nia,nij,nja->na", R, slope, R) / d
+        roots.append(_rows(np.matmul(Q, R), m.coordinates(rows), structure))
         own.append(d)
-        grids = m.corners[chosen[:, 0], chosen[:, 1]]
+        grids = m.corners[rows, ends]
         xyz.append(structure.model.geometry.xyz[grids])
         numbers = structure.model.geometry.ids[grids].tolist()
         where += [
             {"grids": [g], "elements": [e], "components": [4, 5, 6]}
-            for g, e in zip(numbers, m.ids[chosen[:, 0]].tolist(), strict=True)
+            for g, e in zip(numbers, m.ids[rows].tolist(), strict=True)
         ]
     if not roots:
         return ()
@@ -61,19 +59,11 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     return (made,)
 
 
-def _elasticity(m: Members, rows: Ints, turning: Ints, R: Floats, d: Floats, p: Floats) -> Floats:
-    """∂ln d/∂ln p of the rotational stiffness of beam ends, (n, 3, n_parameter)."""
-    out = np.zeros((*d.shape, len(p)))
-    for k in range(len(p)):
-        moved = p.copy()
-        moved[k] += EFFECTS.joint_step
-        K = m.stiffness(rows, moved)
-        assert K is not None
-        Q = np.take_along_axis(K, turning[:, None, :], axis=2)
-        D = np.take_along_axis(Q, turning[:, :, None], axis=1)
-        new = np.einsum("nia,nij,nja->na", R, D, R)
-        out[:, :, k] = np.log(new / d) / np.log1p(EFFECTS.joint_step)
-    return out
+def _turning(K: Floats, ends: Ints) -> tuple[Floats, Floats]:
+    """Return the columns of stiffness (n, m, m) that turn an end, (n, m, 3), and (n, 3, 3)."""
+    turning = 6 * ends[:, None] + np.arange(3, 6)
+    Q = np.take_along_axis(K, turning[:, None, :], axis=2)
+    return Q, np.take_along_axis(Q, turning[:, :, None], axis=1)
 
 
 def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
@@ -86,14 +76,12 @@ def _joints(structure: Structure, beams: list[Members]) -> list[Ints]:
             np.add.at(count, m.corners.ravel(), 1)
     for m in beams:
         x = structure.model.geometry.xyz[m.corners]
-        t = x[:, 1] - x[:, 0]
-        t = t / np.maximum(np.linalg.norm(t, axis=1), np.finfo(float).tiny)[:, None]
-        for (a, b), direction in zip(m.corners, t, strict=True):
+        for (a, b), direction in zip(m.corners, unit(x[:, 1] - x[:, 0]), strict=True):
             along[a].append(direction)
             along[b].append(-direction)
-    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.joint_straight for d in along])
+    kinked = np.array([len(d) == 2 and d[0] @ d[1] > -EFFECTS.straight for d in along])
     kinked &= count == 2
-    joint = ((count >= 3) | kinked) & ~shelled(structure)
+    joint = ((count >= 3) | kinked) & ~used(structure, 2)
     return [np.argwhere(joint[m.corners]) for m in beams]
 
 

@@ -44,12 +44,13 @@ class Links(Candidates):
         )
         a, b = (i.ravel() for i in np.meshgrid(first, last, indexing="ij"))
         some = np.any(xyz[a] != xyz[b], axis=1)
-        return _between(self.structure, points, a[some], b[some], self)
+        return _between(self.structure, points, a[some], b[some], self.trials, self.typical)
 
 
 def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     """Springs between any two of the grids that are left when these are thinned."""
-    points = _grids(structure)
+    points = points_of(structure)
+    points = points.of(points.at_grids)
     xyz = points.xyz
     spacing = EFFECTS.link_spacing * scale.size
     while len(kept := thinned(xyz, spacing)) > EFFECTS.link_ends:
@@ -60,27 +61,14 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     some = np.flatnonzero((length > low * scale.size) & (length < high * scale.size))
     if not len(some):
         return ()
-    like = Candidates(
-        kind=KIND,
-        xyz=xyz[:0],
-        law=SpringLaw(np.zeros((0, 1))),
-        trials=scale.springs(),
-        root=points.moves[:0],
-        rows_each=1,
-        where=(),
-        typical=np.array([np.log(EFFECTS.spring * scale.mass * scale.omega2)]),
-        spread=np.array([EFFECTS.spring_spread]),
-    )
-    return (_between(structure, points, kept[a[some]], kept[b[some]], like),)
+    a, b = kept[a[some]], kept[b[some]]
+    return (_between(structure, points, a, b, scale.springs(), scale.spring),)
 
 
-def _grids(structure: Structure) -> Points:
-    points = points_of(structure)
-    return points.of(points.at_grids)
-
-
-def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidates) -> Links:
-    """Return the links between points a (n,) and b (n,), in all else like some candidates."""
+def _between(
+    structure: Structure, at: Points, a: Ints, b: Ints, trials: Floats, typical: Floats
+) -> Links:
+    """Return the links between points a (n,) and b (n,); `trials`, `typical`: see `Candidates`."""
     xyz, grids = at.xyz, [w["grids"] for w in at.where]
     used, ends = np.unique(np.concatenate([a, b]), return_inverse=True)
     line = xyz[b] - xyz[a]
@@ -96,7 +84,7 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
         kind=KIND,
         xyz=0.5 * (xyz[a] + xyz[b]),
         law=SpringLaw(np.zeros((len(a), 1))),
-        trials=like.trials,
+        trials=trials,
         root=(pull - push).tocsr(),
         rows_each=1,
         loads=sp.vstack([push, pull]).tocsr(),
@@ -105,8 +93,8 @@ def _between(structure: Structure, at: Points, a: Ints, b: Ints, like: Candidate
             {"grids": [*grids[i], *grids[j]], "ends": [grids[i], grids[j]], "components": [1]}
             for i, j in zip(a.tolist(), b.tolist(), strict=True)
         ),
-        typical=like.typical,
-        spread=like.spread,
+        typical=typical,
+        spread=np.array([EFFECTS.spring_spread]),
         structure=structure,
         ends_xyz=np.hstack([xyz[a], xyz[b]]),
     )

@@ -13,7 +13,7 @@ from .effect_numbers import EFFECTS
 from .sentence_parts import odds
 from .structure_points import Axes, Points, along_axes, translations
 
-PEAKS = np.geomspace(EFFECTS.damper_least, EFFECTS.damper_most, EFFECTS.damper_sizes)
+PEAKS = np.geomspace(*EFFECTS.damper_trials, EFFECTS.damper_sizes)
 """Sizes tried at every place: the ratio that the mode which feels a dashpot most gets from it."""
 
 
@@ -54,5 +54,4 @@ KIND = EffectKind(
     sentence="A dashpot to ground of about {damping:.3g} (force per velocity, deck units) in "
     "direction {components} is missing {region}: it",
     magnitudes=(Magnitude("damping", EFFECTS.damper_error),),
-    in_modes=False,
 )

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Floats
-from ..reduction.elements_and_supports import Structure
+from ..reduction.elements_and_supports import Structure, used
 from .candidates import Candidates, with_twins
 from .effect_kind import MASS, EffectKind, Magnitude, Scale
-from .effect_laws import MassLaw, MountedLaw
+from .effect_laws import MassLaw, TunedLaw
 from .effect_numbers import EFFECTS
 from .element_patches import Patch, on_patches, patches_of
 from .structure_points import points_of
@@ -40,7 +40,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     at_points = Mounted(
         kind=KIND,
         xyz=xyz,
-        law=MountedLaw(np.zeros((len(xyz), 1)), 0.0),
+        law=TunedLaw(np.zeros((len(xyz), 1)), 0.0),
         trials=np.insert(masses, 1, top + np.log(middle), axis=1),
         root=moves,
         rows_each=3,
@@ -53,10 +53,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     )
     feet, prior = patches_of(structure, scale.size, EFFECTS.feet), (typical, spread)
     on_feet = on_patches(KIND, structure, feet, MassLaw(), masses, prior, _grids)
-    used = np.zeros(len(structure.model.geometry.ids), bool)
-    for m in structure.members:
-        used[m.corners.ravel()] = True
-    grids = structure.model.geometry.xyz[used]
+    grids = structure.model.geometry.xyz[used(structure)]
     held = grids[:0] if structure.supports is None else structure.supports.places
     return (*with_twins(at_points, grids, scale.size, held), *on_feet)
 

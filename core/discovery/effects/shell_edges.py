@@ -4,11 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Structure, Supports
+from ..reduction.elements_and_supports import Structure, Supports, connected, unit
 from .effect_numbers import EFFECTS
 
 
@@ -81,29 +79,22 @@ def _sides(structure: Structure, held: Bools) -> tuple[Ints, Floats, Floats]:
             normals.append(n[on])
     own, first = np.unique(np.vstack(ends), axis=0, return_index=True)
     along = xyz[own[:, 1]] - xyz[own[:, 0]]
-    return own, _unit(along), _unit(np.vstack(normals)[first])
-
-
-def _unit(v: Floats) -> Floats:
-    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=1), np.finfo(float).tiny)[:, None])
+    return own, unit(along), unit(np.vstack(normals)[first])
 
 
 def _continued(ends: Ints, along: Floats, normal: Floats) -> list[Ints]:
     """Rows of sides that continue each other."""
-    n = len(ends)
     order = np.argsort(ends.ravel(), kind="stable")
     grids = ends.ravel()[order]
     first, last = [], []
     for group in np.split(order // 2, np.flatnonzero(np.diff(grids)) + 1):
         for k, a in enumerate(group):
             for b in group[k + 1 :]:
-                straight = abs(float(along[a] @ along[b])) > EFFECTS.edge_straight
-                if straight and abs(float(normal[a] @ normal[b])) > EFFECTS.edge_straight:
+                straight = abs(float(along[a] @ along[b])) > EFFECTS.straight
+                if straight and abs(float(normal[a] @ normal[b])) > EFFECTS.straight:
                     first.append(a)
                     last.append(b)
-    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
-    number, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == k) for k in range(number)]
+    return connected(len(ends), np.array(first, np.int64), np.array(last, np.int64))
 
 
 def _walk(ends: Ints) -> tuple[Ints, Ints]:

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Structure
+from ..reduction.elements_and_supports import Structure, unit, used
 from .bar_members import bare_bars
 from .effect_numbers import EFFECTS
 
@@ -56,21 +56,14 @@ def points_of(structure: Structure) -> Points:
     carries = np.zeros(len(g.ids), bool)
     rows = g.index_of(structure.model.dofs.node)
     carries[rows[moving & (rows >= 0)]] = True
-    used = np.zeros(len(g.ids), bool)
-    for m in structure.members:
-        used[m.corners.ravel()] = True
-    own = np.flatnonzero(carries & used)
+    own = np.flatnonzero(carries & used(structure))
     own = own[structure.in_order(g.xyz[own])]
-    weights = [
-        sp.csr_matrix((np.ones(len(own)), (np.arange(len(own)), own)), (len(own), len(g.ids)))
-    ]
+    grids = [own[:, None]]
     bent = [np.zeros((len(own), 3, 3))]
     for m in structure.members:
         if m.element.dimension == 2:
             diagonals = g.xyz[m.corners[:, [2, -1]]] - g.xyz[m.corners[:, [0, 1]]]
-            normal = np.cross(diagonals[:, 0], diagonals[:, 1])
-            length = np.linalg.norm(normal, axis=1)
-            normal /= np.where(length > 0.0, length, 1.0)[:, None]
+            normal = unit(np.cross(diagonals[:, 0], diagonals[:, 1]))
             edges = np.stack([m.corners, np.roll(m.corners, -1, axis=1)], axis=-1).reshape(-1, 2)
             edges, first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)
             for corners, across in (
@@ -78,26 +71,24 @@ def points_of(structure: Structure) -> Points:
                 (edges, normal[first // m.corners.shape[1]]),
             ):
                 order = structure.in_order(g.xyz[corners].mean(axis=1))
-                weights.append(_means(corners[order], len(g.ids)))
+                grids.append(corners[order])
                 bent.append(across[order, :, None] * across[order, None, :])
     for number, rows in bare_bars(structure):
         corners = structure.members[number].corners[rows, :2]
-        corners = corners[structure.in_order(g.xyz[corners].mean(axis=1))]
-        weights.append(_means(corners, len(g.ids)))
+        grids.append(corners[structure.in_order(g.xyz[corners].mean(axis=1))])
         bent.append(np.tile(np.eye(3), (len(corners), 1, 1)))
-    between = sum(w.shape[0] for w in weights)
+    between = sum(map(len, grids))
     carrying, arms = _arms(structure, carries)
-    weights.append(_means(carrying[:, None], len(g.ids)))
+    grids.append(carrying[:, None])
     bent.append(np.tile(2.0 * np.eye(3), (len(arms), 1, 1)))
-    P = sp.vstack(weights).tocsr()
+    P = sp.vstack([_means(rows, len(g.ids)) for rows in grids]).tocsr()
     xyz = np.asarray(P @ g.xyz)
     xyz[between:] += arms
     bows = _bows(P, xyz, g.xyz, np.concatenate(bent))
     every = sp.identity(len(g.ids), format="csr")
     moves = (translations(structure, P) + bows @ rotations(structure, every)).tocsr()
-    where: list[dict[str, Any]]
-    grids, ends = g.ids[P.indices].tolist(), P.indptr.tolist()
-    where = [{"grids": grids[a:b]} for a, b in pairwise(ends)]
+    ids = g.ids[P.indices].tolist()
+    where: list[dict[str, Any]] = [{"grids": ids[a:b]} for a, b in pairwise(P.indptr.tolist())]
     where[between:] = [
         {**w, "arms": [tuple(a)]} for w, a in zip(where[between:], arms.tolist(), strict=True)
     ]

@@ -8,7 +8,8 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ...arrays import Bools, Floats, Ints
-from ..reduction.elements_and_supports import Members, Structure, Supports, thinned
+from ..reduction.elements_and_supports import Structure, Supports, placed, thinned
+from ..reduction.reduction_numbers import REDUCTION
 from .candidates import Candidates, Ends
 from .effect_kind import STIFFNESS, EffectKind, Scale
 from .effect_laws import ReleaseLaw, directions
@@ -119,30 +120,13 @@ def _at(structure: Structure, s: Supports, p: Floats, own: Bools) -> Supports:
         rows = np.flatnonzero(touched)
         if not len(rows):
             continue
-        here, there = (m.stiffness(rows, x) for x in (p, deck))
-        if here is None or there is None:
-            continue
         at = m.coordinates(rows)
-        i, j = (np.broadcast_to(k, here.shape).ravel() for k in (at[:, :, None], at[:, None, :]))
-
-        def among(K: Floats, i: Ints = i, j: Ints = j) -> sp.csr_matrix:
-            return sp.csr_matrix((K.ravel(), (i, j)), (n, n))[held]
-
-        change = among(here - there)
+        change = placed(n, at, m.stiffness(rows, p) - m.stiffness(rows, deck))[held]
         root, coupling = root + change @ structure.displacement, coupling + change[:, held]
         for k in range(len(slopes)):
-            other = _slope(m, rows, p, k) - _slope(m, rows, deck, k)
-            slopes[k] = slopes[k] + among(other)[:, held]
+            other = placed(n, at, m.slope(rows, p, k) - m.slope(rows, deck, k))
+            slopes[k] = slopes[k] + other[held][:, held]
     return replace(s, root=root.tocsr(), coupling=coupling.tocsr(), slopes=tuple(slopes))
-
-
-def _slope(m: Members, rows: Ints, p: Floats, parameter: int) -> Floats:
-    """Return the derivative of the stiffness of elements by ln p of a parameter, (n, m, m)."""
-    step = EFFECTS.support_slope * (np.arange(len(p)) == parameter)
-    more, less = (m.stiffness(rows, p * np.exp(x)) for x in (step, -step))
-    assert more is not None
-    assert less is not None
-    return np.asarray((more - less) / (2.0 * EFFECTS.support_slope))
 
 
 def _joined(s: Supports, components: tuple[int, ...]) -> Iterator[_Place]:
@@ -160,7 +144,7 @@ def _groups(s: Supports, own: Ints, size: float) -> Iterator[_Place]:
     tree = cKDTree(s.xyz[own])
     seen = set()
     for half in EFFECTS.support_halves:
-        for i in thinned(s.xyz[own], EFFECTS.support_spacing * half * size):
+        for i in thinned(s.xyz[own], EFFECTS.spacing * half * size):
             rows = own[sorted(tree.query_ball_point(s.xyz[own[i]], half * size))]
             if len(rows) > 1 and rows.tobytes() not in seen:
                 seen.add(rows.tobytes())
@@ -200,8 +184,8 @@ def _rows(s: Supports, e: Edge, component: int) -> Ints:
     return np.array([row.get(g, -1) for g in e.grids.tolist()])
 
 
-def _near(s: Supports, rows: Ints, direction: Floats) -> Ints:
-    """Whether the axes of rows lie along a direction at each of them, (n,) bool."""
+def _near(s: Supports, rows: Ints, direction: Floats) -> Bools:
+    """Whether the axes of rows lie along a direction at each of them, (n,)."""
     return np.asarray(abs(np.sum(s.axis[rows] * direction, axis=1)) > EFFECTS.support_along)
 
 
@@ -225,7 +209,7 @@ def _released(s: Supports, places: list[_Place], carrying: float) -> Candidates 
         rows, at = p.rows, np.r_[0 : len(p.free), free : free + len(p.sprung)]
         grids = np.unique(s.grid[rows])
         (d,), (W,) = directions(C[None], len(p.free))
-        d = np.maximum(d, EFFECTS.support_least * d[-1])
+        d = np.maximum(d, REDUCTION.free * d[-1])
         own[i, at] = d * len(grids)
         elastic[i, at] = np.einsum("ai,kij,aj->ak", W, slopes, W, optimize=True) / d[:, None]
         turns.append(_block(W * np.sqrt(len(grids)), i * most + at, rows, (n * most, len(s.grid))))
@@ -255,8 +239,8 @@ def _with_stiffness(
     s: Supports, places: Sequence[_Place]
 ) -> Iterator[tuple[_Place, Floats, Floats]]:
     """Return places with the stiffness among their rows and its slopes, (q, q) and (p, q, q)."""
-    for start in range(0, len(places), EFFECTS.support_at_once):
-        some = places[start : start + EFFECTS.support_at_once]
+    for start in range(0, len(places), REDUCTION.at_once):
+        some = places[start : start + REDUCTION.at_once]
         own = np.unique(np.concatenate([p.rows for p in some]))
         both = np.array([A[own][:, own].toarray() for A in (s.coupling, *s.slopes)])
         for p in some:

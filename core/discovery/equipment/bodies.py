@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Floats
+from ...arrays import Floats, skew
 from ..effects.candidates import Candidates, places_of, together
 from ..effects.effect_kind import Words
-from ..effects.effect_laws import MassLaw, MountedLaw
+from ..effects.effect_laws import MassLaw, TunedLaw
 from ..effects.effect_numbers import EFFECTS
-from .stands import Stand, cross
+from .stands import Stand
 
 _PRODUCTS = 2.0 * np.eye(3) - 1.0
 """Signs between a matrix of inertia and products of inertia."""
@@ -96,13 +96,13 @@ def equipment(
     single = Equipment(
         kind=template.kind,
         xyz=np.array([s.xyz for s, _ in each]),
-        law=MassLaw() if mount is None else MountedLaw(np.zeros((len(each), 1)), 0.0),
+        law=MassLaw() if mount is None else TunedLaw(np.zeros((len(each), 1)), 0.0),
         trials=np.hstack([template.trials[:, :1], np.tile(held, (len(template.trials), 1))]),
         root=sp.vstack([_rows(s, b) for s, b in each]).tocsr(),
         rows_each=6,
         where=tuple(s.where for s, _ in each),
         typical=np.append(template.typical[:1], held),
-        spread=np.append(template.spread[:1], np.full(len(held), EFFECTS.mount_held)),
+        spread=np.append(template.spread[:1], np.full(len(held), EFFECTS.held)),
         steps=np.ones(1 + len(held)),
         lower=np.append(-anywhere, held),
         upper=np.append(anywhere, held),
@@ -126,7 +126,7 @@ def _turned(s: Stand, b: Body) -> Body:
 
 def _rows(s: Stand, b: Body) -> sp.csr_matrix:
     """Root of the mass matrix of unit mass: motion of the centre, and what resists turns."""
-    off = np.hstack([np.eye(3), -cross(b.offset)])
+    off = np.hstack([np.eye(3), -skew(b.offset)])
     squares, axes = np.linalg.eigh(b.inertia)
     turns = np.hstack([np.zeros((3, 3)), np.sqrt(squares.clip(0.0))[:, None] * axes.T])
     return sp.csr_matrix(np.concatenate([off, turns])) @ s.motion

@@ -10,12 +10,12 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from ...arrays import Floats, Ints
+from ...arrays import Floats, Ints, skew
 from ..effects.candidates import Candidates
 from ..effects.effect_laws import Law
 from ..effects.effect_numbers import EFFECTS
 from .bodies import Body
-from .stands import Stand, cross
+from .stands import Stand
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,6 @@ class LooseLaw(Law):
     copies: int = 1
     on = "M"
 
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law as it is."""
-        return self
-
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return what each row counts, (n, 15 · copies)."""
         found = [_counts(_matrix(t)) for t in theta]
@@ -45,7 +41,7 @@ class LooseLaw(Law):
 
 
 _PAIRS = np.array([(i, j) for i, j in combinations(range(6), 2) if j > 2 and j != i + 3])
-_SIDES = tuple(-cross(e) for e in np.eye(3))
+_SIDES = -skew(np.eye(3))
 _EXTENTS = tuple(
     (np.outer(a, b) + np.outer(b, a)) / (2.0 if i == j else np.sqrt(2.0))
     for i, a in enumerate(np.eye(3))
@@ -73,7 +69,7 @@ def _taken_apart(theta: Floats) -> tuple[float, Floats, Floats]:
 def _matrix(theta: Floats) -> Floats:
     """Return the mass matrix (6, 6) of a loose body."""
     m, centre, extent = _taken_apart(theta)
-    G = np.hstack([np.eye(3), -cross(centre)])
+    G = np.hstack([np.eye(3), -skew(centre)])
     turning = np.zeros((6, 6))
     turning[3:, 3:] = Body(centre, extent).inertia
     return m * (G.T @ G + turning)
@@ -82,7 +78,7 @@ def _matrix(theta: Floats) -> Floats:
 def _slopes(theta: Floats) -> list[Floats]:
     """Return its derivatives by each θ."""
     m, centre, extent = _taken_apart(theta)
-    G = np.hstack([np.eye(3), -cross(centre)])
+    G = np.hstack([np.eye(3), -skew(centre)])
     out = [_matrix(theta)]
     for side in _SIDES:
         half = m * G.T @ np.hstack([np.zeros((3, 3)), side])

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from ...arrays import Floats, Ints
+from ...arrays import Floats, Ints, skew
 from ..effects.effect_kind import Words
 from ..effects.effect_numbers import EFFECTS
 from ..effects.structure_points import rotations, translations
@@ -88,7 +88,7 @@ def _on_grid(structure: Structure, where: Words, turn: Floats) -> Stand | None:
     points = sp.csr_matrix((np.ones(1), ([0], [own])), (1, len(g.ids)))
     turns = rotations(structure, points)
     arm = np.sum(where.get("arms", np.zeros((1, 3))), axis=0)
-    moves = translations(structure, points) - sp.csr_matrix(cross(arm)) @ turns
+    moves = translations(structure, points) - sp.csr_matrix(skew(arm)) @ turns
     kept: Words = {k: where[k] for k in ("grids", "arms") if k in where}
     return Stand(g.xyz[own] + arm, kept, sp.vstack([moves, turns]).tocsr(), turn, np.eye(3), False)
 
@@ -106,7 +106,7 @@ def _around(structure: Structure, own: Ints, rows: Ints, turn: Floats) -> Stand 
         (np.ones(len(rows)), (np.arange(len(rows)), rows)), (len(rows), len(g.ids))
     )
     size = float(np.linalg.norm(g.xyz[rows] - xyz, axis=1).max())
-    rigid = np.concatenate([np.hstack([np.eye(3), -cross(x - xyz) / size]) for x in g.xyz[rows]])
+    rigid = np.concatenate([np.hstack([np.eye(3), -skew(x - xyz) / size]) for x in g.xyz[rows]])
     if np.linalg.matrix_rank(rigid) < rigid.shape[1]:
         return None
     fitted = np.linalg.pinv(rigid) / np.repeat([1.0, size], 3)[:, None]
@@ -128,9 +128,3 @@ def _axes(around: Floats) -> tuple[Floats, bool]:
     along = along - normal * (normal @ along)
     along /= np.linalg.norm(along)
     return np.array([normal, along, np.cross(normal, along)]), True
-
-
-def cross(d: Floats) -> Floats:
-    """Return the matrix of d × ."""
-    x, y, z = d
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

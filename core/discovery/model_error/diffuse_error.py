@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...arrays import Bools, Floats, Ints
+from ..reduction.reduction_numbers import REDUCTION
 from .model_error_numbers import MODEL_ERROR
 
 _TINY = float(np.finfo(float).tiny)
@@ -91,7 +92,7 @@ class Seen:
     @cached_property
     def values(self) -> Floats:
         """The eigenvalues, those of rigid bodies no less than what matters, (n,)."""
-        least = MODEL_ERROR.rigid * np.abs(self.eigenvalues).max()
+        least = REDUCTION.nil * np.abs(self.eigenvalues).max()
         return np.asarray(np.maximum(self.eigenvalues, least))
 
     @cached_property

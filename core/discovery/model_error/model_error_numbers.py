@@ -21,7 +21,6 @@ class ModelErrorNumbers:
     nil: float = number(20.0, "ln L", "less than the likelihood of a stray mode, below which a pair is not looked at", "double precision")
     tie: float = number(1e-6, "ln L", "by which the more alike of repeated modes is the partner", "decides ties alone")
     unseen: float = number(1e-6, "of the largest squared length", "of a mode at the sensors, at least: what they do not see is rounding", ROUNDING)
-    rigid: float = number(1e-12, "of the largest eigenvalue", "below which one is rounding", ROUNDING)
     independent: float = number(24.0, "readings", "of a shape that count as independent, at most")
     cells: int = number(8, "boxes", "along the longest side, in each of which a smooth field is one value")
     degree: int = number(2, "-", "of the polynomials that smooth fields are made of, at most")
@@ -63,7 +62,6 @@ class ModelErrorNumbers:
     profile: tuple[float, float, float] = number((0.3, 0.6, 1.7), "of θ, of θ, times the step before", "first step to either side, at least and at most, and each further one")
     profile_depth: float = number(4.0, "ln L", "below its highest, down to which a posterior is followed")
     profile_fine: int = number(400, "magnitudes", "by which it is summed")
-    held: float = number(1e-3, "θ", "standard deviation of a magnitude that is to stay")
 
 
 MODEL_ERROR = ModelErrorNumbers()

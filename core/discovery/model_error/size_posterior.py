@@ -15,6 +15,7 @@ from scipy.special import ndtr
 
 from ...arrays import Floats
 from ..effects.candidates import Suspect
+from ..effects.effect_numbers import EFFECTS
 from ..likelihood.map_fit import evaluate
 from .diffuse_fit import Judged, everything, judged
 from .model_error_numbers import MODEL_ERROR
@@ -103,7 +104,7 @@ def _log(found: Judged, number: int, theta: float) -> float:
     """Return ln of the posterior of one magnitude, all else integrated out."""
     kind, at = found.state.suspects[number].kind, np.array([theta])
     prior = found.problem.catalogue[kind]
-    held = replace(prior, typical=at, spread=np.array([MODEL_ERROR.held]))
+    held = replace(prior, typical=at, spread=np.array([EFFECTS.held]))
     catalogue = tuple(held if k == kind else c for k, c in enumerate(found.problem.catalogue))
     problem = replace(found.problem, catalogue=catalogue)
     start = evaluate(problem, found.state.nuisance, _at(found.state.suspects, number, theta))

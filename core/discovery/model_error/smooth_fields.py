@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...arrays import Floats, Ints
+from ...assembly.element_assembly import CHUNK
 from ..reduction.elements_and_supports import Structure
 from ..reduction.reduction_numbers import REDUCTION
 from .model_error_numbers import MODEL_ERROR
@@ -95,15 +96,14 @@ def _parts(
     """Give cell and middle of each card's elements there, their rows of a motion, K, M times it."""
     centres = [structure.centroids(m) for m in structure.members]
     cell = _cells(np.concatenate(centres))
-    start, p = 0, np.ones(len(structure.model.parameters))
+    start, p = 0, structure.model.deck_point
     for m, xyz in zip(structure.members, centres, strict=True):
         own = cell[start : start + len(xyz)]
         start += len(xyz)
         for few in _together(own):
             some = np.flatnonzero(np.isin(own, few))
             places = m.coordinates(some)
-            none = np.zeros((len(some), places.shape[1], places.shape[1]))
-            K, M = (none if X is None else X for X in (m.stiffness(some, p), m.mass(some, p)))
+            K, M = m.stiffness(some, p), m.mass(some, p)
             for c in few:
                 here = own[some] == c
                 rows, at = np.unique(places[here], return_inverse=True)
@@ -116,7 +116,7 @@ def _parts(
 def _together(cell: Ints) -> list[Ints]:
     """Return the cells of elements (n,), so many at a time as have about so many elements."""
     cells, sizes = np.unique(cell, return_counts=True)
-    ends = np.flatnonzero(np.diff(np.cumsum(sizes) // REDUCTION.elements_at_once)) + 1
+    ends = np.flatnonzero(np.diff(np.cumsum(sizes) // CHUNK)) + 1
     return np.split(cells, ends) if len(cells) else []
 
 

@@ -17,7 +17,7 @@ from ..effects.effect_kind import FACTOR, EffectKind
 from ..effects.effect_laws import FactorLaw
 from ..effects.effect_numbers import EFFECTS
 from ..effects.element_patches import root_of
-from ..reduction.elements_and_supports import Structure
+from ..reduction.elements_and_supports import Structure, placed
 from ..reduction.search_basis import Basis
 from .model_error_numbers import MODEL_ERROR
 
@@ -54,7 +54,7 @@ class Reaches(Candidates):
             own[: len(root)] = root
         return out
 
-    def full(self, row: int) -> sp.csr_matrix:
+    def acting(self, row: int) -> sp.csr_matrix:
         """Return A of one reach."""
         return self.matrices[row]
 
@@ -100,15 +100,12 @@ def reaches_of(structure: Structure) -> Reaches | None:
 
 def _stiffness(structure: Structure, rows: list[Bools]) -> sp.csr_matrix:
     """Return the stiffness (n_free, n_free) of some elements of each card, as the deck has it."""
-    p, D = np.ones(len(structure.model.parameters)), structure.displacement
+    p, D = structure.model.deck_point, structure.displacement
     A = sp.csr_matrix((D.shape[0],) * 2)
     for m, own in zip(structure.members, rows, strict=True):
         which = np.flatnonzero(own)
-        K = m.stiffness(which, p) if len(which) else None
-        if K is not None:
-            at = m.coordinates(which)
-            i, j = np.broadcast_arrays(at[:, :, None], at[:, None, :])
-            A = A + sp.csr_matrix((K.ravel(), (i.ravel(), j.ravel())), A.shape)
+        if len(which):
+            A = A + placed(D.shape[0], m.coordinates(which), m.stiffness(which, p))
     return (D.T @ A @ D).tocsr()
 
 

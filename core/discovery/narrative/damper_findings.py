@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import Floats, Ints
 from ..dampers.damper_evidence import Weighed
+from ..dampers.damper_numbers import DAMPERS
 from ..effects import KINDS
 from ..effects.local_damper import KIND, sentence
 from ..findings import Discovery, Finding, ModalDamping, Where
@@ -24,10 +25,10 @@ def with_damper(request: Request, w: Weighed | None, said: Discovery) -> Discove
     if w is None:
         return said
     found = w.found
-    beside = found.level_with if found.exists >= NARRATIVE.damper_listed else found.level_without
+    beside = found.level_with if found.exists >= DAMPERS.likely else found.level_without
     levels = ModalDamping(tuple(found.level_without.tolist()), tuple(beside.tolist()))
     said = replace(said, damping=levels)
-    if found.exists < NARRATIVE.damper_listed:
+    if found.exists < DAMPERS.likely:
         if found.exists < NARRATIVE.damper_told:
             return said
         xyz = w.places.xyz[found.rows[0]]

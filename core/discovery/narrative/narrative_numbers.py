@@ -25,8 +25,7 @@ class NarrativeNumbers:
     rival: float = number(7.0, "ln L", "how far behind the best they are, at most", "a thousand times less likely")
 
     damper_sure: float = number(0.6, "-", "posterior of a dashpot at its place from which on it is an effect")
-    damper_listed: float = number(0.5, "-", "posterior of a dashpot anywhere from which on it is a finding")
-    damper_told: float = number(0.02, "-", "the same, from which on it is an alternative")
+    damper_told: float = number(0.02, "-", "posterior of a dashpot anywhere from which on it is an alternative")
     damper_confidence: float = number(0.88, "-", "share of clear findings of dashpots that are right", "six of six, and the rule of succession")
     damper_together: float = number(0.1, SIZE, "places that are nearer are one")
     damper_tie: float = number(1e-6, "-", "weight by which the likeliest of places that hold as much comes first", "decides ties alone")

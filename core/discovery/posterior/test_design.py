@@ -5,10 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
+from ...correlation.correlation_numbers import CORRELATION
 from ...data.parametric_model import Model
 from ..likelihood.hypothesis import Fit, Problem
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import misfit, solve
 from .posterior_numbers import POSTERIOR
+
+_TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +75,7 @@ def further_modes(problem: Problem, model: Model, best: Fit, rivals: Rivals) -> 
     rows = np.flatnonzero(model.dofs.component <= 3)
     own = _forecast(problem, best, rows)
     top = POSTERIOR.band_above * float(problem.whole.frequencies_hz.max())
-    within = np.flatnonzero((own.hz < top) & (own.hz > POSTERIOR.elastic * top))
+    within = np.flatnonzero((own.hz < top) & (own.hz > LIKELIHOOD.elastic * top))
     new = np.setdiff1d(within, own.match)
     name, f = rivals[0]
     other = _forecast(problem, f, rows)
@@ -79,7 +83,7 @@ def further_modes(problem: Problem, model: Model, best: Fit, rivals: Rivals) -> 
         return ()
     mac = (own.motion[:, new].T @ other.motion) ** 2 / float(len(rows)) ** 2
     twin = np.argmax(mac, axis=1)
-    shift = np.abs(np.log(np.maximum(other.hz[twin], POSTERIOR.nil) / own.hz[new]))
+    shift = np.abs(np.log(np.maximum(other.hz[twin], _TINY) / own.hz[new]))
     shift = np.where(mac.max(axis=1) > POSTERIOR.twin, shift, 0.0)
     k = int(np.argmax(shift))
     if shift[k] < POSTERIOR.shift:
@@ -95,7 +99,7 @@ def _forecast(problem: Problem, f: Fit, rows: Ints) -> _Forecast:
     n = min(problem.columns, len(values))
     motion = problem.basis.motion[rows] @ vectors[: problem.basis.size, :n]
     length = np.sqrt(np.mean(motion**2, axis=0))
-    motion = motion / np.maximum(length, np.finfo(float).tiny)
+    motion = motion / np.maximum(length, _TINY)
     hz = np.sqrt(np.maximum(values[:n], 0.0)) / (2.0 * np.pi)
     return _Forecast(hz, motion, misfit(problem, values, vectors)[1])
 
@@ -108,9 +112,9 @@ def _differences(a: Floats, other: _Forecast) -> Floats:
     """
     out = np.empty_like(a)
     for j, k in enumerate(other.match):
-        close = np.abs(np.log(np.maximum(other.hz, POSTERIOR.nil) / other.hz[k])) < POSTERIOR.close
+        close = np.abs(np.log(np.maximum(other.hz, _TINY) / other.hz[k])) < CORRELATION.cluster
         B = other.motion[:, close]
         turned = B @ np.linalg.lstsq(B, a[:, j], rcond=None)[0]
         length = np.sqrt(np.mean(turned**2))
-        out[:, j] = np.abs(a[:, j] - turned / max(length, np.finfo(float).tiny))
+        out[:, j] = np.abs(a[:, j] - turned / max(length, _TINY))
     return out

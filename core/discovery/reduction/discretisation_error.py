@@ -14,10 +14,11 @@ the free end of a cantilever of four lumped bars it is 2.8 % of the first freque
 import numpy as np
 import scipy.sparse as sp
 
-from ...arrays import Bools, Floats, Ints
+from ...arrays import Bools, Floats
+from ...assembly.element_assembly import CHUNK
 from ...data.parametric_model import Term
 from ...elements.lines.bar import bar_mass
-from .elements_and_supports import Members, Structure
+from .elements_and_supports import Members, Structure, placed
 from .own_axes import own_axes
 from .reduction_numbers import REDUCTION
 
@@ -54,8 +55,8 @@ def _lumping(structure: Structure, axis: Floats | None) -> sp.csr_matrix:
         apart = _laplacians(between)
         at = m.coordinates(np.arange(len(m.ids))).reshape(len(m.ids), -1, m.block.width)[:, :, :3]
         each = np.kron(mass[:, None, None] * apart, np.eye(3))
-        total += _placed(total.shape[0], at.reshape(len(m.ids), -1), each)
-    return _on_free(structure, total).matrix
+        total += placed(total.shape[0], at.reshape(len(m.ids), -1), each)
+    return _on_free(structure, total)
 
 
 def _laplacians(W: Floats) -> Floats:
@@ -84,36 +85,27 @@ def consistent_bars(structure: Structure) -> tuple[Term, ...]:
         ends = structure.model.geometry.xyz[m.corners[:, :2]]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         some = np.flatnonzero((mass > 0.0) & (length > 0.0))
-        for rows in np.array_split(some, len(some) // REDUCTION.bars_at_once + 1):
+        for rows in np.array_split(some, len(some) // CHUNK + 1):
             per_length = mass[rows] / length[rows]
             a, b = ends[rows, 0], ends[rows, 1]
             across = np.eye(3)[np.argmin(np.abs(b - a), axis=1)]
             D = bar_mass(a, b, across, per_length, True) - bar_mass(a, b, across, per_length, False)
-            total += _placed(total.shape[0], m.coordinates(rows), D)
-    return (_on_free(structure, total),) if total.nnz else ()
+            total += placed(total.shape[0], m.coordinates(rows), D)
+    return (Term(_on_free(structure, total)),) if total.nnz else ()
 
 
 def _none(structure: Structure) -> sp.csr_matrix:
     return sp.csr_matrix((structure.model.expansion.shape[0],) * 2)
 
 
-def _placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
-    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
-    m = at.shape[1]
-    rows, columns = np.repeat(at, m, axis=1).ravel(), np.tile(at, (1, m)).ravel()
-    return sp.csr_matrix((matrices.ravel(), (rows, columns)), (n, n))
-
-
-def _on_free(structure: Structure, A: sp.csr_matrix) -> Term:
+def _on_free(structure: Structure, A: sp.csr_matrix) -> sp.csr_matrix:
     X = structure.model.expansion
     A.eliminate_zeros()
-    return Term((X.T @ A @ X).tocsr())
+    return (X.T @ A @ X).tocsr()
 
 
 def _pinned(structure: Structure, m: Members) -> Bools:
     """Bars that do not bend with the grid at one of their ends, (n,)."""
-    K = m.stiffness(np.arange(len(m.ids)), np.ones(len(structure.model.parameters)))
-    if K is None:
-        return np.ones(len(m.ids), bool)
+    K = m.stiffness(np.arange(len(m.ids)), structure.model.deck_point)
     turning = np.stack([np.linalg.eigvalsh(K[:, s : s + 3, s : s + 3]) for s in (3, 9)], axis=1)
-    return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.pinned * turning[:, :, 2], axis=1))
+    return np.asarray(np.any(turning[:, :, 1] <= REDUCTION.free * turning[:, :, 2], axis=1))

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from ...arrays import Bools, Floats, Ints
 from ...assembly.element_assembly import ElementBlock
@@ -24,8 +25,6 @@ class Members:
 
     Parameters
     ----------
-    card : str
-        What the adapter calls them, opaque here but for sentences.
     element : Element
         What they are; one that has a shape.
     ids : (n,) int
@@ -35,19 +34,29 @@ class Members:
         Their matrices, in the coordinates of `Structure.displacement`.
     """
 
-    card: str
     element: Element
     ids: Ints
     corners: Ints
     block: ElementBlock
 
-    def stiffness(self, rows: Ints, p: Floats) -> Floats | None:
-        """Return the stiffness of some elements, (n, m, m), None where they have none."""
-        return self.block.evaluate(rows, p, (True, False))[0]
+    def stiffness(self, rows: Ints, p: Floats) -> Floats:
+        """Return the stiffness of some elements, (n, m, m)."""
+        return self._known(rows, self.block.evaluate(rows, p, (True, False))[0])
 
-    def mass(self, rows: Ints, p: Floats) -> Floats | None:
-        """Return the mass of some elements, (n, m, m), None where they have none."""
-        return self.block.evaluate(rows, p, (False, True))[1]
+    def mass(self, rows: Ints, p: Floats) -> Floats:
+        """Return the mass of some elements, (n, m, m)."""
+        return self._known(rows, self.block.evaluate(rows, p, (False, True))[1])
+
+    def _known(self, rows: Ints, matrices: Floats | None) -> Floats:
+        """Return matrices of some elements, zeros where they have none."""
+        m = self.block.width * self.block.places.shape[1]
+        return np.zeros((len(rows), m, m)) if matrices is None else matrices
+
+    def slope(self, rows: Ints, p: Floats, parameter: int) -> Floats:
+        """Return the derivative of the stiffness of some elements by ln p of one, (n, m, m)."""
+        step = REDUCTION.log_step * (np.arange(len(p)) == parameter)
+        more, less = (self.stiffness(rows, p * np.exp(x)) for x in (step, -step))
+        return np.asarray((more - less) / (2.0 * REDUCTION.log_step))
 
     def coordinates(self, rows: Ints) -> Ints:
         """Rows of `Structure.displacement` of some elements, (n, m)."""
@@ -137,8 +146,7 @@ class Structure(Noun):
     @cached_property
     def lumped_masses(self) -> tuple[Floats, ...]:
         """Masses of the elements of each card whose mass is lumped, 0 where it is not, (n,)."""
-        as_it_is = np.ones(len(self.model.parameters))
-        return tuple(_lumped(m, as_it_is) for m in self.members)
+        return tuple(_lumped(m, self.model.deck_point) for m in self.members)
 
     @cached_property
     def _axes(self) -> Floats:
@@ -146,22 +154,38 @@ class Structure(Noun):
 
 
 def _lumped(m: Members, p: Floats) -> Floats:
-    M = m.mass(np.arange(len(m.ids)), p)
-    if M is None:
-        return np.zeros(len(m.ids))
-    along = M[:, ::6, ::6]
+    along = m.mass(np.arange(len(m.ids)), p)[:, ::6, ::6]
     diagonal = np.einsum("eii->e", along)
     whole = along.sum(axis=(1, 2))
     return np.asarray(np.where(np.isclose(diagonal, whole), whole, 0.0))
 
 
-def shelled(structure: Structure) -> Bools:
-    """Whether each grid is one of a shell or solid, (n_grid,)."""
+def placed(n: int, at: Ints, matrices: Floats) -> sp.csr_matrix:
+    """Return the sum (n, n) of matrices (n_element, m, m) of elements at `at` (n_element, m)."""
+    rows, columns = np.broadcast_arrays(at[:, :, None], at[:, None, :])
+    return sp.csr_matrix((matrices.ravel(), (rows.ravel(), columns.ravel())), (n, n))
+
+
+def used(structure: Structure, dimension: int = 0) -> Bools:
+    """Whether each grid is one of an element of so many dimensions or more, (n_grid,)."""
     out = np.zeros(len(structure.model.geometry.ids), bool)
     for m in structure.members:
-        if m.element.dimension > 1:
+        if m.element.dimension >= dimension:
             out[m.corners.ravel()] = True
     return out
+
+
+def unit(v: Floats) -> Floats:
+    """Return vectors (..., 3) scaled to length one, those without length as they are."""
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.asarray(v / np.maximum(length, np.finfo(float).tiny))
+
+
+def connected(n: int, first: Ints, last: Ints) -> list[Ints]:
+    """Return the rows of n things in sets, joined by pairs of `first` and `last`."""
+    graph = sp.csr_matrix((np.ones(len(first)), (first, last)), (n, n))
+    label = connected_components(graph, directed=False)[1]
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label)))[:-1]
 
 
 def thinned(xyz: Floats, distance: float) -> Ints:

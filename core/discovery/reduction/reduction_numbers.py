@@ -12,14 +12,12 @@ class ReductionNumbers:
     dependent: float = number(1e-5, "of the largest squared length", "directions with less are not new to a basis")
     as_far: float = number(1e-6, "of the structure's size", "by which points are at one place along an axis", ROUNDING)
     alike: float = number(1e-3, "of the largest", "difference of moments of inertia of axes that are as good as any other between them")
-    released: float = number(1e-12, "of the largest squared length", "likewise of what a release frees: it cancels stiffness, and may hardly move mass", ROUNDING)
-    pinned: float = number(1e-9, "of the larger bending stiffness", "below which a bar does not bend with the grid", ROUNDING)
+    nil: float = number(1e-12, "of the largest eigenvalue or squared length", "below which one is rounding, also of what a release frees: it cancels stiffness, and may hardly move mass", ROUNDING)
+    free: float = number(1e-9, "of the stiffest direction", "below which one is free", ROUNDING)
     strained: float = number(1e-6, "of the highest eigenvalue", "below it a mode strains nothing", ROUNDING)
     log_step: float = number(1e-3, "of ln p", "by which a known parameter is moved for its derivatives", ROUNDING)
-    elements_at_once: int = number(4096, "elements", "whose matrices are made at once", "memory")
     parts_at_once: int = number(16, "parts", "of a structure whose matrices on a basis are made at once", "cache and memory")
-    bars_at_once: int = number(512, "bars", "whose consistent mass is made at once", "memory")
-    at_once: int = number(128, "loads", "whose displacements are found at once", "memory")
+    at_once: int = number(128, "loads", "whose displacements are found at once, and places of supports whose stiffness is", "memory")
     shared_at_once: int = number(600, "loads", "whose flexibilities among each other are found together", "memory")
 
 

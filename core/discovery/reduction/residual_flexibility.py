@@ -52,6 +52,32 @@ class Compliance:
         return np.asarray(np.linalg.inv(vectors.T @ (self._A @ vectors)))
 
 
+class Lost:
+    """What a basis lacks of the flexibility of loads.
+
+    Parameters
+    ----------
+    compliance : Compliance
+    vectors : (n_free, r) float
+        The basis.
+    """
+
+    def __init__(self, compliance: Compliance, vectors: Floats) -> None:
+        self._compliance, self._vectors = compliance, vectors
+        self._inverse = compliance.on(vectors)
+
+    def of(self, loads: sp.csr_matrix) -> Floats:
+        """Return by how much less than in truth each of `loads` (n, n_free) moves itself, (n,)."""
+        seen = np.asarray(loads @ self._vectors)
+        lost = self._compliance.of(loads) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
+        return np.asarray(np.maximum(lost, 0.0))
+
+    def among(self, loads: sp.csr_matrix) -> Floats:
+        """Return by how much less they move each other, (n, n)."""
+        seen = np.asarray(loads @ self._vectors)
+        return np.asarray(self._compliance.among(loads) - seen @ self._inverse @ seen.T)
+
+
 class Flexibility:
     """The flexibility of loads that a basis does not have, found when asked for, then kept.
 
@@ -60,11 +86,7 @@ class Flexibility:
 
     Parameters
     ----------
-    compliance : Compliance
-    vectors : (n_free, r) float
-        The basis.
-    inverse : (r, r) float
-        See `Compliance.on`.
+    lost : Lost
     loads : (m, n_free) sparse
         Each at one place.
     turns : (n · q, m) sparse
@@ -73,71 +95,29 @@ class Flexibility:
         q.
     """
 
-    def __init__(
-        self,
-        compliance: Compliance,
-        vectors: Floats,
-        inverse: Floats,
-        loads: sp.csr_matrix,
-        turns: sp.csr_matrix,
-        each: int,
-    ) -> None:
-        self._compliance = compliance
-        self._vectors, self._inverse = vectors, inverse
-        self._loads, self._turns = loads, turns.multiply(turns).tocsr()
-        self._of_loads = np.full(loads.shape[0], np.nan)
-        self._kept = np.full((turns.shape[0] // each, each), np.nan)
+    def __init__(self, lost: Lost, loads: sp.csr_matrix, turns: sp.csr_matrix, each: int) -> None:
+        self._lost, self._loads, self._each = lost, loads, each
+        self._turns = turns.multiply(turns).tocsr()
+        self._known = np.full(loads.shape[0], np.nan)
 
     def __getitem__(self, rows: Ints) -> Floats:
         """Return what the basis lacks, (len(rows), q)."""
-        new = np.unique(rows[np.isnan(self._kept[rows, 0])])
-        if len(new):
-            self._kept[new] = self._found(new)
-        return np.asarray(self._kept[rows])
-
-    def _found(self, rows: Ints) -> Floats:
-        """Find what the basis lacks of some rows, of each load once."""
-        q = self._kept.shape[1]
-        turns = self._turns[(rows[:, None] * q + np.arange(q)).ravel()]
+        turns = self._turns[(rows[:, None] * self._each + np.arange(self._each)).ravel()]
         wanted = np.unique(turns.indices)
-        new = wanted[np.isnan(self._of_loads[wanted])]
+        new = wanted[np.isnan(self._known[wanted])]
         if len(new):
-            own = self._loads[new]
-            seen = np.asarray(own @ self._vectors)
-            lost = self._compliance.of(own) - np.einsum("ij,ij->i", seen @ self._inverse, seen)
-            self._of_loads[new] = np.maximum(lost, 0.0)
-        known = np.zeros_like(self._of_loads)
-        known[wanted] = self._of_loads[wanted]
-        return np.asarray(turns @ known).reshape(len(rows), q)
+            self._known[new] = self._lost.of(self._loads[new])
+        return np.asarray(turns @ self._known).reshape(len(rows), self._each)
 
 
 class SharedFlexibility:
     """The flexibility among loads of one candidate that a basis does not have.
 
-    Parameters
-    ----------
-    compliance, vectors, inverse
-        See `Flexibility`.
-    loads : (m, n_free) sparse
-        What candidates have in common.
-    turns : (n · q, m) sparse
-        Loads of n candidates, q each, as sums of those.
-    each : int
-        q.
+    See `Flexibility`; `loads` are what candidates have in common.
     """
 
-    def __init__(
-        self,
-        compliance: Compliance,
-        vectors: Floats,
-        inverse: Floats,
-        loads: sp.csr_matrix,
-        turns: sp.csr_matrix,
-        each: int,
-    ) -> None:
-        self._compliance = compliance
-        self._vectors, self._inverse = vectors, inverse
-        self._loads, self._turns, self._each = loads, turns, each
+    def __init__(self, lost: Lost, loads: sp.csr_matrix, turns: sp.csr_matrix, each: int) -> None:
+        self._lost, self._loads, self._turns, self._each = lost, loads, turns, each
         self._kept: dict[int, Floats] = {}
 
     def __getitem__(self, rows: Ints) -> Floats:
@@ -159,9 +139,7 @@ class SharedFlexibility:
             if number and np.count_nonzero(wider) > REDUCTION.shared_at_once:
                 break
             known, number = wider, number + 1
-        own = self._loads[known]
-        seen = np.asarray(own @ self._vectors)
-        lost = self._compliance.among(own) - seen @ self._inverse @ seen.T
+        lost = self._lost.among(self._loads[known])
         for i, part in zip(rows[:number], parts[:number], strict=True):
             T = part[:, known].toarray()
             self._kept[i] = T @ lost @ T.T

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from ...arrays import Floats
 from ...data.parametric_model import Model
 from ...eigen.normal_modes import Eigensolution
-from ...numerics.factorisation import Factorisation, factorise
+from ...numerics.factorisation import factorise
 from ...reduction.reduced_sum import ReducedSum, reduced_sum
 from .reduction_numbers import REDUCTION
 
@@ -63,27 +63,16 @@ def build_basis(model: Model, solution: Eigensolution, targets: int) -> Basis:
 
     The first `targets` modes get static responses A⁻¹ ∂K/∂p φ.
     """
-    K, M = model.K(), model.M()
-    phi = np.asarray(solution.vectors)
-    factor = solution.factor or factorise((K - solution.sigma * M).tocsr(), definite=True)
-    V = with_answers(model, model.deck_point, phi, phi[:, :targets], M, factor)
-    return basis_on(model, V, np.asarray(model.expansion @ V))
-
-
-def basis_on(model: Model, V: Floats, motion: Floats) -> Basis:
-    """Return the basis of vectors V (n_free, r) with their `motion` on all analysis dofs."""
-    return Basis(V, motion, reduced_sum(model.stiffness, V), reduced_sum(model.mass, V))
-
-
-def with_answers(
-    model: Model, p: Floats, V: Floats, modes: Floats, M: sp.spmatrix, factor: Factorisation
-) -> Floats:
-    """Return V with what A⁻¹ ∂K/∂p φ of some modes φ adds, A being what was factorised."""
+    K, M, p = model.K(), model.M(), model.deck_point
+    V = np.asarray(solution.vectors)
+    modes = V[:, :targets]
     sides = [independent(model.dK(k, p) @ modes) for k in range(len(model.parameters))]
-    if not sides:
-        return V
-    X = factor.solve(np.ascontiguousarray(np.hstack(sides)))
-    return np.hstack([V, beside(X, [V], M, REDUCTION.dependent)])
+    if sides:
+        factor = solution.factor or factorise((K - solution.sigma * M).tocsr(), definite=True)
+        X = factor.solve(np.ascontiguousarray(np.hstack(sides)))
+        V = np.hstack([V, beside(X, [V], M, REDUCTION.dependent)])
+    motion = np.asarray(model.expansion @ V)
+    return Basis(V, motion, reduced_sum(model.stiffness, V), reduced_sum(model.mass, V))
 
 
 def independent(loads: Floats) -> Floats:

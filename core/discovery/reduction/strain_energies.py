@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Floats, Ints
+from ...assembly.element_assembly import CHUNK
 from .elements_and_supports import Members, Structure
 from .reduction_numbers import REDUCTION
 
@@ -39,34 +40,19 @@ def strain_energies(structure: Structure, modes: Floats, eigenvalues: Floats) ->
 
 def _of_card(structure: Structure, m: Members, motion: Floats) -> Floats:
     deck = structure.model.deck_point
-    rows = np.arange(len(m.ids))
-    out = np.zeros((len(rows), 1 + len(deck)))
-    out[:, 0] = _energy(m, rows, deck, motion)
-    for q in range(len(deck)):
-        concerned = [k for k, on in enumerate(m.block.depends) if q in on]
-        moved = rows[np.isin(m.block.depends_of, concerned)]
-        if len(moved):
-            up, down = (
-                _energy(m, moved, _times(deck, q, np.exp(s)), motion)
-                for s in (REDUCTION.log_step, -REDUCTION.log_step)
-            )
-            out[moved, 1 + q] = (up - down) / (2.0 * REDUCTION.log_step)
+    out = np.zeros((len(m.ids), 1 + len(deck)))
+    for first in range(0, len(m.ids), CHUNK):
+        rows = np.arange(first, min(first + CHUNK, len(m.ids)))
+        out[rows, 0] = _energy(m, rows, m.stiffness(rows, deck), motion)
+        for q in range(len(deck)):
+            concerned = [k for k, on in enumerate(m.block.depends) if q in on]
+            moved = rows[np.isin(m.block.depends_of[rows], concerned)]
+            if len(moved):
+                out[moved, 1 + q] = _energy(m, moved, m.slope(moved, deck, q), motion)
     return out
 
 
-def _times(deck: Floats, q: int, factor: float) -> Floats:
-    p = deck.copy()
-    p[q] *= factor
-    return p
-
-
-def _energy(m: Members, rows: Ints, p: Floats, motion: Floats) -> Floats:
-    """Return the energy of some elements, summed over the motions, (n,)."""
-    out = np.zeros(len(rows))
-    for first in range(0, len(rows), REDUCTION.elements_at_once):
-        part = slice(first, first + REDUCTION.elements_at_once)
-        K = m.stiffness(rows[part], p)
-        if K is not None:
-            U = motion[m.coordinates(rows[part])]
-            out[part] = np.sum(U * np.matmul(K, U), axis=(1, 2))
-    return out
+def _energy(m: Members, rows: Ints, K: Floats, motion: Floats) -> Floats:
+    """Return the energy of some elements with matrices K, summed over the motions, (n,)."""
+    U = motion[m.coordinates(rows)]
+    return np.asarray(np.sum(U * np.matmul(K, U), axis=(1, 2)))

@@ -91,15 +91,12 @@ class Surroundings:
 class FootLaw(Law):
     """A mass m = e^θ₀ on a disc, whose middle and radius θ₁ to θ₃ are; see `Surroundings`.
 
-    Of twins the same `around` each of their places.
+    Of twins the same `around` each of their places. It is for a basis that has the response to
+    each grid.
     """
 
     around: tuple[Surroundings, ...]
     on = "M"
-
-    def on_basis(self, rows: Ints, missing: Floats | None, log_p: Floats, top: float) -> Law:
-        """Return the law as it is: for a basis that has the response to each grid."""
-        return self
 
     def value(self, theta: Floats, rows: Ints) -> Floats:
         """Return the mass at each grid, in each of three directions."""

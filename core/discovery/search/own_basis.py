@@ -19,7 +19,6 @@ from ...errors import CheckError
 from ...reduction.reduced_sum import ReducedSum
 from ..effects import support_flexibility
 from ..effects.candidates import Candidates, Suspect
-from ..effects.effect_numbers import EFFECTS
 from ..effects.element_patches import root_of
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import solve
@@ -240,7 +239,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     b = ground.basis
     sums: tuple[ReducedSum, ...] = b.stiffness, b.mass, ground.mesh, ground.bars
     added, seen = V[:, :0], ground.readings
-    acting = [_acting(c, row) for c, row in places]
+    acting = [c.acting(row) for c, row in places]
     if places:
         before, (c, row) = _known(ground, places[:-1], columns), places[-1]
         sums = before.stiffness, before.mass, before.mesh, before.bars
@@ -251,7 +250,7 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
         else:
             loads = independent(acting[-1] @ V[:, :columns])
         released = any(c.law.shared for c, _ in places)
-        least = REDUCTION.released if released else REDUCTION.dependent
+        least = REDUCTION.nil if released else REDUCTION.dependent
         known = [basis for basis in (V, before.added) if basis.shape[1]]
         W = beside(ground.compliance.responses(loads), known, ground.mass, least)
         sums = tuple(s.widened(known, W) for s in sums)
@@ -263,11 +262,6 @@ def _own(ground: Ground, places: Places, columns: int) -> Own:
     return Own(stiffness, mass, mesh, bars, added, seen, factors)
 
 
-def _acting(c: Candidates, row: int) -> sp.csr_matrix:
-    """Return the rows of a root of the matrix of one place, or where it has none the matrix."""
-    return c.root[row * c.rows_each : (row + 1) * c.rows_each] if c.rows_each else c.full(row)
-
-
 def _factor(c: Candidates, A: sp.csr_matrix, V: Floats, W: Floats) -> Floats:
     """Return rows (q, r + s) whose outer products are the matrix of one place on V and W.
 
@@ -277,7 +271,7 @@ def _factor(c: Candidates, A: sp.csr_matrix, V: Floats, W: Floats) -> Floats:
         return np.hstack([A @ V, A @ W])
     own = np.unique(A.indices)
     X = np.hstack([V[own], W[own]])
-    return root_of(X.T @ (A[own][:, own] @ X), EFFECTS.patch_rounding)
+    return root_of(X.T @ (A[own][:, own] @ X), REDUCTION.nil)
 
 
 def _alone(c: Candidates, row: int, state: Fit) -> Candidates:

@@ -11,6 +11,7 @@ from ...arrays import Floats
 from ...errors import CheckError
 from ..effects import support_flexibility
 from ..effects.candidates import Suspect
+from ..effects.effect_numbers import EFFECTS
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem
 from ..likelihood.map_fit import evaluate, fit
@@ -186,7 +187,7 @@ def _in_deck(own: Problem, found: Fit) -> tuple[InDeck, Fit]:
     n = len(found.log_p)
     known = in_deck(free.log_p, free.information, scale, own.prior.spread[:n])
     held = tuple(
-        replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), SEARCH.held))
+        replace(c, typical=np.array(s.theta), spread=np.full(len(s.theta), EFFECTS.held))
         for c, s in zip(own.catalogue, found.suspects, strict=True)
     )
     moving = (*np.flatnonzero(known.clear).tolist(), n)

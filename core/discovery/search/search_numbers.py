@@ -120,7 +120,6 @@ class SearchNumbers:
     made_anew: int = number(4, "times", "supports that give are made for where the known parameters came to stand, at most", "time")
     followed: float = number(0.01, "of ln p", "that they may move for slopes to tell how a release follows", "its square to a part of the thousandth that a release leaves")
     rigid: float = number(1e-6, "of the largest eigenvalue", "by which the lowest of a completed model may lie below zero", ROUNDING)
-    held: float = number(1e-3, "θ", "standard deviation of a magnitude that is to stay")
 
 
 SEARCH = SearchNumbers()

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Floats, Ints
+from ...arrays import Floats, Ints, skew
 from .symmetry_numbers import SYMMETRY
 
 
@@ -56,7 +56,8 @@ def symmetries(xyz: Floats, size: float, held: Floats) -> tuple[Symmetry, ...]:
         share = min(np.isfinite(away).mean(axis=1).min() for away in off)
         return bool(share > SYMMETRY.image_share)
 
-    found = [s for s in _mirrors(xyz) if holds(s)]
+    planes = (Symmetry((np.eye(3) - 2.0 * np.outer(n, n))[None], c, n) for n, c in _lines(xyz))
+    found = [s for s in planes if holds(s)]
     mirrors = [s for k, s in enumerate(found) if not any(_same(s, t, size) for t in found[:k])]
     turns: list[Symmetry] = []
     for axis, centre in _lines(xyz):
@@ -68,13 +69,14 @@ def symmetries(xyz: Floats, size: float, held: Floats) -> tuple[Symmetry, ...]:
     return (*mirrors, *(s for s in pairs if s is not None and holds(s)), *turns)
 
 
-def images_of(s: Symmetry, xyz: Floats, near: float, apart: float) -> Ints:
+def images_of(s: Symmetry, xyz: Floats, size: float) -> Ints:
     """Return rows of places (n, 3) that are each other's images, (n_set, m + 1), the first leading.
 
-    Images lie within `near` of a place; places of a set at least `apart` from each other.
+    `size` is that of the structure.
     """
     from scipy.spatial import cKDTree
 
+    near = SYMMETRY.image_off * size
     images = s.images(xyz)
     away, there = cKDTree(xyz).query(images, distance_upper_bound=near)
     lead = np.flatnonzero(np.isfinite(away).all(axis=0))
@@ -83,7 +85,7 @@ def images_of(s: Symmetry, xyz: Floats, near: float, apart: float) -> Ints:
     first = along[:, 0] >= along.max(axis=1) - SYMMETRY.image_skew * near
     gap = np.linalg.norm(xyz[sets][:, :, None] - xyz[sets][:, None], axis=3)
     gap[:, np.arange(sets.shape[1]), np.arange(sets.shape[1])] = np.inf
-    sets = sets[first & (gap.min(axis=(1, 2)) > apart)]
+    sets = sets[first & (gap.min(axis=(1, 2)) > SYMMETRY.twins_apart * size)]
     _, kept = np.unique(np.sort(sets, axis=1), axis=0, return_index=True)
     return np.asarray(sets[np.sort(kept)])
 
@@ -107,11 +109,6 @@ def _lines(xyz: Floats) -> Iterator[tuple[Floats, Floats]]:
             yield axis, middle
 
 
-def _mirrors(xyz: Floats) -> Iterator[Symmetry]:
-    for n, centre in _lines(xyz):
-        yield Symmetry((np.eye(3) - 2.0 * np.outer(n, n))[None], centre, n)
-
-
 def _pair(s: Symmetry, t: Symmetry) -> Symmetry | None:
     """Return two planes and the turn that both make, None where they are not perpendicular."""
     if abs(s.towards @ t.towards) > SYMMETRY.image_skew:
@@ -129,8 +126,7 @@ def _ring(axis: Floats, centre: Floats, n: int) -> Symmetry:
 
 def _turn(axis: Floats, angle: float) -> Floats:
     """Rodrigues' rotation about a unit axis."""
-    x, y, z = axis
-    W = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    W = skew(axis)
     return np.asarray(np.eye(3) + np.sin(angle) * W + (1.0 - np.cos(angle)) * W @ W)
 
 

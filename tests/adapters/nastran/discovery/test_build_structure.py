@@ -25,7 +25,7 @@ def test_a_bushing_is_no_bar_that_could_lose_a_part_of_its_stiffness(tmp_path):
     path = tmp_path / "deck.bdf"
     path.write_text(DECK)
     structure = build_structure(read_deck(path))
-    assert {m.card: m.element.dimension for m in structure.members}["CBUSH"] == 0
+    assert {m.element.dimension for m in structure.members if 2 in m.ids} == {0}
     places = {tuple(structure.members[p.member].ids[p.rows]) for p in bars_of(structure, 2.0)}
     assert places == {(1,)}
 

@@ -7,7 +7,6 @@ import pytest
 
 from trueup.core.discovery.dampers.damped_model import damped
 from trueup.core.discovery.dampers.damper_search import DampingEvidence, find_damper
-from trueup.core.discovery.effects.local_damper import PEAKS
 from trueup.core.discovery.likelihood.complex_modes import Oriented
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence, noise_of
 
@@ -99,7 +98,7 @@ def test_the_size_of_a_heavy_dashpot_follows_from_its_exact_modes(place, c):
 
     said = DampingEvidence(measured, None, 12.0)
     none = np.zeros((N, N))
-    found = find_damper(said, modes, U, U, none, np.log(PEAKS), model)
+    found = find_damper(said, modes, U, U, none, model)
     assert found is not None
     assert found.exists > 0.5
     assert abs(X[found.rows[0]] - X[place]) < 0.06

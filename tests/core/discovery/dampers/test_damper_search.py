@@ -10,7 +10,6 @@ import pytest
 from trueup.core.discovery.dampers.damper_numbers import DAMPERS
 from trueup.core.discovery.dampers.damper_search import DampingEvidence, find_damper
 from trueup.core.discovery.dampers.damping_ratios import levels_for, log_likelihood, marginal
-from trueup.core.discovery.effects.local_damper import PEAKS
 from trueup.core.discovery.likelihood.complex_modes import Oriented, complex_modes, ratios
 
 N, COUNT, C = 14, 10, 1.0
@@ -47,7 +46,7 @@ def _damped(place: int, c: float, level: np.ndarray) -> tuple[np.ndarray, np.nda
 
 def _found(measured, imaginary=None, known=NONE):
     e = DampingEvidence(np.asarray(measured), imaginary, 12.0)
-    found = find_damper(e, MODES, U, U, known, np.log(PEAKS))
+    found = find_damper(e, MODES, U, U, known)
     assert found is not None
     return found
 
@@ -96,9 +95,9 @@ def test_too_few_ratios_say_nothing():
     z = np.full(COUNT, np.nan)
     z[:4] = 0.01
     e = DampingEvidence(z, None, 12.0)
-    assert find_damper(e, MODES, U, U, NONE, np.log(PEAKS)) is None
+    assert find_damper(e, MODES, U, U, NONE) is None
     zero = replace(e, measured=np.zeros(COUNT))
-    assert find_damper(zero, MODES, U, U, NONE, np.log(PEAKS)) is None
+    assert find_damper(zero, MODES, U, U, NONE) is None
 
 
 def _draws(kind: str, rng: np.random.Generator) -> np.ndarray:

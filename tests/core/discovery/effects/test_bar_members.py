@@ -49,8 +49,8 @@ def line_of(n, members=1):
     first = np.concatenate([np.arange(n) + line * (n + 1) for line in range(members)])
     corners = np.stack([first, first + 1], axis=1)
     block = SimpleNamespace(width=6)
-    member = Members("CBAR", BAR, np.arange(len(corners)) + 1, corners, block)
-    mass = Members("CONM2", MASS, np.array([900]), np.array([[n // 2]]), block)
+    member = Members(BAR, np.arange(len(corners)) + 1, corners, block)
+    mass = Members(MASS, np.array([900]), np.array([[n // 2]]), block)
     return Structure(SimpleNamespace(geometry=geometry), (member, mass), None)
 
 

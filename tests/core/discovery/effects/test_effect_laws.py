@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trueup.core.discovery.effects.effect_laws import FollowingFactorLaw, ReleaseLaw, directions
+from trueup.core.discovery.effects.effect_laws import FactorLaw, ReleaseLaw, directions
 
 RNG = np.random.default_rng(8)
 NO_PARAMETERS = np.zeros(0)
@@ -57,7 +57,7 @@ def test_the_slope_of_a_release_is_that_of_its_value():
 
 
 def test_a_factor_takes_no_more_than_the_known_parameters_left():
-    law = FollowingFactorLaw(np.array([[1.0, 0.0], [3.0, 1.0]]))
+    law = FactorLaw(np.array([[1.0, 0.0], [3.0, 1.0]]))
     left = np.log([0.7, 0.9])
     there = law.on_basis(np.array([1]), None, left, 0.0)
     theta, first = np.log([[0.05]]), np.zeros(1, int)

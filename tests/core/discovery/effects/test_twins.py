@@ -25,7 +25,8 @@ def test_beads_as_far_from_either_wall_are_a_set_of_one_magnitude():
     i, j = pairs.copies[3]
     expected = np.zeros((N, N))
     expected[i, i] = expected[j, j] = 1.0
-    assert np.allclose(pairs.full(3).toarray(), expected)
+    rows_of_one = pairs.acting(3).toarray()
+    assert np.allclose(rows_of_one.T @ rows_of_one, expected)
     assert own[rows].shape == (2, 1, N)
 
 

@@ -7,9 +7,9 @@ import pytest
 from tests.core.discovery.strings import hidden, searcher
 
 from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.effect_numbers import EFFECTS
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.model_error.diffuse_fit import everything, judged
-from trueup.core.discovery.model_error.model_error_numbers import MODEL_ERROR
 from trueup.core.discovery.model_error.size_posterior import amid, centred
 
 
@@ -73,7 +73,7 @@ def fitted(stiffness):
 def likely(found, theta):
     """Return ln of the posterior of a spring as stiff as that."""
     prior = found.problem.catalogue[1]
-    held = replace(prior, typical=np.array([theta]), spread=np.array([MODEL_ERROR.held]))
+    held = replace(prior, typical=np.array([theta]), spread=np.array([EFFECTS.held]))
     problem = replace(found.problem, catalogue=(found.problem.catalogue[0], held))
     start = evaluate(problem, found.state.nuisance, (Suspect(1, 11, (theta,)),))
     there = judged(problem, start, everything(problem))

@@ -1,13 +1,10 @@
 """Polynomials that stiffness and mass drift by."""
 
-from dataclasses import replace
-
 import numpy as np
 from tests.core.discovery.search.test_patch_reshaping import membrane
 
 from trueup.core.discovery.model_error import smooth_fields
 from trueup.core.discovery.model_error.smooth_fields import _cells, _polynomials
-from trueup.core.discovery.reduction.reduction_numbers import REDUCTION
 
 
 def test_polynomials_have_rms_one_and_are_orthogonal_by_mass():
@@ -39,7 +36,7 @@ def test_fields_are_the_same_however_many_elements_are_made_at_once(monkeypatch)
     structure = membrane()
     vectors = np.random.default_rng(2).normal(size=(structure.displacement.shape[1], 6))
     whole = smooth_fields.smooth_fields(structure, vectors)
-    monkeypatch.setattr(smooth_fields, "REDUCTION", replace(REDUCTION, elements_at_once=7))
+    monkeypatch.setattr(smooth_fields, "CHUNK", 7)
     parts = smooth_fields.smooth_fields(structure, vectors)
     assert parts.names == whole.names
     np.testing.assert_allclose(parts.stiffness, whole.stiffness, atol=1e-9)

@@ -46,7 +46,7 @@ def frequencies(K, M):
 def test_a_clamp_that_reaches_over_rows_of_elements_holds_their_grids(plate, rows):
     drawn = plate(1)
     reaches = reaches_of(drawn)
-    stiff = 1e4 * reaches.full(rows - 1)
+    stiff = 1e4 * reaches.acting(rows - 1)
     longer = plate(1 + rows).model
     np.testing.assert_allclose(
         frequencies(drawn.model.K() + stiff, drawn.model.M()),
@@ -58,7 +58,7 @@ def test_a_clamp_that_reaches_over_rows_of_elements_holds_their_grids(plate, row
 
 def test_one_that_ends_within_a_row_holds_more_than_none_and_less_than_the_row(plate):
     drawn = plate(1)
-    A = reaches_of(drawn).full(0)
+    A = reaches_of(drawn).acting(0)
     first = [frequencies(drawn.model.K() + k * A, drawn.model.M())[0] for k in (0.0, 1.0, 1e4)]
     assert first[0] < first[1] < first[2]
 

@@ -35,7 +35,7 @@ def membrane(n, lumped=True):
         ids=np.arange(n),
         corners=corners,
         block=SimpleNamespace(width=6),
-        stiffness=lambda rows, p: None,
+        stiffness=lambda rows, p: np.zeros((len(rows), 24, 24)),
         mass=lambda rows, p: M[rows],
         coordinates=lambda rows: (6 * corners[rows][:, :, None] + np.arange(6)).reshape(n, 24),
     )
@@ -45,7 +45,7 @@ def membrane(n, lumped=True):
     )
     x, y = np.tile(np.arange(n + 1.0), 2), np.repeat([0.0, 1.0], n + 1)
     geometry = SimpleNamespace(xyz=np.column_stack([x, y, 0.0 * x]))
-    model = SimpleNamespace(parameters=(), expansion=across, geometry=geometry)
+    model = SimpleNamespace(deck_point=np.ones(0), expansion=across, geometry=geometry)
     return Structure(model, (member,), sp.csr_matrix((0, 0)))
 
 
@@ -117,7 +117,9 @@ def cantilever(n, pins=False):
         coordinates=lambda rows: at[rows],
     )
     free = sp.eye(6 * (n + 1), format="csr")[:, 6:]
-    model = SimpleNamespace(parameters=(), expansion=free, geometry=SimpleNamespace(xyz=xyz))
+    model = SimpleNamespace(
+        deck_point=np.ones(0), expansion=free, geometry=SimpleNamespace(xyz=xyz)
+    )
     structure = Structure(model, (member,), sp.csr_matrix((0, 0)))
     whole = [np.zeros((6 * (n + 1),) * 2) for _ in range(2)]
     for A, parts in zip(whole, (K, M), strict=True):

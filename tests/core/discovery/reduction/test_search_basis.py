@@ -12,6 +12,7 @@ from trueup.core.data.parametric_model import Factor, Term
 from trueup.core.discovery.reduction.residual_flexibility import (
     Compliance,
     Flexibility,
+    Lost,
     SharedFlexibility,
 )
 from trueup.core.discovery.reduction.search_basis import independent
@@ -70,7 +71,7 @@ def test_what_a_basis_lacks_is_the_rest_of_the_flexibility(loads):
     model = SimpleNamespace(K=lambda: K, M=lambda: M)
     known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
     each = sp.identity(8, format="csr")
-    lacking = Flexibility(known, V, known.on(V), loads, each, 2)
+    lacking = Flexibility(Lost(known, V), loads, each, 2)
     A = K.toarray() + 2.0 * np.eye(30)
     lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
     expected = np.einsum("ij,jk,ik->i", loads.toarray(), lost, loads.toarray()).reshape(4, 2)
@@ -85,7 +86,7 @@ def test_a_spring_between_two_places_lacks_what_a_basis_lacks_at_either_end():
     model = SimpleNamespace(K=lambda: K, M=lambda: M)
     known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
     ends = sp.csr_matrix(np.eye(30)[[2, 20]])
-    lacking = Flexibility(known, basis, known.on(basis), ends, sp.csr_matrix([[-1.0, 1.0]]), 1)
+    lacking = Flexibility(Lost(known, basis), ends, sp.csr_matrix([[-1.0, 1.0]]), 1)
     A = K.toarray() + 2.0 * np.eye(30)
     lost = np.linalg.inv(A) - basis @ np.linalg.inv(basis.T @ A @ basis) @ basis.T
     line = np.eye(30)[20] - np.eye(30)[2]
@@ -99,7 +100,7 @@ def test_what_a_basis_lacks_among_the_loads_of_a_candidate_is_the_rest_of_the_fl
     known = Compliance(model, SimpleNamespace(sigma=-2.0, factor=None))
     loads = sp.random(5, 30, 0.3, random_state=6, format="csr")
     turns = sp.random(8, 5, 0.5, random_state=7, format="csr")
-    lacking = SharedFlexibility(known, V, known.on(V), loads, turns, 2)
+    lacking = SharedFlexibility(Lost(known, V), loads, turns, 2)
     A = K.toarray() + 2.0 * np.eye(30)
     lost = np.linalg.inv(A) - V @ np.linalg.inv(V.T @ A @ V) @ V.T
     own = (turns @ loads).toarray().reshape(4, 2, 30)

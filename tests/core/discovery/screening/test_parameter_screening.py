@@ -87,7 +87,7 @@ def test_tied_parameters_move_alike_and_the_others_not_at_all():
         return np.full((len(rows), 1, 1), p[0] + 10.0 * p[1] + 100.0 * p[2]), None
 
     block = ElementBlock(np.array([[0]]), 1, evaluate, ((0, 2),))
-    member = Members("SPRING", SPRING, np.array([7]), np.array([[0]]), block)
+    member = Members(SPRING, np.array([7]), np.array([[0]]), block)
     whole = Structure(model, (member,), sp.csr_matrix([[1.0]]))
     own = tied(whole, [(1, 2)], ["both"])
     (parameter,) = own.model.parameters

@@ -74,7 +74,7 @@ def membrane(property_of=None):
         coordinates=lambda rows: at[rows],
     )
     geometry = SimpleNamespace(ids=np.arange(1, len(xyz) + 1), xyz=xyz)
-    model = SimpleNamespace(parameters=(), geometry=geometry, n_free=len(free))
+    model = SimpleNamespace(deck_point=np.ones(0), geometry=geometry, n_free=len(free))
     return Structure(model, (member,), displacement)
 
 

@@ -18,8 +18,7 @@ def size(xyz):
 
 
 def sets(xyz, held=NOWHERE):
-    near, apart = 0.01 * size(xyz), 0.05 * size(xyz)
-    found = (images_of(s, xyz, near, apart) for s in symmetries(xyz, size(xyz), held))
+    found = (images_of(s, xyz, size(xyz)) for s in symmetries(xyz, size(xyz), held))
     return [rows for rows in found if len(rows)]
 
 
