@@ -65,7 +65,7 @@ def grown(
         if depth > 1:
             beam[0] = searcher.moved_at_once(searcher.reconsidered(beam[0]))
         beam = _distinct(searcher, sorted(beam, key=objective_of))
-        best = next(filter(explains, beam), beam[0])
+        best = next((f for f in beam if depth > 1 and explains(f)), beam[0])
         rest = (*(f for f in beam if f is not best), *chosen[searcher.effort.beam :])
         rivals.append(rest[: SEARCH.rivals_kept])
         previous = levels[-1]
