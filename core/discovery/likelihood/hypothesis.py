@@ -154,6 +154,14 @@ class Fit:
         """Return ln p of the known parameters, (n_parameter,)."""
         return self.nuisance[:-1]
 
+    def others(self, q: int) -> tuple[Suspect, ...]:
+        """Return all suspects but one."""
+        return self.suspects[:q] + self.suspects[q + 1 :]
+
+    def instead(self, q: int, new: Suspect) -> tuple[Suspect, ...]:
+        """Return the suspects with another in place of one."""
+        return (*self.suspects[:q], new, *self.suspects[q + 1 :])
+
 
 def softened(problem: Problem) -> Problem:
     """Return the problem with more noise: wider valleys, seen from places and sizes further off.

@@ -48,7 +48,7 @@ def grown(
             among = scanned.live if depth > 1 and state is beam[0] else among
             for branch in _varied(searcher, scanned.best, soft):
                 wider = (*state.suspects, branch)
-                found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
+                found.append(searcher.fitted(state, wider, SEARCH.steps_new, soften=True))
             best = min(found, key=objective_of)
             if depth > 1 and hopeless(searcher, levels[-1], best):
                 break

@@ -88,7 +88,7 @@ def as_blocks(
             made = equipment(c, feet[0], [body], mount)
             searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
             new = Suspect(kind, 0, tuple(made.like(s.theta[:1]).tolist()))
-            suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
+            suspects = state.instead(q, new)
             if mount is None:
                 state = searcher.fitted(state, suspects, SEARCH.steps_moved)
             else:
@@ -152,14 +152,12 @@ def _feet(structure: Structure, c: Candidates, row: int) -> list[list[Stand]]:
 def _start(r: _Replaced, place: Place) -> tuple[float, Body]:
     """Return ln of the mass and the body at a place that promise most, all else as it stands."""
     template, feet = place
-    suspects, q = r.state.suspects, r.number
     bodies = _upright(feet[0], r.searcher.size)
     made = equipment(template, feet, bodies)
     wide, kind = _with(r.searcher, made), len(r.searcher.problem.catalogue)
-    others = suspects[:q] + suspects[q + 1 :]
-    small, here = wide.local(evaluate(wide.problem, r.state.nuisance, others))
+    small, here = wide.without(r.state, r.number)
     sizes = np.array(SEARCH.equipment_sizes)
-    trials = made.around(made.like(suspects[q].theta).tolist(), sizes)
+    trials = made.around(made.like(r.state.suspects[r.number].theta).tolist(), sizes)
     hopes = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     row, size = np.unravel_index(hopes.argmin(), hopes.shape)
     return float(trials[size][0]), bodies[row]
@@ -171,11 +169,10 @@ def _climbed(r: _Replaced, place: Place) -> Judged | None:
     None where no model with it solves.
     """
     mass, body = _start(r, place)
-    size, suspects, q = r.searcher.size, r.state.suspects, r.number
+    size = r.searcher.size
     wide, kind = _with(r.searcher, loose(*place, size)), len(r.searcher.problem.catalogue)
     new = Suspect(kind, 0, theta_of(mass, body, size))
-    both = (*suspects[:q], new, *suspects[q + 1 :])
-    state = evaluate(wide.problem, r.state.nuisance, both)
+    state = evaluate(wide.problem, r.state.nuisance, r.state.instead(r.number, new))
     return wide.judged(wide.problem, state, np.inf)
 
 
@@ -192,12 +189,12 @@ def _standing(r: _Replaced, place: Place, best: Judged) -> _Standing:
         if found is None or found.evidence < best.evidence + SEARCH.better:
             break
         best = found
-    suspects = best.fit.suspects
-    made = equipment(template, feet, [body_of(suspects[q].theta, size)], paid=_paid(best, q))
-    new = Suspect(suspects[q].kind, 0, tuple(made.like(suspects[q].theta[:1]).tolist()))
-    both = (*suspects[:q], new, *suspects[q + 1 :])
+    s = best.fit.suspects[q]
+    made = equipment(template, feet, [body_of(s.theta, size)], paid=_paid(best, q))
+    new = Suspect(s.kind, 0, tuple(made.like(s.theta[:1]).tolist()))
     wide = _with(r.searcher, made)
-    return _Standing(wide, scored(wide, evaluate(wide.problem, best.fit.nuisance, both)))
+    stood = evaluate(wide.problem, best.fit.nuisance, best.fit.instead(q, new))
+    return _Standing(wide, scored(wide, stood))
 
 
 def _paid(best: Judged, q: int) -> float:

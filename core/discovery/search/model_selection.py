@@ -200,8 +200,8 @@ def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Score
 
 def without_one(searcher: Searcher, f: Fit) -> list[Fit]:
     """Return a hypothesis without one of its suspects, each in turn, nothing else moved."""
-    parts = (f.suspects[:q] + f.suspects[q + 1 :] for q in range(len(f.suspects)))
-    return [evaluate(searcher.problem, f.nuisance, suspects) for suspects in parts]
+    each = range(len(f.suspects))
+    return [evaluate(searcher.problem, f.nuisance, f.others(q)) for q in each]
 
 
 def without_one_to_spare(searcher: Searcher, f: Fit, null: Fit) -> Fit | None:
@@ -350,9 +350,9 @@ def explained(searcher: Searcher, best: Fit, number: int) -> tuple[int, ...]:
     Those whose misfit rises clearly where the suspect is taken away and nothing else moves.
     """
     p = searcher.problem.entire()
-    others = best.suspects[:number] + best.suspects[number + 1 :]
     left, kept = (
-        mode_misfits(p, *solve(p, best.nuisance, suspects)) for suspects in (others, best.suspects)
+        mode_misfits(p, *solve(p, best.nuisance, suspects))
+        for suspects in (best.others(number), best.suspects)
     )
     gained = (left - kept) / noise_scale(searcher.problem, best)
     clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())

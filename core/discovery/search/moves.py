@@ -8,7 +8,7 @@ one is taken out and looked for anew.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -26,6 +26,7 @@ from ..model_error.diffuse_fit import Judged
 from ..reduction.search_basis import structural
 from .coarse_scan import Look, Neighbourhoods, look
 from .exact_scan import best_apart, scan
+from .found import objective_of
 from .search_numbers import SEARCH
 
 _NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
@@ -66,27 +67,25 @@ class Searcher:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
         return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
 
-    def branches(
-        self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
-    ) -> list[tuple[float, Suspect]]:
+    def without(self, state: Fit, q: int) -> tuple[Problem, Fit]:
+        """Return the same of a fit less one suspect, nothing else moved."""
+        return self.local(evaluate(self.problem, state.nuisance, state.others(q)))
+
+    def branches(self, state: Fit, count: int, soft: bool = True) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind, see `scanned`."""
-        return self.scanned(state, count, self.coarse, by).best
+        return self.scanned(state, count, self.coarse, soft).best
 
     def scanned(
-        self,
-        state: Fit,
-        count: int,
-        among: tuple[Ints, ...],
-        by: Callable[[Problem], Problem] = softened,
+        self, state: Fit, count: int, among: tuple[Ints, ...], soft: bool = True
     ) -> Scanned:
         """Return the most promising further suspects of every kind, `count` of each.
 
         Of the places `among` the rows of each kind and those next to the best of them, exactly with
         all else as it stands, and of the best of these by what a step of all unknowns would leave;
-        ``by(problem)`` has the noise by which they promise.
+        by a `soft` noise, as far from the truth.
         """
         small, here = self.local(state)
-        small = by(small)
+        small = softened(small) if soft else small
         here = evaluate(small, here.nuisance, here.suspects)
         seen: dict[int, Look] = {}
         worth = np.inf
@@ -183,15 +182,10 @@ class Searcher:
         return taken
 
     def fitted(
-        self,
-        state: Fit,
-        suspects: Sequence[Suspect],
-        iterations: int = SEARCH.steps,
-        small: Problem | None = None,
-        soften: bool = False,
+        self, state: Fit, suspects: Sequence[Suspect], iterations: int, soften: bool = False
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
-        small = small or self.local(state)[0]
+        small, _ = self.local(state)
         if soften:
             near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
@@ -202,15 +196,12 @@ class Searcher:
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
             return fit(whole, state.nuisance, suspects, self.active, steps)
 
-    def refined(self, state: Fit, by: Callable[[Problem], Problem] = softened) -> Fit:
-        """Move every suspect to better neighbours until none is better.
-
-        ``by(problem)`` has the noise by which they promise: far from the truth a softened one.
-        """
+    def refined(self, state: Fit) -> Fit:
+        """Move every suspect to better neighbours until none is better."""
         n = len(state.suspects)
         left, q = n, 0
         for _ in range(SEARCH.rounds * n):
-            better = self._neighbour(state, q, by)
+            better = self._neighbour(state, q)
             state, left = (state, left - 1) if better is None else (better, n)
             if not left:
                 break
@@ -227,29 +218,30 @@ class Searcher:
         again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
         return again if again.objective < state.objective else state
 
-    def _neighbour(self, state: Fit, q: int, by: Callable[[Problem], Problem]) -> Fit | None:
+    def _neighbour(self, state: Fit, q: int) -> Fit | None:
         suspect = state.suspects[q]
-        others = state.suspects[:q] + state.suspects[q + 1 :]
         if stretches := stretches_beside(self.problem.catalogue, suspect):
             return self._best_of(state, q, stretches)
-        without = evaluate(self.problem, state.nuisance, others)
-        small, here = self.local(without)
-        every = chain.from_iterable(self._near(by(small), here, suspect))
+        small, here = self.without(state, q)
+        every = chain.from_iterable(self._near(softened(small), here, suspect))
         near = sorted(every, key=lambda moved: moved[0])[: SEARCH.promising]
-        small = self.local(state)[0]
-        soft = by(small)
-        options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for _, moved in near:
-            beside = (*others[:q], moved, *others[q:])
-            options.append((promised(soft, state.nuisance, beside, self.active), beside))
+        soft = softened(self.local(state)[0])
+        options = self._hoped(soft, state, (state.instead(q, moved) for _, moved in near))
         stays = promised(soft, state.nuisance, state.suspects, self.active)
-        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
+        for hope, suspects in options:
             if hope > stays:
                 break
-            trial = self.fitted(state, beside, SEARCH.steps_moved, small)
+            trial = self.fitted(state, suspects, SEARCH.steps_moved)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
+
+    def _hoped(
+        self, soft: Problem, state: Fit, options: Iterable[tuple[Suspect, ...]]
+    ) -> list[tuple[float, tuple[Suspect, ...]]]:
+        """Return the few of which a step of all unknowns would leave least, with what it would."""
+        hoped = [(promised(soft, state.nuisance, s, self.active), s) for s in options]
+        return sorted(hoped, key=lambda h: h[0])[: SEARCH.moves_tried]
 
     def forms(self, suspect: Suspect) -> Iterator[tuple[int, Floats, float]]:
         """Give kinds, place and ln of the size of what a suspect may be as well: one of its nature.
@@ -304,13 +296,12 @@ class Searcher:
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
-        before, after = state.suspects[:q], state.suspects[q + 1 :]
-        small = self.local(evaluate(self.problem, state.nuisance, (*before, *after)))[0]
+        small, _ = self.without(state, q)
         tried = [
-            fit(small, state.nuisance, (*before, s, *after), self.active, SEARCH.steps_moved)
+            fit(small, state.nuisance, state.instead(q, s), self.active, SEARCH.steps_moved)
             for s in options
         ]
-        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
+        for near in sorted(tried, key=objective_of)[: SEARCH.stretches_tried]:
             trial = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps_moved)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
@@ -319,7 +310,7 @@ class Searcher:
     def reconsidered(self, state: Fit) -> Fit:
         """Take each suspect but the last out in turn, and look for a better one."""
         for q in self.doubtful(state, len(state.suspects) - 1):
-            others = state.suspects[:q] + state.suspects[q + 1 :]
+            others = state.others(q)
             without = self.fitted(state, others, SEARCH.steps_moved)
             for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
                 trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
@@ -339,8 +330,7 @@ class Searcher:
         pairs = permutations(range(len(state.suspects)), 2)
         moved = (self._moved_both(soft, state, *pair) for pair in pairs)
         options = sorted(chain.from_iterable(moved), key=lambda o: o[0])[: SEARCH.together]
-        hoped = [(promised(soft, state.nuisance, s, self.active), s) for _, s in options]
-        for _, suspects in sorted(hoped, key=lambda o: o[0])[: SEARCH.moves_tried]:
+        for _, suspects in self._hoped(soft, state, (s for _, s in options)):
             trial = self.fitted(state, suspects, SEARCH.steps_new, soften=True)
             if trial.objective < state.objective - SEARCH.better_anew:
                 return self.refined(trial)
@@ -360,20 +350,19 @@ class Searcher:
         )
         rows = np.flatnonzero(away <= self.effort.near * self.size)
         for row in _some(rows[np.argsort(away[rows], kind="stable")], self.effort.around):
-            suspects = list(state.suspects)
-            suspects[p] = replace(one, row=int(row))
-            here = evaluate(soft, state.nuisance, suspects[:q] + suspects[q + 1 :])
+            moved = replace(state, suspects=state.instead(p, replace(one, row=int(row))))
+            here = evaluate(soft, state.nuisance, moved.others(q))
             near = beside, np.array(other.theta), self.effort.neighbours
             for cost, s in self._promising(soft, here, other.kind, *near):
-                yield cost, (*suspects[:q], s, *suspects[q + 1 :])
+                yield cost, moved.instead(q, s)
 
     def doubtful(self, state: Fit, first: int) -> list[int]:
         """Of the `first` suspects those to be looked for anew: of many the one missed least."""
         older = list(range(first))
         if len(state.suspects) < SEARCH.anew_all:
             return older
-        others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
-        left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
+        less = (evaluate(self.problem, state.nuisance, state.others(q)) for q in older)
+        left = [f.objective for f in less]
         return [older[int(np.argmin(left))]]
 
 

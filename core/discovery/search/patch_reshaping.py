@@ -18,7 +18,6 @@ from ..effects.candidates import Candidates, Suspect
 from ..effects.element_patches import Patch, PatchCandidates, area_of
 from ..effects.link_spring import Links
 from ..likelihood.hypothesis import Fit
-from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
 from .footprints import with_kind
@@ -41,10 +40,9 @@ def reshaped(searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
 def _step(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
-    before, after = state.suspects[:q], state.suspects[q + 1 :]
     now, worth = scored(wide, state), float(np.log1p(len(options)))
     for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
-        trial = wide.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        trial = wide.fitted(state, state.instead(q, option), SEARCH.steps_new)
         if scored(wide, trial, now).score > now.score + worth:
             return wide, trial
     return None
@@ -58,8 +56,7 @@ def promising(
     sizes: Sequence[float] = SEARCH.reshape_sizes,
 ) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
-    others = state.suspects[:q] + state.suspects[q + 1 :]
-    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
+    small, here = searcher.without(state, q)
     tried: list[tuple[float, Suspect]] = []
     for kind in sorted({s.kind for s in options}):
         of_kind = [s for s in options if s.kind == kind]

@@ -147,7 +147,7 @@ def _beside(searcher: Searcher, state: Fit, few: int = SEARCH.late_moved) -> lis
     """
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
-        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, soften=True)
         if not hopeless(searcher, state, new):
             fits.setdefault(branch.kind, []).append(new)
     first = (sorted(own, key=objective_of)[:few] for own in fits.values())
